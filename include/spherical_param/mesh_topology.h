@@ -1,0 +1,65 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace spherical_param {
+
+/// What is wrong with a mesh, and where. A sound closed surface has all lists empty.
+struct TopologyFaults {
+  std::vector<std::array<Index, 2>> boundary_edges;     ///< edges with one triangle
+  std::vector<std::array<Index, 2>> nonmanifold_edges;  ///< edges with more than two triangles
+  /// Edges whose two triangles traverse them in the same direction.
+  std::vector<std::array<Index, 2>> misoriented_edges;
+  std::vector<Index> nonmanifold_vertices;  ///< vertices whose triangles are not one fan
+  std::vector<Index> unused_vertices;       ///< vertices of no triangle
+  std::vector<Index> degenerate_triangles;  ///< triangles that name a vertex twice
+};
+
+/// Combinatorial properties of a triangle mesh.
+struct MeshTopology {
+  std::size_t vertices = 0;      ///< vertices used by triangles
+  std::size_t edges = 0;         ///< undirected edges
+  std::size_t triangles = 0;     ///< triangles
+  bool closed = false;           ///< there is a triangle, and no edge has just one
+  bool edge_manifold = false;    ///< no edge has more than two triangles, no triangle is degenerate
+  bool vertex_manifold = false;  ///< the triangles around each vertex are one fan
+  bool oriented = false;         ///< the triangles of each edge traverse it in opposite directions
+  std::size_t components = 0;    ///< connected components of triangles (over shared vertices)
+  long long euler_characteristic = 0;  ///< V - E + F over the used vertices
+  /// Sum of the genera of the components; none unless closed, manifold and oriented.
+  std::optional<long long> genus;
+  TopologyFaults faults;
+
+  bool manifold() const { return edge_manifold && vertex_manifold; }
+  /// A closed, manifold, consistently oriented sphere in one piece over all vertices.
+  bool isSphere() const {
+    return closed && manifold() && oriented && components == 1 && genus == 0 &&
+           faults.unused_vertices.empty();
+  }
+};
+
+/// Examines a mesh by its indices alone.
+///
+/// \param triangles    3 x m, any order.
+/// \param vertex_count vertices are [0, vertex_count).
+/// \throw InvalidInput for an index out of range. Cost: O(m + n).
+MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count);
+
+/// Signed volume enclosed by a closed mesh [cubed unit of the input], by the divergence theorem;
+/// positive if the triangles are oriented outward. Meaningless for an open mesh.
+///
+/// \param points 3 x n; \param triangles 3 x m, indices in [0, n).
+double signedVolume(const Positions& points, const Triangles& triangles);
+
+/// Sum of the areas of the triangles [squared unit of the input].
+double surfaceArea(const Positions& points, const Triangles& triangles);
+
+/// Turns every triangle over.
+void flipOrientation(Triangles& triangles);
+
+}  // namespace spherical_param

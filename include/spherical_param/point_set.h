@@ -1,0 +1,31 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <vector>
+
+namespace spherical_param {
+
+/// Partition of points by exact equality of their coordinates (-0 equals +0).
+struct DistinctPoints {
+  /// n entries: vertex of each input point, in [0, input_of_vertex.size()).
+  std::vector<Index> vertex_of_input;
+  /// One entry per distinct position: the first input point at that position, ascending.
+  std::vector<Index> input_of_vertex;
+};
+
+/// Finds the points that share all three coordinates.
+///
+/// \param points 3 x n, finite.
+/// \throw InvalidInput if a coordinate is not finite or n exceeds 2^30. Cost: O(n log n).
+DistinctPoints findDistinctPoints(const Positions& points);
+
+/// Tells whether all points lie exactly in one plane (or line, or point), in exact arithmetic on
+/// the given doubles: a cloud that is flat but for rounding is not coplanar.
+///
+/// \param points 3 x n, finite. The largest coordinate difference should be between 1e-90 and
+/// 1e90: beyond that, products underflow or overflow (reconstruct() scales before it asks).
+/// Cost: O(n).
+bool areCoplanar(const Positions& points);
+
+}  // namespace spherical_param

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "spherical_param/mesh_topology.h"
+#include "spherical_param/neighbor_graph.h"
+#include "spherical_param/sphere_embedding.h"
+#include "spherical_param/sphere_triangulation.h"
+#include "spherical_param/types.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spherical_param {
+
+/// State of the work, as told to Options::progress.
+struct Progress {
+  const char* stage;  ///< "graph", "embedding", "triangulation" or "check"
+  double fraction;    ///< share of the stage that is done, in [0, 1]; 1 exactly once, at its end
+  int iteration;      ///< iteration of the embedding, else 0
+  double residual;    ///< residual of the embedding, else 0
+};
+
+/// Parameters of reconstruct(). The defaults are the paper's and need no tuning.
+struct Options {
+  int k = 25;  ///< neighbours of each point; 3 and up (k >= n: n - 1 are used)
+  EdgeWeights weights = EdgeWeights::Adaptive;  ///< weights of the Laplacian
+  double lambda = 0.5;                          ///< damping of the iteration; (0, 1]
+  int max_iterations = 1600;                    ///< iterations at most; >= 0
+  double tolerance = 1e-8;      ///< mean tangential Laplacian at convergence [radius]; >= 0
+  int stagnation_window = 100;  ///< iterations over which stagnation is judged; 0: never; else >= 2
+  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; >= 0
+  /// Told how far the work is; returning false ends it with Cancelled. May be empty. Called from
+  /// the calling thread only.
+  std::function<bool(const Progress&)> progress;
+};
+
+/// Time of one stage of the pipeline.
+struct StageTime {
+  std::string name;  ///< as in Progress::stage
+  double seconds;    ///< wall time [s]
+};
+
+/// Size of the neighbour graph and what it took to connect it.
+struct GraphReport {
+  std::size_t edges = 0;        ///< undirected edges, bridges included
+  Index components = 0;         ///< connected components before bridging
+  std::vector<Bridge> bridges;  ///< added edges; nodes are vertices of the Result
+};
+
+/// How the embedding ended.
+struct EmbeddingReport {
+  StopReason stop_reason = StopReason::IterationLimit;
+  int iterations = 0;             ///< steps made
+  double residual = 0.0;          ///< mean tangential Laplacian at the end [radius]
+  std::vector<double> residuals;  ///< before each step and at the end [radius]
+  double centroid_norm = 0.0;     ///< length of the mean direction; 1: collapsed
+  /// The iteration collapsed: Result::sphere is a start that did not, without iteration.
+  bool fallback_start = false;
+};
+
+/// How the triangulation came about.
+struct TriangulationReport {
+  Index hull_vertices = 0;     ///< points that the convex hull holds as vertices
+  Index reinserted = 0;        ///< points that the hull left out, put back
+  Index coincident = 0;        ///< of these, at exactly the position of another point
+  bool hull_rejected = false;  ///< the hull could not be used; all points were inserted one by one
+};
+
+/// A closed genus-0 mesh through all points, the map to the sphere, and their quality.
+struct Result {
+  Triangles triangles;  ///< 3 x (2v - 4), indices of vertices, counter-clockwise from outside
+  Positions sphere;     ///< 3 x v, unit vectors: the embedding of each vertex
+
+  std::vector<Index> vertex_of_input;  ///< n entries: vertex of each input point
+  std::vector<Index> input_of_vertex;  ///< v entries: first input point at that position
+  std::size_t duplicates = 0;          ///< n - v: points merged into an earlier one
+
+  MeshTopology topology;  ///< checked on `triangles`
+  double volume = 0.0;    ///< enclosed signed volume [cubed unit of the input]
+  double area = 0.0;      ///< [squared unit of the input]
+  /// Share of the mesh's edges that join points more than two steps apart in the neighbour graph,
+  /// in [0, 1]. Large where the embedding is folded, or the cloud is no closed genus-0 surface.
+  double edges_outside_graph = 0.0;
+
+  GraphReport graph;
+  EmbeddingReport embedding;
+  TriangulationReport triangulation;
+  std::vector<StageTime> stages;      ///< in the order of the work
+  std::vector<std::string> warnings;  ///< one sentence each; empty if nothing is to be said
+
+  std::size_t vertexCount() const { return input_of_vertex.size(); }
+};
+
+/// Meshes a point cloud: neighbour graph -> embedding on the sphere -> convex hull -> check.
+///
+/// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane.
+/// \param lists  n neighbour lists, e.g. the k nearest of each point; unsorted, with or without the
+///               point itself. Those of points that repeat an earlier point may be empty.
+/// \return the mesh. Triangles index vertices: v = 0 ... input_of_vertex.size() - 1.
+/// \throw InvalidInput for bad points, lists or options; ComputeError; Cancelled.
+///
+/// Guaranteed: the mesh is closed, manifold, consistently oriented, of genus 0 and in one piece,
+/// and every distinct point is a vertex. The same input and options give the same result, bit by
+/// bit, whatever the number of threads. Reentrant: no state is shared between calls.
+///
+/// Not guaranteed: that the mesh is free of self-intersections or near the sampled surface;
+/// `embedding`, `edges_outside_graph` and `warnings` tell how much to trust it.
+/// Cost: O(n log n) + iterations * O(n k); below 2 KB of memory a point for k = 25.
+Result reconstruct(const Positions& points, const NeighborLists& lists,
+                   const Options& options = {});
+
+}  // namespace spherical_param

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// Core of the library: meshing of genus-0 point clouds by spherical parameterisation.
+/// It depends on Eigen and the standard library only, reads and writes no files and prints nothing.
+namespace spherical_param {
+
+/// Index of a point, vertex or triangle. 32 bits: a cloud has fewer than 2^30 points.
+using Index = std::int32_t;
+
+/// 3 x n, column i = point i, in the unit of the input (or unit vectors, where said so).
+using Positions = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+/// 3 x m, column t = the three vertices of triangle t, counter-clockwise seen from outside.
+using Triangles = Eigen::Matrix<Index, 3, Eigen::Dynamic>;
+
+/// Neighbour lists of n points, stored one after the other.
+/// List i is indices[offsets[i]] ... indices[offsets[i + 1] - 1], in any order. It may contain i
+/// itself, repeated entries, and any number of entries.
+struct NeighborLists {
+  std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `indices`, ascending, the first 0
+  std::vector<Index> indices;           ///< neighbours, each in [0, n)
+
+  std::size_t size() const { return offsets.size() - 1; }  ///< number of lists, n
+};
+
+/// Undirected graph in compressed rows: every edge is stored at both of its ends.
+/// Rows are sorted by ascending neighbour, without repetition and without self-loops.
+struct Graph {
+  std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `neighbors` and `lengths`
+  std::vector<Index> neighbors;         ///< 2 x edges entries
+  std::vector<double> lengths;  ///< Euclidean length of each entry's edge [unit of the input], > 0
+
+  std::size_t size() const { return offsets.size() - 1; }         ///< number of nodes, n
+  std::size_t edgeCount() const { return neighbors.size() / 2; }  ///< number of undirected edges
+};
+
+}  // namespace spherical_param

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <Eigen/Geometry>
+
+#include <limits>
+#include <tuple>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A k-d tree that finds the nearest point of ANOTHER component. Subtrees within one component are
+/// skipped whole, which a general neighbour search cannot do: it would visit every point of the
+/// query's own component that is nearer than the answer.
+class ComponentTree {
+public:
+  /// Two points of different components; ordered by distance, then by indices, so that ties are
+  /// broken in the same way everywhere.
+  struct Pair {
+    double squared_distance = std::numeric_limits<double>::infinity();
+    Index from = -1;
+    Index to = -1;
+
+    bool operator<(const Pair& other) const {
+      return std::tuple(squared_distance, from < 0, from, to) <
+             std::tuple(other.squared_distance, other.from < 0, other.from, other.to);
+    }
+  };
+
+  /// \param points 3 x n, finite, n >= 1; must outlive the tree.
+  explicit ComponentTree(const Positions& points);
+
+  /// \param component n entries, the component of each point.
+  void setComponents(const std::vector<Index>& component);
+
+  /// Lowers `best` to the pair of point i and its nearest point in another component, if that is
+  /// less than `best` is already.
+  void nearestOther(Index i, Pair& best) const;
+
+private:
+  static constexpr Index kLeafSize = 8;
+  static constexpr Index kMixed = -1;  ///< component of a node that holds several
+
+  struct Node {
+    Eigen::AlignedBox<double, 3> box;
+    Index begin = 0;  ///< points order_[begin] ... order_[end - 1]
+    Index end = 0;
+    Index left = 0;  ///< children left and left + 1; 0: a leaf
+    Index component = kMixed;
+  };
+
+  void build(Index node);
+  void visit(Index node, Index i, Pair& best) const;
+
+  const Positions& points_;
+  std::vector<Index> order_;
+  std::vector<Index> component_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace spherical_param::internal

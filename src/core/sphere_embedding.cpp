@@ -1,0 +1,398 @@
+#include "spherical_param/sphere_embedding.h"
+
+#include "spherical_param/errors.h"
+
+#include "core/space_filling_curve.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace spherical_param {
+namespace {
+
+/// Sums are formed per block and then over the blocks in order: the same bits for any number of
+/// threads.
+constexpr Index kBlockSize = 512;
+/// Below this many nodes a parallel region costs more than it gains.
+constexpr Index kParallelThreshold = 4096;
+/// Shorter edges count as this long, so that sums of weights stay finite.
+constexpr double kShortestLength = 1e-150;
+/// Entries of a row that are evaluated together.
+constexpr int kLanes = 4;
+/// A collapse: this share of the nodes within this distance of one direction.
+constexpr double kCollapsedShare = 0.9;
+constexpr double kCollapsedRadius = 0.01;
+/// Steps in a row in that state which end the iteration; the centring undoes a passing one.
+constexpr int kCollapsePatience = 50;
+
+void checkInput(const Graph& graph, const Positions& start, const EmbeddingOptions& options) {
+  const auto fail = [](const std::string& what) { throw InvalidInput("embedOnSphere: " + what); };
+  if (static_cast<std::size_t>(start.cols()) != graph.size())
+    fail(std::to_string(start.cols()) + " start positions for a graph of " +
+         std::to_string(graph.size()) + " nodes; give one for each");
+  if (graph.neighbors.size() != graph.offsets.back() ||
+      graph.lengths.size() != graph.neighbors.size())
+    fail("the graph's arrays differ in length; use a graph from buildNeighborGraph()");
+  if (!start.allFinite())
+    fail("a start position is not finite; remove such points first");
+  if (!(options.lambda > 0.0 && options.lambda <= 1.0))
+    fail("lambda = " + std::to_string(options.lambda) + " is out of range; use (0, 1]");
+  if (options.max_iterations < 0)
+    fail("max_iterations = " + std::to_string(options.max_iterations) + "; use 0 or more");
+  if (!(options.tolerance >= 0.0))
+    fail("tolerance = " + std::to_string(options.tolerance) + "; use 0 or more");
+  if (options.stagnation_window < 0 || options.stagnation_window == 1)
+    fail("stagnation_window = " + std::to_string(options.stagnation_window) +
+         "; use 2 or more, or 0 to never stop for stagnation");
+  if (!(options.stagnation_change >= 0.0))
+    fail("stagnation_change = " + std::to_string(options.stagnation_change) + "; use 0 or more");
+  if (options.threads < 0)
+    fail("threads = " + std::to_string(options.threads) + "; use 0 (all) or more");
+}
+
+int threadCount(int requested, Index nodes) {
+  if (nodes < kParallelThreshold)
+    return 1;
+#ifdef _OPENMP
+  return requested > 0 ? requested : omp_get_max_threads();
+#else
+  (void)requested;
+  return 1;
+#endif
+}
+
+/// A direction for node i where none is defined, spread evenly over the sphere by the golden angle.
+Eigen::Vector3d anyDirection(Index i, Index n) {
+  const double height = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(n);
+  const double golden_angle = std::acos(-1.0) * (3.0 - std::sqrt(5.0));
+  const double angle = golden_angle * static_cast<double>(i);
+  const double radius = std::sqrt(std::max(0.0, 1.0 - height * height));
+  return {radius * std::cos(angle), radius * std::sin(angle), height};
+}
+
+/// Four doubles a point, so that no point is split between cache lines; the last is 0.
+using PaddedPositions = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+
+/// The rows of a graph with the nodes renumbered along a space-filling curve, so that neighbours
+/// are near in memory. Rows are padded to whole groups of kLanes entries with the node itself.
+struct Rows {
+  std::vector<Index> node_of_row;    ///< original node
+  std::vector<std::size_t> offsets;  ///< multiples of kLanes
+  std::vector<Index> neighbors;      ///< as rows
+  std::vector<double> factors;       ///< 1 for uniform weights, else 1 / |p_i - p_j|; padding has 0
+};
+
+Rows orderRows(const Graph& graph, const Positions& positions, EdgeWeights weights) {
+  Rows rows;
+  rows.node_of_row = internal::mortonOrder(positions);
+  const std::size_t n = graph.size();
+  std::vector<Index> row_of_node(n);
+  for (std::size_t row = 0; row < n; ++row)
+    row_of_node[static_cast<std::size_t>(rows.node_of_row[row])] = static_cast<Index>(row);
+  const auto node_at = [&](std::size_t row) {
+    return static_cast<std::size_t>(rows.node_of_row[row]);
+  };
+  rows.offsets.reserve(n + 1);
+  rows.offsets.push_back(0);
+  for (std::size_t row = 0; row < n; ++row) {
+    const std::size_t i = node_at(row);
+    const std::size_t entries = graph.offsets[i + 1] - graph.offsets[i];
+    rows.offsets.push_back(rows.offsets.back() + (entries + kLanes - 1) / kLanes * kLanes);
+  }
+  rows.neighbors.reserve(rows.offsets.back());
+  rows.factors.reserve(rows.offsets.back());
+  for (std::size_t row = 0; row < n; ++row) {
+    const std::size_t i = node_at(row);
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      rows.neighbors.push_back(row_of_node[static_cast<std::size_t>(graph.neighbors[e])]);
+      rows.factors.push_back(weights == EdgeWeights::Uniform
+                                 ? 1.0
+                                 : 1.0 / std::max(graph.lengths[e], kShortestLength));
+    }
+    rows.neighbors.resize(rows.offsets[row + 1], static_cast<Index>(row));
+    rows.factors.resize(rows.offsets[row + 1], 0.0);
+  }
+  return rows;
+}
+
+/// One value for each of kLanes entries.
+using Lanes = Eigen::Array<double, kLanes, 1>;
+
+/// Sum of the lanes in an order that does not depend on the instruction set.
+double total(const Lanes& lanes) {
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
+/// Tangential part of the Laplacian of a row (equations 1 and 2), weights normalised to sum 1.
+template <bool Adaptive>
+Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, Index row) {
+  const Eigen::Vector3d center = u.col(row).head<3>();
+  const double* positions = u.data();
+  const Index* neighbors = rows.neighbors.data();
+  Lanes sum_x = Lanes::Zero();
+  Lanes sum_y = Lanes::Zero();
+  Lanes sum_z = Lanes::Zero();
+  Lanes sum_weights = Lanes::Zero();
+  const auto i = static_cast<std::size_t>(row);
+  const std::size_t end = rows.offsets[i + 1];
+  for (std::size_t e = rows.offsets[i]; e < end; e += kLanes) {
+    const double* const a = positions + 4 * static_cast<std::size_t>(neighbors[e]);
+    const double* const b = positions + 4 * static_cast<std::size_t>(neighbors[e + 1]);
+    const double* const c = positions + 4 * static_cast<std::size_t>(neighbors[e + 2]);
+    const double* const d = positions + 4 * static_cast<std::size_t>(neighbors[e + 3]);
+    const Lanes x = Lanes(a[0], b[0], c[0], d[0]) - center[0];
+    const Lanes y = Lanes(a[1], b[1], c[1], d[1]) - center[1];
+    const Lanes z = Lanes(a[2], b[2], c[2], d[2]) - center[2];
+    Lanes weights = Eigen::Map<const Lanes>(rows.factors.data() + e);
+    if constexpr (Adaptive)
+      weights *= (x * x + y * y + z * z).sqrt();
+    sum_x += weights * x;
+    sum_y += weights * y;
+    sum_z += weights * z;
+    sum_weights += weights;
+  }
+  const double weight_sum = total(sum_weights);
+  if (!(weight_sum > 0.0))
+    return Eigen::Vector3d::Zero();  // all neighbours are at the same place
+  const Eigen::Vector3d laplacian =
+      Eigen::Vector3d(total(sum_x), total(sum_y), total(sum_z)) / weight_sum;
+  return laplacian - laplacian.dot(center) * center;
+}
+
+/// Tells whether nearly all points are around one direction.
+bool isCollapsed(const PaddedPositions& u) {
+  const Eigen::Vector4d mean = u.rowwise().mean();
+  // The points of a collapse alone make the mean longer than this.
+  if (!(mean.norm() > kCollapsedShare * (1.0 - kCollapsedRadius) - (1.0 - kCollapsedShare)))
+    return false;
+  const Eigen::Vector4d direction = mean.normalized();
+  const auto near = ((u.colwise() - direction).colwise().norm().array() < kCollapsedRadius).count();
+  return static_cast<double>(near) >= kCollapsedShare * static_cast<double>(u.cols());
+}
+
+/// The iteration of Figure 3 on renumbered nodes.
+class Iteration {
+public:
+  Iteration(const Graph& graph, const Positions& directions, const EmbeddingOptions& options)
+      : rows_(orderRows(graph, directions, options.weights)), options_(options),
+        n_(static_cast<Index>(graph.size())), threads_(threadCount(options.threads, n_)), u_(4, n_),
+        moved_(4, n_), block_sums_(static_cast<std::size_t>((n_ + kBlockSize - 1) / kBlockSize)),
+        block_residuals_(block_sums_.size()) {
+    for (Index row = 0; row < n_; ++row)
+      u_.col(row) << directions.col(rows_.node_of_row[static_cast<std::size_t>(row)]), 0.0;
+  }
+
+  /// Evaluates the tangential Laplacian at the current state and the step from it; returns its mean
+  /// length.
+  double evaluate() {
+    return options_.weights == EdgeWeights::Adaptive ? evaluateWith<true>() : evaluateWith<false>();
+  }
+
+  /// Takes the evaluated step, centres it and projects it on the sphere.
+  void advance() {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& sum : block_sums_)
+      mean += sum;
+    mean /= static_cast<double>(n_);
+    forEachBlock([&](Index begin, Index end, std::size_t) {
+      for (Index row = begin; row < end; ++row) {
+        const Eigen::Vector3d moved = moved_.col(row).head<3>();
+        const Eigen::Vector3d centered = moved - mean;
+        const double length = centered.norm();
+        // At the very centre there is no direction: stay.
+        u_.col(row).head<3>() = length > 0.0 ? Eigen::Vector3d(centered / length) : moved;
+      }
+    });
+  }
+
+  bool collapsed() const { return isCollapsed(u_); }
+
+  Positions directions() const {
+    Positions result(3, n_);
+    for (Index row = 0; row < n_; ++row)
+      result.col(rows_.node_of_row[static_cast<std::size_t>(row)]) = u_.col(row).head<3>();
+    return result;
+  }
+
+private:
+  template <typename Work>
+  void forEachBlock(const Work& work) {
+    const auto blocks = static_cast<Index>(block_sums_.size());
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads_) if (threads_ > 1)
+#endif
+    for (Index block = 0; block < blocks; ++block)
+      work(block * kBlockSize, std::min(n_, (block + 1) * kBlockSize),
+           static_cast<std::size_t>(block));
+  }
+
+  template <bool Adaptive>
+  double evaluateWith() {
+    forEachBlock([this](Index begin, Index end, std::size_t block) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      double residual = 0.0;
+      for (Index row = begin; row < end; ++row) {
+        const Eigen::Vector3d step = tangentialLaplacian<Adaptive>(rows_, u_, row);
+        residual += step.norm();
+        // Never zero: the step is orthogonal to a unit vector.
+        const Eigen::Vector3d moved = (u_.col(row).head<3>() + options_.lambda * step).normalized();
+        moved_.col(row).head<3>() = moved;
+        sum += moved;
+      }
+      block_sums_[block] = sum;
+      block_residuals_[block] = residual;
+    });
+    return std::accumulate(block_residuals_.begin(), block_residuals_.end(), 0.0) /
+           static_cast<double>(n_);
+  }
+
+  Rows rows_;
+  const EmbeddingOptions& options_;
+  Index n_;
+  int threads_;
+  PaddedPositions u_;      ///< unit vectors, centred before their projection
+  PaddedPositions moved_;  ///< unit vectors after the step
+  std::vector<Eigen::Vector3d> block_sums_;
+  std::vector<double> block_residuals_;
+};
+
+bool hasStagnated(const std::vector<double>& residuals, const EmbeddingOptions& options) {
+  const auto window = static_cast<std::size_t>(options.stagnation_window);
+  if (window == 0 || residuals.size() <= window)
+    return false;
+  const auto [low, high] =
+      std::minmax_element(residuals.end() - static_cast<std::ptrdiff_t>(window), residuals.end());
+  return *high - *low <= options.stagnation_change * *high;
+}
+
+}  // namespace
+
+Positions projectFromCentroid(const Positions& points) {
+  const auto n = static_cast<Index>(points.cols());
+  if (n == 0)
+    return points;
+  // Scaled first: neither the sum nor the squares may overflow.
+  const double scale = std::max(points.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  Positions directions = points / scale;
+  const Eigen::Vector3d centroid = directions.rowwise().mean();
+  for (Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d centered = directions.col(i) - centroid;
+    const double length = centered.stableNorm();
+    directions.col(i) =
+        length > 0.0 ? Eigen::Vector3d((centered / length).normalized()) : anyDirection(i, n);
+  }
+  return directions;
+}
+
+Positions projectByRank(const Positions& points) {
+  const auto n = static_cast<Index>(points.cols());
+  if (n == 0)
+    return points;
+  const double scale = std::max(points.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  Positions centered = points / scale;
+  centered.colwise() -= Eigen::Vector3d(centered.rowwise().mean());
+  const Eigen::Matrix3d covariance = centered * centered.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  // Ascending eigenvalues: the last axis is the longest.
+  const Positions local = axes.eigenvectors().transpose() * centered;
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index i, Index j) {
+    return std::pair(local(2, i), i) < std::pair(local(2, j), j);
+  });
+  Positions directions(3, n);
+  for (Index rank = 0; rank < n; ++rank) {
+    const Index i = order[static_cast<std::size_t>(rank)];
+    const double height = (2.0 * rank + 1.0) / n - 1.0;
+    const double radius = std::sqrt(1.0 - height * height);
+    const Eigen::Vector2d around = local.col(i).head<2>().stableNormalized();
+    if (around.squaredNorm() > 0.5)
+      directions.col(i) << radius * around.x(), radius * around.y(), height;
+    else
+      directions.col(i) << radius, 0.0, height;
+    directions.col(i).normalize();
+  }
+  return directions;
+}
+
+Embedding embedOnSphere(const Graph& graph, const Positions& start,
+                        const EmbeddingOptions& options) {
+  checkInput(graph, start, options);
+  Embedding result;
+  if (graph.size() == 0) {
+    result.stop_reason = StopReason::Converged;
+    result.directions = start;
+    return result;
+  }
+  Iteration iteration(graph, projectFromCentroid(start), options);
+  result.residuals.reserve(static_cast<std::size_t>(std::min(options.max_iterations, 100000)) + 1);
+  int collapsed_steps = 0;
+  for (;; ++result.iterations) {
+    result.residual = iteration.evaluate();
+    result.residuals.push_back(result.residual);
+    if (options.progress && !options.progress(result.iterations, result.residual))
+      throw Cancelled("embedOnSphere: cancelled by the progress callback");
+    if (result.residual <= options.tolerance) {
+      result.stop_reason = StopReason::Converged;
+      break;
+    }
+    if (result.iterations >= options.max_iterations) {
+      result.stop_reason = StopReason::IterationLimit;
+      break;
+    }
+    if (hasStagnated(result.residuals, options)) {
+      result.stop_reason = StopReason::Stagnated;
+      break;
+    }
+    if (collapsed_steps >= kCollapsePatience)
+      break;  // told below
+    iteration.advance();
+    collapsed_steps = iteration.collapsed() ? collapsed_steps + 1 : 0;
+  }
+  result.directions = iteration.directions();
+  result.centroid_norm = result.directions.rowwise().mean().norm();
+  if (iteration.collapsed())
+    result.stop_reason = StopReason::Collapsed;
+  return result;
+}
+
+double meanTangentialLaplacian(const Graph& graph, const Positions& directions,
+                               EdgeWeights weights) {
+  if (static_cast<std::size_t>(directions.cols()) != graph.size())
+    throw InvalidInput("meanTangentialLaplacian: " + std::to_string(directions.cols()) +
+                       " directions for a graph of " + std::to_string(graph.size()) +
+                       " nodes; give one for each");
+  double total = 0.0;
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    const Eigen::Vector3d center = directions.col(static_cast<Eigen::Index>(i));
+    Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
+    double weight_sum = 0.0;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const Eigen::Vector3d edge = directions.col(graph.neighbors[e]) - center;
+      double weight = 1.0;
+      if (weights == EdgeWeights::InverseLength)
+        weight = 1.0 / graph.lengths[e];
+      else if (weights == EdgeWeights::Adaptive)
+        weight = edge.norm() / graph.lengths[e];
+      laplacian += weight * edge;
+      weight_sum += weight;
+    }
+    if (weight_sum > 0.0)
+      laplacian /= weight_sum;
+    total += (laplacian - laplacian.dot(center) * center).norm();
+  }
+  return graph.size() == 0 ? 0.0 : total / static_cast<double>(graph.size());
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,160 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+/// Clouds, brute-force oracles and checks that the tests share. Everything is recomputed here from
+/// the output alone, without the code under test.
+namespace spherical_param::test {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// n points spread evenly over the unit sphere (golden-angle spiral).
+inline Positions spiralSphere(Index n) {
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n;
+    const double radius = std::sqrt(1.0 - z * z);
+    const double angle = kPi * (3.0 - std::sqrt(5.0)) * i;
+    points.col(i) << radius * std::cos(angle), radius * std::sin(angle), z;
+  }
+  return points;
+}
+
+/// n independent random points on the unit sphere.
+inline Positions randomSphere(Index n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) = Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  return points;
+}
+
+/// The m^3 - (m - 2)^3 grid points on the surface of the cube [0, 1]^3: full of ties.
+inline Positions cubeGrid(int m) {
+  std::vector<Eigen::Vector3d> points;
+  for (int x = 0; x < m; ++x)
+    for (int y = 0; y < m; ++y)
+      for (int z = 0; z < m; ++z)
+        if (std::min({x, y, z}) == 0 || std::max({x, y, z}) == m - 1)
+          points.emplace_back(Eigen::Vector3d(x, y, z) / (m - 1));
+  Positions result(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    result.col(static_cast<Eigen::Index>(i)) = points[i];
+  return result;
+}
+
+inline Positions horizontally(const Positions& a, const Positions& b) {
+  Positions result(3, a.cols() + b.cols());
+  result << a, b;
+  return result;
+}
+
+/// The k nearest other points of each point, by brute force; ties by index.
+inline NeighborLists bruteForceNeighbors(const Positions& points, int k) {
+  NeighborLists lists;
+  const auto n = static_cast<Index>(points.cols());
+  std::vector<std::pair<double, Index>> others;
+  for (Index i = 0; i < n; ++i) {
+    others.clear();
+    for (Index j = 0; j < n; ++j)
+      if (j != i)
+        others.emplace_back((points.col(i) - points.col(j)).squaredNorm(), j);
+    const auto count = std::min<std::ptrdiff_t>(k, static_cast<std::ptrdiff_t>(others.size()));
+    std::partial_sort(others.begin(), others.begin() + count, others.end());
+    for (std::ptrdiff_t c = 0; c < count; ++c)
+      lists.indices.push_back(others[static_cast<std::size_t>(c)].second);
+    lists.offsets.push_back(lists.indices.size());
+  }
+  return lists;
+}
+
+/// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold sphere in
+/// one piece over exactly the vertices [0, n): every directed edge once and its reverse once, the
+/// link of every vertex one cycle, V - E + F = 2 with one piece.
+inline bool isSphereOverAll(const Triangles& triangles, Index n) {
+  std::map<std::pair<Index, Index>, Index> third;  // of the triangle left of a directed edge
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = triangles(k, t);
+      const Index b = triangles((k + 1) % 3, t);
+      if (a == b || a < 0 || a >= n || !third.insert({{a, b}, triangles((k + 2) % 3, t)}).second)
+        return false;
+    }
+  std::vector<Index> first_out(static_cast<std::size_t>(n), -1);
+  std::vector<Index> degree(static_cast<std::size_t>(n), 0);
+  for (const auto& [edge, apex] : third) {
+    if (third.count({edge.second, edge.first}) == 0)
+      return false;
+    first_out[static_cast<std::size_t>(edge.first)] = edge.second;
+    ++degree[static_cast<std::size_t>(edge.first)];
+  }
+  for (Index v = 0; v < n; ++v) {
+    const Index first = first_out[static_cast<std::size_t>(v)];
+    if (first < 0)
+      return false;
+    Index around = first;
+    Index steps = 0;
+    do {
+      around = third.at({v, around});
+      ++steps;
+    } while (around != first && steps <= n);
+    if (steps != degree[static_cast<std::size_t>(v)])
+      return false;
+  }
+  std::vector<Index> piece(static_cast<std::size_t>(n));
+  std::iota(piece.begin(), piece.end(), Index{0});
+  const auto root = [&](Index v) {
+    while (piece[static_cast<std::size_t>(v)] != v)
+      v = piece[static_cast<std::size_t>(v)];
+    return v;
+  };
+  for (const auto& [edge, apex] : third) {
+    const Index a = root(edge.first);
+    const Index b = root(edge.second);
+    piece[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  for (Index v = 0; v < n; ++v)
+    if (root(v) != 0)
+      return false;
+  return n - static_cast<Index>(third.size() / 2) + static_cast<Index>(triangles.cols()) == 2;
+}
+
+/// The triangles as a sorted list, each begun at its lowest vertex: equal for equal meshes.
+inline std::vector<std::array<Index, 3>> canonical(const Triangles& triangles) {
+  std::vector<std::array<Index, 3>> result;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    std::array<Index, 3> triangle{triangles(0, t), triangles(1, t), triangles(2, t)};
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
+                triangle.end());
+    result.push_back(triangle);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// Signed volume, by plain summation of determinants.
+inline double volumeOf(const Positions& points, const Triangles& triangles) {
+  double sum = 0.0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    Eigen::Matrix3d corners;
+    for (int k = 0; k < 3; ++k)
+      corners.col(k) = points.col(triangles(k, t));
+    sum += corners.determinant();
+  }
+  return sum / 6.0;
+}
+
+}  // namespace spherical_param::test

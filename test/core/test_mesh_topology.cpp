@@ -1,0 +1,151 @@
+#include "spherical_param/mesh_topology.h"
+
+#include "helpers.h"
+#include "spherical_param/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+
+namespace spherical_param {
+namespace {
+
+Triangles make(std::initializer_list<std::array<Index, 3>> list) {
+  Triangles triangles(3, static_cast<Eigen::Index>(list.size()));
+  Eigen::Index t = 0;
+  for (const auto& triangle : list)
+    triangles.col(t++) << triangle[0], triangle[1], triangle[2];
+  return triangles;
+}
+
+Triangles tetrahedron(Index first = 0) {
+  Triangles triangles = make({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+  triangles.array() += first;
+  return triangles;
+}
+
+Triangles joined(const Triangles& a, const Triangles& b) {
+  Triangles result(3, a.cols() + b.cols());
+  result << a, b;
+  return result;
+}
+
+/// An m x m grid of quads, closed to a torus.
+Triangles torus(Index m) {
+  Triangles triangles(3, 2 * m * m);
+  Eigen::Index t = 0;
+  const auto at = [m](Index i, Index j) { return (i % m) * m + j % m; };
+  for (Index i = 0; i < m; ++i)
+    for (Index j = 0; j < m; ++j) {
+      triangles.col(t++) << at(i, j), at(i + 1, j), at(i + 1, j + 1);
+      triangles.col(t++) << at(i, j), at(i + 1, j + 1), at(i, j + 1);
+    }
+  return triangles;
+}
+
+TEST(MeshTopology, TetrahedronIsASphere) {
+  const MeshTopology topology = checkTopology(tetrahedron(), 4);
+  EXPECT_TRUE(topology.isSphere());
+  EXPECT_EQ(topology.vertices, 4U);
+  EXPECT_EQ(topology.edges, 6U);
+  EXPECT_EQ(topology.euler_characteristic, 2);
+  EXPECT_EQ(topology.genus, 0);
+}
+
+TEST(MeshTopology, TorusHasGenusOne) {
+  const MeshTopology topology = checkTopology(torus(5), 25);
+  EXPECT_TRUE(topology.closed && topology.manifold() && topology.oriented);
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_EQ(topology.euler_characteristic, 0);
+  EXPECT_EQ(topology.genus, 1);
+  EXPECT_FALSE(topology.isSphere());
+}
+
+TEST(MeshTopology, GenusAddsUpOverComponents) {
+  Triangles second = torus(4);
+  second.array() += 25;
+  const MeshTopology topology =
+      checkTopology(joined(joined(torus(5), second), tetrahedron(41)), 45);
+  EXPECT_EQ(topology.components, 3U);
+  EXPECT_EQ(topology.genus, 2);
+  EXPECT_FALSE(topology.isSphere());
+}
+
+TEST(MeshTopology, MissingTriangleLeavesItsThreeEdgesOpen) {
+  const Triangles open = tetrahedron().leftCols(3);
+  const MeshTopology topology = checkTopology(open, 4);
+  EXPECT_FALSE(topology.closed);
+  EXPECT_FALSE(topology.genus.has_value());
+  const std::vector<std::array<Index, 2>> expected{{0, 2}, {0, 3}, {2, 3}};
+  EXPECT_EQ(topology.faults.boundary_edges, expected);
+  EXPECT_TRUE(topology.manifold());
+}
+
+TEST(MeshTopology, TurnedTriangleMisorientsItsEdges) {
+  Triangles triangles = tetrahedron();
+  std::swap(triangles(0, 1), triangles(1, 1));
+  const MeshTopology topology = checkTopology(triangles, 4);
+  EXPECT_TRUE(topology.closed && topology.manifold());
+  EXPECT_FALSE(topology.oriented);
+  EXPECT_EQ(topology.faults.misoriented_edges.size(), 3U);
+}
+
+TEST(MeshTopology, TwoTetrahedraAtAVertexAreNotVertexManifold) {
+  Triangles second = tetrahedron(3);  // shares vertex 3
+  const MeshTopology topology = checkTopology(joined(tetrahedron(), second), 7);
+  EXPECT_TRUE(topology.closed && topology.edge_manifold && topology.oriented);
+  EXPECT_FALSE(topology.vertex_manifold);
+  EXPECT_EQ(topology.faults.nonmanifold_vertices, std::vector<Index>{3});
+  EXPECT_EQ(topology.components, 1U);
+}
+
+TEST(MeshTopology, FinMakesAnEdgeNonManifold) {
+  const MeshTopology topology = checkTopology(joined(tetrahedron(), make({{0, 1, 4}})), 5);
+  EXPECT_FALSE(topology.edge_manifold);
+  const std::vector<std::array<Index, 2>> expected{{0, 1}};
+  EXPECT_EQ(topology.faults.nonmanifold_edges, expected);
+}
+
+TEST(MeshTopology, RepeatedTriangleAndDegenerateTriangleAreFound) {
+  EXPECT_FALSE(checkTopology(joined(tetrahedron(), make({{0, 2, 1}})), 4).edge_manifold);
+  const MeshTopology topology = checkTopology(joined(tetrahedron(), make({{0, 0, 1}})), 4);
+  EXPECT_FALSE(topology.isSphere());
+  EXPECT_EQ(topology.faults.degenerate_triangles, std::vector<Index>{4});
+}
+
+TEST(MeshTopology, UnusedVertexIsFound) {
+  const MeshTopology topology = checkTopology(tetrahedron(1), 6);
+  EXPECT_FALSE(topology.isSphere());
+  const std::vector<Index> expected{0, 5};
+  EXPECT_EQ(topology.faults.unused_vertices, expected);
+  EXPECT_EQ(topology.vertices, 4U);
+}
+
+TEST(MeshTopology, EmptyMeshIsNotClosed) {
+  EXPECT_FALSE(checkTopology(Triangles(3, 0), 0).closed);
+  EXPECT_FALSE(checkTopology(Triangles(3, 0), 3).isSphere());
+}
+
+TEST(MeshTopology, IndexOutOfRangeIsInvalidInput) {
+  EXPECT_THROW(checkTopology(tetrahedron(), 3), InvalidInput);
+  EXPECT_THROW(checkTopology(make({{0, 1, -1}}), 3), InvalidInput);
+}
+
+TEST(MeshTopology, VolumeAndAreaOfATetrahedron) {
+  Positions points(3, 4);
+  points << 0, 1, 0, 0,  //
+      0, 0, 1, 0,        //
+      0, 0, 0, 1;
+  // Exact values of the corner of the unit cube.
+  EXPECT_DOUBLE_EQ(signedVolume(points, tetrahedron()), 1.0 / 6.0);
+  EXPECT_DOUBLE_EQ(surfaceArea(points, tetrahedron()), 1.5 + std::sqrt(3.0) / 2.0);
+  Triangles turned = tetrahedron();
+  flipOrientation(turned);
+  EXPECT_DOUBLE_EQ(signedVolume(points, turned), -1.0 / 6.0);
+  // A far origin costs digits only in the coordinates themselves.
+  points.array() += 1e6;
+  EXPECT_NEAR(signedVolume(points, tetrahedron()), 1.0 / 6.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace spherical_param

@@ -1,0 +1,95 @@
+#include "spherical_param/point_set.h"
+
+#include "helpers.h"
+#include "spherical_param/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace spherical_param {
+namespace {
+
+using test::randomSphere;
+
+TEST(PointSet, EachPlaceIsItsFirstPoint) {
+  Positions points(3, 6);
+  points << 1, 2, 1, 0, -0.0, 2,  //
+      1, 2, 1, 0, 0, 2,           //
+      1, 2, 1, 0, 0, 3;
+  const DistinctPoints distinct = findDistinctPoints(points);
+  const std::vector<Index> vertices{0, 1, 0, 2, 2, 3};
+  const std::vector<Index> inputs{0, 1, 3, 5};
+  EXPECT_EQ(distinct.vertex_of_input, vertices);
+  EXPECT_EQ(distinct.input_of_vertex, inputs);
+}
+
+TEST(PointSet, AgreesWithBruteForceOnAGridOfRepetitions) {
+  Positions points = (randomSphere(400, 1) * 3.0).array().round();
+  const DistinctPoints distinct = findDistinctPoints(points);
+  std::vector<Index> first;
+  for (Index i = 0; i < points.cols(); ++i) {
+    Index j = 0;
+    while (points.col(j) != points.col(i))
+      ++j;
+    if (j == i)
+      first.push_back(i);
+    EXPECT_EQ(distinct.input_of_vertex[static_cast<std::size_t>(
+                  distinct.vertex_of_input[static_cast<std::size_t>(i)])],
+              j);
+  }
+  EXPECT_EQ(distinct.input_of_vertex, first);
+}
+
+TEST(PointSet, NonFinitePointIsInvalidInput) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Positions points = randomSphere(10, 2);
+    points(1, 7) = bad;
+    EXPECT_THROW(findDistinctPoints(points), InvalidInput);
+  }
+}
+
+TEST(PointSet, NoPointsAreNoVertices) {
+  EXPECT_TRUE(findDistinctPoints(Positions(3, 0)).input_of_vertex.empty());
+}
+
+TEST(PointSet, PlanesAreFoundExactly) {
+  Positions points = randomSphere(200, 3);
+  EXPECT_FALSE(areCoplanar(points));
+  points.row(2).setConstant(0.1);
+  EXPECT_TRUE(areCoplanar(points));
+  points(2, 77) = std::nextafter(0.1, 1.0);  // one bit off the plane
+  EXPECT_FALSE(areCoplanar(points));
+}
+
+TEST(PointSet, TiltedPlaneOfExactCoordinatesIsCoplanar) {
+  std::mt19937_64 random(4);
+  std::uniform_int_distribution<int> integer(-1000, 1000);
+  Positions points(3, 300);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double x = integer(random);
+    const double y = integer(random);
+    points.col(i) << x / 1024.0, y / 1024.0, (3.0 * x - 7.0 * y) / 1024.0;
+  }
+  EXPECT_TRUE(areCoplanar(points));
+  points(2, 150) += std::ldexp(1.0, -45);
+  EXPECT_FALSE(areCoplanar(points));
+}
+
+TEST(PointSet, LinesAndPointsAreCoplanar) {
+  Positions line(3, 50);
+  for (Index i = 0; i < 50; ++i)
+    line.col(i) = Eigen::Vector3d(1, 2, 4) * i;
+  EXPECT_TRUE(areCoplanar(line));
+  EXPECT_TRUE(areCoplanar(Positions::Constant(3, 50, 0.3)));
+  EXPECT_TRUE(areCoplanar(randomSphere(3, 5)));
+  // Two points beside the line in different directions span space.
+  line(0, 10) = std::nextafter(line(0, 10), 100.0);
+  EXPECT_TRUE(areCoplanar(line));
+  line(1, 20) = std::nextafter(line(1, 20), 100.0);
+  EXPECT_FALSE(areCoplanar(line));
+}
+
+}  // namespace
+}  // namespace spherical_param

@@ -1,0 +1,271 @@
+#include "spherical_param/sphere_embedding.h"
+
+#include "helpers.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/neighbor_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+
+namespace spherical_param {
+namespace {
+
+using test::bruteForceNeighbors;
+using test::randomSphere;
+using test::spiralSphere;
+
+constexpr EdgeWeights kAllWeights[] = {EdgeWeights::Uniform, EdgeWeights::InverseLength,
+                                       EdgeWeights::Adaptive};
+
+Positions bumpyCloud(Index n) {
+  Positions points = spiralSphere(n);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * points(0, i)) * std::cos(3.0 * points(1, i));
+  points.row(2) *= 1.7;
+  return points;
+}
+
+Graph graphOf(const Positions& points, int k) {
+  return buildNeighborGraph(points, bruteForceNeighbors(points, k), {k}).graph;
+}
+
+/// Figure 3 of the paper, word by word, without regard for speed: returns the state and the mean
+/// tangential Laplacian after each number of steps.
+std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Positions& p,
+                                                  EdgeWeights weights, double lambda, int steps) {
+  std::vector<std::pair<Positions, double>> states;
+  Positions u = p;
+  for (int step = 0; step <= steps; ++step) {
+    const Eigen::Vector3d mean = u.rowwise().mean();
+    u.colwise() -= mean;
+    u.colwise().normalize();
+    Positions next = u;
+    double residual = 0.0;
+    for (std::size_t i = 0; i < graph.size(); ++i) {
+      const Eigen::Vector3d ui = u.col(static_cast<Index>(i));
+      Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
+      double sum = 0.0;
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+        const Eigen::Vector3d uj = u.col(graph.neighbors[e]);
+        const double length = (p.col(static_cast<Index>(i)) - p.col(graph.neighbors[e])).norm();
+        const double w = weights == EdgeWeights::Uniform         ? 1.0
+                         : weights == EdgeWeights::InverseLength ? 1.0 / length
+                                                                 : (ui - uj).norm() / length;
+        laplacian += w * (uj - ui);
+        sum += w;
+      }
+      laplacian /= sum;
+      const Eigen::Vector3d tangential = laplacian - laplacian.dot(ui) * ui;
+      residual += tangential.norm() / static_cast<double>(graph.size());
+      next.col(static_cast<Index>(i)) = (ui + lambda * tangential).normalized();
+    }
+    states.emplace_back(u, residual);
+    u = next;
+  }
+  return states;
+}
+
+TEST(SphereEmbedding, IsTheIterationOfFigure3) {
+  const Positions points = bumpyCloud(300);
+  const Graph graph = graphOf(points, 8);
+  for (const EdgeWeights weights : kAllWeights)
+    for (const double lambda : {0.5, 0.2}) {
+      const int steps = 25;
+      const auto expected = figure3(graph, points, weights, lambda, steps);
+      EmbeddingOptions options;
+      options.weights = weights;
+      options.lambda = lambda;
+      options.max_iterations = steps;
+      options.tolerance = 0.0;
+      const Embedding result = embedOnSphere(graph, points, options);
+      EXPECT_EQ(result.stop_reason, StopReason::IterationLimit);
+      EXPECT_EQ(result.iterations, steps);
+      ASSERT_EQ(result.residuals.size(), static_cast<std::size_t>(steps) + 1);
+      // Rounding of 25 steps of a contracting iteration.
+      for (std::size_t step = 0; step <= 25; ++step)
+        EXPECT_NEAR(result.residuals[step], expected[step].second, 1e-13);
+      EXPECT_LT((result.directions - expected.back().first).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_EQ(result.residual, result.residuals.back());
+      EXPECT_NEAR(result.residual, meanTangentialLaplacian(graph, result.directions, weights),
+                  1e-14);
+    }
+}
+
+// By hand: of the triangle (x, y, z) of unit vectors each Laplacian is half the sum of the two
+// edges; the tangential part at x is (0, 1, 1) / 2, of length sqrt(1/2).
+TEST(SphereEmbedding, TangentialLaplacianOfAnOctantByHand) {
+  const Positions points = Eigen::Matrix3d::Identity();
+  const Graph graph = graphOf(points, 3);
+  for (const EdgeWeights weights : kAllWeights)
+    EXPECT_NEAR(meanTangentialLaplacian(graph, points, weights), std::sqrt(0.5), 1e-15);
+}
+
+TEST(SphereEmbedding, OctahedronIsAFixedPoint) {
+  Positions points(3, 6);
+  points << Eigen::Matrix3d::Identity(), -Eigen::Matrix3d::Identity();
+  for (const EdgeWeights weights : kAllWeights) {
+    EmbeddingOptions options;
+    options.weights = weights;
+    const Embedding result = embedOnSphere(graphOf(points * 3.0, 4), points, options);
+    EXPECT_TRUE(result.converged());
+    EXPECT_EQ(result.iterations, 0);
+    EXPECT_LT((result.directions - points).cwiseAbs().maxCoeff(), 1e-15);
+  }
+}
+
+TEST(SphereEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
+  // The centroid of a cloud that is symmetric to the origin stays there, so centring and
+  // Laplacian do not work against each other.
+  const Positions half = randomSphere(60, 3);
+  Positions points = test::horizontally(half, -half);
+  points.row(0) *= 1.5;
+  EmbeddingOptions options;
+  options.max_iterations = 20000;
+  options.tolerance = 1e-10;
+  const Graph graph = graphOf(points, 10);
+  const Embedding result = embedOnSphere(graph, points, options);
+  EXPECT_EQ(result.stop_reason, StopReason::Converged);
+  EXPECT_LE(meanTangentialLaplacian(graph, result.directions, options.weights), 1.01e-10);
+  EXPECT_LT(result.iterations, 20000);
+}
+
+TEST(SphereEmbedding, StagnationIsTold) {
+  const Positions points = bumpyCloud(200);
+  EmbeddingOptions options;
+  options.tolerance = 0.0;
+  options.max_iterations = 1000000;
+  options.stagnation_window = 50;
+  const Embedding result = embedOnSphere(graphOf(points, 8), points, options);
+  EXPECT_EQ(result.stop_reason, StopReason::Stagnated);
+  const auto tail = result.residuals.end() - 50;
+  EXPECT_LE(*std::max_element(tail, result.residuals.end()) -
+                *std::min_element(tail, result.residuals.end()),
+            options.stagnation_change * *std::max_element(tail, result.residuals.end()));
+}
+
+TEST(SphereEmbedding, DirectionsAreUnitVectors) {
+  const Positions points = bumpyCloud(500);
+  const Embedding result = embedOnSphere(graphOf(points, 10), points);
+  EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-15 * 4);
+}
+
+TEST(SphereEmbedding, SameBitsForAnyNumberOfThreads) {
+  const Positions points = bumpyCloud(6000);  // above the threshold for parallel work
+  // Neighbours along the spiral and in the next turns: no need of a search.
+  NeighborLists lists;
+  for (Index i = 0; i < points.cols(); ++i) {
+    for (const Index step : {1, 34, 55, 89, 144})
+      if (i + step < points.cols())
+        lists.indices.push_back(i + step);
+    lists.offsets.push_back(lists.indices.size());
+  }
+  const Graph graph = buildNeighborGraph(points, lists).graph;
+  for (const EdgeWeights weights : kAllWeights) {
+    EmbeddingOptions options;
+    options.weights = weights;
+    options.max_iterations = 40;
+    options.threads = 1;
+    const Embedding one = embedOnSphere(graph, points, options);
+    for (const int threads : {2, 3, 8, 0}) {
+      options.threads = threads;
+      const Embedding several = embedOnSphere(graph, points, options);
+      EXPECT_EQ(one.residuals, several.residuals);
+      EXPECT_EQ(one.directions, several.directions);
+    }
+  }
+}
+
+/// A sphere of n points of radius 1 and one point far away: seen from the centroid, the sphere is
+/// one place and the far point the opposite one. It takes dozens of iterations to recover.
+Positions sphereWithOutlier(Index n) {
+  return test::horizontally(spiralSphere(n), Eigen::Vector3d(1e6, 0.0, 0.0));
+}
+
+TEST(SphereEmbedding, CollapseIsToldNotConvergence) {
+  const Positions points = sphereWithOutlier(400);
+  for (const EdgeWeights weights : kAllWeights) {
+    EmbeddingOptions options;
+    options.weights = weights;
+    options.max_iterations = 3;
+    const Embedding result = embedOnSphere(graphOf(points, 10), points, options);
+    EXPECT_EQ(result.stop_reason, StopReason::Collapsed);
+    EXPECT_FALSE(result.converged());
+    EXPECT_GT(result.centroid_norm, 0.9);
+  }
+}
+
+TEST(SphereEmbedding, CentringUndoesAPassingCollapse) {
+  const Positions points = sphereWithOutlier(400);
+  const Embedding result = embedOnSphere(graphOf(points, 10), points);
+  EXPECT_NE(result.stop_reason, StopReason::Collapsed);
+  EXPECT_LT(result.centroid_norm, 0.1);
+}
+
+TEST(SphereEmbedding, RankStartIsNeverCollapsed) {
+  for (const Positions& points : {sphereWithOutlier(400), Positions(randomSphere(100, 1) * 1e-300),
+                                  Positions(Positions::Constant(3, 50, 2.0)), bumpyCloud(1000)}) {
+    const Positions directions = projectByRank(points);
+    EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+    // All on one meridian: the mean radius is pi / 4.
+    EXPECT_LT(directions.rowwise().mean().norm(), 0.8);
+  }
+}
+
+TEST(SphereEmbedding, ProjectionGivesEveryPointADirection) {
+  Positions points = test::horizontally(randomSphere(10, 1), -randomSphere(10, 1));
+  points = test::horizontally(points, Positions::Zero(3, 1));  // the centroid itself
+  for (const double scale : {1.0, 1e-300, 1e300}) {
+    const Positions directions = projectFromCentroid(points * scale);
+    EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+    EXPECT_LT((directions.leftCols(20) - points.leftCols(20)).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+TEST(SphereEmbedding, ProgressIsToldAndCancels) {
+  const Positions points = bumpyCloud(100);
+  const Graph graph = graphOf(points, 6);
+  EmbeddingOptions options;
+  options.max_iterations = 10;
+  std::vector<int> iterations;
+  std::vector<double> residuals;
+  options.progress = [&](int iteration, double residual) {
+    iterations.push_back(iteration);
+    residuals.push_back(residual);
+    return true;
+  };
+  EXPECT_EQ(embedOnSphere(graph, points, options).residuals, residuals);
+  EXPECT_EQ(iterations, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+  options.progress = [](int iteration, double) { return iteration < 3; };
+  EXPECT_THROW(embedOnSphere(graph, points, options), Cancelled);
+}
+
+TEST(SphereEmbedding, BadInputIsInvalidInput) {
+  const Positions points = randomSphere(20, 1);
+  const Graph graph = graphOf(points, 5);
+  const auto with = [&](auto change) {
+    EmbeddingOptions options;
+    change(options);
+    return options;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(embedOnSphere(graph, randomSphere(19, 1)), InvalidInput);
+  EXPECT_THROW(embedOnSphere(graph, points * nan), InvalidInput);
+  for (const double lambda : {0.0, -0.1, 1.01, nan})
+    EXPECT_THROW(embedOnSphere(graph, points, with([&](auto& o) { o.lambda = lambda; })),
+                 InvalidInput);
+  for (const double tolerance : {-1e-9, nan})
+    EXPECT_THROW(embedOnSphere(graph, points, with([&](auto& o) { o.tolerance = tolerance; })),
+                 InvalidInput);
+  EXPECT_THROW(embedOnSphere(graph, points, with([](auto& o) { o.max_iterations = -1; })),
+               InvalidInput);
+  EXPECT_THROW(embedOnSphere(graph, points, with([](auto& o) { o.threads = -1; })), InvalidInput);
+  EXPECT_THROW(embedOnSphere(graph, points, with([](auto& o) { o.stagnation_window = 1; })),
+               InvalidInput);
+  EXPECT_THROW(meanTangentialLaplacian(graph, randomSphere(3, 1), EdgeWeights::Uniform),
+               InvalidInput);
+}
+
+}  // namespace
+}  // namespace spherical_param
