@@ -28,7 +28,7 @@ struct Options {
   int max_iterations = 1600;                    ///< iterations at most; >= 0
   double tolerance = 1e-8;      ///< mean tangential Laplacian at convergence [radius]; >= 0
   int stagnation_window = 100;  ///< iterations over which stagnation is judged; 0: never; else >= 2
-  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; >= 0
+  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Told how far the work is; returning false ends it with Cancelled. May be empty. Called from
   /// the calling thread only.
   std::function<bool(const Progress&)> progress;

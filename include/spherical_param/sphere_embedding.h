@@ -36,7 +36,7 @@ struct EmbeddingOptions {
   /// `stagnation_window` iterations. Window >= 2; 0 switches the test off.
   int stagnation_window = 100;
   double stagnation_change = 1e-5;  ///< relative; >= 0
-  int threads = 0;                  ///< OpenMP threads; 0: as many as OpenMP would use; >= 0
+  int threads = 0;                  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Called with (iteration, residual) after each evaluation of the residual; returning false
   /// ends the work with Cancelled. May be empty. Called from the calling thread only.
   std::function<bool(int, double)> progress;

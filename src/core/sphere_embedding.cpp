@@ -24,6 +24,8 @@ namespace {
 /// Sums are formed per block and then over the blocks in order: the same bits for any number of
 /// threads.
 constexpr Index kBlockSize = 512;
+/// More would exhaust the system before they could work.
+constexpr int kMostThreads = 1024;
 /// Below this many nodes a parallel region costs more than it gains.
 constexpr Index kParallelThreshold = 4096;
 /// Shorter edges count as this long, so that sums of weights stay finite.
@@ -33,8 +35,6 @@ constexpr int kLanes = 4;
 /// A collapse: this share of the nodes within this distance of one direction.
 constexpr double kCollapsedShare = 0.9;
 constexpr double kCollapsedRadius = 0.01;
-/// Steps in a row in that state which end the iteration; the centring undoes a passing one.
-constexpr int kCollapsePatience = 50;
 
 void checkInput(const Graph& graph, const Positions& start, const EmbeddingOptions& options) {
   const auto fail = [](const std::string& what) { throw InvalidInput("embedOnSphere: " + what); };
@@ -57,8 +57,9 @@ void checkInput(const Graph& graph, const Positions& start, const EmbeddingOptio
          "; use 2 or more, or 0 to never stop for stagnation");
   if (!(options.stagnation_change >= 0.0))
     fail("stagnation_change = " + std::to_string(options.stagnation_change) + "; use 0 or more");
-  if (options.threads < 0)
-    fail("threads = " + std::to_string(options.threads) + "; use 0 (all) or more");
+  if (options.threads < 0 || options.threads > kMostThreads)
+    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
+         std::to_string(kMostThreads));
 }
 
 int threadCount(int requested, Index nodes) {
@@ -171,12 +172,12 @@ Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, 
 }
 
 /// Tells whether nearly all points are around one direction.
-bool isCollapsed(const PaddedPositions& u) {
-  const Eigen::Vector4d mean = u.rowwise().mean();
+bool isCollapsed(const Positions& u) {
+  const Eigen::Vector3d mean = u.rowwise().mean();
   // The points of a collapse alone make the mean longer than this.
   if (!(mean.norm() > kCollapsedShare * (1.0 - kCollapsedRadius) - (1.0 - kCollapsedShare)))
     return false;
-  const Eigen::Vector4d direction = mean.normalized();
+  const Eigen::Vector3d direction = mean.normalized();
   const auto near = ((u.colwise() - direction).colwise().norm().array() < kCollapsedRadius).count();
   return static_cast<double>(near) >= kCollapsedShare * static_cast<double>(u.cols());
 }
@@ -215,8 +216,6 @@ public:
       }
     });
   }
-
-  bool collapsed() const { return isCollapsed(u_); }
 
   Positions directions() const {
     Positions result(3, n_);
@@ -337,7 +336,6 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
   }
   Iteration iteration(graph, projectFromCentroid(start), options);
   result.residuals.reserve(static_cast<std::size_t>(std::min(options.max_iterations, 100000)) + 1);
-  int collapsed_steps = 0;
   for (;; ++result.iterations) {
     result.residual = iteration.evaluate();
     result.residuals.push_back(result.residual);
@@ -355,14 +353,12 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
       result.stop_reason = StopReason::Stagnated;
       break;
     }
-    if (collapsed_steps >= kCollapsePatience)
-      break;  // told below
     iteration.advance();
-    collapsed_steps = iteration.collapsed() ? collapsed_steps + 1 : 0;
   }
   result.directions = iteration.directions();
   result.centroid_norm = result.directions.rowwise().mean().norm();
-  if (iteration.collapsed())
+  // Judged at the end only: the centring undoes a passing collapse within a few steps.
+  if (isCollapsed(result.directions))
     result.stop_reason = StopReason::Collapsed;
   return result;
 }
