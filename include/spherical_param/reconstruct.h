@@ -91,6 +91,12 @@ struct Result {
   std::size_t vertexCount() const { return input_of_vertex.size(); }
 };
 
+/// Checks the ranges of all options, as reconstruct() does first: for callers who have long work to
+/// do before, such as a neighbour search.
+///
+/// \throw InvalidInput with the option, its value and the remedy.
+void checkOptions(const Options& options);
+
 /// Meshes a point cloud: neighbour graph -> embedding on the sphere -> convex hull -> check.
 ///
 /// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane.

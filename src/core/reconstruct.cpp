@@ -18,12 +18,7 @@ namespace {
 /// embeddings of closed surfaces stay below a tenth of it.
 constexpr double kSuspiciousEdges = 0.01;
 
-void checkOptions(const Options& options) {
-  // The ranges of the other options are checked by the stages that use them, but only after the
-  // stages before.
-  if (options.k < 3)
-    throw InvalidInput("reconstruct: k = " + std::to_string(options.k) +
-                       " is too small; use 3 or more");
+EmbeddingOptions embeddingOptions(const Options& options) {
   EmbeddingOptions embedding;
   embedding.weights = options.weights;
   embedding.lambda = options.lambda;
@@ -31,7 +26,7 @@ void checkOptions(const Options& options) {
   embedding.tolerance = options.tolerance;
   embedding.stagnation_window = options.stagnation_window;
   embedding.threads = options.threads;
-  embedOnSphere(Graph(), Positions(3, 0), embedding);
+  return embedding;
 }
 
 /// Times the stages and tells the callback of their beginning and end.
@@ -75,9 +70,7 @@ Positions distinctScaled(const Positions& points, const std::vector<Index>& inpu
   return result;
 }
 
-/// Neighbour lists between vertices; a vertex has the entries of all its input points.
-NeighborLists listsOfVertices(const NeighborLists& lists, const DistinctPoints& distinct) {
-  const std::size_t n = distinct.vertex_of_input.size();
+void checkLists(const NeighborLists& lists, std::size_t n) {
   if (lists.offsets.size() != n + 1 || lists.offsets.front() != 0 ||
       lists.offsets.back() != lists.indices.size() ||
       !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
@@ -87,9 +80,12 @@ NeighborLists listsOfVertices(const NeighborLists& lists, const DistinctPoints& 
     if (j < 0 || static_cast<std::size_t>(j) >= n)
       throw InvalidInput("reconstruct: neighbour " + std::to_string(j) + " of " +
                          std::to_string(n) + " points; indices must be in [0, n)");
+}
+
+/// Neighbour lists between vertices; a vertex has the entries of all its input points.
+NeighborLists listsOfVertices(const NeighborLists& lists, const DistinctPoints& distinct) {
+  const std::size_t n = distinct.vertex_of_input.size();
   const std::size_t v = distinct.input_of_vertex.size();
-  if (v == n)
-    return lists;
   NeighborLists result;
   result.offsets.assign(v + 1, 0);
   result.indices.resize(lists.indices.size());
@@ -109,13 +105,7 @@ NeighborLists listsOfVertices(const NeighborLists& lists, const DistinctPoints& 
 /// The paper's embedding, or a start that is not collapsed where the iteration collapses.
 Positions embed(const Graph& graph, const Positions& points, const Options& options, StageLog& log,
                 EmbeddingReport& report) {
-  EmbeddingOptions embedding;
-  embedding.weights = options.weights;
-  embedding.lambda = options.lambda;
-  embedding.max_iterations = options.max_iterations;
-  embedding.tolerance = options.tolerance;
-  embedding.stagnation_window = options.stagnation_window;
-  embedding.threads = options.threads;
+  EmbeddingOptions embedding = embeddingOptions(options);
   if (options.progress)
     embedding.progress = [&](int iteration, double residual) {
       // Below 1, which is told once, at the end of the stage.
@@ -192,6 +182,12 @@ void collectWarnings(Result& result) {
 
 }  // namespace
 
+void checkOptions(const Options& options) {
+  // The stages check the ranges, k first and the others without a graph to work on.
+  buildNeighborGraph(Positions(3, 0), NeighborLists(), {options.k});
+  embedOnSphere(Graph(), Positions(3, 0), embeddingOptions(options));
+}
+
 Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options) {
   checkOptions(options);
   Result result;
@@ -200,6 +196,7 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
   int exponent = 0;
   Positions vertices;
   NeighborGraph graph = log.run("graph", [&] {
+    checkLists(lists, static_cast<std::size_t>(points.cols()));
     DistinctPoints distinct = findDistinctPoints(points);
     const std::size_t count = distinct.input_of_vertex.size();
     if (count < 4)
@@ -209,8 +206,11 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
     if (areCoplanar(vertices))
       throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
                          "outside of it");
+    // Without duplicates the lists are those of the vertices already: no copy of the largest input.
+    const bool merged = count < distinct.vertex_of_input.size();
     NeighborGraph built =
-        buildNeighborGraph(vertices, listsOfVertices(lists, distinct), {options.k});
+        merged ? buildNeighborGraph(vertices, listsOfVertices(lists, distinct), {options.k})
+               : buildNeighborGraph(vertices, lists, {options.k});
     result.vertex_of_input = std::move(distinct.vertex_of_input);
     result.input_of_vertex = std::move(distinct.input_of_vertex);
     result.duplicates = result.vertex_of_input.size() - count;

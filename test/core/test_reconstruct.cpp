@@ -334,6 +334,21 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   expect_reason(good, lists, options, "max_iterations");
 }
 
+TEST(Reconstruct, OptionsCanBeCheckedBeforehand) {
+  EXPECT_NO_THROW(checkOptions({}));
+  const auto bad = [](auto change) {
+    Options options;
+    change(options);
+    EXPECT_THROW(checkOptions(options), InvalidInput);
+  };
+  bad([](Options& options) { options.k = 2; });
+  bad([](Options& options) { options.lambda = 0.0; });
+  bad([](Options& options) { options.max_iterations = -1; });
+  bad([](Options& options) { options.tolerance = -1.0; });
+  bad([](Options& options) { options.stagnation_window = 1; });
+  bad([](Options& options) { options.threads = 2000; });
+}
+
 TEST(Reconstruct, ConcurrentCallsAgreeWithSingleOnes) {
   constexpr std::size_t count = 4;
   Options options;
