@@ -1,0 +1,479 @@
+#pragma once
+
+#include <pcl/console/print.h>
+#include <pcl/conversions.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/search/organized.h>
+#include <pcl/surface/spherical_param_reconstruction.h>
+
+#include "spherical_param/errors.h"
+#include "spherical_param/point_set.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <new>
+#include <utility>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace pcl {
+namespace detail {
+
+/** \brief Carries an exception of the user's progress callback past the handlers that turn
+ * exceptions into error messages; therefore not a std::exception. */
+struct ProgressCallbackFailure {
+  std::exception_ptr cause;
+};
+
+/** \brief The core's messages begin with the name of the function; ours has its own. */
+inline std::string withoutFunctionName(const std::string& message) {
+  std::size_t end = 0;
+  while (end < message.size() && std::isalnum(static_cast<unsigned char>(message[end])) != 0)
+    ++end;
+  return end > 0 && message.compare(end, 2, ": ") == 0 ? message.substr(end + 2) : message;
+}
+
+/** \brief Which numbers a search object returns that was filled with a subset of a cloud: PCL 1.13
+ * has both, e.g. KdTree the one and FlannSearch the other. */
+enum class SearchIndexSpace { Cloud, Subset };
+
+/** \brief Calls query(i, indices, distances) for i in [0, count), the last two being scratch memory
+ * of the thread, and report(fraction) from the calling thread now and then, the last time with 1.
+ * \param[in] threads above 1, query is called concurrently. Its exceptions are passed on. */
+template <typename Query, typename Report>
+void queryInBlocks(std::size_t count, [[maybe_unused]] int threads, const Query& query,
+                   const Report& report) {
+  const std::size_t blocks = std::min<std::size_t>(count, 32);
+  std::exception_ptr error;
+  std::mutex error_mutex;
+  for (std::size_t block = 0; block < blocks; ++block) {
+    const auto begin = static_cast<std::int64_t>(count * block / blocks);
+    const auto end = static_cast<std::int64_t>(count * (block + 1) / blocks);
+#ifdef _OPENMP
+#pragma omp parallel num_threads(threads) if (threads > 1)
+#endif
+    {
+      pcl::Indices indices;
+      std::vector<float> distances;
+#ifdef _OPENMP
+#pragma omp for schedule(static)
+#endif
+      for (std::int64_t i = begin; i < end; ++i) {
+        try {
+          query(static_cast<std::size_t>(i), indices, distances);
+        } catch (...) {
+          const std::lock_guard<std::mutex> lock(error_mutex);
+          error = std::current_exception();
+        }
+      }
+    }
+    if (error)
+      std::rethrow_exception(error);
+    report(static_cast<double>(block + 1) / static_cast<double>(blocks));
+  }
+}
+
+/** \brief Threads for `queries` queries if `threads` are asked for (0: as many as OpenMP would
+ * use); 1 without OpenMP or where starting threads takes longer than they save. */
+inline int searchThreads([[maybe_unused]] int threads, [[maybe_unused]] std::size_t queries) {
+#ifdef _OPENMP
+  constexpr std::size_t fewest_parallel_queries = 5000;
+  if (threads >= 0 && queries >= fewest_parallel_queries)
+    // The runtime ends the process if it cannot start the threads it is asked for.
+    return std::min(threads > 0 ? threads : omp_get_max_threads(), 4 * omp_get_num_procs());
+#endif
+  return 1;
+}
+
+/** \brief Finds out which numbers `search` returns for a subset. Points are told apart by asking
+ * for the one neighbour of a point of the subset, which is the point itself. */
+template <typename PointInT>
+SearchIndexSpace findSearchIndexSpace(const pcl::search::Search<PointInT>& search,
+                                      const pcl::PointCloud<PointInT>& cloud,
+                                      const pcl::Indices& subset) {
+  // An approximate search may miss a few, but not a thousand times.
+  int probes_left = 1000;
+  pcl::Indices found;
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < subset.size() && probes_left > 0; ++i) {
+    const auto position = static_cast<pcl::index_t>(i);
+    if (subset[i] == position)
+      continue;
+    --probes_left;
+    if (search.nearestKSearch(cloud[static_cast<std::size_t>(subset[i])], 1, found, distances) < 1)
+      continue;
+    if (found.at(0) == subset[i])
+      return SearchIndexSpace::Cloud;
+    if (found.at(0) == position)
+      return SearchIndexSpace::Subset;
+  }
+  throw spherical_param::ComputeError(
+      "the search object does not find the points it was given; use a pcl::search::KdTree");
+}
+
+/** \brief Gives access to the camera model of an OrganizedNeighbor. Its own projectPoint() needs
+ * members that a custom point type need not have. */
+template <typename PointInT>
+struct OrganizedCamera : public pcl::search::OrganizedNeighbor<PointInT> {
+  /** \brief Get the homogeneous pixel coordinates of a point. */
+  static Eigen::Vector3f project(const pcl::search::OrganizedNeighbor<PointInT>& search,
+                                 const Eigen::Vector3f& point) {
+    return search.*(&OrganizedCamera::KR_) * point +
+           (search.*(&OrganizedCamera::projection_matrix_)).col(3);
+  }
+};
+
+/** \brief Refuses a camera model of an OrganizedNeighbor that does not hold for the cloud, with
+ * which it would find few or wrong neighbours, or not return.
+ * \param[in] points indices into the cloud */
+template <typename PointInT>
+void checkCameraModel(const pcl::search::OrganizedNeighbor<PointInT>& search,
+                      const pcl::PointCloud<PointInT>& cloud, const pcl::Indices& points) {
+  // The search starts at the pixel that a point is projected to and looks at larger and larger
+  // squares, hence a small error does no harm.
+  const float tolerance = 0.05F * static_cast<float>(std::max(cloud.width, cloud.height));
+  for (const pcl::index_t index : points) {
+    const PointInT& point = cloud[static_cast<std::size_t>(index)];
+    const Eigen::Vector2f pixel =
+        OrganizedCamera<PointInT>::project(search, Eigen::Vector3f(static_cast<float>(point.x),
+                                                                   static_cast<float>(point.y),
+                                                                   static_cast<float>(point.z)))
+            .hnormalized();
+    const auto row = static_cast<pcl::uindex_t>(index) / cloud.width;
+    const auto column = static_cast<pcl::uindex_t>(index) % cloud.width;
+    // Written so that NaN fails.
+    if (!(std::abs(pixel.x() - static_cast<float>(column)) <= tolerance &&
+          std::abs(pixel.y() - static_cast<float>(row)) <= tolerance))
+      throw spherical_param::InvalidInput(
+          "the search object is an OrganizedNeighbor, but the cloud is not the depth image of a "
+          "pinhole camera; use a pcl::search::KdTree");
+  }
+}
+
+}  // namespace detail
+
+template <typename PointInT>
+SphericalParamReconstruction<PointInT>::SphericalParamReconstruction() {
+  // The base class would give all points to the search, those that are not finite included.
+  check_tree_ = false;
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::reconstruct(pcl::PolygonMesh& output) {
+  run(output);
+  if (input_)
+    output.header = input_->header;
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::reconstruct(std::vector<pcl::Vertices>& polygons) {
+  run(polygons);
+}
+
+template <typename PointInT>
+pcl::PointCloud<pcl::PointXYZ>::Ptr
+SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  pcl::PointCloud<pcl::PointXYZ>::Ptr sphere(new pcl::PointCloud<pcl::PointXYZ>);
+  sphere->resize(input_size_);
+  std::fill(sphere->begin(), sphere->end(), pcl::PointXYZ(nan, nan, nan));
+  sphere->is_dense = used_indices_.size() == input_size_;
+  for (std::size_t i = 0; i < used_indices_.size(); ++i)
+    (*sphere)[static_cast<std::size_t>(used_indices_[i])].getVector3fMap() =
+        result_.sphere.col(result_.vertex_of_input[i]).template cast<float>();
+  return sphere;
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonMesh& output) {
+  performReconstruction(output.polygons);
+  pcl::toPCLPointCloud2(*input_, output.cloud);
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::performReconstruction(
+    std::vector<pcl::Vertices>& polygons) {
+  // A copy, so that the callback may call the setters.
+  spherical_param::Options options = options_;
+  std::exception_ptr callback_error;
+  if (options_.progress) {
+    options.progress = [callback = options_.progress,
+                        &callback_error](const spherical_param::Progress& progress) {
+      try {
+        return !callback_error && callback(progress);
+      } catch (...) {
+        callback_error = std::current_exception();
+        return false;
+      }
+    };
+  }
+
+  try {
+    result_ = reconstructPoints(collectPoints(), options);
+  } catch (...) {
+    if (!callback_error)
+      throw;
+  }
+  if (callback_error)
+    throw detail::ProgressCallbackFailure{callback_error};
+
+  vertex_indices_.reserve(result_.input_of_vertex.size());
+  for (const spherical_param::Index point : result_.input_of_vertex)
+    vertex_indices_.push_back(used_indices_[static_cast<std::size_t>(point)]);
+  polygons.resize(static_cast<std::size_t>(result_.triangles.cols()));
+  for (std::size_t t = 0; t < polygons.size(); ++t) {
+    const auto triangle = result_.triangles.col(static_cast<Eigen::Index>(t));
+    polygons[t].vertices = {vertex_indices_[static_cast<std::size_t>(triangle[0])],
+                            vertex_indices_[static_cast<std::size_t>(triangle[1])],
+                            vertex_indices_[static_cast<std::size_t>(triangle[2])]};
+  }
+  input_size_ = input_->size();
+}
+
+template <typename PointInT>
+template <typename Output>
+void SphericalParamReconstruction<PointInT>::run(Output& output) {
+  output = Output();
+  clearResults();
+  std::string failure;
+  std::exception_ptr callback_error;
+  bool initialized = false;
+  try {
+    checkInput();
+    initialized = initCompute();
+    // initCompute() ignores that it had no memory for the indices.
+    if (!initialized || (fake_indices_ && indices_->size() != input_->size()))
+      throw std::bad_alloc();
+    performReconstruction(output);
+  } catch (const detail::ProgressCallbackFailure& error) {
+    callback_error = error.cause;
+    failure = "the progress callback threw an exception";
+  } catch (const std::bad_alloc&) {
+    failure = "out of memory; mesh a subset of the points (setIndices) or lower k (setKSearch)";
+  } catch (const std::exception& error) {
+    failure = detail::withoutFunctionName(error.what());
+    if (failure.empty())
+      failure = "an exception without a message";
+  } catch (...) {
+    failure = "an unknown exception, probably of the search object";
+  }
+  if (initialized)
+    deinitCompute();
+  // Copies of this object would share the indices that initCompute() made, across threads as well.
+  if (fake_indices_)
+    indices_.reset();
+  if (failure.empty())
+    return;
+
+  output = Output();
+  clearResults();
+  error_message_ = std::move(failure);
+  if (callback_error)
+    std::rethrow_exception(callback_error);
+  PCL_ERROR("[pcl::%s::reconstruct] %s\n", getClassName().c_str(), error_message_.c_str());
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::clearResults() {
+  result_ = spherical_param::Result();
+  // Unlike clear(), this gives the memory back.
+  used_indices_ = pcl::Indices();
+  vertex_indices_ = pcl::Indices();
+  input_size_ = 0;
+  ignored_points_ = 0;
+  error_message_.clear();
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::checkInput() const {
+  if (!input_)
+    throw spherical_param::InvalidInput("there is no input cloud; call setInputCloud() first");
+  if (input_->empty())
+    throw spherical_param::InvalidInput("the input cloud is empty; at least 4 points are needed");
+  const std::size_t width = input_->width;
+  const std::size_t height = input_->height;
+  // PCL allows both to be 0 for "not organized".
+  if ((width != 0 || height != 0) && width * height != input_->size())
+    throw spherical_param::InvalidInput("the input cloud has " + std::to_string(input_->size()) +
+                                        " points, but its width is " + std::to_string(width) +
+                                        " and its height " + std::to_string(height) +
+                                        "; set width to the number of points and height to 1");
+  if (indices_ && !fake_indices_ && indices_->empty())
+    throw spherical_param::InvalidInput(
+        "the indices are empty; set at least 4, or none (a null pointer) to mesh all points");
+}
+
+template <typename PointInT>
+spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints() {
+  std::vector<bool> seen(input_->size(), false);
+  used_indices_.reserve(indices_->size());
+  for (std::size_t i = 0; i < indices_->size(); ++i) {
+    const pcl::index_t index = (*indices_)[i];
+    if (index < 0 || static_cast<std::size_t>(index) >= input_->size())
+      throw spherical_param::InvalidInput(
+          "entry " + std::to_string(i) + " of the indices is " + std::to_string(index) +
+          ", but the cloud has " + std::to_string(input_->size()) +
+          " points; indices must be from 0 to the number of points less one");
+    const auto position = static_cast<std::size_t>(index);
+    if (seen[position])
+      continue;
+    seen[position] = true;
+    const PointInT& point = (*input_)[position];
+    if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z))
+      used_indices_.push_back(index);
+    else
+      ++ignored_points_;
+  }
+  used_indices_.shrink_to_fit();
+
+  spherical_param::Positions points(3, static_cast<Eigen::Index>(used_indices_.size()));
+  for (std::size_t i = 0; i < used_indices_.size(); ++i) {
+    const PointInT& point = (*input_)[static_cast<std::size_t>(used_indices_[i])];
+    points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
+        static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
+  }
+  return points;
+}
+
+template <typename PointInT>
+spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoints(
+    const spherical_param::Positions& points, const spherical_param::Options& options) const {
+  spherical_param::checkOptions(options);
+  const auto start = std::chrono::steady_clock::now();
+  const spherical_param::NeighborLists lists = findNeighbors(points, options);
+  const std::chrono::duration<double> search_time = std::chrono::steady_clock::now() - start;
+  spherical_param::Result result = spherical_param::reconstruct(points, lists, options);
+  result.stages.insert(result.stages.begin(), {"neighbors", search_time.count()});
+  return result;
+}
+
+template <typename PointInT>
+spherical_param::NeighborLists SphericalParamReconstruction<PointInT>::findNeighbors(
+    const spherical_param::Positions& points, const spherical_param::Options& options) const {
+  const auto report = [&options](double fraction) {
+    if (options.progress && !options.progress({"neighbors", fraction, 0, 0.0}))
+      throw spherical_param::Cancelled("cancelled by the progress callback");
+  };
+  report(0.0);
+
+  // Duplicates would fill each other's lists, and cut their points off from all others.
+  const spherical_param::DistinctPoints distinct = spherical_param::findDistinctPoints(points);
+  const std::size_t count = distinct.input_of_vertex.size();
+  if (count < 4)
+    throw spherical_param::InvalidInput(
+        "at least 4 distinct finite points are needed, but there are " + std::to_string(count) +
+        " (" + std::to_string(ignored_points_) + " are not finite)");
+
+  // One more than k, since a point is its own neighbour.
+  const auto list_size = static_cast<std::size_t>(
+      std::min<std::int64_t>(options.k, static_cast<std::int64_t>(count) - 1) + 1);
+  spherical_param::NeighborLists lists;
+  lists.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
+  for (const spherical_param::Index first : distinct.input_of_vertex)
+    lists.offsets[static_cast<std::size_t>(first) + 1] = list_size;
+  for (std::size_t i = 1; i < lists.offsets.size(); ++i)
+    lists.offsets[i] += lists.offsets[i - 1];
+  lists.indices.resize(count * list_size);
+
+  if (tree_)
+    searchWithUserTree(distinct.input_of_vertex, list_size, report, lists.indices);
+  else
+    searchWithKdTree(points, distinct.input_of_vertex, list_size,
+                     detail::searchThreads(options.threads, count), report, lists.indices);
+  return lists;
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::searchWithKdTree(
+    const spherical_param::Positions& points, const std::vector<spherical_param::Index>& distinct,
+    std::size_t list_size, int threads, const std::function<void(double)>& report,
+    std::vector<spherical_param::Index>& neighbors) const {
+  // A cloud of its own, because PCL takes the first three floats of a custom point type for its
+  // coordinates, and scaled by a power of two (exactly), because squared distances in float
+  // underflow for small clouds and overflow for large ones.
+  const int exponent = std::ilogb(points.cwiseAbs().maxCoeff());
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  cloud->resize(distinct.size());
+  for (std::size_t v = 0; v < distinct.size(); ++v)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      (*cloud)[v].data[axis] = static_cast<float>(std::ldexp(points(axis, distinct[v]), -exponent));
+  pcl::search::KdTree<pcl::PointXYZ> tree(false);
+  tree.setInputCloud(cloud);
+
+  detail::queryInBlocks(
+      distinct.size(), threads,
+      [&](std::size_t v, pcl::Indices& indices, std::vector<float>& distances) {
+        tree.nearestKSearch((*cloud)[v], static_cast<int>(list_size), indices, distances);
+        for (std::size_t i = 0; i < list_size; ++i)
+          neighbors[v * list_size + i] = distinct[static_cast<std::size_t>(indices.at(i))];
+      },
+      report);
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::searchWithUserTree(
+    const std::vector<spherical_param::Index>& distinct, std::size_t list_size,
+    const std::function<void(double)>& report,
+    std::vector<spherical_param::Index>& neighbors) const {
+  const auto* organized =
+      dynamic_cast<const pcl::search::OrganizedNeighbor<PointInT>*>(tree_.get());
+  if (organized && (input_->height <= 1 || input_->width <= 1))
+    throw spherical_param::InvalidInput(
+        "the search object is an OrganizedNeighbor, but the cloud is not organized; use a "
+        "pcl::search::KdTree");
+
+  pcl::IndicesPtr subset(new pcl::Indices(distinct.size()));
+  std::vector<spherical_param::Index> point_of_cloud(input_->size(), -1);
+  for (std::size_t v = 0; v < distinct.size(); ++v) {
+    (*subset)[v] = used_indices_[static_cast<std::size_t>(distinct[v])];
+    point_of_cloud[static_cast<std::size_t>((*subset)[v])] = distinct[v];
+  }
+  tree_->setInputCloud(input_, subset);
+  if (organized)
+    detail::checkCameraModel(*organized, *input_, *subset);
+  const bool whole_in_order =
+      std::is_sorted(subset->begin(), subset->end()) && subset->size() == input_->size();
+  const std::vector<spherical_param::Index>& point_of_answer =
+      whole_in_order || detail::findSearchIndexSpace(*tree_, *input_, *subset) ==
+                            detail::SearchIndexSpace::Cloud
+          ? point_of_cloud
+          : distinct;
+
+  // One after the other: a search object of the user need not be ready for concurrent queries.
+  detail::queryInBlocks(
+      distinct.size(), 1,
+      [&](std::size_t v, pcl::Indices& indices, std::vector<float>& distances) {
+        const PointInT& point = (*input_)[static_cast<std::size_t>((*subset)[v])];
+        const int answers =
+            tree_->nearestKSearch(point, static_cast<int>(list_size), indices, distances);
+        const std::size_t found =
+            std::min({static_cast<std::size_t>(std::max(answers, 0)), indices.size(), list_size});
+        for (std::size_t i = 0; i < found; ++i) {
+          const auto answer = static_cast<std::size_t>(indices[i]);
+          if (answer >= point_of_answer.size() || point_of_answer[answer] < 0)
+            throw spherical_param::ComputeError(
+                "the search object returned index " + std::to_string(indices[i]) +
+                ", which is not among the points it was given; use a pcl::search::KdTree");
+          neighbors[v * list_size + i] = point_of_answer[answer];
+        }
+        // A search that finds fewer is made up for by the point itself, which the core ignores.
+        for (std::size_t i = found; i < list_size; ++i)
+          neighbors[v * list_size + i] = distinct[v];
+      },
+      report);
+}
+
+}  // namespace pcl
+
+#define PCL_INSTANTIATE_SphericalParamReconstruction(T)                                            \
+  template class PCL_EXPORTS pcl::SphericalParamReconstruction<T>;
