@@ -165,10 +165,10 @@ TEST(SphereEmbedding, SameBitsForAnyNumberOfThreads) {
   for (const EdgeWeights weights : kAllWeights) {
     EmbeddingOptions options;
     options.weights = weights;
-    options.max_iterations = 40;
+    options.max_iterations = 15;
     options.threads = 1;
     const Embedding one = embedOnSphere(graph, points, options);
-    for (const int threads : {2, 3, 8, 0}) {
+    for (const int threads : {2, 3, 0}) {
       options.threads = threads;
       const Embedding several = embedOnSphere(graph, points, options);
       EXPECT_EQ(one.residuals, several.residuals);
