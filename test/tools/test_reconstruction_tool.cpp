@@ -1,0 +1,694 @@
+// pcl_spherical_param_reconstruction, run as a user does: files, report and what is printed.
+
+#include "tool_runner.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/console/print.h>
+#include <pcl/conversions.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
+#include <pcl/point_types.h>
+
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataReader.h>
+#include <vtkSTLReader.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace {
+
+using nlohmann::json;
+using tool_test::run;
+using tool_test::RunOptions;
+using tool_test::RunResult;
+using tool_test::TemporaryDirectory;
+
+using Point = std::array<float, 3>;
+using Color = std::array<int, 3>;
+
+/// A mesh, or a cloud without triangles.
+struct Mesh {
+  std::vector<Point> points;
+  std::vector<Point> normals;
+  std::vector<Color> colors;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+RunResult runTool(const TemporaryDirectory& directory, const std::vector<std::string>& arguments) {
+  RunOptions options;
+  options.directory = directory.path();
+  return run(RECONSTRUCTION_TOOL, arguments, options);
+}
+
+/// Points of an ellipsoid on a spiral, with coordinates that need all digits of a float.
+Mesh ellipsoid(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / count;
+    const double radius = std::sqrt(1.0 - z * z);
+    const double angle = 2.399963229728653 * i;
+    const std::array<double, 3> unit = {radius * std::cos(angle), radius * std::sin(angle), z};
+    mesh.points.push_back({static_cast<float>(unit[0] / 3.0), static_cast<float>(unit[1] / 7.0),
+                           static_cast<float>(10.0 + unit[2] / 9.0)});
+    mesh.normals.push_back(
+        {static_cast<float>(unit[0]), static_cast<float>(unit[1]), static_cast<float>(unit[2])});
+    mesh.colors.push_back({i % 256, (7 * i) % 256, 255 - i % 256});
+  }
+  return mesh;
+}
+
+std::string digits(const Point& values) {
+  std::array<char, 128> text;
+  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g", static_cast<double>(values[0]),
+                static_cast<double>(values[1]), static_cast<double>(values[2]));
+  return text.data();
+}
+
+std::string digits(const Color& color) {
+  return std::to_string(color[0]) + " " + std::to_string(color[1]) + " " + std::to_string(color[2]);
+}
+
+pcl::PointCloud<pcl::PointXYZRGBNormal> toPcl(const Mesh& mesh) {
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    pcl::PointXYZRGBNormal point;
+    point.getVector3fMap() = Eigen::Map<const Eigen::Vector3f>(mesh.points[i].data());
+    point.getNormalVector3fMap() = Eigen::Map<const Eigen::Vector3f>(mesh.normals[i].data());
+    point.r = static_cast<std::uint8_t>(mesh.colors[i][0]);
+    point.g = static_cast<std::uint8_t>(mesh.colors[i][1]);
+    point.b = static_cast<std::uint8_t>(mesh.colors[i][2]);
+    cloud.push_back(point);
+  }
+  return cloud;
+}
+
+/// Writes a cloud in the format that the name asks for.
+void writeCloud(const std::string& path, const std::string& name, const Mesh& mesh) {
+  std::ostringstream text;
+  const std::size_t count = mesh.points.size();
+  if (name == "in.pcd") {
+    pcl::io::savePCDFileBinary(path, toPcl(mesh));
+  } else if (name == "ascii.pcd") {
+    pcl::PCDWriter().writeASCII(path, toPcl(mesh), 9);
+  } else if (name == "compressed.pcd") {
+    pcl::io::savePCDFileBinaryCompressed(path, toPcl(mesh));
+  } else if (name == "in.ply") {
+    pcl::io::savePLYFileBinary(path, toPcl(mesh));
+  } else if (name == "ascii.ply") {
+    // Double coordinates, and an element before the vertices.
+    text << "ply\nformat ascii 1.0\ncomment test\nelement other 1\nproperty int a\n"
+         << "element vertex " << count
+         << "\nproperty double x\nproperty double y\nproperty double z\n"
+            "property float nx\nproperty float ny\nproperty float nz\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+            "element face 1\nproperty list uchar int vertex_indices\nend_header\n5\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      text << digits(mesh.points[i]) << " " << digits(mesh.normals[i]) << " "
+           << digits(mesh.colors[i]) << "\n";
+    }
+    text << "3 0 1 2\n";
+  } else if (name == "in.obj") {
+    text << "# test\no object\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      const Color& color = mesh.colors[i];
+      text << "v " << digits(mesh.points[i]) << " " << color[0] / 255.0 << " " << color[1] / 255.0
+           << " " << color[2] / 255.0 << "\n";
+    }
+    // Normals backwards: the faces tell which is whose.
+    for (std::size_t i = count; i-- > 0;) {
+      text << "vn " << digits(mesh.normals[i]) << "\n";
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      text << "f " << i + 1 << "//" << count - i << " 1//" << count << " -1//-" << count << "\n";
+    }
+  } else if (name == "in.vtk") {
+    text << "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS " << count
+         << " float\n";
+    for (const Point& point : mesh.points) {
+      text << digits(point) << "\n";
+    }
+    text << "POINT_DATA " << count << "\nCOLOR_SCALARS rgb 3\n";
+    for (const Color& color : mesh.colors) {
+      text << color[0] / 255.0 << " " << color[1] / 255.0 << " " << color[2] / 255.0 << "\n";
+    }
+    text << "NORMALS normals float\n";
+    for (const Point& normal : mesh.normals) {
+      text << digits(normal) << "\n";
+    }
+  } else if (name == "in.xyz") {
+    for (std::size_t i = 0; i < count; ++i) {
+      text << digits(mesh.points[i]) << " " << digits(mesh.colors[i]) << " "
+           << digits(mesh.normals[i]) << "\n";
+    }
+  } else if (name == "in.txt") {
+    text << "# a comment\nx;y;z;nx;ny;nz;r;g;b\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      std::string line = digits(mesh.points[i]) + " " + digits(mesh.normals[i]) + " " +
+                         digits(mesh.colors[i]) + " more";
+      for (char& character : line) {
+        character = character == ' ' ? ';' : character;
+      }
+      text << line << " # end\r\n\n";
+    }
+  } else {
+    FAIL() << name;
+  }
+  if (!text.str().empty()) {
+    tool_test::writeFile(path, text.str());
+  }
+}
+
+Mesh readPly(const std::string& path) {
+  pcl::PolygonMesh file;
+  EXPECT_EQ(pcl::PLYReader().read(path, file), 0);
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
+  pcl::console::setVerbosityLevel(pcl::console::L_ERROR);  // there is no curvature in the file
+  pcl::fromPCLPointCloud2(file.cloud, cloud);
+  Mesh mesh;
+  for (const auto& point : cloud) {
+    mesh.points.push_back({point.x, point.y, point.z});
+    mesh.normals.push_back({point.normal_x, point.normal_y, point.normal_z});
+    mesh.colors.push_back({point.r, point.g, point.b});
+  }
+  for (const pcl::Vertices& polygon : file.polygons) {
+    EXPECT_EQ(polygon.vertices.size(), 3U);
+    mesh.triangles.push_back({static_cast<int>(polygon.vertices[0]),
+                              static_cast<int>(polygon.vertices[1]),
+                              static_cast<int>(polygon.vertices[2])});
+  }
+  return mesh;
+}
+
+Point toPoint(const double* values) {
+  return {static_cast<float>(values[0]), static_cast<float>(values[1]),
+          static_cast<float>(values[2])};
+}
+
+Mesh fromVtk(vtkPolyData& data) {
+  Mesh mesh;
+  auto* const normals = data.GetPointData()->GetNormals();
+  auto* const colors = vtkUnsignedCharArray::SafeDownCast(data.GetPointData()->GetScalars());
+  for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) {
+    mesh.points.push_back(toPoint(data.GetPoint(i)));
+    if (normals != nullptr) {
+      mesh.normals.push_back(toPoint(normals->GetTuple3(i)));
+    }
+    if (colors != nullptr) {
+      mesh.colors.push_back({colors->GetTypedComponent(i, 0), colors->GetTypedComponent(i, 1),
+                             colors->GetTypedComponent(i, 2)});
+    }
+  }
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType i = 0; i < data.GetPolys()->GetNumberOfCells(); ++i) {
+    data.GetPolys()->GetCellAtId(i, cell);
+    EXPECT_EQ(cell->GetNumberOfIds(), 3);
+    mesh.triangles.push_back({static_cast<int>(cell->GetId(0)), static_cast<int>(cell->GetId(1)),
+                              static_cast<int>(cell->GetId(2))});
+  }
+  return mesh;
+}
+
+Mesh readVtk(const std::string& path) {
+  vtkNew<vtkPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return fromVtk(*reader->GetOutput());
+}
+
+/// STL has no vertices, only corners: they are found again by their coordinates.
+Mesh readStl(const std::string& path, const std::vector<Point>& points) {
+  vtkNew<vtkSTLReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  Mesh mesh = fromVtk(*reader->GetOutput());
+  std::map<Point, int> index_of_point;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    index_of_point[points[i]] = static_cast<int>(i);
+  }
+  for (auto& triangle : mesh.triangles) {
+    for (int& corner : triangle) {
+      const auto found = index_of_point.find(mesh.points[static_cast<std::size_t>(corner)]);
+      EXPECT_NE(found, index_of_point.end());
+      corner = found == index_of_point.end() ? 0 : found->second;
+    }
+  }
+  mesh.points = points;
+  return mesh;
+}
+
+Mesh readObj(const std::string& path) {
+  Mesh mesh;
+  std::istringstream file(tool_test::readFile(path));
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string keyword;
+    words >> keyword;
+    Point point{};
+    if (keyword == "f") {
+      std::array<int, 3> triangle{};
+      for (int& corner : triangle) {
+        std::string word;
+        words >> word;
+        corner = std::stoi(word) - 1;
+        EXPECT_EQ(word, std::to_string(corner + 1) + "//" + std::to_string(corner + 1));
+      }
+      mesh.triangles.push_back(triangle);
+      continue;
+    }
+    words >> point[0] >> point[1] >> point[2];
+    (keyword == "v" ? mesh.points : mesh.normals).push_back(point);
+    if (keyword == "v") {
+      std::array<double, 3> color{};
+      words >> color[0] >> color[1] >> color[2];
+      mesh.colors.push_back({static_cast<int>(std::lround(255.0 * color[0])),
+                             static_cast<int>(std::lround(255.0 * color[1])),
+                             static_cast<int>(std::lround(255.0 * color[2]))});
+    }
+  }
+  return mesh;
+}
+
+Mesh readOff(const std::string& path) {
+  Mesh mesh;
+  std::istringstream file(tool_test::readFile(path));
+  std::string keyword;
+  std::size_t vertices = 0;
+  std::size_t faces = 0;
+  std::size_t edges = 0;
+  file >> keyword >> vertices >> faces >> edges;
+  EXPECT_EQ(keyword, "CNOFF");
+  for (std::size_t i = 0; i < vertices; ++i) {
+    Point point{};
+    Point normal{};
+    Color color{};
+    int alpha = 0;
+    file >> point[0] >> point[1] >> point[2] >> normal[0] >> normal[1] >> normal[2];
+    file >> color[0] >> color[1] >> color[2] >> alpha;
+    EXPECT_EQ(alpha, 255);
+    mesh.points.push_back(point);
+    mesh.normals.push_back(normal);
+    mesh.colors.push_back(color);
+  }
+  for (std::size_t i = 0; i < faces; ++i) {
+    int corners = 0;
+    std::array<int, 3> triangle{};
+    file >> corners >> triangle[0] >> triangle[1] >> triangle[2];
+    EXPECT_EQ(corners, 3);
+    mesh.triangles.push_back(triangle);
+  }
+  EXPECT_FALSE(file.fail());
+  return mesh;
+}
+
+Mesh readMesh(const std::string& path, const std::vector<Point>& points) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".ply") {
+    return readPly(path);
+  }
+  if (extension == ".vtk") {
+    return readVtk(path);
+  }
+  if (extension == ".stl") {
+    return readStl(path, points);
+  }
+  return extension == ".obj" ? readObj(path) : readOff(path);
+}
+
+/// Every edge once in each direction, every vertex used, V - E + F = 2.
+void expectSphere(const Mesh& mesh) {
+  std::set<std::pair<int, int>> edges;
+  std::set<int> used;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_TRUE(edges.insert({triangle[c], triangle[(c + 1) % 3]}).second);
+      used.insert(triangle[c]);
+    }
+  }
+  for (const auto& [from, to] : edges) {
+    EXPECT_EQ(edges.count({to, from}), 1U);
+  }
+  EXPECT_EQ(used.size(), mesh.points.size());
+  ASSERT_FALSE(used.empty());
+  EXPECT_GE(*used.begin(), 0);
+  EXPECT_LT(*used.rbegin(), static_cast<int>(mesh.points.size()));
+  EXPECT_EQ(mesh.points.size() + mesh.triangles.size(), edges.size() / 2 + 2);
+}
+
+class Formats : public testing::TestWithParam<std::tuple<std::string, std::string, std::string>> {};
+
+TEST_P(Formats, KeepCoordinatesColorsAndNormals) {
+  const auto& [input, output, encoding] = GetParam();
+  const TemporaryDirectory directory;
+  const Mesh cloud = ellipsoid(300);
+  writeCloud(directory.file(input), input, cloud);
+  std::vector<std::string> arguments = {input, output, "-iterations", "100"};
+  if (encoding == "ascii") {
+    arguments.push_back("-ascii");
+  }
+  const RunResult result = runTool(directory, arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+
+  const Mesh mesh = readMesh(directory.file(output), cloud.points);
+  EXPECT_EQ(mesh.points, cloud.points);
+  if (output != "out.stl") {
+    EXPECT_EQ(mesh.normals, cloud.normals);
+    EXPECT_EQ(mesh.colors, cloud.colors);
+  }
+  expectSphere(mesh);
+  const std::string content = tool_test::readFile(directory.file(output));
+  const bool has_both = output != "out.obj" && output != "out.off";
+  const bool text = content.find('\0') == std::string::npos;
+  EXPECT_EQ(text, !has_both || encoding == "ascii");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Formats,
+    testing::Combine(testing::Values("in.pcd", "ascii.pcd", "compressed.pcd", "in.ply", "ascii.ply",
+                                     "in.obj", "in.vtk", "in.xyz", "in.txt"),
+                     testing::Values("out.ply", "out.obj", "out.stl", "out.vtk", "out.off"),
+                     testing::Values("binary", "ascii")),
+    [](const auto& test) {
+      std::string name =
+          std::get<0>(test.param) + "_" + std::get<1>(test.param) + "_" + std::get<2>(test.param);
+      for (char& character : name) {
+        character = character == '.' ? '_' : character;
+      }
+      return name;
+    });
+
+class ReconstructionTool : public testing::Test {
+protected:
+  void SetUp() override { writeCloud(directory.file("in.ply"), "in.ply", cloud); }
+
+  json reportOf(const std::vector<std::string>& arguments) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), {"-json", "-"});
+    const RunResult result = runTool(directory, all);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return json::parse(result.output, nullptr, false);
+  }
+
+  const Mesh cloud = ellipsoid(200);
+  const TemporaryDirectory directory;
+};
+
+TEST_F(ReconstructionTool, KeepsAlpha) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 200\nproperty float x\nproperty float "
+                     "y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty "
+                     "uchar blue\nproperty uchar alpha\nend_header\n";
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    text +=
+        digits(cloud.points[i]) + " " + digits(cloud.colors[i]) + " " + std::to_string(i) + "\n";
+  }
+  tool_test::writeFile(directory.file("alpha.ply"), text);
+  ASSERT_EQ(runTool(directory, {"alpha.ply", "out.ply", "-ascii"}).exit_code, 0);
+  // Header and vertex lines agree with the input, whatever faces follow.
+  const std::string written = tool_test::readFile(directory.file("out.ply"));
+  EXPECT_NE(written.find("property uchar alpha\n"), std::string::npos);
+  const std::string body = text.substr(text.find("end_header\n"));
+  EXPECT_NE(written.find(body), std::string::npos);
+  ASSERT_EQ(runTool(directory, {"alpha.ply", "out.vtk", "-ascii"}).exit_code, 0);
+  EXPECT_NE(tool_test::readFile(directory.file("out.vtk")).find("COLOR_SCALARS Colors 4\n"),
+            std::string::npos);
+}
+
+TEST_F(ReconstructionTool, ReadsAllPointsWhateverTheCameraOfAPlyFileSays) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 200\nproperty float x\nproperty float "
+                     "y\nproperty float z\nelement camera 1\nproperty int viewportx\nproperty int "
+                     "viewporty\nend_header\n";
+  for (const Point& point : cloud.points) {
+    text += digits(point) + "\n";
+  }
+  for (const char* view : {"20 1", "20 10", "200 1", "1000000 1000000"}) {
+    tool_test::writeFile(directory.file("camera.ply"), text + view + "\n");
+    EXPECT_EQ(reportOf({"camera.ply", "out.ply"})["vertices"], 200) << view;
+  }
+}
+
+TEST_F(ReconstructionTool, LeavesOutDuplicatesAndPointsThatAreNotFinite) {
+  std::string text = "nan 0 0\n";
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    text += digits(cloud.points[i]) + "\n" + (i % 10 == 0 ? digits(cloud.points[0]) + "\n" : "");
+  }
+  text += "1 inf 0\n";
+  tool_test::writeFile(directory.file("in.xyz"), text);
+  const json report = reportOf({"in.xyz", "out.off"});
+  EXPECT_EQ(report["points"], 222);
+  EXPECT_EQ(report["ignored_points"], 2);
+  EXPECT_EQ(report["duplicates"], 20);
+  EXPECT_EQ(report["vertices"], 200);
+  EXPECT_FALSE(report["warnings"].empty());
+
+  std::istringstream file(tool_test::readFile(directory.file("out.off")));
+  std::string keyword;
+  std::getline(file, keyword);
+  EXPECT_EQ(keyword, "OFF");
+  std::getline(file, keyword);
+  EXPECT_EQ(keyword, "200 396 0");
+  for (const Point& point : cloud.points) {
+    std::string line;
+    std::getline(file, line);
+    EXPECT_EQ(line, digits(point));
+  }
+}
+
+TEST_F(ReconstructionTool, WritesTheSphereWithTheSameTriangles) {
+  ASSERT_EQ(runTool(directory, {"in.ply", "out.ply", "-sphere", "sphere.vtk"}).exit_code, 0);
+  const Mesh mesh = readPly(directory.file("out.ply"));
+  const Mesh sphere = readVtk(directory.file("sphere.vtk"));
+  EXPECT_EQ(sphere.triangles, mesh.triangles);
+  EXPECT_EQ(sphere.colors, mesh.colors);
+  EXPECT_TRUE(sphere.normals.empty());
+  ASSERT_EQ(sphere.points.size(), mesh.points.size());
+  for (const Point& point : sphere.points) {
+    // The rounding of three floats.
+    EXPECT_NEAR(std::hypot(point[0], point[1], point[2]), 1.0, 2e-7);
+  }
+}
+
+TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
+  ASSERT_EQ(runTool(directory, {"in.ply", "out.ply", "-json", "report.json", "-k=9"}).exit_code, 0);
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  for (const char* key : {"points", "vertices", "duplicates", "ignored_points", "triangles",
+                          "components", "genus", "iterations", "peak_memory_bytes"}) {
+    EXPECT_TRUE(report[key].is_number_integer()) << key;
+  }
+  for (const char* key : {"volume", "area", "residual", "edges_outside_graph"}) {
+    EXPECT_TRUE(report[key].is_number_float()) << key;
+  }
+  for (const char* key : {"closed", "manifold", "oriented", "converged"}) {
+    EXPECT_TRUE(report[key].is_boolean()) << key;
+  }
+  for (const char* key : {"stop_reason", "input", "output", "version"}) {
+    EXPECT_TRUE(report[key].is_string()) << key;
+  }
+  for (const char* key : {"residuals", "stages", "warnings"}) {
+    EXPECT_TRUE(report[key].is_array()) << key;
+  }
+  EXPECT_EQ(report["points"], 200);
+  EXPECT_EQ(report["vertices"], 200);
+  EXPECT_EQ(report["triangles"], 396);
+  EXPECT_EQ(report["closed"], true);
+  EXPECT_EQ(report["manifold"], true);
+  EXPECT_EQ(report["oriented"], true);
+  EXPECT_EQ(report["components"], 1);
+  EXPECT_EQ(report["genus"], 0);
+  EXPECT_GT(report["volume"], 0.0);
+  EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
+  EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
+
+  std::vector<std::string> stages;
+  for (const json& stage : report["stages"]) {
+    stages.push_back(stage["name"]);
+    EXPECT_TRUE(stage["seconds"].is_number_float());
+  }
+  const std::vector<std::string> expected = {"read",          "neighbors", "graph", "embedding",
+                                             "triangulation", "check",     "write"};
+  EXPECT_EQ(stages, expected);
+  for (const char* key : {"k", "weights", "iterations", "tolerance", "lambda", "stagnation",
+                          "threads", "sphere", "json", "ascii", "quiet"}) {
+    EXPECT_TRUE(report["options"].contains(key)) << key;
+  }
+  EXPECT_EQ(report["options"]["k"], 9);
+  EXPECT_EQ(report["options"]["weights"], "adaptive");
+  EXPECT_EQ(report["options"]["tolerance"], 1e-8);
+  EXPECT_TRUE(report["graph"]["edges"].is_number_integer());
+  EXPECT_EQ(report["graph"]["components"], 1);
+  EXPECT_TRUE(report["graph"]["bridges"].empty());
+  for (const char* key : {"hull_vertices", "reinserted", "coincident"}) {
+    EXPECT_TRUE(report["triangulation"][key].is_number_integer()) << key;
+  }
+  EXPECT_TRUE(report["triangulation"]["hull_rejected"].is_boolean());
+}
+
+TEST_F(ReconstructionTool, ReportNamesBridgesByPointsOfTheInput) {
+  std::string text = "nan nan nan\n";
+  for (const float shift : {0.0F, 5.0F}) {
+    for (const Point& point : cloud.points) {
+      text += digits(Point{point[0] + shift, point[1], point[2]}) + "\n";
+    }
+  }
+  tool_test::writeFile(directory.file("pair.xyz"), text);
+  const json report = reportOf({"pair.xyz", "out.ply"});
+  EXPECT_EQ(report["graph"]["components"], 2);
+  ASSERT_EQ(report["graph"]["bridges"].size(), 1U);
+  const json& bridge = report["graph"]["bridges"][0];
+  const int low = std::min(bridge["from"].get<int>(), bridge["to"].get<int>());
+  const int high = std::max(bridge["from"].get<int>(), bridge["to"].get<int>());
+  ASSERT_GE(low, 1);
+  ASSERT_GE(high, 201);
+  ASSERT_LT(low, 201);
+  const Point& from = cloud.points[static_cast<std::size_t>(low - 1)];
+  const Point& to = cloud.points[static_cast<std::size_t>(high - 201)];
+  EXPECT_NEAR(bridge["length"].get<double>(),
+              std::hypot(to[0] + 5.0F - from[0], to[1] - from[1], to[2] - from[2]), 1e-5);
+}
+
+TEST_F(ReconstructionTool, OptionsReachTheLibraryInEveryNotation) {
+  const std::vector<std::vector<std::string>> notations = {
+      {"-k", "7", "-weights", "inverse", "in.ply", "-iterations", "3", "out.ply", "-lambda",
+       "0.25"},
+      {"--k", "7", "in.ply", "out.ply", "--weights", "inverse", "--iterations", "3", "--lambda",
+       "0.25"},
+      {"in.ply", "--k=7", "--weights=inverse", "out.ply", "--iterations=3", "--lambda=0.25"},
+      {"in.ply", "out.ply", "-k=7", "-weights=inverse", "-iterations=3", "-lambda=+.25"},
+  };
+  std::set<std::string> meshes;
+  for (const auto& arguments : notations) {
+    const json report = reportOf(arguments);
+    EXPECT_EQ(report["options"]["k"], 7);
+    EXPECT_EQ(report["options"]["weights"], "inverse");
+    EXPECT_EQ(report["options"]["lambda"], 0.25);
+    EXPECT_EQ(report["iterations"], 3);
+    EXPECT_EQ(report["input"], "in.ply");
+    meshes.insert(tool_test::readFile(directory.file("out.ply")));
+  }
+  EXPECT_EQ(meshes.size(), 1U);
+}
+
+TEST_F(ReconstructionTool, FilesAreToldByTheirExtension) {
+  writeCloud(directory.file("in.pcd"), "in.pcd", cloud);
+  EXPECT_EQ(runTool(directory, {"-k", "9", "out.stl", "in.pcd"}).exit_code, 0);
+  EXPECT_EQ(runTool(directory, {"in.ply", "OUT.VTK"}).exit_code, 0);
+  EXPECT_EQ(directory.listing().count("out.stl"), 1U);
+  EXPECT_EQ(directory.listing().count("OUT.VTK"), 1U);
+}
+
+TEST_F(ReconstructionTool, NeverTakesTheFirstOfTwoPossibleInputsForTheOutput) {
+  writeCloud(directory.file("in.pcd"), "in.pcd", cloud);
+  const auto before = directory.listing();
+  EXPECT_EQ(runTool(directory, {"in.ply", "in.pcd"}).exit_code, 2);
+  EXPECT_EQ(directory.listing(), before);
+}
+
+TEST_F(ReconstructionTool, StandardOutputIsTheReportAlone) {
+  const RunResult result = runTool(directory, {"in.ply", "out.ply", "-json", "-"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.errors, "");
+  EXPECT_TRUE(json::accept(result.output));
+}
+
+TEST_F(ReconstructionTool, QuietPrintsNothing) {
+  const RunResult result = runTool(directory, {"in.ply", "out.ply", "-quiet"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.output + result.errors, "");
+  EXPECT_EQ(directory.listing().count("out.ply"), 1U);
+}
+
+TEST_F(ReconstructionTool, HelpAndVersionSucceed) {
+  for (const char* option : {"-h", "--h", "-help", "--help"}) {
+    const RunResult result = runTool(directory, {option});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.output.find("-iterations N"), std::string::npos);
+  }
+  for (const char* option : {"-version", "--version"}) {
+    const RunResult result = runTool(directory, {option});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(result.output.rfind("pcl_spherical_param_reconstruction ", 0), 0U);
+  }
+}
+
+TEST_F(ReconstructionTool, PrintsStagesInPlainLinesAndTheVerdict) {
+  const RunResult result = runTool(directory, {"in.ply", "out.ply"});
+  EXPECT_EQ(result.output.find_first_of("\r\033"), std::string::npos);
+  for (const char* word :
+       {"read", "neighbors", "graph", "embedding", "triangulation", "check", "write",
+        "points         200", "used           200", "triangles      396", "closed         yes",
+        "manifold       yes", "oriented       yes", "genus          0", "residual", "converged"}) {
+    EXPECT_NE(result.output.find(std::string("\n  ") + word), std::string::npos) << word;
+  }
+}
+
+TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
+  RunOptions options;
+  options.directory = directory.path();
+  options.terminal = true;
+  const RunResult result = run(RECONSTRUCTION_TOOL, {"in.ply", "out.ply"}, options);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("\r  embedding      ["), std::string::npos);
+}
+
+TEST_F(ReconstructionTool, SameBytesForAnyNumberOfThreads) {
+  for (const char* threads : {"1", "2", "3"}) {
+    ASSERT_EQ(runTool(directory, {"in.ply", std::string("out") + threads + ".ply", "-sphere",
+                                  std::string("sphere") + threads + ".ply", "-threads", threads})
+                  .exit_code,
+              0);
+  }
+  const auto files = directory.listing();
+  EXPECT_EQ(files.at("out1.ply"), files.at("out2.ply"));
+  EXPECT_EQ(files.at("out1.ply"), files.at("out3.ply"));
+  EXPECT_EQ(files.at("sphere1.ply"), files.at("sphere2.ply"));
+}
+
+TEST_F(ReconstructionTool, ReplacesAnOldFileAndKeepsItsRightsAndLinks) {
+  namespace fs = std::filesystem;
+  tool_test::writeFile(directory.file("real.ply"), "old");
+  fs::permissions(directory.file("real.ply"), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("real.ply", directory.file("link.ply"));
+  ASSERT_EQ(runTool(directory, {"in.ply", "link.ply"}).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(directory.file("link.ply")));
+  EXPECT_EQ(readPly(directory.file("real.ply")).points, cloud.points);
+  EXPECT_EQ(fs::status(directory.file("real.ply")).permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(ReconstructionTool, SignalsLeaveNothingBehind) {
+  // So many points that the signal arrives while they are written.
+  const Mesh large = ellipsoid(40000);
+  writeCloud(directory.file("large.ply"), "in.ply", large);
+  const auto before = directory.listing();
+  for (const int signal : {SIGINT, SIGTERM}) {
+    RunOptions options;
+    options.directory = directory.path();
+    options.signal_when_temporary = signal;
+    const RunResult result =
+        run(RECONSTRUCTION_TOOL,
+            {"large.ply", "out.off", "-sphere", "sphere.off", "-iterations", "0"}, options);
+    EXPECT_EQ(result.signal, signal);
+    EXPECT_EQ(directory.listing(), before);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,411 @@
+#include "common/header_checks.h"
+
+#include "common/input_file.h"
+#include "common/numbers.h"
+#include "common/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <string_view>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+/// No header is longer, except in broken files.
+constexpr std::size_t header_limit = std::size_t{1} << 20;
+
+/// More points than an index of 32 bits can tell apart.
+constexpr std::int64_t count_limit = std::int64_t{1} << 30;
+
+constexpr std::string_view blanks = " \t\r";
+
+/// Goes through the lines of a text.
+class Lines {
+public:
+  explicit Lines(std::string_view text) : text_(text) {}
+
+  /// Moves on to the next line. \return false at the end of the text.
+  bool next() {
+    if (position_ >= text_.size()) {
+      return false;
+    }
+    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+    words_ = split(text_.substr(position_, end - position_), blanks);
+    position_ = std::min(end + 1, text_.size());
+    ++number_;
+    return true;
+  }
+  const std::vector<std::string_view>& words() const { return words_; }
+  /// Where the next line begins.
+  std::size_t position() const { return position_; }
+  std::size_t number() const { return number_; }
+
+private:
+  std::string_view text_;
+  std::size_t position_ = 0;
+  std::size_t number_ = 0;
+  std::vector<std::string_view> words_;
+};
+
+std::int64_t requireCount(const std::string& path, std::string_view word, const std::string& what) {
+  const std::optional<std::int64_t> count = toInteger(word);
+  if (!count || *count < 0 || *count > count_limit) {
+    failContent(path, "its number of " + what + " is " + inQuotes(word));
+  }
+  return *count;
+}
+
+void requireBytes(const std::string& path, double needed, std::uint64_t available) {
+  // Products of counts go through double: they overflow any integer in a broken header.
+  if (needed > static_cast<double>(available)) {
+    failContent(path, "it is shorter than its header says");
+  }
+}
+
+/// Checks lines of numbers: PCL's readers take missing ones for 0, and words for NaN.
+/// \param body_begin where the first line begins; \param skipped lines before those to be checked.
+void checkNumberLines(const std::string& path, std::uint64_t file_size, std::size_t body_begin,
+                      std::int64_t skipped, std::int64_t line_count, std::size_t numbers_per_line) {
+  const std::string content = readBeginning(path, file_size);
+  Lines lines(content);
+  for (std::int64_t found = 0; found < skipped + line_count;) {
+    if (!lines.next()) {
+      failContent(path, "it has fewer points than its header says");
+    }
+    const auto& words = lines.words();
+    if (lines.position() <= body_begin || words.empty() || found++ < skipped) {
+      continue;
+    }
+    if (words.size() < numbers_per_line ||
+        !std::all_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(numbers_per_line),
+                     [](std::string_view word) { return toReal(word).has_value(); })) {
+      failContent(path, "line " + std::to_string(lines.number()) + " has no " +
+                            std::to_string(numbers_per_line) + " numbers");
+    }
+  }
+}
+
+}  // namespace
+
+void checkPcdHeader(const std::string& path, std::uint64_t file_size) {
+  const std::string beginning = readBeginning(path, header_limit);
+  Lines lines(beginning);
+  std::map<std::string, std::vector<std::string>> entries;
+  while (entries.count("DATA") == 0) {
+    if (!lines.next()) {
+      failContent(path, "it has no PCD header");
+    }
+    const auto& words = lines.words();
+    if (words.empty() || words[0][0] == '#') {
+      continue;
+    }
+    const std::string name(words[0] == "COLUMNS" ? "FIELDS" : words[0]);
+    static const std::array<const char*, 10> known = {"VERSION", "FIELDS",   "SIZE",   "TYPE",
+                                                      "COUNT",   "WIDTH",    "HEIGHT", "POINTS",
+                                                      "DATA",    "VIEWPOINT"};
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      failContent(path, "its header has the unknown entry " + inQuotes(words[0]));
+    }
+    entries[name] = std::vector<std::string>(words.begin() + 1, words.end());
+  }
+  for (const char* name : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT", "POINTS", "DATA"}) {
+    if (entries[name].empty()) {
+      failContent(path, std::string("its header has no ") + name);
+    }
+  }
+
+  const std::vector<std::string>& fields = entries["FIELDS"];
+  for (const char* name : {"x", "y", "z"}) {
+    if (std::count(fields.begin(), fields.end(), name) != 1) {
+      failContent(path, "it has no fields x, y and z");
+    }
+  }
+  std::vector<std::string>& counts = entries["COUNT"];
+  if (counts.empty()) {
+    counts.assign(fields.size(), "1");
+  }
+  if (entries["SIZE"].size() != fields.size() || entries["TYPE"].size() != fields.size() ||
+      counts.size() != fields.size()) {
+    failContent(path, "FIELDS, SIZE, TYPE and COUNT of its header differ in length");
+  }
+  double bytes_per_point = 0.0;
+  double stored_bytes_per_point = 0.0;
+  double values_per_point = 0.0;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::string& size = entries["SIZE"][f];
+    const std::string& type = entries["TYPE"][f];
+    const bool number = type == "F" ? size == "4" || size == "8"
+                                    : (type == "I" || type == "U") && (size == "1" || size == "2" ||
+                                                                       size == "4" || size == "8");
+    if (!number) {
+      failContent(path, "field " + inQuotes(fields[f]) + " has the unknown type " +
+                            inQuotes(type + " " + size));
+    }
+    const std::int64_t count = requireCount(path, counts[f], "values in a field");
+    const bool coordinate = fields[f] == "x" || fields[f] == "y" || fields[f] == "z";
+    if (count < 1 || (coordinate && (count != 1 || type != "F"))) {
+      failContent(path, "field " + inQuotes(fields[f]) + " does not hold one number a point");
+    }
+    const double bytes = static_cast<double>(count) * static_cast<double>(size[0] - '0');
+    bytes_per_point += bytes;
+    stored_bytes_per_point += fields[f] == "_" ? 0.0 : bytes;  // padding is left out of LZF data
+    values_per_point += static_cast<double>(count);
+  }
+
+  const std::int64_t points = requireCount(path, entries["POINTS"][0], "points");
+  const std::int64_t width = requireCount(path, entries["WIDTH"][0], "columns");
+  const std::int64_t height = requireCount(path, entries["HEIGHT"][0], "rows");
+  if (points == 0) {
+    failContent(path, "it has no points");
+  }
+  if (static_cast<double>(width) * static_cast<double>(height) != static_cast<double>(points)) {
+    failContent(path, "POINTS of its header is not WIDTH times HEIGHT");
+  }
+
+  const std::string& storage = entries["DATA"][0];
+  const std::uint64_t body = file_size - lines.position();
+  const auto point_count = static_cast<double>(points);
+  if (storage == "ascii") {
+    // A value needs a digit and a separator, the last one no separator.
+    requireBytes(path, 2.0 * point_count * values_per_point - 1.0, body);
+    checkNumberLines(path, file_size, lines.position(), 0, points,
+                     static_cast<std::size_t>(values_per_point));
+  } else if (storage == "binary") {
+    requireBytes(path, point_count * bytes_per_point, body);
+  } else if (storage == "binary_compressed") {
+    requireBytes(path, 8.0, body);
+    std::array<std::uint32_t, 2> sizes{};  // compressed, uncompressed
+    if (beginning.size() < lines.position() + sizeof sizes) {
+      failContent(path, "it is shorter than its header says");
+    }
+    std::memcpy(sizes.data(), beginning.data() + lines.position(), sizeof sizes);
+    requireBytes(path, 8.0 + static_cast<double>(sizes[0]), body);
+    if (static_cast<double>(sizes[1]) != point_count * stored_bytes_per_point) {
+      failContent(path, "its compressed data does not hold the points of its header");
+    }
+  } else {
+    failContent(path, "its data is stored as " + inQuotes(storage));
+  }
+}
+
+namespace {
+
+struct PlyProperty {
+  std::string type;
+  std::string name;
+  bool list = false;
+};
+
+struct PlyElement {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+/// Bytes of a PLY number, 0 for an unknown type.
+double plyTypeSize(std::string_view type) {
+  static const std::map<std::string_view, double> sizes = {
+      {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
+      {"ushort", 2}, {"uint16", 2},  {"int", 4},    {"int32", 4},  {"uint", 4},  {"uint32", 4},
+      {"float", 4},  {"float32", 4}, {"double", 8}, {"float64", 8}};
+  const auto found = sizes.find(type);
+  return found == sizes.end() ? 0.0 : found->second;
+}
+
+PlyProperty parsePlyProperty(const std::string& path, const std::vector<std::string_view>& words) {
+  PlyProperty property;
+  property.list = words.size() > 1 && words[1] == "list";
+  const std::size_t expected = property.list ? 5 : 3;
+  if (words.size() != expected) {
+    failContent(path, "its header has a broken property");
+  }
+  for (std::size_t w = property.list ? 2 : 1; w + 1 < expected; ++w) {
+    if (plyTypeSize(words[w]) == 0.0) {
+      failContent(path, "its header has the unknown type " + inQuotes(words[w]));
+    }
+  }
+  property.type = words[expected - 2];
+  property.name = words[expected - 1];
+  return property;
+}
+
+/// PCL's reader takes the three colours for one packed number: they must be bytes, and in order.
+void checkPlyColors(const std::string& path, const PlyElement& vertex) {
+  for (const std::string prefix : {"", "diffuse_"}) {
+    std::array<std::size_t, 3> places{};
+    std::size_t present = 0;
+    for (std::size_t p = 0; p < vertex.properties.size(); ++p) {
+      const PlyProperty& property = vertex.properties[p];
+      const bool byte = property.type == "uchar" || property.type == "uint8";
+      const std::array<std::string, 3> names = {prefix + "red", prefix + "green", prefix + "blue"};
+      for (std::size_t c = 0; c < names.size(); ++c) {
+        if (property.name == names[c] && byte) {
+          places[c] = p;
+          ++present;
+        }
+      }
+    }
+    if (present != 0 &&
+        (present != 3 || places[1] != places[0] + 1 || places[2] != places[1] + 1)) {
+      failReading(path, "its colours are not red, green and blue, one after the other",
+                  "save it with all three colours in that order, or without colours");
+    }
+  }
+  bool colored = false;
+  for (const PlyProperty& property : vertex.properties) {
+    const bool byte = property.type == "uchar" || property.type == "uint8";
+    colored = colored || (byte && (property.name == "red" || property.name == "diffuse_red"));
+    if (property.name == "alpha" && byte && !colored) {
+      failReading(path, "it has alpha before or without its colours",
+                  "save it with red, green, blue and alpha in that order");
+    }
+  }
+}
+
+void checkPlyVertex(const std::string& path, const PlyElement& vertex) {
+  std::map<std::string, int> found;
+  for (const PlyProperty& property : vertex.properties) {
+    if (property.list) {
+      failReading(path, "its vertices have the list " + inQuotes(property.name),
+                  "save it with plain numbers for each vertex");
+    }
+    if (++found[property.name] > 1) {
+      failContent(path, "its vertices have the property " + inQuotes(property.name) + " twice");
+    }
+    const bool coordinate = property.name == "x" || property.name == "y" || property.name == "z";
+    const bool real = property.type == "float" || property.type == "float32" ||
+                      property.type == "double" || property.type == "float64";
+    if (coordinate && !real) {
+      failReading(path, "its coordinates are whole numbers", "save it with float coordinates");
+    }
+  }
+  if (found["x"] + found["y"] + found["z"] != 3) {
+    failContent(path, "its vertices have no x, y and z");
+  }
+  if (vertex.count == 0) {
+    failContent(path, "it has no points");
+  }
+  checkPlyColors(path, vertex);
+}
+
+}  // namespace
+
+void checkPlyHeader(const std::string& path, std::uint64_t file_size) {
+  const std::string beginning = readBeginning(path, header_limit);
+  Lines lines(beginning);
+  if (!lines.next() || lines.words().size() != 1 || lines.words()[0] != "ply") {
+    failContent(path, "it does not begin as a PLY file does");
+  }
+  std::vector<PlyElement> elements;
+  bool ascii = false;
+  bool format_known = false;
+  std::int64_t grid_size = 0;
+  for (;;) {
+    if (!lines.next()) {
+      failContent(path, "its header has no end");
+    }
+    const auto& words = lines.words();
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
+      if (words.size() == 3 && words[0] == "obj_info" &&
+          (words[1] == "num_cols" || words[1] == "num_rows")) {
+        grid_size = (grid_size == 0 ? 1 : grid_size) * requireCount(path, words[2], "rows");
+      }
+      continue;
+    }
+    if (words[0] == "end_header") {
+      break;
+    }
+    if (words[0] == "format" && words.size() == 3 && words[2] == "1.0") {
+      format_known = words[1] == "ascii" || words[1] == "binary_little_endian" ||
+                     words[1] == "binary_big_endian";
+      ascii = words[1] == "ascii";
+    } else if (words[0] == "element" && words.size() == 3) {
+      elements.push_back({std::string(words[1]), requireCount(path, words[2], "elements"), {}});
+    } else if (words[0] == "property" && !elements.empty()) {
+      elements.back().properties.push_back(parsePlyProperty(path, words));
+    } else {
+      failContent(path, "its header has the unknown entry " + inQuotes(words[0]));
+    }
+  }
+  if (!format_known) {
+    failContent(path, "its format is neither ascii nor binary 1.0");
+  }
+
+  int vertex_elements = 0;
+  std::int64_t vertex_count = 0;
+  double needed = 0.0;
+  for (const PlyElement& element : elements) {
+    if (element.name == "vertex") {
+      ++vertex_elements;
+      checkPlyVertex(path, element);
+      vertex_count = element.count;
+    } else if (element.name == "range_grid") {
+      grid_size = element.count;
+    }
+    double bytes = 0.0;
+    for (const PlyProperty& property : element.properties) {
+      // The shortest list is its length alone; the shortest text a digit and a separator.
+      bytes += ascii ? 2.0 : property.list ? 1.0 : plyTypeSize(property.type);
+    }
+    needed += bytes * static_cast<double>(element.count);
+  }
+  if (vertex_elements != 1) {
+    failContent(path, "it has no vertices");
+  }
+  // PCL spreads the vertices over the cells of the grid, without a look at the limits of either.
+  if (grid_size != 0 && grid_size != vertex_count) {
+    failReading(path, "it is a range grid", "save its points as a plain cloud");
+  }
+  requireBytes(path, needed - (ascii ? 1.0 : 0.0), file_size - lines.position());
+  if (ascii) {
+    std::int64_t before = 0;
+    const auto vertex =
+        std::find_if(elements.begin(), elements.end(), [&before](const PlyElement& element) {
+          const bool found = element.name == "vertex";
+          before += found ? 0 : element.count;
+          return found;
+        });
+    checkNumberLines(path, file_size, lines.position(), before, vertex->count,
+                     vertex->properties.size());
+  }
+}
+
+std::uint64_t checkVtkHeader(const std::string& path, std::uint64_t file_size) {
+  const std::string beginning = readBeginning(path, header_limit);
+  Lines lines(beginning);
+  if (beginning.rfind("# vtk DataFile Version", 0) != 0 || !lines.next() || !lines.next() ||
+      !lines.next() || lines.words().size() != 1) {
+    failContent(path, "it does not begin as a legacy VTK file does");
+  }
+  const std::string storage = lowerCase(lines.words()[0]);
+  if (storage != "ascii" && storage != "binary") {
+    failContent(path, "its data is stored as " + inQuotes(storage));
+  }
+  while (lines.next()) {
+    const auto& words = lines.words();
+    if (words.empty() || lowerCase(words[0]) != "points") {
+      continue;
+    }
+    if (words.size() != 3) {
+      failContent(path, "its POINTS line is broken");
+    }
+    const std::string type = lowerCase(words[2]);
+    if (type != "float" && type != "double") {
+      failReading(path, "its points are of type " + inQuotes(type), "save them as float or double");
+    }
+    const std::int64_t points = requireCount(path, words[1], "points");
+    if (points == 0) {
+      failContent(path, "it has no points");
+    }
+    const double bytes = storage == "ascii" ? 2.0 : type == "float" ? 4.0 : 8.0;
+    requireBytes(path, 3.0 * bytes * static_cast<double>(points) - (storage == "ascii" ? 1.0 : 0.0),
+                 file_size - lines.position());
+    return static_cast<std::uint64_t>(points);
+  }
+  failContent(path, "it has no points");
+}
+
+}  // namespace spherical_param::tools

@@ -1,0 +1,58 @@
+#include "common/library_output.h"
+
+#include <pcl/console/print.h>
+#include <vtkObject.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+namespace spherical_param::tools {
+namespace {
+
+void flushAll() {
+  std::cout.flush();
+  std::cerr.flush();
+  std::fflush(stdout);
+  std::fflush(stderr);
+}
+
+int replaceByNull(int descriptor) {
+  const int saved = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
+  const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (null >= 0) {
+    dup2(null, descriptor);
+    close(null);
+  }
+  return saved;
+}
+
+void restore(int descriptor, int saved) {
+  if (saved >= 0) {
+    dup2(saved, descriptor);
+    close(saved);
+  }
+}
+
+}  // namespace
+
+LibraryOutputSilencer::LibraryOutputSilencer() {
+  flushAll();
+  standard_output_ = replaceByNull(STDOUT_FILENO);
+  standard_error_ = replaceByNull(STDERR_FILENO);
+}
+
+LibraryOutputSilencer::~LibraryOutputSilencer() {
+  flushAll();
+  restore(STDOUT_FILENO, standard_output_);
+  restore(STDERR_FILENO, standard_error_);
+}
+
+void silenceLibraryConsoles() {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  vtkObject::GlobalWarningDisplayOff();
+}
+
+}  // namespace spherical_param::tools

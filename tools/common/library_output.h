@@ -1,0 +1,22 @@
+#pragma once
+
+namespace spherical_param::tools {
+
+/// Keeps what libraries print away from the user while it lives, on both standard streams: a tool
+/// that fails says so in two lines, and JSON on the standard output must stay JSON.
+class LibraryOutputSilencer {
+public:
+  LibraryOutputSilencer();
+  ~LibraryOutputSilencer();
+  LibraryOutputSilencer(const LibraryOutputSilencer&) = delete;
+  LibraryOutputSilencer& operator=(const LibraryOutputSilencer&) = delete;
+
+private:
+  int standard_output_;
+  int standard_error_;
+};
+
+/// Switches the console messages of PCL and VTK off for the whole run.
+void silenceLibraryConsoles();
+
+}  // namespace spherical_param::tools

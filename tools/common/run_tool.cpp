@@ -1,0 +1,91 @@
+#include "common/run_tool.h"
+
+#include "common/console.h"
+#include "common/errors.h"
+#include "common/library_output.h"
+#include "common/output_file.h"
+#include "common/text.h"
+#include "spherical_param/version.h"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <thread>
+
+namespace spherical_param::tools {
+namespace {
+
+/// Waits for a signal, cleans up, and ends as the signal would have, so that the caller sees what
+/// happened.
+void endBySignal(const sigset_t& signals) {
+  int signal_number = 0;
+  if (sigwait(&signals, &signal_number) != 0) {
+    return;
+  }
+  removeTemporaryFiles([&] {
+    std::signal(signal_number, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    std::raise(signal_number);
+  });
+}
+
+/// Leaves the signals that end a program to a thread of their own: a handler could interrupt the
+/// making of a file, in one thread or another, and may do next to nothing. The signals must be
+/// blocked before there are other threads.
+void handleSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    // One that is ignored, as nohup does, stays ignored.
+    if (sigaction(signal_number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) {
+      sigaddset(&signals, signal_number);
+    }
+  }
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::thread([signals] { endBySignal(signals); }).detach();
+  // A closed pipe or a size limit is an error of the write like any other.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+int report(const std::string& tool, const ToolError& error) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool.c_str(), oneLine(error.what()).c_str(),
+               oneLine(error.remedy()).c_str());
+  return static_cast<int>(error.exitCode());
+}
+
+}  // namespace
+
+int runTool(const std::string& tool, int argc, char** argv,
+            const std::function<void(const std::vector<std::string>&)>& body) {
+  handleSignals();
+  silenceLibraryConsoles();
+  try {
+    body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+    return static_cast<int>(ExitCode::Done);
+  } catch (const ToolError& error) {
+    return report(tool, error);
+  } catch (const std::bad_alloc&) {
+    return report(tool, Failure("not enough memory", "use fewer points or a smaller -k"));
+  } catch (const std::exception& error) {
+    return report(tool, Failure(error.what(), "this should not happen: please report it"));
+  }
+}
+
+bool answerHelpOrVersion(const CommandLine& command_line, const std::string& tool,
+                         const std::string& help) {
+  if (command_line.wantsHelp()) {
+    printAll(help);
+    return true;
+  }
+  if (command_line.wantsVersion()) {
+    printAll(tool + " " + SPHERICAL_PARAM_VERSION + "\n");
+    return true;
+  }
+  return false;
+}
+
+}  // namespace spherical_param::tools

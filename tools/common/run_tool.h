@@ -1,0 +1,22 @@
+#pragma once
+
+#include "common/command_line.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spherical_param::tools {
+
+/// Runs a tool: quiet libraries, temporary files removed on signals, and every exception told as
+/// one line of cause and one of remedy on the standard error. \return the exit code of main().
+///
+/// \param body is given the words of the command line without the program's name.
+int runTool(const std::string& tool, int argc, char** argv,
+            const std::function<void(const std::vector<std::string>&)>& body);
+
+/// Prints the help or the version if that is what the user wants. \return whether it was.
+bool answerHelpOrVersion(const CommandLine& command_line, const std::string& tool,
+                         const std::string& help);
+
+}  // namespace spherical_param::tools

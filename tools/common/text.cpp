@@ -1,0 +1,66 @@
+#include "common/text.h"
+
+#include <system_error>
+
+namespace spherical_param::tools {
+namespace {
+
+bool isControl(char character) {
+  const auto code = static_cast<unsigned char>(character);
+  return code < 0x20 || code == 0x7f;
+}
+
+std::string withoutControls(std::string_view text, char replacement) {
+  std::string result(text);
+  for (char& character : result) {
+    if (isControl(character)) {
+      character = replacement;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string inQuotes(std::string_view text) {
+  constexpr std::size_t longest = 200;
+  const bool cut = text.size() > longest;
+  return "'" + withoutControls(text.substr(0, longest), '?') + (cut ? "...'" : "'");
+}
+
+std::string oneLine(std::string_view text) {
+  return withoutControls(text, ' ');
+}
+
+std::string lowerCase(std::string_view text) {
+  std::string result(text);
+  for (char& character : result) {
+    if (character >= 'A' && character <= 'Z') {
+      character = static_cast<char>(character - 'A' + 'a');
+    }
+  }
+  return result;
+}
+
+void split(std::string_view text, std::string_view separators,
+           std::vector<std::string_view>& parts) {
+  parts.clear();
+  std::size_t begin = text.find_first_not_of(separators);
+  while (begin != std::string_view::npos) {
+    const std::size_t end = text.find_first_of(separators, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end == std::string_view::npos ? end : text.find_first_not_of(separators, end);
+  }
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> parts;
+  split(text, separators, parts);
+  return parts;
+}
+
+std::string systemMessage(int error_number) {
+  return std::generic_category().message(error_number);
+}
+
+}  // namespace spherical_param::tools

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherical_param::tools {
+
+/// The text in quotes, with control characters as '?' and cut if it is very long, so that it stays
+/// on one line.
+std::string inQuotes(std::string_view text);
+
+/// The text with control characters as blanks.
+std::string oneLine(std::string_view text);
+
+/// The text in lower case (ASCII).
+std::string lowerCase(std::string_view text);
+
+/// The parts of a text between any of the separators; empty parts are left out.
+std::vector<std::string_view> split(std::string_view text, std::string_view separators);
+
+/// Splits like split(), into a vector whose memory is used again.
+void split(std::string_view text, std::string_view separators,
+           std::vector<std::string_view>& parts);
+
+/// Text of an errno value.
+std::string systemMessage(int error_number);
+
+}  // namespace spherical_param::tools

@@ -1,0 +1,261 @@
+#include "common/text_clouds.h"
+
+#include "common/input_file.h"
+#include "common/numbers.h"
+#include "common/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+/// Hands the words of each line to a function, with the number of the line.
+void forEachLine(std::string_view text, std::string_view separators,
+                 const std::function<void(std::size_t, const Words&)>& take) {
+  Words words;
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = text.substr(begin, end - begin);
+    line = line.substr(0, line.find('#'));
+    split(line, separators, words);
+    take(++number, words);
+    begin = end + 1;
+  }
+}
+
+[[noreturn]] void failLine(const std::string& path, std::size_t line, const std::string& reason) {
+  failContent(path, "line " + std::to_string(line) + " " + reason);
+}
+
+/// The three numbers from a word on, if there are any.
+std::optional<std::array<double, 3>> threeNumbers(const Words& words, std::size_t first) {
+  if (words.size() < first + 3) {
+    return std::nullopt;
+  }
+  std::array<double, 3> values{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const std::optional<double> value = toReal(words[first + d]);
+    if (!value) {
+      return std::nullopt;
+    }
+    values[d] = *value;
+  }
+  return values;
+}
+
+Point toPoint(const std::array<double, 3>& values) {
+  return {static_cast<float>(values[0]), static_cast<float>(values[1]),
+          static_cast<float>(values[2])};
+}
+
+bool isUnit(const std::array<double, 3>& values) {
+  // Files with 3 digits are common: their normals have unit length to about that.
+  return std::abs(std::hypot(values[0], values[1], values[2]) - 1.0) < 5e-3;
+}
+
+bool isByteColor(const std::array<double, 3>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) {
+    return value >= 0.0 && value <= 255.0 && value == std::floor(value);
+  });
+}
+
+Color toColor(const std::array<double, 3>& values, double scale) {
+  Color color = {0, 0, 0, 255};
+  for (std::size_t c = 0; c < 3; ++c) {
+    // The comparison also sorts out what is not a number.
+    const double channel = values[c] >= 0.0 ? std::min(values[c] * scale, 255.0) : 0.0;
+    color[c] = static_cast<std::uint8_t>(std::lround(channel));
+  }
+  return color;
+}
+
+/// Three further columns of a plain text file, of which it is not known what they are.
+class ColumnTriple {
+public:
+  explicit ColumnTriple(std::size_t first_column) : first_column_(first_column) {}
+
+  void add(const Words& words) {
+    if (!colors_possible_ && !normals_possible_) {
+      return;
+    }
+    const auto values = threeNumbers(words, first_column_);
+    colors_possible_ = colors_possible_ && values && isByteColor(*values);
+    normals_possible_ = normals_possible_ && values && isUnit(*values);
+    if (values) {
+      values_.push_back(*values);
+    }
+  }
+
+  void assignTo(PointData& data) const {
+    if (normals_possible_ && data.normals.empty()) {
+      for (const auto& values : values_) {
+        data.normals.push_back(toPoint(values));
+      }
+    } else if (colors_possible_ && data.colors.empty()) {
+      for (const auto& values : values_) {
+        data.colors.push_back(toColor(values, 1.0));
+      }
+    }
+  }
+
+private:
+  std::size_t first_column_;
+  bool colors_possible_ = true;
+  bool normals_possible_ = true;
+  std::vector<std::array<double, 3>> values_;
+};
+
+bool isColumnTitle(const Words& words) {
+  return words.size() >= 3 && lowerCase(words[0]) == "x" && lowerCase(words[1]) == "y" &&
+         lowerCase(words[2]) == "z";
+}
+
+}  // namespace
+
+PointData readXyz(const std::string& path, std::uint64_t file_size) {
+  const std::string content = readBeginning(path, file_size);
+  PointData data;
+  std::array<ColumnTriple, 2> further = {ColumnTriple(3), ColumnTriple(6)};
+  bool first = true;
+  forEachLine(content, " \t\r,;", [&](std::size_t line, const Words& words) {
+    if (words.empty()) {
+      return;
+    }
+    const bool heading =
+        first && (isColumnTitle(words) || (words.size() == 1 && toInteger(words[0])));
+    first = false;
+    if (heading) {
+      return;
+    }
+    const auto point = threeNumbers(words, 0);
+    if (!point) {
+      failLine(path, line, "does not begin with three numbers");
+    }
+    data.points.push_back(toPoint(*point));
+    for (ColumnTriple& triple : further) {
+      triple.add(words);
+    }
+  });
+  if (data.points.empty()) {
+    failContent(path, "it has no points");
+  }
+  for (const ColumnTriple& triple : further) {
+    triple.assignTo(data);
+  }
+  return data;
+}
+
+namespace {
+
+/// The 0-based index that an OBJ file means: from 1 on, or backwards from the last one.
+std::optional<std::size_t> objIndex(std::string_view word, std::size_t count) {
+  const std::optional<std::int64_t> number = toInteger(word);
+  if (!number || *number == 0) {
+    return std::nullopt;
+  }
+  const std::int64_t index = *number > 0 ? *number - 1 : static_cast<std::int64_t>(count) + *number;
+  if (index < 0 || index >= static_cast<std::int64_t>(count)) {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(index);
+}
+
+/// What of an OBJ file is not known before its end.
+struct ObjContent {
+  std::vector<Point> points;
+  std::vector<std::array<double, 3>> colors;
+  std::vector<Point> normals;
+  std::vector<std::optional<std::size_t>> normal_of_point;
+  bool normals_referenced = false;
+};
+
+void readObjCorner(std::string_view word, ObjContent& content) {
+  const std::size_t first = word.find('/');
+  const std::size_t second = first == std::string_view::npos ? first : word.find('/', first + 1);
+  if (second == std::string_view::npos) {
+    return;
+  }
+  const auto point = objIndex(word.substr(0, first), content.points.size());
+  const auto normal = objIndex(word.substr(second + 1), content.normals.size());
+  if (point && normal) {
+    content.normal_of_point.resize(content.points.size());
+    content.normal_of_point[*point] = normal;
+    content.normals_referenced = true;
+  }
+}
+
+std::vector<Point> objNormals(const ObjContent& content) {
+  if (!content.normals_referenced) {
+    return content.normals.size() == content.points.size() ? content.normals : std::vector<Point>();
+  }
+  std::vector<Point> normals;
+  for (std::size_t i = 0; i < content.points.size(); ++i) {
+    if (i >= content.normal_of_point.size() || !content.normal_of_point[i]) {
+      return {};  // a vertex without normal: there is none to keep for it
+    }
+    normals.push_back(content.normals[*content.normal_of_point[i]]);
+  }
+  return normals;
+}
+
+}  // namespace
+
+PointData readObj(const std::string& path, std::uint64_t file_size) {
+  const std::string text = readBeginning(path, file_size);
+  ObjContent content;
+  forEachLine(text, " \t\r", [&](std::size_t line, const Words& words) {
+    if (words.empty()) {
+      return;
+    }
+    if (words[0] == "v" || words[0] == "vn") {
+      const auto values = threeNumbers(words, 1);
+      if (!values) {
+        failLine(path, line, "has no three numbers");
+      }
+      if (words[0] == "vn") {
+        content.normals.push_back(toPoint(*values));
+        return;
+      }
+      content.points.push_back(toPoint(*values));
+      if (const auto color = threeNumbers(words, 4)) {
+        content.colors.push_back(*color);
+      }
+    } else if (words[0] == "f") {
+      for (std::size_t w = 1; w < words.size(); ++w) {
+        readObjCorner(words[w], content);
+      }
+    } else if (words[0].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
+                                          "0123456789/.-\\") != std::string_view::npos) {
+      failLine(path, line, "is no statement of an OBJ file");
+    }
+  });
+  if (content.points.empty()) {
+    failContent(path, "it has no points");
+  }
+
+  PointData data;
+  data.normals = objNormals(content);
+  if (content.colors.size() == content.points.size()) {
+    // The usual range is 0 ... 1; some programs write 0 ... 255.
+    const bool bytes = std::any_of(
+        content.colors.begin(), content.colors.end(), [](const std::array<double, 3>& color) {
+          return std::any_of(color.begin(), color.end(), [](double value) { return value > 1.0; });
+        });
+    for (const std::array<double, 3>& color : content.colors) {
+      data.colors.push_back(toColor(color, bytes ? 1.0 : 255.0));
+    }
+  }
+  data.points = std::move(content.points);
+  return data;
+}
+
+}  // namespace spherical_param::tools

@@ -1,0 +1,200 @@
+// pcl_spherical_param_scan: writes generated scans, so that nothing needs to be downloaded.
+
+#include "common/command_line.h"
+#include "common/console.h"
+#include "common/errors.h"
+#include "common/file_formats.h"
+#include "common/mesh_writer.h"
+#include "common/numbers.h"
+#include "common/output_file.h"
+#include "common/point_data.h"
+#include "common/run_tool.h"
+#include "common/text.h"
+#include "scan_shapes.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace spherical_param::tools;
+
+const std::string tool_name = "pcl_spherical_param_scan";
+
+/// About as many triangles as the largest scan of the paper gives.
+constexpr std::size_t truth_triangles = 200000;
+
+const std::vector<OptionInfo> option_table = {
+    {"points", "N", "number of points, 4 and up (5000, or as the preset says)"},
+    {"noise", "B", "noise along the normal, relative to the mean distance of neighbours (0)"},
+    {"seed", "S", "seed of the random placement (1)"},
+    {"normals", "", "write the normals of the surface, too"},
+    {"truth", "FILE", "write a fine mesh of the surface"},
+    {"list", "", "list the shapes and presets"},
+};
+
+std::string helpText() {
+  return "Usage: " + tool_name +
+         " SHAPE output [options]\n\n"
+         "Writes points that are spread evenly over a generated surface.\n"
+         "  SHAPE:  a shape or preset, see -list\n  output: " +
+         extensionsFor(FileUse::WriteCloud) +
+         "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
+         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+}
+
+std::string listText() {
+  const auto line = [](std::string_view name, const std::string& text) {
+    constexpr std::size_t name_width = 12;
+    std::string padded(name);
+    padded.resize(std::max(name_width, padded.size()), ' ');
+    return "  " + padded + text + "\n";
+  };
+  std::string text = "Shapes:\n";
+  for (const ShapeInfo& shape : allShapes()) {
+    text += line(shape.name, std::string(shape.description));
+  }
+  text += "Presets:\n";
+  for (const ScanPreset& preset : allPresets()) {
+    text += line(preset.name, std::string(preset.description) + " (" +
+                                  std::to_string(preset.points) + " points)");
+  }
+  return text;
+}
+
+/// What the user asked for.
+struct Settings {
+  std::string output;
+  FileFormat output_format = FileFormat::Pcd;
+  std::string truth;  ///< empty: not wanted
+  FileFormat truth_format = FileFormat::Ply;
+  bool normals = false;
+  ScanOptions scan;
+};
+
+/// Sets shape and number of points from a name. \throw UsageError for an unknown one.
+void applyShape(const std::string& name, ScanOptions& scan) {
+  const std::string lower = lowerCase(name);
+  if (const std::optional<ShapeInfo> shape = findShape(lower)) {
+    scan.shape = shape->shape;
+  } else if (const std::optional<ScanPreset> preset = findPreset(lower)) {
+    scan.shape = preset->shape;
+    scan.points = preset->points;
+  } else {
+    throw UsageError("there is no shape " + inQuotes(name),
+                     "run '" + tool_name + " -list' for the shapes");
+  }
+}
+
+Settings parseSettings(const CommandLine& command_line) {
+  std::vector<std::string> words = command_line.others();
+  if (words.size() != 2) {
+    throw UsageError(words.empty()       ? "there is no shape"
+                     : words.size() == 1 ? "there is no output file, or no shape"
+                                         : "there is one word too many: " + inQuotes(words[2]),
+                     "run '" + tool_name + " SHAPE output [options]', -h shows the options");
+  }
+  if (formatOf(words[0]) && !formatOf(words[1])) {
+    std::swap(words[0], words[1]);
+  }
+
+  Settings settings;
+  applyShape(words[0], settings.scan);
+  settings.output = words[1];
+  settings.output_format = requireFormat(settings.output, FileUse::WriteCloud);
+  settings.truth = command_line.value("truth", "");
+  if (command_line.has("truth")) {
+    settings.truth_format = requireFormat(settings.truth, FileUse::WriteMesh);
+  }
+  settings.normals = command_line.has("normals");
+  if (command_line.has("points")) {
+    settings.scan.points = static_cast<std::size_t>(
+        parseInteger("points", command_line.value("points", ""), {4, 100000000}));
+  }
+  if (command_line.has("noise")) {
+    settings.scan.noise = parseReal("noise", command_line.value("noise", ""), {0.0, 1000.0, true});
+  }
+  if (command_line.has("seed")) {
+    settings.scan.seed = parseUnsigned("seed", command_line.value("seed", ""));
+  }
+  return settings;
+}
+
+void checkOutputs(const Settings& settings) {
+  checkOutputPath(settings.output);
+  if (settings.truth.empty()) {
+    return;
+  }
+  if (isSameFile(settings.output, settings.truth)) {
+    throw UsageError(inQuotes(settings.truth) + " would overwrite " + inQuotes(settings.output),
+                     "give every file a name of its own");
+  }
+  checkOutputPath(settings.truth);
+}
+
+std::vector<Point> toPoints(const spherical_param::Positions& positions) {
+  std::vector<Point> points;
+  points.reserve(static_cast<std::size_t>(positions.cols()));
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    const Eigen::Vector3f point = positions.col(i).cast<float>();
+    points.push_back({point.x(), point.y(), point.z()});
+  }
+  return points;
+}
+
+TriangleMesh toMesh(const TruthMesh& truth) {
+  TriangleMesh mesh;
+  mesh.vertices.points = toPoints(truth.vertices);
+  for (Eigen::Index t = 0; t < truth.triangles.cols(); ++t) {
+    mesh.triangles.push_back({truth.triangles(0, t), truth.triangles(1, t), truth.triangles(2, t)});
+  }
+  return mesh;
+}
+
+void run(const std::vector<std::string>& words) {
+  const CommandLine command_line(words, option_table);
+  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+    return;
+  }
+  if (command_line.has("list")) {
+    printAll(listText());
+    return;
+  }
+  const Settings settings = parseSettings(command_line);
+  checkOutputs(settings);
+
+  const Scan scan = generateScan(settings.scan);
+  TriangleMesh cloud;
+  cloud.vertices.points = toPoints(scan.points);
+  if (settings.normals) {
+    cloud.vertices.normals = toPoints(scan.normals);
+  }
+  std::vector<std::unique_ptr<OutputFile>> files;
+  files.push_back(std::make_unique<OutputFile>(settings.output));
+  writeMesh(*files.back(), cloud, settings.output_format, Encoding::Binary);
+  if (!settings.truth.empty()) {
+    files.push_back(std::make_unique<OutputFile>(settings.truth));
+    writeMesh(*files.back(), toMesh(referenceMesh(settings.scan.shape, truth_triangles)),
+              settings.truth_format, Encoding::Binary);
+  }
+  for (const auto& file : files) {
+    file->finish();
+  }
+  printAll(std::to_string(cloud.vertices.points.size()) + " points written to " +
+           oneLine(settings.output) + "\n");
+  for (const auto& file : files) {
+    file->commit();
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(tool_name, argc, argv, run);
+}
