@@ -1,0 +1,91 @@
+# Installation: libraries, headers, CMake package with the components core and pcl, pkg-config
+# files, package.xml. Nothing that is installed holds a path of the build machine, except those
+# that PCL's own package puts into its targets.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcl_spherical_param)
+
+# One export set and install component for each: who asks for core only must not need PCL.
+foreach(component core pcl)
+  if(component STREQUAL "core")
+    set(target spherical_param_core)
+    set(header_dir spherical_param)
+  else()
+    set(target pcl_spherical_param)
+    set(header_dir pcl)
+  endif()
+  install(TARGETS ${target} EXPORT pcl_spherical_param_${component}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
+  install(EXPORT pcl_spherical_param_${component}
+    NAMESPACE pcl_spherical_param::
+    FILE pcl_spherical_param-${component}-targets.cmake
+    DESTINATION ${package_dir}
+    COMPONENT ${component})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/${header_dir}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+    COMPONENT ${component}
+    FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/include/spherical_param/version.h
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spherical_param COMPONENT core)
+
+configure_package_config_file(
+  ${PROJECT_SOURCE_DIR}/cmake/pcl_spherical_paramConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfig.cmake
+  INSTALL_DESTINATION ${package_dir}
+  NO_SET_AND_CHECK_MACRO)
+# Before 1.0 a minor version may break the interface.
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfig.cmake
+  ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfigVersion.cmake
+  DESTINATION ${package_dir} COMPONENT core)
+
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/qhull.cmake
+  DESTINATION ${package_dir} RENAME pcl_spherical_param-qhull.cmake COMPONENT core)
+
+# pkg-config: the prefix is told from where the file lies, so that the tree may be moved.
+foreach(kind LIB INCLUDE)
+  if(IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
+    set(PKGCONFIG_${kind}DIR "${CMAKE_INSTALL_${kind}DIR}")
+  else()
+    set(PKGCONFIG_${kind}DIR "\${prefix}/${CMAKE_INSTALL_${kind}DIR}")
+  endif()
+endforeach()
+if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  set(PKGCONFIG_PREFIX "${CMAKE_INSTALL_PREFIX}")
+else()
+  file(RELATIVE_PATH up "/root/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/root")
+  string(REGEX REPLACE "/$" "" up "${up}")
+  set(PKGCONFIG_PREFIX "\${pcfiledir}/${up}")
+endif()
+set(PKGCONFIG_CORE_PRIVATE_LIBS "-lqhull_r -lstdc++ -lm")
+if(OpenMP_CXX_FOUND)
+  string(APPEND PKGCONFIG_CORE_PRIVATE_LIBS " ${OpenMP_CXX_FLAGS}")
+endif()
+# With static libraries there is no other kind to link, so that --static must not be needed.
+if(BUILD_SHARED_LIBS)
+  set(PKGCONFIG_CORE_LIBS "")
+else()
+  set(PKGCONFIG_CORE_LIBS " ${PKGCONFIG_CORE_PRIVATE_LIBS}")
+  set(PKGCONFIG_CORE_PRIVATE_LIBS "")
+endif()
+foreach(component core pcl)
+  if(component STREQUAL "core")
+    set(name spherical_param_core)
+  else()
+    set(name pcl_spherical_param)
+  endif()
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/${name}.pc.in
+                 ${PROJECT_BINARY_DIR}/package/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/package/${name}.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${component})
+endforeach()
+
+install(FILES ${PROJECT_SOURCE_DIR}/package.xml
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/pcl_spherical_param COMPONENT core)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core)

@@ -1,0 +1,86 @@
+# Installs a build into a prefix, moves the prefix, and builds and runs foreign projects against it.
+#   cmake -DBUILD_DIR= -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DLIBDIR=
+#         -DCOMPONENTS="core;pcl" [-DPKG_CONFIG=] -P run_package_test.cmake
+cmake_minimum_required(VERSION 3.21)
+
+# run(<what> <command>...): fails the test with the command's output if the command fails.
+function(run what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${what} failed (${code}):\n${out}")
+  endif()
+  message(STATUS "${what}: done")
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+set(prefix ${WORK_DIR}/moved)
+file(REMOVE_RECURSE ${WORK_DIR})
+foreach(component IN LISTS COMPONENTS)
+  run("installation of ${component}" ${CMAKE_COMMAND} --install ${BUILD_DIR}
+      --prefix ${WORK_DIR}/installed --component ${component})
+endforeach()
+# Whoever packs or copies an installation must get a working one.
+file(RENAME ${WORK_DIR}/installed ${prefix})
+
+foreach(file include/spherical_param/version.h share/pcl_spherical_param/package.xml
+             share/doc/pcl_spherical_param/LICENSE)
+  if(NOT EXISTS ${prefix}/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
+file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.pc ${prefix}/*.h ${prefix}/*.hpp)
+foreach(text IN LISTS texts)
+  file(READ ${text} content)
+  foreach(path ${SOURCE_DIR} ${BUILD_DIR} ${WORK_DIR})
+    string(FIND "${content}" "${path}" position)
+    if(NOT position EQUAL -1)
+      message(FATAL_ERROR "${text} holds a path of this machine: ${path}")
+    endif()
+  endforeach()
+endforeach()
+
+# Without PCL: the core must be found and work.
+set(settings -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Debug
+             -DCMAKE_PREFIX_PATH=${prefix})
+run("configuration against core" ${CMAKE_COMMAND} ${settings} -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON
+    -S ${SOURCE_DIR}/test/package/consumer_core -B ${WORK_DIR}/core)
+run("build against core" ${CMAKE_COMMAND} --build ${WORK_DIR}/core)
+run("program that uses core" ${WORK_DIR}/core/consumer)
+
+if("pcl" IN_LIST COMPONENTS)
+  run("configuration against the PCL class" ${CMAKE_COMMAND} ${settings}
+      -S ${SOURCE_DIR}/test/package/consumer_pcl -B ${WORK_DIR}/pcl)
+  run("build against the PCL class" ${CMAKE_COMMAND} --build ${WORK_DIR}/pcl)
+  run("program that uses the PCL class" ${WORK_DIR}/pcl/consumer)
+endif()
+
+# A component that does not exist, or is not installed, must be told.
+file(WRITE ${WORK_DIR}/absent/CMakeLists.txt
+  "cmake_minimum_required(VERSION 3.21)\nproject(absent LANGUAGES CXX)\n"
+  "find_package(pcl_spherical_param REQUIRED COMPONENTS absent)\n")
+execute_process(
+  COMMAND ${CMAKE_COMMAND} ${settings} -S ${WORK_DIR}/absent -B ${WORK_DIR}/absent/build
+  RESULT_VARIABLE code OUTPUT_QUIET ERROR_VARIABLE error)
+if(code EQUAL 0 OR NOT error MATCHES "there is no component 'absent'")
+  message(FATAL_ERROR "a component that does not exist is not told: ${error}")
+endif()
+
+if(PKG_CONFIG)
+  set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
+  set(ENV{LD_LIBRARY_PATH} ${prefix}/${LIBDIR})
+  set(names spherical_param_core)
+  if("pcl" IN_LIST COMPONENTS)
+    list(APPEND names pcl_spherical_param)
+  endif()
+  foreach(name IN LISTS names)
+    string(REGEX MATCH "core|pcl" which ${name})
+    run("pkg-config ${name}" ${PKG_CONFIG} --cflags --libs ${name})
+    separate_arguments(flags UNIX_COMMAND "${output}")
+    run("compilation with pkg-config ${name}" ${CXX} -std=c++17
+        ${SOURCE_DIR}/test/package/consumer_${which}/main.cpp -o ${WORK_DIR}/${which}_by_pkg_config
+        ${flags})
+    run("program compiled with pkg-config ${name}" ${WORK_DIR}/${which}_by_pkg_config)
+  endforeach()
+endif()
+
+file(REMOVE_RECURSE ${WORK_DIR})
