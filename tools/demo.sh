@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# The whole way on a bare Debian 12: installs what is missing, builds, scans a generated head,
+# meshes it, and draws cloud, mesh and sphere side by side.
+#
+#   tools/demo.sh [OUTPUT_FOLDER]      default: demo_output in the checkout
+set -euo pipefail
+
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+build="$root/build/release"
+points=20000
+
+usage() {
+  sed -n -e '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+}
+
+# What to do if the step that is under way fails.
+remedy=""
+trap '[ -z "$remedy" ] || printf "demo.sh: failed; %s\n" "$remedy" >&2' ERR
+
+if [ "$#" -gt 1 ] || [ "${1:-}" = "-h" ] || [ "${1:-}" = "--help" ]; then
+  usage
+  [ "$#" -eq 1 ] && exit 0
+  exit 2
+fi
+remedy="give an output folder that can be written: tools/demo.sh FOLDER"
+out="${1:-$root/demo_output}"
+mkdir -p "$out"
+[ -w "$out" ]
+
+remedy="see above; tools/packages.txt lists what is needed"
+"$root/tools/setup.sh"
+
+log="$build/demo-build.log"
+mkdir -p "$build"
+remedy="the output of the build is in $log; remove $build to start afresh"
+echo "demo.sh: building in $build (minutes at first, seconds later)"
+(
+  cd "$root"
+  cmake --preset release
+  cmake --build "$build" --target pcl_spherical_param_scan pcl_spherical_param_reconstruction
+) >"$log" 2>&1
+# The picture is a courtesy: where VTK cannot render, the demo goes on without.
+can_render=yes
+cmake --build "$build" --target pcl_spherical_param_render >>"$log" 2>&1 || can_render=no
+
+remedy="the message above says why; the tools are in $build/bin"
+"$build/bin/pcl_spherical_param_scan" head "$out/scan.ply" -points "$points"
+"$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
+  -sphere "$out/sphere.ply" -json "$out/report.json"
+
+picture="no picture: $build/bin/pcl_spherical_param_render could not be built, see $log"
+if [ "$can_render" = yes ]; then
+  # A virtual display is preferred: a real one may be remote, or without OpenGL.
+  display=()
+  if command -v xvfb-run >/dev/null; then
+    display=(xvfb-run -a)
+  fi
+  if "${display[@]}" "$build/bin/pcl_spherical_param_render" "$out/demo.png" \
+    "$out/scan.ply" "$out/mesh.ply" "$out/sphere.ply" -colors "$out/sphere.ply" \
+    -view 62,10 -caption "point cloud" -caption "closed mesh" -caption "its map to the sphere" \
+    >"$out/render.log" 2>&1; then
+    picture="$out/demo.png"
+    rm -f "$out/render.log"
+  else
+    rm -f "$out/demo.png"
+    picture="no picture: $(tail -n 1 "$out/render.log")"
+  fi
+fi
+
+echo
+echo "scan     $out/scan.ply"
+echo "mesh     $out/mesh.ply"
+echo "sphere   $out/sphere.ply"
+echo "report   $out/report.json"
+echo "picture  $picture"

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Installs those packages of tools/packages.txt that are missing. Does nothing, and needs neither
+# network nor root, if there are none.
+set -euo pipefail
+
+fail() {
+  printf 'setup.sh: %s\n' "$1" >&2
+  exit 1
+}
+
+list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
+command -v dpkg-query >/dev/null ||
+  fail "this is not Debian: install what $list names by other means"
+
+mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$list")
+
+# dpkg-query fails for names that it never heard of; those are missing as well.
+installed="$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
+  sed -n 's/^installed //p' || true)"
+missing=()
+for name in "${wanted[@]}"; do
+  grep -qxF "$name" <<<"$installed" || missing+=("$name")
+done
+if [ "${#missing[@]}" -eq 0 ]; then
+  echo "setup.sh: all ${#wanted[@]} packages are installed"
+  exit 0
+fi
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null ||
+    fail "run as root, or install sudo; missing: ${missing[*]}"
+  as_root=(sudo)
+fi
+echo "setup.sh: installing ${missing[*]}"
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
+"${apt[@]}" update ||
+  fail "apt-get update failed: check the network and /etc/apt/sources.list"
+"${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null ||
+  fail "apt-get could not install ${missing[*]}: see its message above"
+echo "setup.sh: installed ${#missing[@]} of ${#wanted[@]} packages"
