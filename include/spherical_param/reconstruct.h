@@ -51,9 +51,9 @@ struct GraphReport {
 struct EmbeddingReport {
   StopReason stop_reason = StopReason::IterationLimit;
   int iterations = 0;             ///< steps made
-  double residual = 0.0;          ///< mean tangential Laplacian at the end [radius]
-  std::vector<double> residuals;  ///< before each step and at the end [radius]
-  double centroid_norm = 0.0;     ///< length of the mean direction; 1: collapsed
+  double residual = 0.0;          ///< mean tangential Laplacian of Result::sphere [radius]
+  std::vector<double> residuals;  ///< of the iteration, before each step and at its end [radius]
+  double centroid_norm = 0.0;     ///< length of the mean direction of Result::sphere; 1: collapsed
   /// The iteration collapsed: Result::sphere is a start that did not, without iteration.
   bool fallback_start = false;
 };
@@ -99,7 +99,9 @@ void checkOptions(const Options& options);
 
 /// Meshes a point cloud: neighbour graph -> embedding on the sphere -> convex hull -> check.
 ///
-/// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane.
+/// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane, no
+///               coordinate beyond 1e100. Differences below 1e-90 of the cloud's extent keep the
+///               topology sound, but not the geometry.
 /// \param lists  n neighbour lists, e.g. the k nearest of each point; unsorted, with or without the
 ///               point itself. Those of points that repeat an earlier point may be empty.
 /// \return the mesh. Triangles index vertices: v = 0 ... input_of_vertex.size() - 1.
@@ -111,7 +113,7 @@ void checkOptions(const Options& options);
 ///
 /// Not guaranteed: that the mesh is free of self-intersections or near the sampled surface;
 /// `embedding`, `edges_outside_graph` and `warnings` tell how much to trust it.
-/// Cost: O(n log n) + iterations * O(n k); below 2 KB of memory a point for k = 25.
+/// Cost: O(n log n) + iterations * O(n k), typically; below 2 KB of memory a point for k = 25.
 Result reconstruct(const Positions& points, const NeighborLists& lists,
                    const Options& options = {});
 

@@ -26,7 +26,7 @@ struct SphereTriangulation {
 ///
 /// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
 /// \throw InvalidInput for n < 4 or a vector that is not of unit length; ComputeError if qhull
-/// runs out of memory. Cost: O(n log n).
+/// runs out of memory. Cost: O(n log n), typically.
 SphereTriangulation triangulateSphere(const Positions& directions);
 
 }  // namespace spherical_param

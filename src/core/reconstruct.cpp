@@ -18,6 +18,9 @@ namespace {
 /// embeddings of closed surfaces stay below a tenth of it.
 constexpr double kSuspiciousEdges = 0.01;
 
+/// Areas and volumes of larger clouds leave the range of double.
+constexpr double kLargestCoordinate = 1e100;
+
 EmbeddingOptions embeddingOptions(const Options& options) {
   EmbeddingOptions embedding;
   embedding.weights = options.weights;
@@ -122,7 +125,10 @@ Positions embed(const Graph& graph, const Positions& points, const Options& opti
   if (outcome.stop_reason != StopReason::Collapsed)
     return std::move(outcome.directions);
   report.fallback_start = true;
-  return projectByRank(points);
+  Positions start = projectByRank(points);
+  report.residual = meanTangentialLaplacian(graph, start, options.weights);
+  report.centroid_norm = start.rowwise().mean().norm();
+  return start;
 }
 
 /// Share of the edges whose ends are neither neighbours nor have a common neighbour.
@@ -199,6 +205,8 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
     checkLists(lists, static_cast<std::size_t>(points.cols()));
     DistinctPoints distinct = findDistinctPoints(points);
     const std::size_t count = distinct.input_of_vertex.size();
+    if (points.cols() > 0 && points.cwiseAbs().maxCoeff() > kLargestCoordinate)
+      throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
     if (count < 4)
       throw InvalidInput("reconstruct: " + std::to_string(count) +
                          " distinct points; a closed surface needs at least 4");

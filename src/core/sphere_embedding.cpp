@@ -65,13 +65,14 @@ void checkInput(const Graph& graph, const Positions& start, const EmbeddingOptio
          std::to_string(kMostThreads));
 }
 
-int threadCount(int requested, Index nodes) {
+int threadCount([[maybe_unused]] int requested, Index nodes) {
   if (nodes < kParallelThreshold)
     return 1;
 #ifdef _OPENMP
-  return requested > 0 ? requested : omp_get_max_threads();
+  // OpenMP ends the process if it cannot start a thread; more than this gain nothing anyway.
+  return std::min({requested > 0 ? requested : omp_get_max_threads(), 4 * omp_get_num_procs(),
+                   static_cast<int>(nodes / kBlockSize)});
 #else
-  (void)requested;
   return 1;
 #endif
 }

@@ -13,12 +13,6 @@ namespace spherical_param::internal {
 /// not yet joined.
 class SphereMesh {
 public:
-  /// Across the side opposite to a triangle's corner.
-  struct Side {
-    Index triangle;
-    int corner;
-  };
-
   /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices.
   SphereMesh(const Triangles& triangles, std::size_t vertex_count);
 

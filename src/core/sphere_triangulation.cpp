@@ -31,14 +31,20 @@ constexpr double kPredicateTolerance = 1e-13;
 /// The working memory of one run of reentrant qhull.
 class Qhull {
 public:
-  Qhull() : messages_(std::fopen("/dev/null", "w")) { qh_zero(&state_, messages_); }
+  Qhull() : messages_(std::fopen("/dev/null", "w")) {
+    if (messages_ == nullptr)
+      messages_ = std::tmpfile();
+    // Without a file qhull would print its messages.
+    if (messages_ == nullptr)
+      throw ComputeError("triangulateSphere: no file can be opened; close some");
+    qh_zero(&state_, messages_);
+  }
   ~Qhull() {
     qh_freeqhull(&state_, !qh_ALL);
     int current = 0;
     int total = 0;
     qh_memfreeshort(&state_, &current, &total);
-    if (messages_ != nullptr)
-      std::fclose(messages_);
+    std::fclose(messages_);
   }
   Qhull(const Qhull&) = delete;
   Qhull& operator=(const Qhull&) = delete;

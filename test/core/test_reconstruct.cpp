@@ -106,7 +106,7 @@ TEST(Reconstruct, NastySetsAreMeshed) {
   far.colwise() += Eigen::Vector3d(1e6, 0.0, 0.0);
   sets.push_back(horizontally(spiralSphere(200), far));
   sets.push_back(spiralSphere(200) * 1e-300);
-  sets.push_back(spiralSphere(200) * 1e300);
+  sets.push_back(spiralSphere(200) * 1e100);
   sets.push_back(horizontally(spiralSphere(200), randomSphere(200, 1) * 1e-12));
   Positions utm = spiralSphere(200);
   utm.colwise() += Eigen::Vector3d(5e7, -3e7, 1e7);
@@ -123,6 +123,7 @@ TEST(Reconstruct, NastySetsAreMeshed) {
       const Result result = mesh(sets[s], options);
       EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
       EXPECT_TRUE(std::isfinite(result.embedding.residual));
+      EXPECT_TRUE(std::isfinite(result.volume) && std::isfinite(result.area));
     }
 }
 
@@ -154,7 +155,7 @@ TEST(Reconstruct, ThousandCopiesOfFourPointsAreATetrahedron) {
   EXPECT_TRUE(isSphereOverAll(result.triangles, 4));
 }
 
-TEST(Reconstruct, CollapseIsReportedAndNotReturnedAsAMesh) {
+TEST(Reconstruct, CollapseIsReportedAndItsSphereIsNotTheMesh) {
   const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
   Options options;
   options.max_iterations = 0;
@@ -162,7 +163,11 @@ TEST(Reconstruct, CollapseIsReportedAndNotReturnedAsAMesh) {
   expectGuarantees(points, result);
   EXPECT_EQ(result.embedding.stop_reason, StopReason::Collapsed);
   EXPECT_TRUE(result.embedding.fallback_start);
-  // The sphere of the result is not the collapsed one.
+  // The sphere of the result is not the collapsed one, and the figures are those of the former.
+  const Graph graph = buildNeighborGraph(points, bruteForceNeighbors(points, options.k)).graph;
+  EXPECT_NEAR(result.embedding.residual,
+              meanTangentialLaplacian(graph, result.sphere, options.weights), 1e-12);
+  EXPECT_NEAR(result.embedding.centroid_norm, result.sphere.rowwise().mean().norm(), 1e-12);
   EXPECT_LT(result.sphere.rowwise().mean().norm(), 0.8);
   bool told = false;
   for (const std::string& warning : result.warnings)
@@ -317,6 +322,7 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   Positions bad = good;
   bad(2, 11) = std::numeric_limits<double>::quiet_NaN();
   expect_reason(bad, lists, {}, "point 11 is not finite");
+  expect_reason(good * 1e101, lists, {}, "beyond 1e100");
   NeighborLists wrong = lists;
   wrong.indices[0] = 20;
   expect_reason(good, wrong, {}, "neighbour 20 of 20");

@@ -115,6 +115,16 @@ TEST(SphereTriangulation, PointsOfATinyCapAreAllVertices) {
   }
 }
 
+TEST(SphereTriangulation, NothingButTinyCapsIsTriangulatedWhole) {
+  const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
+  for (const double radius : {1e-3, 1e-9, 1e-14}) {
+    const Positions one = cap(3000, radius, pole, 2);
+    expectSound(one, triangulateSphere(one));
+    const Positions two = horizontally(one, cap(3000, radius, -pole, 3));
+    expectSound(two, triangulateSphere(two));
+  }
+}
+
 // Points that qhull drops still get the triangles that are locally right: around each such point
 // of the cap, no side is shorter flipped.
 TEST(SphereTriangulation, ReinsertedPointsAreLocallyDelaunay) {

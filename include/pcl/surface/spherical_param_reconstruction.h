@@ -34,7 +34,10 @@ namespace pcl {
  * \note Two objects may work in two threads at the same time, unless they share a search object
  * (setSearchMethod()) whose setInputCloud() or queries would race. An object itself must not be
  * used from two threads at once.
- * \note The memory is below 2 KB a point; the time O(n log n) plus iterations times O(n k).
+ * \note The memory for k = 25 is below 2 KB a point, besides that of the process itself; the time
+ * O(n log n) plus iterations times O(n k).
+ * \note Without a search object of the user, neighbours are found in single precision: within a
+ * cluster smaller than 1e-19 of the largest coordinate they are arbitrary (the mesh stays sound).
  * \ingroup surface
  */
 template <typename PointInT>
@@ -79,7 +82,7 @@ public:
 
   /** \brief Set the number of iterations at most.
    * \param[in] iterations 0 and up; default 1600, as in Table 1 of the paper.
-   * \note Raise it for clouds of more than 200,000 points if hasConverged() matters. */
+   * \note Has no effect once the iteration has stagnated (getResult().embedding.stop_reason). */
   inline void setMaximumIterations(int iterations) { options_.max_iterations = iterations; }
   /** \brief Get the number of iterations at most. */
   inline int getMaximumIterations() const { return options_.max_iterations; }
