@@ -17,6 +17,8 @@
 #include <pcl/point_types.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
+#include <Eigen/Geometry>
+
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
@@ -339,12 +341,31 @@ TriangleMesh sphereOf(const spherical_param::Result& result, const TriangleMesh&
   return sphere;
 }
 
-std::vector<std::string> warningsOf(const Reconstruction& reconstruction) {
+/// Length of the diagonal of the bounding box of the finite points.
+double diagonalOf(const std::vector<Point>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Point& point : points) {
+    const Eigen::Vector3d position = Eigen::Vector3f(point.data()).cast<double>();
+    if (position.allFinite()) {
+      box.extend(position);
+    }
+  }
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+std::vector<std::string> warningsOf(const PointData& data, const Reconstruction& reconstruction) {
   std::vector<std::string> warnings;
+  // Single precision alone changes a cloud near its origin by less than a tenth of that.
+  constexpr double harmless_rounding = 1e-6;
+  if (data.rounding > harmless_rounding * diagonalOf(data.points)) {
+    warnings.push_back("Coordinates were rounded to single precision, by up to " +
+                       formatted(data.rounding, 3) +
+                       ": points may have moved or merged; subtract a common offset first.");
+  }
   const std::size_t ignored = reconstruction.getIgnoredPointCount();
   if (ignored > 0) {
-    warnings.push_back(std::to_string(ignored) +
-                       " points were left out, because their coordinates are not finite numbers.");
+    warnings.push_back(std::to_string(ignored) + " points were left out, because their coordinates "
+                                                 "are not finite numbers in single precision.");
   }
   const std::vector<std::string>& further = reconstruction.getResult().warnings;
   warnings.insert(warnings.end(), further.begin(), further.end());
@@ -414,6 +435,7 @@ std::string report(const Settings& settings, const PointData& data,
   json["converged"] = reconstruction.hasConverged();
   json["stop_reason"] = nameOf(result.embedding.stop_reason);
   json["iterations"] = result.embedding.iterations;
+  json["fallback_start"] = result.embedding.fallback_start;
   json["residual"] = result.embedding.residual;
   json["residuals"] = result.embedding.residuals;
   json["graph"] = graphToJson(reconstruction);
@@ -426,7 +448,7 @@ std::string report(const Settings& settings, const PointData& data,
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   }
   json["peak_memory_bytes"] = peakMemory();
-  json["warnings"] = warningsOf(reconstruction);
+  json["warnings"] = warningsOf(data, reconstruction);
   // File names need not be UTF-8, JSON must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -451,7 +473,7 @@ void printVerdict(const PointData& data, const Reconstruction& reconstruction, C
   console.entry("converged", yesOrNo(reconstruction.hasConverged()) + " (" +
                                  nameOf(result.embedding.stop_reason) + " after " +
                                  std::to_string(result.embedding.iterations) + " iterations)");
-  for (const std::string& warning : warningsOf(reconstruction)) {
+  for (const std::string& warning : warningsOf(data, reconstruction)) {
     console.entry("warning", oneLine(warning));
   }
 }

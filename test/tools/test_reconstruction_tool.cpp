@@ -609,6 +609,50 @@ TEST_F(ReconstructionTool, StandardOutputIsTheReportAlone) {
   EXPECT_TRUE(json::accept(result.output));
 }
 
+TEST_F(ReconstructionTool, TellsWhenSinglePrecisionMovesThePoints) {
+  const auto warned = [&](double offset) {
+    std::string text;
+    for (const Point& point : cloud.points) {
+      std::array<char, 128> line{};
+      std::snprintf(line.data(), line.size(), "%.17g %.17g %.17g\n", offset + point[0],
+                    offset + point[1], offset + point[2]);
+      text += line.data();
+    }
+    tool_test::writeFile(directory.file("offset.xyz"), text);
+    const json report = reportOf({"offset.xyz", "out.ply", "-iterations", "5"});
+    return report["warnings"].dump().find("rounded to single precision") != std::string::npos;
+  };
+  EXPECT_FALSE(warned(0.0));
+  EXPECT_FALSE(warned(0.1));  // 17 digits, but the lost ones do not matter
+  EXPECT_TRUE(warned(5e5));   // as in UTM coordinates
+}
+
+// Sanitizers take address space and memory of their own.
+#ifndef __SANITIZE_ADDRESS__
+// A thread takes address space; OpenMP ends the process where one cannot be had.
+TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(20000));
+  RunOptions options;
+  options.directory = directory.path();
+  options.address_space_limit = std::size_t{3} << 30;
+  const RunResult result =
+      run(RECONSTRUCTION_TOOL,
+          {"large.ply", "out.ply", "-threads", "1024", "-iterations", "5", "-k", "6"}, options);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(directory.listing().count("out.ply"), 1U);
+}
+
+// Below 2 KB a point besides what the process takes without any.
+TEST_F(ReconstructionTool, TakesLessThanTwoKilobytesAPoint) {
+  const auto peak = [&](int points) {
+    writeCloud(directory.file("many.ply"), "in.ply", ellipsoid(points));
+    const json report = reportOf({"many.ply", "out.ply", "-iterations", "3"});
+    return report["peak_memory_bytes"].get<double>();
+  };
+  EXPECT_LT((peak(100000) - peak(200)) / 100000.0, 2048.0);
+}
+#endif
+
 TEST_F(ReconstructionTool, QuietPrintsNothing) {
   const RunResult result = runTool(directory, {"in.ply", "out.ply", "-quiet"});
   EXPECT_EQ(result.exit_code, 0);

@@ -40,6 +40,10 @@ void redirect(const std::string& path, int descriptor) {
     const rlimit limit = {options.file_size_limit, options.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (options.address_space_limit > 0) {
+    const rlimit limit = {options.address_space_limit, options.address_space_limit};
+    setrlimit(RLIMIT_AS, &limit);
+  }
   if (chdir(options.directory.c_str()) != 0) {
     _exit(126);
   }

@@ -30,9 +30,10 @@ struct RunOptions {
   std::string directory;            ///< where it works
   bool unprivileged = false;        ///< give up the rights of root, if there are any
   std::size_t file_size_limit = 0;  ///< bytes that a file may have, like a full disk; 0: no limit
-  std::string standard_output;      ///< file or device for the standard output; empty: captured
-  bool terminal = false;            ///< the standard output is a terminal
-  int signal_when_temporary = 0;    ///< signal to send as soon as a temporary file is there
+  std::size_t address_space_limit = 0;  ///< bytes of address space; 0: no limit
+  std::string standard_output;          ///< file or device for the standard output; empty: captured
+  bool terminal = false;                ///< the standard output is a terminal
+  int signal_when_temporary = 0;        ///< signal to send as soon as a temporary file is there
 };
 
 /// What came of it.

@@ -66,11 +66,11 @@ public:
     return fields;
   }
 
-  Point of(const std::uint8_t* point) const {
-    Point values{};
+  std::array<double, 3> of(const std::uint8_t* point) const {
+    std::array<double, 3> values{};
     for (std::size_t d = 0; d < 3; ++d) {
       const std::uint8_t* bytes = point + offsets_[d];
-      values[d] = wide_[d] ? static_cast<float>(load<double>(bytes)) : load<float>(bytes);
+      values[d] = wide_[d] ? load<double>(bytes) : static_cast<double>(load<float>(bytes));
     }
     return values;
   }
@@ -105,9 +105,9 @@ PointData fromCloud(const std::string& path, const pcl::PCLPointCloud2& cloud) {
   data.points.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* point = cloud.data.data() + i * cloud.point_step;
-    data.points.push_back(coordinates->of(point));
+    data.addPoint(coordinates->of(point));
     if (normals) {
-      data.normals.push_back(normals->of(point));
+      data.normals.push_back(toPoint(normals->of(point)));
     }
     if (color != nullptr) {
       const auto packed = load<std::uint32_t>(point + color->offset);
@@ -207,18 +207,17 @@ PointData readVtk(const std::string& path, std::uint64_t declared_points) {
   if (colors != nullptr && colors->GetNumberOfTuples() != count) {
     colors = nullptr;
   }
-  const auto to_point = [](const double* values) {
-    return Point{static_cast<float>(values[0]), static_cast<float>(values[1]),
-                 static_cast<float>(values[2])};
+  const auto triple = [](const double* values) {
+    return std::array<double, 3>{values[0], values[1], values[2]};
   };
 
   PointData data;
   data.has_alpha = colors != nullptr && colors->GetNumberOfComponents() == 4;
   data.points.reserve(static_cast<std::size_t>(count));
   for (vtkIdType i = 0; i < count; ++i) {
-    data.points.push_back(to_point(set->GetPoint(i)));
+    data.addPoint(triple(set->GetPoint(i)));
     if (normals != nullptr) {
-      data.normals.push_back(to_point(normals->GetTuple3(i)));
+      data.normals.push_back(toPoint(triple(normals->GetTuple3(i))));
     }
     if (colors != nullptr) {
       Color color = {0, 0, 0, 255};

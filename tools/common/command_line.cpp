@@ -79,7 +79,13 @@ CommandLine::CommandLine(const std::vector<std::string>& words,
       }
     }
   } catch (const po::error& error) {
-    throw UsageError(error.what(), "run the tool with -h for the options and their values");
+    // Boost writes all names with two dashes.
+    std::string message = error.what();
+    const std::size_t dashes = message.find("'--");
+    if (dashes != std::string::npos) {
+      message.erase(dashes + 1, 1);
+    }
+    throw UsageError(message, "run the tool with -h for the options and their values");
   }
   refuseUnknownOptions(words, others_);
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -9,12 +11,31 @@ namespace spherical_param::tools {
 using Point = std::array<float, 3>;
 using Color = std::array<std::uint8_t, 4>;  ///< red, green, blue, alpha in 0 ... 255
 
+inline Point toPoint(const std::array<double, 3>& values) {
+  return {static_cast<float>(values[0]), static_cast<float>(values[1]),
+          static_cast<float>(values[2])};
+}
+
 /// Points and what belongs to each of them.
 struct PointData {
   std::vector<Point> points;   ///< coordinates [unit of the file], finite or not
   std::vector<Point> normals;  ///< one per point, or none at all
   std::vector<Color> colors;   ///< one per point, or none at all
   bool has_alpha = false;      ///< the alpha of the colours comes from a file; else it is 255
+  /// Largest change of a coordinate that was stored with more digits than single precision has
+  /// [unit of the file].
+  double rounding = 0.0;
+
+  /// Adds a point in single precision, which is PCL's, and takes note of what that changes.
+  void addPoint(const std::array<double, 3>& values) {
+    const Point point = toPoint(values);
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (std::isfinite(point[d])) {
+        rounding = std::max(rounding, std::abs(values[d] - static_cast<double>(point[d])));
+      }
+    }
+    points.push_back(point);
+  }
 };
 
 /// Triangles over points; no triangles: a plain cloud.

@@ -52,11 +52,6 @@ std::optional<std::array<double, 3>> threeNumbers(const Words& words, std::size_
   return values;
 }
 
-Point toPoint(const std::array<double, 3>& values) {
-  return {static_cast<float>(values[0]), static_cast<float>(values[1]),
-          static_cast<float>(values[2])};
-}
-
 bool isUnit(const std::array<double, 3>& values) {
   // Files with 3 digits are common: their normals have unit length to about that.
   return std::abs(std::hypot(values[0], values[1], values[2]) - 1.0) < 5e-3;
@@ -140,7 +135,7 @@ PointData readXyz(const std::string& path, std::uint64_t file_size) {
     if (!point) {
       failLine(path, line, "does not begin with three numbers");
     }
-    data.points.push_back(toPoint(*point));
+    data.addPoint(*point);
     for (ColumnTriple& triple : further) {
       triple.add(words);
     }
@@ -171,7 +166,7 @@ std::optional<std::size_t> objIndex(std::string_view word, std::size_t count) {
 
 /// What of an OBJ file is not known before its end.
 struct ObjContent {
-  std::vector<Point> points;
+  PointData data;  ///< points only
   std::vector<std::array<double, 3>> colors;
   std::vector<Point> normals;
   std::vector<std::optional<std::size_t>> normal_of_point;
@@ -184,10 +179,10 @@ void readObjCorner(std::string_view word, ObjContent& content) {
   if (second == std::string_view::npos) {
     return;
   }
-  const auto point = objIndex(word.substr(0, first), content.points.size());
+  const auto point = objIndex(word.substr(0, first), content.data.points.size());
   const auto normal = objIndex(word.substr(second + 1), content.normals.size());
   if (point && normal) {
-    content.normal_of_point.resize(content.points.size());
+    content.normal_of_point.resize(content.data.points.size());
     content.normal_of_point[*point] = normal;
     content.normals_referenced = true;
   }
@@ -195,10 +190,11 @@ void readObjCorner(std::string_view word, ObjContent& content) {
 
 std::vector<Point> objNormals(const ObjContent& content) {
   if (!content.normals_referenced) {
-    return content.normals.size() == content.points.size() ? content.normals : std::vector<Point>();
+    return content.normals.size() == content.data.points.size() ? content.normals
+                                                                : std::vector<Point>();
   }
   std::vector<Point> normals;
-  for (std::size_t i = 0; i < content.points.size(); ++i) {
+  for (std::size_t i = 0; i < content.data.points.size(); ++i) {
     if (i >= content.normal_of_point.size() || !content.normal_of_point[i]) {
       return {};  // a vertex without normal: there is none to keep for it
     }
@@ -225,7 +221,7 @@ PointData readObj(const std::string& path, std::uint64_t file_size) {
         content.normals.push_back(toPoint(*values));
         return;
       }
-      content.points.push_back(toPoint(*values));
+      content.data.addPoint(*values);
       if (const auto color = threeNumbers(words, 4)) {
         content.colors.push_back(*color);
       }
@@ -238,13 +234,14 @@ PointData readObj(const std::string& path, std::uint64_t file_size) {
       failLine(path, line, "is no statement of an OBJ file");
     }
   });
-  if (content.points.empty()) {
+  if (content.data.points.empty()) {
     failContent(path, "it has no points");
   }
+  std::vector<Point> normals = objNormals(content);
 
-  PointData data;
-  data.normals = objNormals(content);
-  if (content.colors.size() == content.points.size()) {
+  PointData data = std::move(content.data);
+  data.normals = std::move(normals);
+  if (content.colors.size() == data.points.size()) {
     // The usual range is 0 ... 1; some programs write 0 ... 255.
     const bool bytes = std::any_of(
         content.colors.begin(), content.colors.end(), [](const std::array<double, 3>& color) {
@@ -254,7 +251,6 @@ PointData readObj(const std::string& path, std::uint64_t file_size) {
       data.colors.push_back(toColor(color, bytes ? 1.0 : 255.0));
     }
   }
-  data.points = std::move(content.points);
   return data;
 }
 

@@ -1,0 +1,120 @@
+// Every generated shape, with every weight, becomes a sphere through all of its points: the scans
+// of the tools, the PCL class and the core together.
+
+#include "scan_shapes.h"
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+#include <pcl/surface/spherical_param_reconstruction.h>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+constexpr std::size_t point_count = 1500;
+
+class ShapesAreMeshed : public testing::TestWithParam<std::tuple<ShapeInfo, EdgeWeights>> {};
+
+std::string nameOfCase(const testing::TestParamInfo<std::tuple<ShapeInfo, EdgeWeights>>& info) {
+  const char* const weights[] = {"Uniform", "Inverse", "Adaptive"};
+  return std::string(std::get<0>(info.param).name) + "With" +
+         weights[static_cast<std::size_t>(std::get<1>(info.param))];
+}
+
+std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& cloud,
+                                  EdgeWeights weights, std::vector<std::string>& warnings) {
+  pcl::SphericalParamReconstruction<pcl::PointXYZ> reconstruction;
+  reconstruction.setWeights(weights);
+  reconstruction.setMaximumIterations(400);
+  reconstruction.setInputCloud(cloud);
+  std::vector<pcl::Vertices> polygons;
+  reconstruction.reconstruct(polygons);
+  EXPECT_EQ(reconstruction.getErrorMessage(), "");
+  warnings = reconstruction.getResult().warnings;
+  return polygons;
+}
+
+TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
+  const auto& [shape, weights] = GetParam();
+  ScanOptions options;
+  options.shape = shape.shape;
+  options.points = point_count;
+  const Scan scan = generateScan(options);
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+    const Eigen::Vector3f p = scan.points.col(i).cast<float>();
+    cloud->emplace_back(p.x(), p.y(), p.z());
+  }
+  std::vector<std::string> warnings;
+  const std::vector<pcl::Vertices> polygons = meshOf(cloud, weights, warnings);
+
+  // Every directed edge once and its reverse once, every link one cycle, V - E + F = 2 over all
+  // points and positive volume: a closed outward sphere in one piece.
+  ASSERT_EQ(polygons.size(), 2 * point_count - 4);
+  std::map<std::pair<int, int>, int> third;
+  double volume = 0.0;
+  for (const pcl::Vertices& polygon : polygons) {
+    ASSERT_EQ(polygon.vertices.size(), 3U);
+    Eigen::Matrix3d corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = polygon.vertices[k];
+      const int b = polygon.vertices[(k + 1) % 3];
+      ASSERT_TRUE(third.insert({{a, b}, polygon.vertices[(k + 2) % 3]}).second);
+      corners.col(static_cast<Eigen::Index>(k)) = scan.points.col(a);
+    }
+    volume += corners.col(0).dot(corners.col(1).cross(corners.col(2))) / 6.0;
+  }
+  EXPECT_GT(volume, 0.0);
+  std::vector<int> degree(point_count, 0);
+  std::vector<int> neighbor(point_count, -1);
+  for (const auto& [edge, apex] : third) {
+    ASSERT_EQ(third.count({edge.second, edge.first}), 1U);
+    ++degree[static_cast<std::size_t>(edge.first)];
+    neighbor[static_cast<std::size_t>(edge.first)] = edge.second;
+  }
+  std::vector<bool> reached(point_count, false);
+  std::vector<int> pending = {0};
+  reached[0] = true;
+  std::size_t pieces_size = 0;
+  while (!pending.empty()) {
+    const int v = pending.back();
+    pending.pop_back();
+    ++pieces_size;
+    const int first = neighbor[static_cast<std::size_t>(v)];
+    ASSERT_GE(first, 0) << "point " << v << " is no vertex";
+    int steps = 0;
+    for (int w = first; steps == 0 || w != first; w = third.at({v, w})) {
+      ++steps;
+      ASSERT_LE(steps, degree[static_cast<std::size_t>(v)]);
+      if (!reached[static_cast<std::size_t>(w)]) {
+        reached[static_cast<std::size_t>(w)] = true;
+        pending.push_back(w);
+      }
+    }
+    EXPECT_EQ(steps, degree[static_cast<std::size_t>(v)]) << "around point " << v;
+  }
+  EXPECT_EQ(pieces_size, point_count);
+  EXPECT_EQ(point_count + polygons.size(), third.size() / 2 + 2);
+  if (!shape.genus_zero) {
+    EXPECT_FALSE(warnings.empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AllShapes, ShapesAreMeshed,
+    testing::Combine(
+        testing::ValuesIn(std::vector<ShapeInfo>(allShapes().begin(), allShapes().end())),
+        testing::Values(EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive)),
+    nameOfCase);
+
+}  // namespace
+}  // namespace spherical_param::tools
