@@ -101,7 +101,8 @@ std::optional<Triangles> convexHull(const Positions& directions) {
 
 /// Four points far from each other as a tetrahedron.
 Triangles firstTetrahedron(const Positions& directions) {
-  const auto farthest = [](const Eigen::RowVectorXd& measure, std::vector<Eigen::Index> taken) {
+  const auto farthest = [](const Eigen::RowVectorXd& measure,
+                           const std::vector<Eigen::Index>& taken) {
     Eigen::RowVectorXd rest = measure;
     for (const Eigen::Index i : taken)
       rest[i] = -1.0;

@@ -38,7 +38,7 @@ void expectGuarantees(const Positions& points, const Result& result) {
     ASSERT_TRUE(vertex >= 0 && vertex < v);
     EXPECT_EQ(points.col(i), points.col(result.input_of_vertex[static_cast<std::size_t>(vertex)]));
   }
-  EXPECT_EQ(result.duplicates, points.cols() - static_cast<std::size_t>(v));
+  EXPECT_EQ(result.duplicates, static_cast<std::size_t>(points.cols() - v));
   Positions vertices(3, v);
   for (Index i = 0; i < v; ++i)
     vertices.col(i) = points.col(result.input_of_vertex[static_cast<std::size_t>(i)]);
