@@ -211,6 +211,17 @@ TEST(Reconstruct, TorusIsMeshedAsASphereAndReported) {
   EXPECT_FALSE(result.warnings.empty());
 }
 
+TEST(Reconstruct, OpenBowlIsLiddedAndReported) {
+  const Positions sphere = spiralSphere(1500);  // from top to bottom
+  const Positions points = sphere.rightCols(1100);
+  const Result result = mesh(points);
+  expectGuarantees(points, result);
+  EXPECT_GT(result.edges_outside_graph, 0.001);
+  EXPECT_LT(mesh(sphere).edges_outside_graph, 1e-9);
+  ASSERT_FALSE(result.warnings.empty());
+  EXPECT_NE(result.warnings.back().find("not a closed surface"), std::string::npos);
+}
+
 TEST(Reconstruct, ScaleByAPowerOfTwoAndShiftOfIndicesChangeNothing) {
   const Positions points = ellipsoid(300, 1.0, 0.7, 0.5);
   const Result result = mesh(points);

@@ -1,5 +1,5 @@
-// Every generated shape, with every weight, becomes a sphere through all of its points: the scans
-// of the tools, the PCL class and the core together.
+// Every generated shape, with every weight, becomes a sphere through all of its points, those that
+// are no sphere included: the scans of the tools, the PCL class and the core together.
 
 #include "scan_shapes.h"
 
@@ -20,7 +20,7 @@
 namespace spherical_param::tools {
 namespace {
 
-constexpr std::size_t point_count = 1500;
+constexpr std::size_t point_count = 1000;
 
 class ShapesAreMeshed : public testing::TestWithParam<std::tuple<ShapeInfo, EdgeWeights>> {};
 
@@ -31,15 +31,14 @@ std::string nameOfCase(const testing::TestParamInfo<std::tuple<ShapeInfo, EdgeWe
 }
 
 std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& cloud,
-                                  EdgeWeights weights, std::vector<std::string>& warnings) {
+                                  EdgeWeights weights) {
   pcl::SphericalParamReconstruction<pcl::PointXYZ> reconstruction;
   reconstruction.setWeights(weights);
-  reconstruction.setMaximumIterations(400);
+  reconstruction.setMaximumIterations(100);
   reconstruction.setInputCloud(cloud);
   std::vector<pcl::Vertices> polygons;
   reconstruction.reconstruct(polygons);
   EXPECT_EQ(reconstruction.getErrorMessage(), "");
-  warnings = reconstruction.getResult().warnings;
   return polygons;
 }
 
@@ -54,8 +53,7 @@ TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
     const Eigen::Vector3f p = scan.points.col(i).cast<float>();
     cloud->emplace_back(p.x(), p.y(), p.z());
   }
-  std::vector<std::string> warnings;
-  const std::vector<pcl::Vertices> polygons = meshOf(cloud, weights, warnings);
+  const std::vector<pcl::Vertices> polygons = meshOf(cloud, weights);
 
   // Every directed edge once and its reverse once, every link one cycle, V - E + F = 2 over all
   // points and positive volume: a closed outward sphere in one piece.
@@ -104,9 +102,6 @@ TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
   }
   EXPECT_EQ(pieces_size, point_count);
   EXPECT_EQ(point_count + polygons.size(), third.size() / 2 + 2);
-  if (!shape.genus_zero) {
-    EXPECT_FALSE(warnings.empty());
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
