@@ -3,6 +3,7 @@
 #include "spherical_param/errors.h"
 
 #include "core/component_tree.h"
+#include "core/neighbor_lists.h"
 #include "core/union_find.h"
 
 #include <algorithm>
@@ -14,25 +15,6 @@
 
 namespace spherical_param {
 namespace {
-
-void checkInput(const Positions& points, const NeighborLists& lists,
-                const NeighborGraphOptions& options) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  if (options.k < 3)
-    throw InvalidInput("buildNeighborGraph: k = " + std::to_string(options.k) +
-                       " is too small; use 3 or more");
-  if (lists.offsets.size() != n + 1)
-    throw InvalidInput("buildNeighborGraph: " + std::to_string(lists.offsets.size()) +
-                       " offsets for " + std::to_string(n) + " points; give n + 1");
-  if (lists.offsets.front() != 0 || lists.offsets.back() != lists.indices.size() ||
-      !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
-    throw InvalidInput("buildNeighborGraph: the offsets do not partition the indices; they must "
-                       "ascend from 0 to the number of indices");
-  for (const Index j : lists.indices)
-    if (j < 0 || static_cast<std::size_t>(j) >= n)
-      throw InvalidInput("buildNeighborGraph: neighbour " + std::to_string(j) + " of " +
-                         std::to_string(n) + " points; indices must be in [0, n)");
-}
 
 /// Length of an edge; positive for distinct points even where the squares underflow.
 double edgeLength(const Positions& points, Index i, Index j) {
@@ -194,7 +176,11 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
 
 NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& lists,
                                  const NeighborGraphOptions& options) {
-  checkInput(points, lists, options);
+  if (options.k < 3)
+    throw InvalidInput("buildNeighborGraph: k = " + std::to_string(options.k) +
+                       " is too small; use 3 or more");
+  internal::checkNeighborLists("buildNeighborGraph", lists,
+                               static_cast<std::size_t>(points.cols()));
   NeighborGraph result;
   result.graph = symmetrized(points, nearestOnly(points, lists, options.k));
 

@@ -1,5 +1,6 @@
 #include "spherical_param/reconstruct.h"
 
+#include "core/neighbor_lists.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/point_set.h"
 
@@ -72,18 +73,6 @@ Positions distinctScaled(const Positions& points, const std::vector<Index>& inpu
   std::frexp(half_extent.maxCoeff(), &exponent);
   result = result.unaryExpr([&](double x) { return std::ldexp(x, -exponent); });
   return result;
-}
-
-void checkLists(const NeighborLists& lists, std::size_t n) {
-  if (lists.offsets.size() != n + 1 || lists.offsets.front() != 0 ||
-      lists.offsets.back() != lists.indices.size() ||
-      !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
-    throw InvalidInput("reconstruct: the neighbour lists do not fit " + std::to_string(n) +
-                       " points; give n + 1 offsets that ascend from 0 to the number of indices");
-  for (const Index j : lists.indices)
-    if (j < 0 || static_cast<std::size_t>(j) >= n)
-      throw InvalidInput("reconstruct: neighbour " + std::to_string(j) + " of " +
-                         std::to_string(n) + " points; indices must be in [0, n)");
 }
 
 /// Neighbour lists between vertices; a vertex has the entries of all its input points.
@@ -203,7 +192,7 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
   int exponent = 0;
   Positions vertices;
   NeighborGraph graph = log.run("graph", [&] {
-    checkLists(lists, static_cast<std::size_t>(points.cols()));
+    internal::checkNeighborLists("reconstruct", lists, static_cast<std::size_t>(points.cols()));
     DistinctPoints distinct = findDistinctPoints(points);
     const std::size_t count = distinct.input_of_vertex.size();
     if (points.cols() > 0 && points.cwiseAbs().maxCoeff() > kLargestCoordinate)

@@ -77,6 +77,16 @@ int threadCount([[maybe_unused]] int requested, Index nodes) {
 #endif
 }
 
+/// The points about their centroid, scaled first: neither the sum nor the squares may overflow.
+///
+/// \param points 3 x n, finite, n >= 1.
+Positions scaledAndCentered(const Positions& points) {
+  const double scale = std::max(points.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  Positions centered = points / scale;
+  centered.colwise() -= Eigen::Vector3d(centered.rowwise().mean());
+  return centered;
+}
+
 /// A direction for node i where none is defined, spread evenly over the sphere by the golden angle.
 Eigen::Vector3d anyDirection(Index i, Index n) {
   const double height = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(n);
@@ -336,12 +346,9 @@ Positions projectFromCentroid(const Positions& points) {
   const auto n = static_cast<Index>(points.cols());
   if (n == 0)
     return points;
-  // Scaled first: neither the sum nor the squares may overflow.
-  const double scale = std::max(points.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-  Positions directions = points / scale;
-  const Eigen::Vector3d centroid = directions.rowwise().mean();
+  Positions directions = scaledAndCentered(points);
   for (Index i = 0; i < n; ++i) {
-    const Eigen::Vector3d centered = directions.col(i) - centroid;
+    const Eigen::Vector3d centered = directions.col(i);
     const double length = centered.stableNorm();
     directions.col(i) =
         length > 0.0 ? Eigen::Vector3d((centered / length).normalized()) : anyDirection(i, n);
@@ -353,9 +360,7 @@ Positions projectByRank(const Positions& points) {
   const auto n = static_cast<Index>(points.cols());
   if (n == 0)
     return points;
-  const double scale = std::max(points.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-  Positions centered = points / scale;
-  centered.colwise() -= Eigen::Vector3d(centered.rowwise().mean());
+  const Positions centered = scaledAndCentered(points);
   const Eigen::Matrix3d covariance = centered * centered.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
   // Ascending eigenvalues: the last axis is the longest.

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "spherical_param/errors.h"
+#include "spherical_param/types.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+namespace spherical_param::internal {
+
+/// Refuses lists that are not n lists of indices in [0, n).
+///
+/// \param function the public function that was given the lists, for the message.
+inline void checkNeighborLists(const std::string& function, const NeighborLists& lists,
+                               std::size_t n) {
+  if (lists.offsets.size() != n + 1 || lists.offsets.front() != 0 ||
+      lists.offsets.back() != lists.indices.size() ||
+      !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
+    throw InvalidInput(function + ": the neighbour lists do not fit " + std::to_string(n) +
+                       " points; give n + 1 offsets that ascend from 0 to the number of indices");
+  for (const Index j : lists.indices)
+    if (j < 0 || static_cast<std::size_t>(j) >= n)
+      throw InvalidInput(function + ": neighbour " + std::to_string(j) + " of " +
+                         std::to_string(n) + " points; indices must be in [0, n)");
+}
+
+}  // namespace spherical_param::internal
