@@ -11,6 +11,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -143,6 +144,18 @@ inline std::vector<std::array<Index, 3>> canonical(const Triangles& triangles) {
   }
   std::sort(result.begin(), result.end());
   return result;
+}
+
+/// The results of run(0) ... run(count - 1), each computed in a thread of its own at the same time.
+template <typename Run>
+auto runTogether(std::size_t count, const Run& run) {
+  std::vector<decltype(run(std::size_t{0}))> results(count);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < count; ++i)
+    threads.emplace_back([&, i] { results[i] = run(i); });
+  for (std::thread& thread : threads)
+    thread.join();
+  return results;
 }
 
 /// Signed volume, by plain summation of determinants.

@@ -8,7 +8,6 @@
 
 #include <limits>
 #include <map>
-#include <thread>
 
 namespace spherical_param {
 namespace {
@@ -376,14 +375,9 @@ TEST(Reconstruct, ConcurrentCallsAgreeWithSingleOnes) {
     return mesh(ellipsoid(300 + 50 * static_cast<Index>(i), 1.0, 0.8, 0.5), options);
   };
   std::vector<Result> alone(count);
-  std::vector<Result> together(count);
   for (std::size_t i = 0; i < count; ++i)
     alone[i] = run(i);
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < count; ++i)
-    threads.emplace_back([&, i] { together[i] = run(i); });
-  for (std::thread& thread : threads)
-    thread.join();
+  const std::vector<Result> together = test::runTogether(count, run);
   for (std::size_t i = 0; i < count; ++i) {
     EXPECT_EQ(alone[i].triangles, together[i].triangles);
     EXPECT_EQ(alone[i].sphere, together[i].sphere);

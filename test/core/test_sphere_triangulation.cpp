@@ -6,8 +6,6 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <thread>
-
 namespace spherical_param {
 namespace {
 
@@ -204,17 +202,12 @@ TEST(SphereTriangulation, BadInputIsInvalidInput) {
 TEST(SphereTriangulation, ConcurrentCallsAgreeWithSingleOnes) {
   constexpr std::size_t count = 4;
   std::vector<Triangles> alone(count);
-  std::vector<Triangles> together(count);
   const auto run = [](std::size_t i) {
     return triangulateSphere(randomSphere(500 + 100 * static_cast<Index>(i), i)).triangles;
   };
   for (std::size_t i = 0; i < count; ++i)
     alone[i] = run(i);
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < count; ++i)
-    threads.emplace_back([&, i] { together[i] = run(i); });
-  for (std::thread& thread : threads)
-    thread.join();
+  const std::vector<Triangles> together = test::runTogether(count, run);
   for (std::size_t i = 0; i < count; ++i)
     EXPECT_EQ(alone[i], together[i]);
 }
