@@ -3,12 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
-// Filtered evaluation with an exact fallback in floating-point expansions, after J. R. Shewchuk:
-// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", Discrete &
-// Computational Geometry 18, 1997 (theorem and lemma numbers below are his). Valid for
-// round-to-nearest and without contraction of a * b + c.
+// Theorem and lemma numbers are those of Shewchuk (1997), see the header.
 
 namespace spherical_param::internal {
 namespace {
@@ -16,7 +12,7 @@ namespace {
 /// Sum of non-overlapping doubles of increasing magnitude, at most N of them.
 template <std::size_t N>
 struct Expansion {
-  std::array<double, N> terms{};
+  std::array<double, N> terms;  ///< the first `size` are set
   std::size_t size = 0;
 
   void append(double term) {
@@ -37,6 +33,12 @@ void twoSum(double a, double b, double& sum, double& error) {
   error = (a - a_virtual) + (b - b_virtual);
 }
 
+/// a + b = sum + error for |a| >= |b| (theorem 6).
+void fastTwoSum(double a, double b, double& sum, double& error) {
+  sum = a + b;
+  error = b - (sum - a);
+}
+
 /// a * b = product + error.
 void twoProduct(double a, double b, double& product, double& error) {
   product = a * b;
@@ -54,75 +56,119 @@ Expansion<2> difference(double a, double b) {
   return result;
 }
 
-/// Adds one double to an expansion that has room for one more term (theorem 10).
-template <std::size_t N>
-void grow(Expansion<N>& expansion, double value) {
-  Expansion<N> result;
-  double carry = value;
-  for (std::size_t i = 0; i < expansion.size; ++i) {
-    double sum = 0.0;
-    double error = 0.0;
-    twoSum(carry, expansion.terms[i], sum, error);
-    result.append(error);
-    carry = sum;
-  }
-  result.append(carry);
-  expansion = result;
-}
-
+/// a + factor * b for a factor of 1 or -1 (theorem 12, linear expansion sum).
 template <std::size_t N, std::size_t M>
-void add(Expansion<N>& expansion, const Expansion<M>& other, double factor) {
-  for (std::size_t i = 0; i < other.size; ++i)
-    grow(expansion, factor * other.terms[i]);
+Expansion<N + M> sum(const Expansion<N>& a, const Expansion<M>& b, double factor) {
+  Expansion<N + M> result;
+  std::size_t i = 0;
+  std::size_t j = 0;
+  const auto next = [&] {  // the smallest of what is left
+    if (j == b.size || (i < a.size && std::abs(a.terms[i]) <= std::abs(b.terms[j])))
+      return a.terms[i++];
+    return factor * b.terms[j++];
+  };
+  const std::size_t count = a.size + b.size;
+  if (count == 0)
+    return result;
+  double high = next();
+  if (count > 1) {
+    double low = 0.0;
+    fastTwoSum(next(), high, high, low);
+    for (std::size_t k = 2; k < count; ++k) {
+      double carry = 0.0;
+      double rest = 0.0;
+      fastTwoSum(next(), low, carry, rest);
+      result.append(rest);
+      twoSum(high, carry, high, low);
+    }
+    result.append(low);
+  }
+  result.append(high);
+  return result;
 }
 
+/// a * b (theorem 19, scale expansion).
+template <std::size_t N>
+Expansion<2 * N> scaled(const Expansion<N>& a, double b) {
+  Expansion<2 * N> result;
+  if (a.size == 0)
+    return result;
+  double high = 0.0;
+  double low = 0.0;
+  twoProduct(a.terms[0], b, high, low);
+  result.append(low);
+  for (std::size_t i = 1; i < a.size; ++i) {
+    double product = 0.0;
+    double product_low = 0.0;
+    double middle = 0.0;
+    twoProduct(a.terms[i], b, product, product_low);
+    twoSum(high, product_low, middle, low);
+    result.append(low);
+    fastTwoSum(product, middle, high, low);
+    result.append(low);
+  }
+  result.append(high);
+  return result;
+}
+
+/// a * b, in a balanced tree of sums over the terms [begin, begin + M) of b.
+template <std::size_t M, std::size_t N, std::size_t B>
+Expansion<2 * N * M> partialProduct(const Expansion<N>& a, const Expansion<B>& b,
+                                    std::size_t begin) {
+  Expansion<2 * N * M> result;
+  if (begin < b.size) {
+    if constexpr (M == 1)
+      result = scaled(a, b.terms[begin]);
+    else
+      result = sum(partialProduct<M / 2>(a, b, begin),
+                   partialProduct<M - M / 2>(a, b, begin + M / 2), 1.0);
+  }
+  return result;
+}
 template <std::size_t N, std::size_t M>
 Expansion<2 * N * M> product(const Expansion<N>& a, const Expansion<M>& b) {
-  Expansion<2 * N * M> result;
-  for (std::size_t i = 0; i < a.size; ++i)
-    for (std::size_t j = 0; j < b.size; ++j) {
-      double high = 0.0;
-      double low = 0.0;
-      twoProduct(a.terms[i], b.terms[j], high, low);
-      grow(result, low);
-      grow(result, high);
-    }
-  return result;
+  return partialProduct<M>(a, b, 0);
 }
 
 /// x1 * y2 - x2 * y1
 Expansion<16> minor(const Expansion<2>& x1, const Expansion<2>& y1, const Expansion<2>& x2,
                     const Expansion<2>& y2) {
-  Expansion<16> result;
-  add(result, product(x1, y2), 1.0);
-  add(result, product(x2, y1), -1.0);
-  return result;
+  return sum(product(x1, y2), product(x2, y1), -1.0);
 }
 
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
-/// Bounds of the error of the plain evaluation relative to the permanent (Shewchuk, section 4.2
-/// and table 2: ccwerrboundA and o3derrboundA).
-constexpr double kFilter2d = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
-constexpr double kFilter3d = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
+/// x^2 + y^2
+Expansion<16> squaredNorm(const Expansion<2>& x, const Expansion<2>& y) {
+  return sum(product(x, x), product(y, y), 1.0);
+}
 
 }  // namespace
 
-int orientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  const double left = (a.x() - c.x()) * (b.y() - c.y());
-  const double right = (a.y() - c.y()) * (b.x() - c.x());
-  const double determinant = left - right;
-  const double bound = kFilter2d * (std::abs(left) + std::abs(right));
-  if (determinant > bound || -determinant > bound)
-    return determinant > 0.0 ? 1 : -1;
-  if (bound == 0.0)
-    return 0;
+int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                       const Eigen::Vector2d& c) {
   return minor(difference(a.x(), c.x()), difference(a.y(), c.y()), difference(b.x(), c.x()),
                difference(b.y(), c.y()))
       .sign();
 }
 
+int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                  const Eigen::Vector2d& d) {
+  const Expansion<2> ax = difference(a.x(), d.x());
+  const Expansion<2> ay = difference(a.y(), d.y());
+  const Expansion<2> bx = difference(b.x(), d.x());
+  const Expansion<2> by = difference(b.y(), d.y());
+  const Expansion<2> cx = difference(c.x(), d.x());
+  const Expansion<2> cy = difference(c.y(), d.y());
+  return sum(sum(product(minor(bx, by, cx, cy), squaredNorm(ax, ay)),
+                 product(minor(cx, cy, ax, ay), squaredNorm(bx, by)), 1.0),
+             product(minor(ax, ay, bx, by), squaredNorm(cx, cy)), 1.0)
+      .sign();
+}
+
 int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                   const Eigen::Vector3d& d) {
+  // Bound of the error of the plain evaluation relative to the permanent: o3derrboundA of
+  // Shewchuk, section 4.3.
+  constexpr double filter = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
   const Eigen::Vector3d ad = b - a;
   const Eigen::Vector3d bd = c - a;
   const Eigen::Vector3d cd = d - a;
@@ -136,7 +182,7 @@ int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eige
   const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(ad.z()) +
                            (std::abs(ca) + std::abs(ac)) * std::abs(bd.z()) +
                            (std::abs(ab) + std::abs(ba)) * std::abs(cd.z());
-  const double bound = kFilter3d * permanent;
+  const double bound = filter * permanent;
   if (determinant > bound || -determinant > bound)
     return determinant > 0.0 ? 1 : -1;
   if (bound == 0.0)
@@ -151,11 +197,9 @@ int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eige
   const Expansion<2> cx = difference(d.x(), a.x());
   const Expansion<2> cy = difference(d.y(), a.y());
   const Expansion<2> cz = difference(d.z(), a.z());
-  Expansion<192> exact;
-  add(exact, product(minor(bx, by, cx, cy), az), 1.0);
-  add(exact, product(minor(cx, cy, ax, ay), bz), 1.0);
-  add(exact, product(minor(ax, ay, bx, by), cz), 1.0);
-  return exact.sign();
+  return sum(sum(product(minor(bx, by, cx, cy), az), product(minor(cx, cy, ax, ay), bz), 1.0),
+             product(minor(ax, ay, bx, by), cz), 1.0)
+      .sign();
 }
 
 }  // namespace spherical_param::internal

@@ -2,16 +2,81 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+#include <limits>
+
+// Filtered evaluation with an exact fallback in floating-point expansions, after J. R. Shewchuk:
+// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", Discrete &
+// Computational Geometry 18, 1997. Valid for round-to-nearest and without contraction of a * b + c.
+
 namespace spherical_param::internal {
+
+/// The predicates without the filter. \see orientation2d, inCircle
+int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                       const Eigen::Vector2d& c);
+int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                  const Eigen::Vector2d& d);
+
+/// Half a unit in the last place of 1.
+constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 
 /// Sign of the determinant | b - a, c - a | of points in the plane, exact unless products of
 /// coordinate differences leave the range of double: 1 counter-clockwise, 0 collinear, -1
 /// clockwise.
-int orientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
+inline int orientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                         const Eigen::Vector2d& c) {
+  // Bound of the error of the plain evaluation relative to the permanent: ccwerrboundA of
+  // Shewchuk, section 4.2.
+  constexpr double filter = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
+  const double left = (a.x() - c.x()) * (b.y() - c.y());
+  const double right = (a.y() - c.y()) * (b.x() - c.x());
+  const double determinant = left - right;
+  const double bound = filter * (std::abs(left) + std::abs(right));
+  if (determinant > bound)
+    return 1;
+  if (-determinant > bound)
+    return -1;
+  return bound == 0.0 ? 0 : exactOrientation2d(a, b, c);
+}
 
 /// Sign of the determinant | b - a, c - a, d - a |, exact unless products of coordinate
 /// differences leave the range of double: 0 if the four points lie in one plane.
 int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                   const Eigen::Vector3d& d);
+
+/// 1 if d is inside the circle through a, b and c (counter-clockwise), 0 if it is on the circle, -1
+/// outside; the other way round if a, b and c are clockwise. Exact unless products of four
+/// coordinate differences leave the range of double.
+inline int inCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                    const Eigen::Vector2d& d) {
+  // Bound of the error of the plain evaluation relative to the permanent: iccerrboundA of
+  // Shewchuk, section 4.4.
+  constexpr double filter = (10.0 + 96.0 * kUnitRoundoff) * kUnitRoundoff;
+  const double adx = a.x() - d.x();
+  const double ady = a.y() - d.y();
+  const double bdx = b.x() - d.x();
+  const double bdy = b.y() - d.y();
+  const double cdx = c.x() - d.x();
+  const double cdy = c.y() - d.y();
+  const double bc = bdx * cdy;
+  const double cb = cdx * bdy;
+  const double ca = cdx * ady;
+  const double ac = adx * cdy;
+  const double ab = adx * bdy;
+  const double ba = bdx * ady;
+  const double a_lift = adx * adx + ady * ady;
+  const double b_lift = bdx * bdx + bdy * bdy;
+  const double c_lift = cdx * cdx + cdy * cdy;
+  const double determinant = a_lift * (bc - cb) + b_lift * (ca - ac) + c_lift * (ab - ba);
+  const double permanent = (std::abs(bc) + std::abs(cb)) * a_lift +
+                           (std::abs(ca) + std::abs(ac)) * b_lift +
+                           (std::abs(ab) + std::abs(ba)) * c_lift;
+  const double bound = filter * permanent;
+  if (determinant > bound)
+    return 1;
+  if (-determinant > bound)
+    return -1;
+  return bound == 0.0 ? 0 : exactInCircle(a, b, c, d);
+}
 
 }  // namespace spherical_param::internal

@@ -1,5 +1,6 @@
 #include "spherical_param/sphere_triangulation.h"
 
+#include "core/incremental_delaunay.h"
 #include "core/space_filling_curve.h"
 #include "core/sphere_mesh.h"
 #include "spherical_param/errors.h"
@@ -271,10 +272,7 @@ void checkInput(const Positions& directions) {
                          " is not of unit length; normalise the points first");
 }
 
-}  // namespace
-
-SphereTriangulation triangulateSphere(const Positions& directions) {
-  checkInput(directions);
+SphereTriangulation triangulateByQhull(const Positions& directions) {
   SphereTriangulation result;
   const auto n = static_cast<std::size_t>(directions.cols());
   const DistinctPoints distinct = findDistinctPoints(directions);
@@ -325,6 +323,28 @@ SphereTriangulation triangulateSphere(const Positions& directions) {
     inserter.insertAt(p, vertex);
   result.triangles = inserter.triangles();
   return result;
+}
+
+SphereTriangulation triangulateIncrementally(const Positions& directions) {
+  if (directions.cols() > internal::kMostDelaunayPoints)
+    throw InvalidInput("triangulateSphere: " + std::to_string(directions.cols()) +
+                       " points; TriangulationMethod::Incremental takes at most " +
+                       std::to_string(internal::kMostDelaunayPoints));
+  internal::SphereDelaunay delaunay = internal::incrementalDelaunay(directions);
+  SphereTriangulation result;
+  result.triangles = std::move(delaunay.triangles);
+  result.coincident = delaunay.coincident;
+  result.reinserted = delaunay.coincident;
+  result.hull_vertices = static_cast<Index>(directions.cols()) - delaunay.coincident;
+  return result;
+}
+
+}  // namespace
+
+SphereTriangulation triangulateSphere(const Positions& directions, TriangulationMethod method) {
+  checkInput(directions);
+  return method == TriangulationMethod::Qhull ? triangulateByQhull(directions)
+                                              : triangulateIncrementally(directions);
 }
 
 }  // namespace spherical_param

@@ -170,4 +170,100 @@ inline double volumeOf(const Positions& points, const Triangles& triangles) {
   return sum / 6.0;
 }
 
+/// The edges of triangles as a graph, with the lengths of the points.
+inline Graph graphOfMesh(const Positions& points, const Triangles& triangles) {
+  std::vector<std::pair<Index, Index>> entries;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      entries.emplace_back(triangles(k, t), triangles((k + 1) % 3, t));
+      entries.emplace_back(triangles((k + 1) % 3, t), triangles(k, t));
+    }
+  std::sort(entries.begin(), entries.end());
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  Graph graph;
+  graph.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
+  for (const auto& [i, j] : entries) {
+    ++graph.offsets[static_cast<std::size_t>(i) + 1];
+    graph.neighbors.push_back(j);
+    graph.lengths.push_back((points.col(i) - points.col(j)).norm());
+  }
+  std::partial_sum(graph.offsets.begin(), graph.offsets.end(), graph.offsets.begin());
+  return graph;
+}
+
+/// A closed tube of radius 1 whose axis is an arc, with its true triangles.
+struct Tube {
+  Positions points;
+  Triangles triangles;
+};
+
+/// \param length of the axis, in radii, besides the two ends.
+/// \param turn   [rad] that the axis bends by in all; 0 is straight.
+/// \param ring   points around.
+inline Tube bentTube(double length, double turn, int ring) {
+  const double spacing = 2.0 * kPi / ring;
+  const int rings = std::max(2, static_cast<int>(length / (spacing * std::sqrt(3.0) / 2.0)));
+  const auto n = static_cast<Index>(rings * ring + 2);
+  Tube tube{Positions(3, n), Triangles(3, 2 * n - 4)};
+  const auto place = [&](double s, double across, double angle) {
+    // The frame of the arc at s: the axis runs in the plane of x and y.
+    const double bend = turn * s / length;
+    const double radius = turn > 0.0 ? length / turn : 0.0;
+    const Eigen::Vector3d center =
+        turn > 0.0 ? Eigen::Vector3d(radius * std::sin(bend), radius * (1.0 - std::cos(bend)), 0.0)
+                   : Eigen::Vector3d(s, 0.0, 0.0);
+    const Eigen::Vector3d normal(-std::sin(bend), std::cos(bend), 0.0);
+    return Eigen::Vector3d(
+        center + across * (std::cos(angle) * normal + std::sin(angle) * Eigen::Vector3d::UnitZ()));
+  };
+  for (int r = 0; r < rings; ++r)
+    for (int k = 0; k < ring; ++k)
+      tube.points.col(r * ring + k) =
+          place(length * r / (rings - 1), 1.0, spacing * (k + (r % 2) * 0.5));
+  // Caps: one point a little beyond each end.
+  tube.points.col(n - 2) = place(-0.3, 0.0, 0.0);
+  tube.points.col(n - 1) = place(length + 0.3, 0.0, 0.0);
+  Eigen::Index t = 0;
+  for (int r = 0; r + 1 < rings; ++r)
+    for (int k = 0; k < ring; ++k) {
+      const Index a = r * ring + k;
+      const Index b = r * ring + (k + 1) % ring;
+      const Index shift = r % 2;
+      const Index c = (r + 1) * ring + (k + shift) % ring;
+      const Index d = (r + 1) * ring + (k + shift + ring - 1) % ring;
+      // Ring r + 1 is turned by half a spacing: a lies between d and c, or between c and the next.
+      tube.triangles.col(t++) << a, b, c;
+      tube.triangles.col(t++) << a, c, d;
+    }
+  for (int k = 0; k < ring; ++k) {
+    tube.triangles.col(t++) << n - 2, (k + 1) % ring, k;
+    tube.triangles.col(t++) << n - 1, (rings - 1) * ring + k, (rings - 1) * ring + (k + 1) % ring;
+  }
+  return tube;
+}
+
+/// Share of the edges of triangles that join nodes more than two steps apart in a graph.
+inline double shareBeyondTwoSteps(const Graph& graph, const Triangles& triangles) {
+  const auto row = [&](Index i) {
+    const auto begin = graph.neighbors.begin() +
+                       static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i)]);
+    const auto end = graph.neighbors.begin() +
+                     static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i) + 1]);
+    return std::vector<Index>(begin, end);
+  };
+  Index beyond = 0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index a = triangles(k, t);
+      const Index b = triangles((k + 1) % 3, t);
+      bool near = false;
+      for (const Index middle : row(a)) {
+        const std::vector<Index> next = row(middle);
+        near = near || middle == b || std::find(next.begin(), next.end(), b) != next.end();
+      }
+      beyond += near ? 0 : 1;
+    }
+  return static_cast<double>(beyond) / static_cast<double>(3 * triangles.cols());
+}
+
 }  // namespace spherical_param::test

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
 
 namespace spherical_param::internal {
 namespace {
@@ -55,6 +60,129 @@ TEST(ExactPredicates, SwappingTwoPointsTurnsTheSign) {
     EXPECT_EQ(orientation3d(a, b, c, d), -orientation3d(b, a, c, d));
     EXPECT_EQ(orientation3d(a, b, c, d), -orientation3d(a, b, d, c));
     EXPECT_EQ(orientation3d(a, b, c, d), orientation3d(b, c, a, d));
+  }
+}
+
+__extension__ using Wide = __int128;
+
+int signOf(Wide x) {
+  return (x > 0) - (x < 0);
+}
+
+/// inCircle() in integers; exact for coordinates below 2^28.
+int integerInCircle(const std::array<std::array<std::int64_t, 2>, 4>& p) {
+  Wide sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto difference = [&](std::size_t i, std::size_t axis) {
+      return p[i % 3][axis] - p[3][axis];
+    };
+    const std::int64_t x = difference(k, 0);
+    const std::int64_t y = difference(k, 1);
+    sum += static_cast<Wide>(x * x + y * y) * (difference(k + 1, 0) * difference(k + 2, 1) -
+                                               difference(k + 2, 0) * difference(k + 1, 1));
+  }
+  return signOf(sum);
+}
+
+int inCircleOf(const std::array<std::array<std::int64_t, 2>, 4>& p, double unit) {
+  const auto point = [&](std::size_t i) {
+    return Vector2d(static_cast<double>(p[i][0]) * unit, static_cast<double>(p[i][1]) * unit);
+  };
+  return inCircle(point(0), point(1), point(2), point(3));
+}
+
+TEST(ExactPredicates, InCircleHasTheSignsOfPlainCases) {
+  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {-1, 0}, {0, 0}), 1);
+  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {-1, 0}, {0, -1}), 0);
+  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {-1, 0}, {0, -2}), -1);
+  EXPECT_EQ(inCircle({0, 1}, {1, 0}, {-1, 0}, {0, 0}), -1);
+  EXPECT_EQ(inCircle({0, 0}, {1, 1}, {2, 2}, {3, 3}), 0);
+  EXPECT_EQ(inCircle({1, 0}, {0, 1}, {1, 0}, {0.3, 0.4}), 0);
+}
+
+// Random points, and ones rounded to integers from a common circle, where plain evaluation in
+// double is mostly wrong; from 2^-200 to 2^200, the range that the triangulation uses.
+TEST(ExactPredicates, InCircleIsThatOfIntegerArithmetic) {
+  std::mt19937_64 random(5);
+  std::uniform_int_distribution<std::int64_t> coordinate(-(1 << 27), 1 << 27);
+  std::uniform_real_distribution<double> angle(0.0, 6.3);
+  int ties = 0;
+  int near_ties = 0;
+  for (int i = 0; i < 200000; ++i) {
+    std::array<std::array<std::int64_t, 2>, 4> points{};
+    const bool on_circle = i % 4 != 0;
+    // On small circles there are ties as well.
+    const double radius = i % 4 == 1 ? 10.0 : i % 4 == 2 ? 1e5 : 1e8;
+    for (auto& point : points) {
+      const double a = angle(random);
+      if (on_circle)
+        point = {std::lround(radius * std::cos(a)) + (1 << 24), std::lround(radius * std::sin(a))};
+      else
+        point = {coordinate(random), coordinate(random)};
+    }
+    const int expected = integerInCircle(points);
+    ties += on_circle && expected == 0 ? 1 : 0;
+    near_ties += on_circle && expected != 0 ? 1 : 0;
+    for (const double unit : {1.0, 0x1p-200, 0x1p172})
+      ASSERT_EQ(inCircleOf(points, unit), expected);
+  }
+  EXPECT_GT(ties, 1000);
+  EXPECT_GT(near_ties, 100000);
+}
+
+// The circle about (65, 0) of radius 65 through 8 integer points and the origin; d lies near the
+// origin, far below the last digit of the others: not even the differences fit into doubles.
+TEST(ExactPredicates, InCircleIsExactWhereDifferencesAreNot) {
+  const std::array<Vector2d, 8> circle{
+      {{81, 63}, {98, 56}, {90, 60}, {104, 52}, {81, -63}, {40, 60}, {26, -52}, {130, 0}}};
+  std::mt19937_64 random(6);
+  std::uniform_int_distribution<std::int64_t> mantissa(1, std::int64_t{1} << 37);
+  for (int i = 0; i < 2000; ++i) {
+    const std::int64_t y = mantissa(random);
+    // In units of 2^-60: |d - (65, 0)|^2 - 65^2 = x^2 - 130 2^60 x + y^2.
+    const auto tie = static_cast<std::int64_t>(static_cast<Wide>(y) * y / 130 >> 60);
+    for (std::int64_t x = std::max<std::int64_t>(tie - 2, 0); x <= tie + 2; ++x) {
+      const Wide beyond =
+          static_cast<Wide>(x) * x - (static_cast<Wide>(130 * x) << 60) + static_cast<Wide>(y) * y;
+      const Vector2d d(std::ldexp(static_cast<double>(x), -60),
+                       std::ldexp(static_cast<double>(y), -60));
+      for (std::size_t k = 0; k < circle.size(); ++k) {
+        const Vector2d& a = circle[k];
+        const Vector2d& b = circle[(k + 1) % circle.size()];
+        const Vector2d& c = circle[(k + 3) % circle.size()];
+        ASSERT_EQ(inCircle(a, b, c, d), -signOf(beyond) * orientation2d(a, b, c));
+      }
+    }
+  }
+}
+
+TEST(ExactPredicates, InCircleTurnsWithTheOrderOfItsPoints) {
+  const double step = std::ldexp(1.0, -53);
+  for (int i = -20; i <= 20; ++i)
+    for (int j = -20; j <= 20; ++j) {
+      const Vector2d a(0.1, 0.7);
+      const Vector2d b(-0.7, 0.1);
+      const Vector2d c(-0.1, -0.7);
+      const Vector2d d(0.7 + i * step, -0.1 + j * step);
+      const int sign = inCircle(a, b, c, d);
+      EXPECT_EQ(inCircle(b, c, a, d), sign);
+      EXPECT_EQ(inCircle(b, a, c, d), -sign);
+      EXPECT_EQ(inCircle(a, b, d, c), -sign);
+    }
+}
+
+// The filter only ever saves time.
+TEST(ExactPredicates, FilterAgreesWithTheExactEvaluation) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal;
+  const auto point = [&] { return Vector2d(normal(random), normal(random)); };
+  for (int i = 0; i < 20000; ++i) {
+    const Vector2d a = point();
+    const Vector2d b = point();
+    const Vector2d c = point();
+    const Vector2d d = point();
+    ASSERT_EQ(orientation2d(a, b, c), exactOrientation2d(a, b, c));
+    ASSERT_EQ(inCircle(a, b, c, d), exactInCircle(a, b, c, d));
   }
 }
 
