@@ -15,6 +15,13 @@ cmake_minimum_required(VERSION 3.21)
 set(stages point_set neighbor_graph graph_hierarchy sphere_embedding sphere_triangulation
            mesh_topology mesh_optimization smoothing sphere_map resampling morphing)
 
+# Sources of a stage besides the one of its name: part, then stage.
+set(graph_building_stage neighbor_graph)
+set(local_delaunay_graph_stage neighbor_graph)
+foreach(part embedding_energy embedding_newton multigrid multilevel_embedding planar_start)
+  set(${part}_stage sphere_embedding)
+endforeach()
+
 set(of_eigen_and_std "Eigen/[A-Za-z]+" "[a-z_0-9]+")
 set(ours_any "spherical_param/[a-z_]+\\.h" "pcl/surface/(impl/)?spherical_param_[a-z_]+\\.(h|hpp)")
 
@@ -35,6 +42,9 @@ endfunction()
 function(allowed_includes result file)
   get_filename_component(stem "${file}" NAME_WE)
   get_filename_component(extension "${file}" LAST_EXT)
+  if(file MATCHES "^src/core/" AND DEFINED ${stem}_stage)
+    set(stem ${${stem}_stage})
+  endif()
   set(allowed NOTFOUND)
   list(FIND stages "${stem}" position)
 

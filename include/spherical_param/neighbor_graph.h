@@ -2,9 +2,21 @@
 
 #include "spherical_param/types.h"
 
+#include <functional>
 #include <vector>
 
 namespace spherical_param {
+
+/// How points become neighbours.
+enum class GraphMethod {
+  NearestNeighbors,  ///< k nearest neighbours (Zwicker and Gotsman 2004, section 3)
+  LocalDelaunay,     ///< local Delaunay neighbourhoods (the future work of their section 6)
+};
+
+/// Answers with the `count` nearest neighbours of each of `points`, one list for each in their
+/// order. The point itself may be in its list; `count` should not include it. Lists may be shorter
+/// where there are no more.
+using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
 
 /// Parameters of buildNeighborGraph().
 struct NeighborGraphOptions {
@@ -24,7 +36,31 @@ struct Bridge {
 struct NeighborGraph {
   Graph graph;                  ///< connected
   Index components = 0;         ///< connected components before bridging
-  std::vector<Bridge> bridges;  ///< components - 1 edges, in the order of their insertion
+  std::vector<Bridge> bridges;  ///< edges that join them, in the order of their insertion
+
+  // Of buildLocalDelaunayGraph() alone. Its bridges also tie parts that a single node joins.
+
+  /// Points without a trustworthy tangent plane, ascending: their neighbours are those of the
+  /// Gabriel graph, which needs none.
+  std::vector<Index> without_tangent_plane;
+  Index searched_again = 0;  ///< points for which more neighbours were asked
+  Index uncertified = 0;     ///< points with a tangent plane whose cell is not certified even so
+  Index weak = 0;            ///< points that fewer than three neighbours agreed with, repaired
+};
+
+/// Parameters of buildLocalDelaunayGraph().
+struct LocalDelaunayOptions {
+  /// Nearest neighbours that span the tangent plane; more where these are on a line; 3 and up.
+  int tangent_neighbors = 10;
+  /// Candidates steeper than this to the tangent plane are on another sheet [sine of the angle];
+  /// (0, 1].
+  double max_slope = 0.85;
+  /// Nearest neighbours used of a list, and asked of `search`, at most; tangent_neighbors and up.
+  int max_candidates = 32;
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  /// Asked for more neighbours of points whose cell is not certified by those it has. May be empty:
+  /// the graph is then made of the lists alone.
+  NeighborSearch search;
 };
 
 /// Builds the symmetric, connected neighbour graph of a point cloud.
@@ -39,5 +75,34 @@ struct NeighborGraph {
 /// Cost: O(n k log k) and O(c log c log n) for the bridges of c components, typically.
 NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& lists,
                                  const NeighborGraphOptions& options = {});
+
+/// Builds a connected neighbour graph from local Delaunay neighbourhoods.
+///
+/// The nearest neighbours of a point are laid into its tangent plane at their true distances; its
+/// star is the set of its Voronoi neighbours there. Points i and j are joined if both stars agree.
+/// A star is certified if no point outside of the list can change it: twice the radius of the
+/// Voronoi cell is within the list; `search` is asked for more where it is not, once a round for
+/// all such points together.
+///
+/// Where the nearest neighbours span no plane (a line, all directions alike, too few points), the
+/// star is that of the Gabriel graph of the list (Gabriel and Sokal 1969).
+///
+/// Points with fewer than three neighbours get their whole star and their three nearest. Parts are
+/// joined by the shortest edges of stars, then along their closest pairs; each two that are joined
+/// get up to three bridges with different ends, and so do parts that a single node joins: what
+/// hangs by one node collapses in the embedding.
+///
+/// \param points 3 x n, finite, distinct.
+/// \param lists  n neighbour lists, the nearest of each point; unsorted, with or without the point
+///               itself. 12 nearest neighbours are mostly enough.
+/// \return the graph; the same, bit by bit, for any number of threads.
+/// \throw InvalidInput for sizes that disagree, an index out of range, or options out of range.
+/// Cost: O(n c log c) for lists of c points, typically.
+///
+/// Guaranteed: the graph is connected; of four points and more, each has at least three neighbours.
+/// Not guaranteed: that no edge is a shortcut where sheets are closer to each other than their
+/// points, nor that a chain of parts that hang by one node each (a needle) is tied everywhere.
+NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
+                                      const LocalDelaunayOptions& options = {});
 
 }  // namespace spherical_param

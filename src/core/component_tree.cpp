@@ -4,6 +4,14 @@
 #include <numeric>
 
 namespace spherical_param::internal {
+namespace {
+
+/// For the few that are ever excluded.
+bool contains(const std::vector<Index>& nodes, Index i) {
+  return std::find(nodes.begin(), nodes.end(), i) != nodes.end();
+}
+
+}  // namespace
 
 ComponentTree::ComponentTree(const Positions& points)
     : points_(points), order_(static_cast<std::size_t>(points.cols())),
@@ -61,21 +69,38 @@ void ComponentTree::setComponents(const std::vector<Index>& component) {
   }
 }
 
-void ComponentTree::nearestOther(Index i, Pair& best) const {
-  visit(0, i, best);
+void ComponentTree::nearestOther(Index i, const std::vector<Index>& excluded, Pair& best) const {
+  const Index own = componentOf(i);
+  visit(
+      0, i, [&](Index component) { return component != own; },
+      [&](Index j) { return componentOf(j) != own && !contains(excluded, j); }, best);
 }
 
-void ComponentTree::visit(Index node_index, Index i, Pair& best) const {
+void ComponentTree::nearestIn(Index component, Index i, const std::vector<Index>& excluded,
+                              Pair& best) const {
+  visit(
+      0, i, [&](Index other) { return other == component || other == kMixed; },
+      [&](Index j) { return componentOf(j) == component && !contains(excluded, j); }, best);
+}
+
+void ComponentTree::nearestExcept(Index i, const std::vector<Index>& excluded, Pair& best) const {
+  visit(
+      0, i, [](Index) { return true; }, [&](Index j) { return j != i && !contains(excluded, j); },
+      best);
+}
+
+template <typename MayHold, typename Accepts>
+void ComponentTree::visit(Index node_index, Index i, const MayHold& may_hold,
+                          const Accepts& accepts, Pair& best) const {
   const Node& node = nodes_[static_cast<std::size_t>(node_index)];
-  const Index own = component_[static_cast<std::size_t>(i)];
   const auto point = points_.col(i);
   // A node at exactly the best distance may still hold the tie with lower indices.
-  if (node.component == own || node.box.squaredExteriorDistance(point) > best.squared_distance)
+  if (!may_hold(node.component) || node.box.squaredExteriorDistance(point) > best.squared_distance)
     return;
   if (node.left == 0) {
     for (Index position = node.begin; position < node.end; ++position) {
       const Index j = order_[static_cast<std::size_t>(position)];
-      if (component_[static_cast<std::size_t>(j)] == own)
+      if (!accepts(j))
         continue;
       const Pair pair{(point - points_.col(j)).squaredNorm(), std::min(i, j), std::max(i, j)};
       best = std::min(best, pair);
@@ -86,8 +111,8 @@ void ComponentTree::visit(Index node_index, Index i, Pair& best) const {
     return nodes_[static_cast<std::size_t>(child)].box.squaredExteriorDistance(point);
   };
   const bool right_first = distance(node.left + 1) < distance(node.left);
-  visit(node.left + (right_first ? 1 : 0), i, best);
-  visit(node.left + (right_first ? 0 : 1), i, best);
+  visit(node.left + (right_first ? 1 : 0), i, may_hold, accepts, best);
+  visit(node.left + (right_first ? 0 : 1), i, may_hold, accepts, best);
 }
 
 }  // namespace spherical_param::internal

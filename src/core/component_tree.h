@@ -34,9 +34,17 @@ public:
   /// \param component n entries, the component of each point.
   void setComponents(const std::vector<Index>& component);
 
-  /// Lowers `best` to the pair of point i and its nearest point in another component, if that is
-  /// less than `best` is already.
-  void nearestOther(Index i, Pair& best) const;
+  /// Lowers `best` to the pair of point i and its nearest point in another component, those in
+  /// `excluded` left out, if that is less than `best` is already.
+  void nearestOther(Index i, const std::vector<Index>& excluded, Pair& best) const;
+
+  /// Lowers `best` to the pair of point i and its nearest point in `component`, those in `excluded`
+  /// left out, if that is less than `best` is already.
+  void nearestIn(Index component, Index i, const std::vector<Index>& excluded, Pair& best) const;
+
+  /// Lowers `best` to the pair of point i and its nearest point that is neither i nor in
+  /// `excluded`, if that is less than `best` is already.
+  void nearestExcept(Index i, const std::vector<Index>& excluded, Pair& best) const;
 
 private:
   static constexpr Index kLeafSize = 8;
@@ -51,7 +59,14 @@ private:
   };
 
   void build(Index node);
-  void visit(Index node, Index i, Pair& best) const;
+
+  Index componentOf(Index i) const { return component_[static_cast<std::size_t>(i)]; }
+
+  /// \param may_hold whether points of this component, or of several, may be accepted
+  /// \param accepts  whether a point is accepted
+  template <typename MayHold, typename Accepts>
+  void visit(Index node, Index i, const MayHold& may_hold, const Accepts& accepts,
+             Pair& best) const;
 
   const Positions& points_;
   std::vector<Index> order_;

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+namespace spherical_param::internal {
+
+/// More would exhaust the system before they could work.
+inline constexpr int kMostThreads = 1024;
+/// Work is handed out, and sums are formed, in blocks of so many items: the same bits for any
+/// number of threads.
+inline constexpr std::size_t kBlockSize = 512;
+/// Below this many items a parallel region for much work costs more than it gains.
+inline constexpr std::size_t kParallelThreshold = 4096;
+/// The same for one short pass over the items: on a busy machine a region may have to wait for a
+/// thread that does not run, which takes as long as many such passes.
+inline constexpr std::size_t kShortPassThreshold = 50000;
+
+/// The threads that are worth having for so many items.
+///
+/// \param requested 0: as many as OpenMP would use.
+/// \param threshold the least number of items for several threads.
+inline int threadCount([[maybe_unused]] int requested, [[maybe_unused]] std::size_t items,
+                       [[maybe_unused]] std::size_t threshold) {
+#ifdef _OPENMP
+  if (items >= threshold)
+    // OpenMP ends the process if it cannot start a thread; more than this gain nothing anyway.
+    return std::min({requested > 0 ? requested : omp_get_max_threads(), 4 * omp_get_num_procs(),
+                     static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMostThreads))});
+#endif
+  return 1;
+}
+
+/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. The work must
+/// not throw.
+template <typename Work>
+void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
+  const auto blocks = static_cast<std::ptrdiff_t>((count + kBlockSize - 1) / kBlockSize);
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
+#endif
+  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
+    const auto block = static_cast<std::size_t>(b);
+    work(block, block * kBlockSize, std::min(count, (block + 1) * kBlockSize));
+  }
+}
+
+/// Calls work(thread, i) for each i in [0, count), where thread < threads.
+template <typename Work>
+void forEachItem(std::size_t count, int threads, const Work& work) {
+  forEachBlock(count, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+#ifdef _OPENMP
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+#else
+    const std::size_t thread = 0;
+#endif
+    for (std::size_t i = begin; i < end; ++i)
+      work(thread, i);
+  });
+}
+
+/// The sum of term(begin, end) over the blocks of [0, count), in their order.
+template <typename Value, typename Term>
+Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term& term) {
+  std::vector<Value> sums((count + kBlockSize - 1) / kBlockSize, zero);
+  forEachBlock(count, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    sums[block] = term(begin, end);
+  });
+  Value total = zero;
+  for (const Value& sum : sums)
+    total += sum;
+  return total;
+}
+
+}  // namespace spherical_param::internal
