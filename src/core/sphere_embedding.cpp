@@ -2,8 +2,10 @@
 
 #include "spherical_param/errors.h"
 
+#include "core/parallel.h"
 #include "core/sleeping_barrier.h"
 #include "core/space_filling_curve.h"
+#include "core/tangential_laplacian.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -24,17 +26,13 @@
 namespace spherical_param {
 namespace {
 
+using internal::PaddedPositions;
+using internal::Rows;
+using internal::WeightRule;
+
 /// Sums are formed per block and then over the blocks in order: the same bits for any number of
 /// threads.
-constexpr Index kBlockSize = 512;
-/// More would exhaust the system before they could work.
-constexpr int kMostThreads = 1024;
-/// Below this many nodes a parallel region costs more than it gains.
-constexpr Index kParallelThreshold = 4096;
-/// Shorter edges count as this long, so that sums of weights stay finite.
-constexpr double kShortestLength = 1e-150;
-/// Entries of a row that are evaluated together.
-constexpr int kLanes = 4;
+constexpr Index kBlockSize = internal::kBlockSize;
 /// A collapse: this share of the nodes within this distance of one direction.
 constexpr double kCollapsedShare = 0.9;
 constexpr double kCollapsedRadius = 0.01;
@@ -60,21 +58,9 @@ void checkInput(const Graph& graph, const Positions& start, const EmbeddingOptio
          "; use 2 or more, or 0 to never stop for stagnation");
   if (!(options.stagnation_change >= 0.0))
     fail("stagnation_change = " + std::to_string(options.stagnation_change) + "; use 0 or more");
-  if (options.threads < 0 || options.threads > kMostThreads)
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
     fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
-         std::to_string(kMostThreads));
-}
-
-int threadCount([[maybe_unused]] int requested, Index nodes) {
-  if (nodes < kParallelThreshold)
-    return 1;
-#ifdef _OPENMP
-  // OpenMP ends the process if it cannot start a thread; more than this gain nothing anyway.
-  return std::min({requested > 0 ? requested : omp_get_max_threads(), 4 * omp_get_num_procs(),
-                   static_cast<int>(nodes / kBlockSize)});
-#else
-  return 1;
-#endif
+         std::to_string(internal::kMostThreads));
 }
 
 /// The points about their centroid, scaled first: neither the sum nor the squares may overflow.
@@ -96,95 +82,6 @@ Eigen::Vector3d anyDirection(Index i, Index n) {
   return {radius * std::cos(angle), radius * std::sin(angle), height};
 }
 
-/// Four doubles a point, so that no point is split between cache lines; the last is 0.
-using PaddedPositions = Eigen::Matrix<double, 4, Eigen::Dynamic>;
-
-/// The rows of a graph with the nodes renumbered along a space-filling curve, so that neighbours
-/// are near in memory. Rows are padded to whole groups of kLanes entries with the node itself.
-struct Rows {
-  std::vector<Index> node_of_row;    ///< original node
-  std::vector<std::size_t> offsets;  ///< multiples of kLanes
-  std::vector<Index> neighbors;      ///< as rows
-  std::vector<double> factors;       ///< 1 for uniform weights, else 1 / |p_i - p_j|; padding has 0
-};
-
-Rows orderRows(const Graph& graph, const Positions& positions, EdgeWeights weights) {
-  Rows rows;
-  rows.node_of_row = internal::mortonOrder(positions);
-  const std::size_t n = graph.size();
-  std::vector<Index> row_of_node(n);
-  for (std::size_t row = 0; row < n; ++row)
-    row_of_node[static_cast<std::size_t>(rows.node_of_row[row])] = static_cast<Index>(row);
-  const auto node_at = [&](std::size_t row) {
-    return static_cast<std::size_t>(rows.node_of_row[row]);
-  };
-  rows.offsets.reserve(n + 1);
-  rows.offsets.push_back(0);
-  for (std::size_t row = 0; row < n; ++row) {
-    const std::size_t i = node_at(row);
-    const std::size_t entries = graph.offsets[i + 1] - graph.offsets[i];
-    rows.offsets.push_back(rows.offsets.back() + (entries + kLanes - 1) / kLanes * kLanes);
-  }
-  rows.neighbors.reserve(rows.offsets.back());
-  rows.factors.reserve(rows.offsets.back());
-  for (std::size_t row = 0; row < n; ++row) {
-    const std::size_t i = node_at(row);
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      rows.neighbors.push_back(row_of_node[static_cast<std::size_t>(graph.neighbors[e])]);
-      rows.factors.push_back(weights == EdgeWeights::Uniform
-                                 ? 1.0
-                                 : 1.0 / std::max(graph.lengths[e], kShortestLength));
-    }
-    rows.neighbors.resize(rows.offsets[row + 1], static_cast<Index>(row));
-    rows.factors.resize(rows.offsets[row + 1], 0.0);
-  }
-  return rows;
-}
-
-/// One value for each of kLanes entries.
-using Lanes = Eigen::Array<double, kLanes, 1>;
-
-/// Sum of the lanes in an order that does not depend on the instruction set.
-double total(const Lanes& lanes) {
-  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-}
-
-/// Tangential part of the Laplacian of a row (equations 1 and 2), weights normalised to sum 1.
-template <bool Adaptive>
-Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, Index row) {
-  const Eigen::Vector3d center = u.col(row).head<3>();
-  const double* positions = u.data();
-  const Index* neighbors = rows.neighbors.data();
-  Lanes sum_x = Lanes::Zero();
-  Lanes sum_y = Lanes::Zero();
-  Lanes sum_z = Lanes::Zero();
-  Lanes sum_weights = Lanes::Zero();
-  const auto i = static_cast<std::size_t>(row);
-  const std::size_t end = rows.offsets[i + 1];
-  for (std::size_t e = rows.offsets[i]; e < end; e += kLanes) {
-    const double* const a = positions + 4 * static_cast<std::size_t>(neighbors[e]);
-    const double* const b = positions + 4 * static_cast<std::size_t>(neighbors[e + 1]);
-    const double* const c = positions + 4 * static_cast<std::size_t>(neighbors[e + 2]);
-    const double* const d = positions + 4 * static_cast<std::size_t>(neighbors[e + 3]);
-    const Lanes x = Lanes(a[0], b[0], c[0], d[0]) - center[0];
-    const Lanes y = Lanes(a[1], b[1], c[1], d[1]) - center[1];
-    const Lanes z = Lanes(a[2], b[2], c[2], d[2]) - center[2];
-    Lanes weights = Eigen::Map<const Lanes>(rows.factors.data() + e);
-    if constexpr (Adaptive)
-      weights *= (x * x + y * y + z * z).sqrt();
-    sum_x += weights * x;
-    sum_y += weights * y;
-    sum_z += weights * z;
-    sum_weights += weights;
-  }
-  const double weight_sum = total(sum_weights);
-  if (!(weight_sum > 0.0))
-    return Eigen::Vector3d::Zero();  // all neighbours are at the same place
-  const Eigen::Vector3d laplacian =
-      Eigen::Vector3d(total(sum_x), total(sum_y), total(sum_z)) / weight_sum;
-  return laplacian - laplacian.dot(center) * center;
-}
-
 /// Tells whether nearly all points are around one direction.
 bool isCollapsed(const Positions& u) {
   const Eigen::Vector3d mean = u.rowwise().mean();
@@ -201,7 +98,8 @@ bool isCollapsed(const Positions& u) {
 class Iteration {
 public:
   Iteration(const Graph& graph, const Positions& directions, const EmbeddingOptions& options)
-      : rows_(orderRows(graph, directions, options.weights)),
+      : rows_(internal::makeRows(graph, internal::mortonOrder(directions),
+                                 options.weights == EdgeWeights::Uniform)),
         adaptive_(options.weights == EdgeWeights::Adaptive), lambda_(options.lambda),
         n_(static_cast<Index>(graph.size())), u_(4, n_), moved_(4, n_),
         block_sums_(static_cast<std::size_t>((n_ + kBlockSize - 1) / kBlockSize)),
@@ -214,9 +112,9 @@ public:
   void evaluate() {
     while (const auto block = takeBlock(next_to_evaluate_)) {
       if (adaptive_)
-        evaluateBlock<true>(*block);
+        evaluateBlock<WeightRule::Linear>(*block);
       else
-        evaluateBlock<false>(*block);
+        evaluateBlock<WeightRule::Fixed>(*block);
     }
   }
 
@@ -259,12 +157,12 @@ private:
   Index beginOf(Index block) const { return block * kBlockSize; }
   Index endOf(Index block) const { return std::min(n_, (block + 1) * kBlockSize); }
 
-  template <bool Adaptive>
+  template <WeightRule rule>
   void evaluateBlock(Index block) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double residual = 0.0;
     for (Index row = beginOf(block); row < endOf(block); ++row) {
-      const Eigen::Vector3d step = tangentialLaplacian<Adaptive>(rows_, u_, row);
+      const Eigen::Vector3d step = internal::tangentialLaplacian<rule>(rows_, u_, row);
       residual += step.norm();
       // Never zero: the step is orthogonal to a unit vector.
       const Eigen::Vector3d moved = (u_.col(row).head<3>() + lambda_ * step).normalized();
@@ -396,7 +294,8 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
   }
   Iteration iteration(graph, projectFromCentroid(start), options);
   result.residuals.reserve(static_cast<std::size_t>(std::min(options.max_iterations, 100000)) + 1);
-  iterate(iteration, threadCount(options.threads, static_cast<Index>(graph.size())),
+  iterate(iteration,
+          internal::threadCount(options.threads, graph.size(), internal::kParallelThreshold),
           [&](double residual) {
             if (options.progress && !options.progress(result.iterations, residual))
               throw Cancelled("embedOnSphere: cancelled by the progress callback");
@@ -422,8 +321,8 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
   return result;
 }
 
-double meanTangentialLaplacian(const Graph& graph, const Positions& directions,
-                               EdgeWeights weights) {
+double meanTangentialLaplacian(const Graph& graph, const Positions& directions, EdgeWeights weights,
+                               double exponent) {
   if (static_cast<std::size_t>(directions.cols()) != graph.size())
     throw InvalidInput("meanTangentialLaplacian: " + std::to_string(directions.cols()) +
                        " directions for a graph of " + std::to_string(graph.size()) +
@@ -439,7 +338,7 @@ double meanTangentialLaplacian(const Graph& graph, const Positions& directions,
       if (weights == EdgeWeights::InverseLength)
         weight = 1.0 / graph.lengths[e];
       else if (weights == EdgeWeights::Adaptive)
-        weight = edge.norm() / graph.lengths[e];
+        weight = std::pow(edge.norm() / graph.lengths[e], exponent - 2.0);
       laplacian += weight * edge;
       weight_sum += weight;
     }

@@ -1,0 +1,337 @@
+#include "spherical_param/sphere_embedding.h"
+
+#include "core/embedding_energy.h"
+#include "core/embedding_newton.h"
+#include "core/multigrid.h"
+#include "core/parallel.h"
+#include "core/planar_start.h"
+#include "core/tangential_laplacian.h"
+#include "spherical_param/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+using internal::EmbeddingEnergy;
+using internal::MultigridPreconditioner;
+using internal::NewtonReport;
+using internal::PaddedPositions;
+using internal::Rows;
+using internal::WeightRule;
+
+/// Relative residual to which a level is solved fully: limbs shrink exponentially along the sphere,
+/// so that no absolute tolerance would tell whether their tips are solved.
+constexpr double kSolvedTolerance = 1e-4;
+/// Linear systems of so many nodes are solved directly.
+constexpr std::size_t kDirectSize = 2000;
+/// Smoothing sweeps on a planar start, whose edges are far from their lengths.
+constexpr int kStartSweeps = 3;
+/// An embedding with a longer mean of its directions has collapsed.
+constexpr double kCollapsedCentroid = 0.95;
+/// Finer levels than the coarsest are tried up to this size, where all starts collapse: the fewer
+/// nodes are around a limb, the weaker is the barrier that keeps the sphere from slipping off it.
+constexpr std::size_t kLargestStart = 100000;
+/// Beyond this mean the embedding has slipped along a tube towards one of its ends.
+constexpr double kSlippedCentroid = 0.5;
+/// Edges below this length on the sphere are about to be lost in rounding, which no more than this
+/// share of the nodes should suffer.
+constexpr double kSmallestEdge = 1e-12;
+constexpr double kSmallShare = 0.005;
+/// Share of the work that the coarsest level counts for in the progress, and the other levels
+/// before the finest is solved.
+constexpr double kStartShare = 0.3;
+constexpr double kCascadeShare = 0.5;
+
+void checkInput(const Graph& graph, const GraphHierarchy& hierarchy,
+                const MultilevelOptions& options) {
+  const auto fail = [](const std::string& what) { throw InvalidInput("embedMultilevel: " + what); };
+  if (graph.neighbors.size() != graph.offsets.back() ||
+      graph.lengths.size() != graph.neighbors.size())
+    fail("the graph's arrays differ in length; use a graph from buildNeighborGraph()");
+  std::size_t finer = graph.size();
+  for (const HierarchyLevel& level : hierarchy.levels) {
+    if (level.aggregate_of.size() != finer || level.seeds.size() != level.graph.size())
+      fail("the hierarchy is not that of the graph; use buildGraphHierarchy() on it");
+    finer = level.graph.size();
+  }
+  if (!(options.exponent > 2.0 && options.exponent <= 16.0))
+    fail("exponent = " + std::to_string(options.exponent) + " is out of range; use (2, 16]");
+  if (!(options.lambda > 0.0 && options.lambda <= 1.0))
+    fail("lambda = " + std::to_string(options.lambda) + " is out of range; use (0, 1]");
+  if (options.sweeps < 0)
+    fail("sweeps = " + std::to_string(options.sweeps) + "; use 0 or more");
+  if (options.solved_size < 0)
+    fail("solved_size = " + std::to_string(options.solved_size) + "; use 0 or more");
+  if (options.solved_finest_size < 0)
+    fail("solved_finest_size = " + std::to_string(options.solved_finest_size) + "; use 0 or more");
+  if (options.tolerance && !(*options.tolerance >= 0.0))
+    fail("tolerance = " + std::to_string(*options.tolerance) + "; use 0 or more");
+  constexpr int most_starts = 100;
+  if (options.starts < 1 || options.starts > most_starts)
+    fail("starts = " + std::to_string(options.starts) + " is out of range; use 1 to 100");
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
+         std::to_string(internal::kMostThreads));
+}
+
+/// The work on all levels; level 0 is the graph itself.
+class Solver {
+public:
+  Solver(const Graph& graph, const GraphHierarchy& hierarchy, const MultilevelOptions& options)
+      : graph_(graph), hierarchy_(hierarchy), options_(options) {}
+
+  MultilevelEmbedding run() {
+    result_.levels.resize(hierarchy_.levels.size() + 1);
+    for (std::size_t l = 0; l < result_.levels.size(); ++l) {
+      result_.levels[l].nodes = graphOf(l).size();
+      result_.levels[l].edges = graphOf(l).edgeCount();
+    }
+    std::size_t level = 0;
+    Positions u = solveCoarsest(level);
+    if (u.cols() == 0) {
+      result_.stop_reason = StopReason::Collapsed;
+      return std::move(result_);
+    }
+    for (std::size_t l = level; l-- > 0;) {
+      u = (u * hierarchy_.levels[l].prolongation.transpose()).eval();
+      u.colwise().normalize();
+      smooth(l, options_.weights, options_.sweeps, u);
+      result_.levels[l].sweeps = options_.sweeps;
+      if (isSolved(l))
+        solve(l, energyAt(l, u), std::nullopt, u);
+      if (l > 0)
+        report(kStartShare + (kCascadeShare - kStartShare) * static_cast<double>(level - l) /
+                                 static_cast<double>(level),
+               result_.levels[l].residual);
+    }
+    finish(u);
+    return std::move(result_);
+  }
+
+private:
+  const Graph& graphOf(std::size_t l) const {
+    return l == 0 ? graph_ : hierarchy_.levels[l - 1].graph;
+  }
+
+  bool isSolved(std::size_t l) const {
+    return graphOf(l).size() <=
+           static_cast<std::size_t>(l == 0 ? options_.solved_finest_size : options_.solved_size);
+  }
+
+  bool isAdaptive() const { return options_.weights == EdgeWeights::Adaptive; }
+
+  EmbeddingEnergy adaptiveEnergy(std::size_t l) const {
+    return {graphOf(l), false, options_.exponent, options_.threads};
+  }
+
+  EmbeddingEnergy energyWithout(std::size_t l) const {
+    const bool uniform = options_.weights == EdgeWeights::Uniform;
+    return isAdaptive() ? adaptiveEnergy(l)
+                        : EmbeddingEnergy(graphOf(l), uniform, 2.0, options_.threads);
+  }
+
+  /// The energy of the chosen weights, with a barrier for weights that have none of their own, and
+  /// for graphs on which that of adaptive weights does not hold.
+  EmbeddingEnergy energyAt(std::size_t l, const Positions& u) const {
+    EmbeddingEnergy energy = energyWithout(l);
+    if (!isAdaptive() || result_.added_barrier)
+      energy.addBarrier(u);
+    return energy;
+  }
+
+  /// Tells the callback; the share never falls.
+  void report(double share, double residual) {
+    share_ = std::max(share_, share);
+    if (options_.progress && !options_.progress(share_, residual))
+      throw Cancelled("embedMultilevel: cancelled by the progress callback");
+  }
+
+  /// The start on the coarsest level that has a good one, or else the last that was found. If none
+  /// is, as on graphs of a few nodes or with wide gaps, that on the coarsest level with a barrier.
+  Positions solveCoarsest(std::size_t& level) {
+    Positions best;
+    level = hierarchy_.levels.size();
+    for (std::size_t l = level + 1; l-- > 0;) {
+      if (l < hierarchy_.levels.size() && graphOf(l).size() > kLargestStart)
+        break;
+      Positions u = solveStarts(l);
+      if (u.cols() == 0)
+        continue;
+      best = std::move(u);
+      level = l;
+      if (isGood(l, best))
+        break;
+    }
+    if (best.cols() == 0) {
+      result_.added_barrier = true;
+      level = hierarchy_.levels.size();
+      best = solveStarts(level);
+    }
+    if (best.cols() > 0 && !isAdaptive())
+      solve(level, energyAt(level, best), std::nullopt, best);
+    return best;
+  }
+
+  /// Tells whether an embedding has not slipped along a tube to one of its ends, and is nowhere so
+  /// small that rounding is about to destroy it: both are signs of too few nodes around a limb.
+  bool isGood(std::size_t l, const Positions& u) const {
+    const Graph& graph = graphOf(l);
+    std::size_t small = 0;
+    for (std::size_t i = 0; i < graph.size(); ++i) {
+      double longest = 0.0;
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+        longest = std::max(
+            longest, (u.col(graph.neighbors[e]) - u.col(static_cast<Eigen::Index>(i))).norm());
+      small += longest < kSmallestEdge ? 1 : 0;
+    }
+    return u.rowwise().mean().norm() < kSlippedCentroid &&
+           static_cast<double>(small) <= kSmallShare * static_cast<double>(graph.size());
+  }
+
+  /// The best of several starts on a level, solved fully; without columns if all collapse. With
+  /// adaptive weights, whatever was chosen: only they unfold a start without collapsing it.
+  Positions solveStarts(std::size_t l) {
+    const std::vector<Index> centers = internal::centralNodes(graphOf(l));
+    const LevelReport untouched = result_.levels[l];
+    LevelReport best_report = untouched;
+    Positions best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t start = 0;
+         start < std::min(centers.size(), static_cast<std::size_t>(options_.starts)); ++start) {
+      report(kStartShare * static_cast<double>(start) / options_.starts, 0.0);
+      Positions u = internal::planarStart(graphOf(l), centers[start]);
+      result_.levels[l] = untouched;
+      result_.levels[l].sweeps = kStartSweeps;
+      EmbeddingEnergy energy = adaptiveEnergy(l);
+      if (result_.added_barrier)
+        energy.addBarrier(u);
+      smooth(l, EdgeWeights::Adaptive, kStartSweeps, u);
+      solve(l, energy, std::nullopt, u);
+      ++result_.starts;
+      const double value = energy.value(u);
+      if (!(u.rowwise().mean().norm() <= kCollapsedCentroid) || !std::isfinite(value)) {
+        ++result_.collapsed_starts;
+      } else if (value < least) {
+        least = value;
+        best = std::move(u);
+        best_report = result_.levels[l];
+      }
+    }
+    result_.levels[l] = best_report;
+    return best;
+  }
+
+  /// Damped Jacobi sweeps: lambda times the tangential Laplacian, all nodes at once.
+  void smooth(std::size_t l, EdgeWeights weights, int sweeps, Positions& u) const {
+    const Graph& graph = graphOf(l);
+    std::vector<Index> order(graph.size());
+    std::iota(order.begin(), order.end(), 0);
+    Rows rows = internal::makeRows(graph, std::move(order), weights == EdgeWeights::Uniform);
+    rows.power = options_.exponent - 2.0;
+    PaddedPositions current(4, u.cols());
+    current.topRows<3>() = u;
+    current.row(3).setZero();
+    PaddedPositions next = current;
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+      if (weights != EdgeWeights::Adaptive)
+        sweepOnce<WeightRule::Fixed>(rows, current, next);
+      else if (options_.exponent == 3.0)
+        sweepOnce<WeightRule::Linear>(rows, current, next);
+      else
+        sweepOnce<WeightRule::Power>(rows, current, next);
+      std::swap(current, next);
+    }
+    u = current.topRows<3>();
+  }
+
+  template <WeightRule rule>
+  void sweepOnce(const Rows& rows, const PaddedPositions& current, PaddedPositions& next) const {
+    // Along an edge the energy is p - 1 times as stiff as its weight: beyond p = 3 shorter steps.
+    const double lambda = rule == WeightRule::Power
+                              ? options_.lambda * std::min(1.0, 2.0 / (options_.exponent - 1.0))
+                              : options_.lambda;
+    const auto n = static_cast<std::size_t>(rows.size());
+    internal::forEachBlock(
+        n, internal::threadCount(options_.threads, n, internal::kShortPassThreshold),
+        [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row)
+            next.col(row).head<3>() =
+                (current.col(row).head<3>() +
+                 lambda * internal::tangentialLaplacian<rule>(rows, current, row))
+                    .normalized();
+        });
+  }
+
+  /// Newton's method on a level, until it is solved fully and to the tolerance, if there is one.
+  NewtonReport solve(std::size_t l, const EmbeddingEnergy& energy, std::optional<double> tolerance,
+                     Positions& u) {
+    // Small systems are solved directly: no slower, and exact at all scales.
+    const bool direct = graphOf(l).size() <= kDirectSize;
+    MultigridPreconditioner preconditioner(hierarchy_, direct ? hierarchy_.levels.size() : l,
+                                           options_.threads);
+    internal::NewtonOptions options;
+    options.relative_tolerance = kSolvedTolerance;
+    options.tolerance = tolerance.value_or(1.0);
+    if (l == 0 && tolerance)
+      options.progress = [this, first = 0.0](int, double residual) mutable {
+        first = std::max(first, residual);
+        // The residual falls from step to step by more and more orders of magnitude.
+        const double goal = std::max(*options_.tolerance, 1e-16);
+        const double done = std::log(first / residual) / std::log(std::max(first / goal, 2.0));
+        report(kCascadeShare + (1.0 - kCascadeShare) * std::clamp(done, 0.0, 1.0), residual);
+      };
+    else
+      options.progress = [this](int, double residual) { report(share_, residual); };
+    NewtonReport newton = internal::minimizeByNewton(energy, preconditioner, options, u);
+    result_.levels[l].newton_iterations += newton.iterations;
+    result_.levels[l].linear_iterations += newton.linear_iterations;
+    result_.levels[l].residual = newton.residuals.back();
+    return newton;
+  }
+
+  void finish(Positions& u) {
+    if (options_.tolerance) {
+      NewtonReport newton = solve(0, energyAt(0, u), options_.tolerance, u);
+      result_.stop_reason = newton.residuals.back() <= *options_.tolerance ? StopReason::Converged
+                                                                           : StopReason::Stagnated;
+      result_.residuals = std::move(newton.residuals);
+    }
+    Positions gradient;
+    const EmbeddingEnergy energy = energyWithout(0);
+    result_.residual = energy.gradient(u, gradient).absolute;
+    result_.levels[0].residual = result_.residual;
+    result_.energy = energy.value(u);
+    result_.centroid_norm = u.rowwise().mean().norm();
+    if (!(result_.centroid_norm <= kCollapsedCentroid))
+      result_.stop_reason = StopReason::Collapsed;
+    result_.directions = std::move(u);
+  }
+
+  const Graph& graph_;
+  const GraphHierarchy& hierarchy_;
+  const MultilevelOptions& options_;
+  MultilevelEmbedding result_;
+  double share_ = 0.0;  ///< of the work that is done
+};
+
+}  // namespace
+
+MultilevelEmbedding embedMultilevel(const Graph& graph, const GraphHierarchy& hierarchy,
+                                    const MultilevelOptions& options) {
+  checkInput(graph, hierarchy, options);
+  if (graph.size() == 0) {
+    MultilevelEmbedding nothing;
+    nothing.directions.resize(3, 0);
+    nothing.stop_reason = StopReason::Converged;
+    return nothing;
+  }
+  return Solver(graph, hierarchy, options).run();
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,451 @@
+#include "spherical_param/sphere_embedding.h"
+
+#include "core/embedding_energy.h"
+#include "core/multigrid.h"
+#include "core/planar_start.h"
+#include "helpers.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <random>
+
+namespace spherical_param {
+namespace {
+
+using internal::EmbeddingEnergy;
+using internal::TangentBasis;
+using internal::TangentVector;
+using test::bentTube;
+using test::graphOfMesh;
+using test::randomSphere;
+using test::shareBeyondTwoSteps;
+using test::spiralSphere;
+using test::Tube;
+
+constexpr EdgeWeights kAllWeights[] = {EdgeWeights::Uniform, EdgeWeights::InverseLength,
+                                       EdgeWeights::Adaptive};
+
+/// An ellipsoid with dents and its true edges.
+struct Cloud {
+  Positions points;
+  Triangles triangles;
+  Graph graph;
+};
+
+Cloud dentedCloud(Index n) {
+  const Positions sphere = spiralSphere(n);
+  Cloud cloud;
+  cloud.points = sphere;
+  for (Index i = 0; i < n; ++i)
+    cloud.points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
+  cloud.points.row(2) *= 1.7;
+  cloud.triangles = triangulateSphere(sphere).triangles;
+  cloud.graph = graphOfMesh(cloud.points, cloud.triangles);
+  return cloud;
+}
+
+MultilevelEmbedding embed(const Graph& graph, const MultilevelOptions& options = {},
+                          const HierarchyOptions& hierarchy = {200, 1}) {
+  return embedMultilevel(graph, buildGraphHierarchy(graph, hierarchy), options);
+}
+
+MultilevelOptions converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive) {
+  MultilevelOptions options;
+  options.tolerance = tolerance;
+  options.weights = weights;
+  return options;
+}
+
+/// Moves unit vectors along tangent vectors.
+Positions moved(const Positions& u, const std::vector<TangentBasis>& bases,
+                const TangentVector& step, double share) {
+  Positions result = u;
+  for (Eigen::Index i = 0; i < u.cols(); ++i)
+    result.col(i) += bases[static_cast<std::size_t>(i)] * (share * step.segment<2>(2 * i));
+  result.colwise().normalize();
+  return result;
+}
+
+TangentVector randomTangent(Eigen::Index n, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  TangentVector result(2 * n);
+  for (double& entry : result)
+    entry = normal(generator);
+  return result;
+}
+
+struct EnergyCase {
+  bool uniform;
+  double exponent;
+  bool barrier;
+};
+
+class EnergyDerivatives : public testing::TestWithParam<EnergyCase> {};
+
+TEST_P(EnergyDerivatives, AgreeWithDifferences) {
+  const Cloud cloud = dentedCloud(60);
+  const auto [uniform, exponent, barrier] = GetParam();
+  EmbeddingEnergy energy(cloud.graph, uniform, exponent, 1);
+  if (barrier)
+    energy.addBarrier(randomSphere(60, 8));
+  const Positions u = randomSphere(60, 3);
+  const std::vector<TangentBasis> bases = internal::tangentBases(u);
+  Positions gradient;
+  energy.gradient(u, gradient);
+  EmbeddingEnergy::Hessian hessian;
+  energy.hessian(u, bases, hessian);
+  const double scale = energy.value(u);
+  constexpr double h = 1e-4;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const TangentVector step = randomTangent(60, seed);
+    double slope = 0.0;
+    for (Eigen::Index i = 0; i < 60; ++i)
+      slope += gradient.col(i).dot(bases[static_cast<std::size_t>(i)] * step.segment<2>(2 * i));
+    const double forward = energy.value(moved(u, bases, step, h));
+    const double backward = energy.value(moved(u, bases, step, -h));
+    EXPECT_NEAR((forward - backward) / (2.0 * h), slope, 1e-5 * scale);
+
+    // To second order the normalised path is a geodesic.
+    TangentVector product;
+    internal::multiply(hessian.matrix, step, product, 1);
+    double second = step.dot(product);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < 60; ++i) {
+      second -= hessian.curvature[i] * step.segment<2>(2 * i).squaredNorm();
+      if (barrier)
+        mean += hessian.masses[i] * bases[static_cast<std::size_t>(i)] * step.segment<2>(2 * i);
+    }
+    if (barrier)
+      second += mean.dot(hessian.barrier * mean);
+    EXPECT_NEAR((forward - 2.0 * energy.value(u) + backward) / (h * h), second, 1e-4 * scale);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Energies, EnergyDerivatives,
+                         testing::Values(EnergyCase{false, 3.0, false},
+                                         EnergyCase{false, 4.5, false},
+                                         EnergyCase{true, 2.0, false},
+                                         EnergyCase{false, 2.0, false}, EnergyCase{true, 2.0, true},
+                                         EnergyCase{false, 3.0, true}));
+
+TEST(EmbeddingEnergy, GradientIsTheTangentialLaplacianTimesTheWeights) {
+  const Cloud cloud = dentedCloud(200);
+  const Positions u = randomSphere(200, 4);
+  Positions gradient;
+  const EmbeddingEnergy energy(cloud.graph, false, 3.0, 1);
+  EXPECT_NEAR(energy.gradient(u, gradient).absolute,
+              meanTangentialLaplacian(cloud.graph, u, EdgeWeights::Adaptive), 1e-14);
+  for (Eigen::Index i = 0; i < 200; ++i)
+    EXPECT_NEAR(gradient.col(i).dot(u.col(i)), 0.0, 1e-13);
+}
+
+TEST(PlanarStart, IsUnfolded) {
+  // Tutte's theorem: only the outer face may be turned over. A few large triangles next to it may
+  // be as well, since straight edges in the plane are not great circles on the sphere.
+  const Tube tube = bentTube(20.0, 3.0, 12);
+  const Graph graph = graphOfMesh(tube.points, tube.triangles);
+  const Positions u = internal::planarStart(graph, internal::centralNodes(graph).front());
+  int outward = 0;
+  for (Eigen::Index t = 0; t < tube.triangles.cols(); ++t) {
+    const Eigen::Vector3d a = u.col(tube.triangles(0, t));
+    const Eigen::Vector3d b = u.col(tube.triangles(1, t));
+    const Eigen::Vector3d c = u.col(tube.triangles(2, t));
+    outward += a.dot((b - a).cross(c - a)) > 0.0 ? 1 : 0;
+  }
+  EXPECT_LT(static_cast<double>(std::min<Eigen::Index>(outward, tube.triangles.cols() - outward)),
+            0.02 * static_cast<double>(tube.triangles.cols()));
+  EXPECT_LT(u.rowwise().mean().norm(), 0.06);
+}
+
+TEST(PlanarStart, CentralNodesOfATubeAreInItsMiddle) {
+  const Tube tube = bentTube(30.0, 0.0, 10);
+  const Graph graph = graphOfMesh(tube.points, tube.triangles);
+  EXPECT_NEAR(tube.points(0, internal::centralNodes(graph).front()), 15.0, 2.0);
+}
+
+TEST(MultigridPreconditioner, IsSymmetricAndSolvesDirectlyWithoutLevels) {
+  const Cloud cloud = dentedCloud(1500);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {100, 1});
+  const Positions u = embed(cloud.graph).directions;
+  const std::vector<TangentBasis> bases = internal::tangentBases(u);
+  EmbeddingEnergy::Hessian hessian;
+  EmbeddingEnergy(cloud.graph, false, 3.0, 1).hessian(u, bases, hessian);
+  internal::MultigridPreconditioner cycle(hierarchy, 0, 1);
+  cycle.compute(hessian.matrix, bases);
+  const TangentVector x = randomTangent(1500, 1);
+  const TangentVector y = randomTangent(1500, 2);
+  TangentVector cycled_x;
+  TangentVector cycled_y;
+  cycle.apply(x, cycled_x);
+  cycle.apply(y, cycled_y);
+  EXPECT_NEAR(x.dot(cycled_y), y.dot(cycled_x), 1e-9 * std::abs(x.dot(cycled_x)));
+  EXPECT_GT(x.dot(cycled_x), 0.0);
+
+  const GraphHierarchy none;
+  internal::MultigridPreconditioner direct(none, 0, 1);
+  direct.compute(hessian.matrix, bases);
+  TangentVector solution;
+  TangentVector product;
+  direct.apply(x, solution);
+  internal::multiply(hessian.matrix, solution, product, 1);
+  EXPECT_LT((product - x).norm(), 1e-6 * x.norm());
+}
+
+TEST(MultilevelEmbedding, IcosahedronByHand) {
+  const double golden = (1.0 + std::sqrt(5.0)) / 2.0;
+  Positions points(3, 12);
+  Index column = 0;
+  for (const double one : {-1.0, 1.0})
+    for (const double other : {-golden, golden}) {
+      points.col(column++) << one, other, 0.0;
+      points.col(column++) << other, 0.0, one;
+      points.col(column++) << 0.0, one, other;
+    }
+  points.colwise().normalize();
+  const Graph graph = graphOfMesh(points, triangulateSphere(points).triangles);
+  const MultilevelEmbedding result = embed(graph, converging(1e-12));
+  ASSERT_TRUE(result.converged());
+  const Eigen::MatrixXd cosines = result.directions.transpose() * result.directions;
+  const Eigen::MatrixXd expected = points.transpose() * points;
+  EXPECT_LT((cosines - expected).cwiseAbs().maxCoeff(), 1e-9);
+  // 30 edges as long on the sphere as in space, of squared length 4 / (golden + 2).
+  EXPECT_NEAR(result.energy, 30.0 * 4.0 / (golden + 2.0) / 3.0, 1e-9);
+}
+
+TEST(MultilevelEmbedding, TangentialLaplacianVanishes) {
+  const Cloud cloud = dentedCloud(12000);
+  const MultilevelEmbedding result = embed(cloud.graph, converging(1e-12));
+  EXPECT_TRUE(result.converged());
+  EXPECT_LT(meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive), 1e-12);
+  EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+  EXPECT_EQ(result.residuals.back(), result.residual);
+  EXPECT_GT(result.residuals.front(), 1e-5);
+}
+
+TEST(MultilevelEmbedding, OtherExponentsConverge) {
+  const Cloud cloud = dentedCloud(2000);
+  for (const double exponent : {2.5, 4.0, 6.0}) {
+    MultilevelOptions options = converging(1e-11);
+    options.exponent = exponent;
+    const MultilevelEmbedding result = embed(cloud.graph, options);
+    EXPECT_TRUE(result.converged()) << exponent;
+    EXPECT_LT(
+        meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive, exponent),
+        1e-11);
+    EXPECT_LT(shareBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
+              1e-3);
+  }
+}
+
+TEST(MultilevelEmbedding, SameMinimumWhateverTheStart) {
+  const Cloud cloud = dentedCloud(3000);
+  const MultilevelEmbedding one = embed(cloud.graph, converging(1e-12), {200, 1});
+  for (const std::uint32_t seed : {2U, 3U, 4U}) {
+    MultilevelOptions options = converging(1e-12);
+    options.starts = 1;
+    const MultilevelEmbedding other = embed(cloud.graph, options, {300, seed});
+    EXPECT_NEAR(other.energy, one.energy, 1e-9 * one.energy);
+    // Up to a rotation or reflection: the angles between nodes are the same.
+    for (Eigen::Index i = 0; i + 7 < 3000; i += 7)
+      EXPECT_NEAR(one.directions.col(i).dot(one.directions.col(i + 7)),
+                  other.directions.col(i).dot(other.directions.col(i + 7)), 1e-6);
+  }
+}
+
+TEST(MultilevelEmbedding, UnfoldsABentTubeThatTheIterationFolds) {
+  const Tube tube = bentTube(25.0, 4.0, 16);
+  const Graph graph = graphOfMesh(tube.points, tube.triangles);
+  const auto folded = [&](const Positions& directions) {
+    return shareBeyondTwoSteps(graph, triangulateSphere(directions).triangles);
+  };
+  EXPECT_GT(folded(embedOnSphere(graph, tube.points).directions), 0.01);
+  EXPECT_LT(folded(embed(graph).directions), 0.001);
+  EXPECT_LT(folded(embed(graph, converging(1e-9)).directions), 0.001);
+}
+
+TEST(MultilevelEmbedding, LongTubesDoNotUnderflow) {
+  // Along a tube of radius r the map shrinks like exp(-s / (r sqrt 2)): 6e-10 from the middle of
+  // this one to its ends.
+  for (const double turn : {0.0, 3.0}) {
+    const Tube tube = bentTube(60.0, turn, 12);
+    const Graph graph = graphOfMesh(tube.points, tube.triangles);
+    const MultilevelEmbedding result = embed(graph, {}, {1000, 1});
+    ASSERT_NE(result.stop_reason, StopReason::Collapsed);
+    const SphereTriangulation sphere = triangulateSphere(result.directions);
+    EXPECT_EQ(sphere.coincident, 0);
+    EXPECT_LT(shareBeyondTwoSteps(graph, sphere.triangles), 0.01);
+  }
+}
+
+TEST(MultilevelEmbedding, AllWeightsUnfoldWithoutCollapse) {
+  const Cloud cloud = dentedCloud(4000);
+  for (const EdgeWeights weights : kAllWeights)
+    for (const bool converge : {false, true}) {
+      MultilevelOptions options = converging(1e-10, weights);
+      if (!converge)
+        options.tolerance.reset();
+      const MultilevelEmbedding result = embed(cloud.graph, options);
+      EXPECT_EQ(result.stop_reason, converge ? StopReason::Converged : StopReason::Unfinished);
+      EXPECT_LT(result.centroid_norm, 0.3);
+      EXPECT_NEAR(result.residual, meanTangentialLaplacian(cloud.graph, result.directions, weights),
+                  1e-12);
+      EXPECT_LT(shareBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
+                1e-3);
+    }
+}
+
+TEST(MultilevelEmbedding, StepsDoNotGrowWithTheGraph) {
+  const auto steps = [](Index n) {
+    const Cloud cloud = dentedCloud(n);
+    return embed(cloud.graph, converging(1e-10)).levels.front().linear_iterations;
+  };
+  const int small = steps(3000);
+  EXPECT_GT(small, 0);
+  EXPECT_LE(steps(48000), small + small / 2);
+}
+
+TEST(MultilevelEmbedding, ReportsItsLevels) {
+  const Cloud cloud = dentedCloud(5000);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {200, 1});
+  const MultilevelEmbedding result = embedMultilevel(cloud.graph, hierarchy, converging(1e-9));
+  ASSERT_EQ(result.levels.size(), hierarchy.levels.size() + 1);
+  EXPECT_EQ(result.levels[0].nodes, 5000U);
+  EXPECT_EQ(result.levels[0].edges, cloud.graph.edgeCount());
+  EXPECT_GT(result.levels[0].newton_iterations, 0);
+  for (std::size_t l = 1; l < result.levels.size(); ++l) {
+    EXPECT_EQ(result.levels[l].nodes, hierarchy.levels[l - 1].graph.size());
+    EXPECT_EQ(result.levels[l].edges, hierarchy.levels[l - 1].graph.edgeCount());
+    EXPECT_GT(result.levels[l].newton_iterations, 0);
+    EXPECT_LT(result.levels[l].residual, 1e-4);
+  }
+  EXPECT_EQ(result.starts, 2);
+  EXPECT_EQ(result.collapsed_starts, 0);
+}
+
+TEST(MultilevelEmbedding, SameBitsForAnyNumberOfThreads) {
+  // More nodes than single passes need to be shared among threads.
+  const Cloud cloud = dentedCloud(60000);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph);
+  for (const EdgeWeights weights : {EdgeWeights::Adaptive, EdgeWeights::Uniform}) {
+    MultilevelOptions options = converging(1e-7, weights);
+    options.threads = 1;
+    const MultilevelEmbedding one = embedMultilevel(cloud.graph, hierarchy, options);
+    options.threads = 3;
+    const MultilevelEmbedding three = embedMultilevel(cloud.graph, hierarchy, options);
+    EXPECT_EQ(one.directions, three.directions);
+    EXPECT_EQ(one.residuals, three.residuals);
+    EXPECT_EQ(one.energy, three.energy);
+  }
+}
+
+TEST(MultilevelEmbedding, GraphsOfAllSizes) {
+  for (Index n = 4; n <= 40; ++n) {
+    const Positions points = randomSphere(n, static_cast<std::uint64_t>(n));
+    const Graph graph = graphOfMesh(points, triangulateSphere(points).triangles);
+    const MultilevelEmbedding result = embed(graph, converging(1e-10), {4, 1});
+    EXPECT_NE(result.stop_reason, StopReason::Unfinished) << n;
+    if (result.stop_reason != StopReason::Collapsed) {
+      ASSERT_EQ(result.directions.cols(), n);
+      EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14) << n;
+    }
+  }
+  EXPECT_EQ(embedMultilevel(Graph(), GraphHierarchy()).directions.cols(), 0);
+}
+
+TEST(MultilevelEmbedding, CollapsedStartsAreRejectedAndABarrierIsAdded) {
+  // A path: nothing keeps its ends apart.
+  Graph path;
+  constexpr Index n = 30;
+  for (Index i = 0; i < n; ++i) {
+    for (const Index j : {i - 1, i + 1})
+      if (j >= 0 && j < n) {
+        path.neighbors.push_back(j);
+        path.lengths.push_back(1.0);
+      }
+    path.offsets.push_back(path.neighbors.size());
+  }
+  const MultilevelEmbedding result = embed(path);
+  EXPECT_EQ(result.starts, 4);
+  EXPECT_EQ(result.collapsed_starts, 2);
+  EXPECT_TRUE(result.added_barrier);
+  ASSERT_EQ(result.directions.cols(), n);
+  EXPECT_LT(result.centroid_norm, 0.9);
+  EXPECT_FALSE(embed(dentedCloud(2000).graph).added_barrier);
+}
+
+TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
+  // The lower two thirds of a sphere: the rim is a hole to pull the sphere through.
+  const Cloud cloud = dentedCloud(3000);
+  const Index kept = 2000;
+  Graph open;
+  for (std::size_t i = 1000; i < 3000; ++i) {
+    for (std::size_t e = cloud.graph.offsets[i]; e < cloud.graph.offsets[i + 1]; ++e)
+      if (cloud.graph.neighbors[e] >= 1000) {
+        open.neighbors.push_back(cloud.graph.neighbors[e] - 1000);
+        open.lengths.push_back(cloud.graph.lengths[e]);
+      }
+    open.offsets.push_back(open.neighbors.size());
+  }
+  const MultilevelEmbedding result = embed(open);
+  ASSERT_EQ(result.directions.cols(), kept);
+  EXPECT_LT(result.centroid_norm, 0.95);
+  EXPECT_LT(shareBeyondTwoSteps(open, triangulateSphere(result.directions).triangles), 0.1);
+}
+
+TEST(MultilevelEmbedding, ProgressRisesAndCancels) {
+  const Cloud cloud = dentedCloud(3000);
+  MultilevelOptions options = converging(1e-9);
+  double last = 0.0;
+  int calls = 0;
+  options.progress = [&](double share, double) {
+    EXPECT_GE(share, last);
+    EXPECT_LE(share, 1.0);
+    last = share;
+    ++calls;
+    return true;
+  };
+  embed(cloud.graph, options);
+  EXPECT_GT(calls, 5);
+  EXPECT_GT(last, 0.9);
+  for (int stop = 1; stop < calls; stop += 3) {
+    int count = 0;
+    options.progress = [&](double, double) { return ++count < stop; };
+    EXPECT_THROW(embed(cloud.graph, options), Cancelled);
+    EXPECT_EQ(count, stop);
+  }
+}
+
+TEST(MultilevelEmbedding, RefusesBadInput) {
+  const Cloud cloud = dentedCloud(300);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {50, 1});
+  const auto refuses = [&](const auto& change) {
+    MultilevelOptions options;
+    change(options);
+    EXPECT_THROW(embedMultilevel(cloud.graph, hierarchy, options), InvalidInput);
+  };
+  const double nan = std::nan("");
+  refuses([](MultilevelOptions& o) { o.exponent = 2.0; });
+  refuses([](MultilevelOptions& o) { o.exponent = 16.5; });
+  refuses([&](MultilevelOptions& o) { o.exponent = nan; });
+  refuses([](MultilevelOptions& o) { o.lambda = 0.0; });
+  refuses([](MultilevelOptions& o) { o.lambda = 1.5; });
+  refuses([](MultilevelOptions& o) { o.sweeps = -1; });
+  refuses([](MultilevelOptions& o) { o.solved_size = -1; });
+  refuses([](MultilevelOptions& o) { o.solved_finest_size = -1; });
+  refuses([](MultilevelOptions& o) { o.tolerance = -1.0; });
+  refuses([&](MultilevelOptions& o) { o.tolerance = nan; });
+  refuses([](MultilevelOptions& o) { o.starts = 0; });
+  refuses([](MultilevelOptions& o) { o.starts = 101; });
+  refuses([](MultilevelOptions& o) { o.threads = -1; });
+  refuses([](MultilevelOptions& o) { o.threads = 1025; });
+  EXPECT_THROW(embedMultilevel(dentedCloud(200).graph, hierarchy), InvalidInput);
+}
+
+}  // namespace
+}  // namespace spherical_param
