@@ -1,6 +1,7 @@
 #include "spherical_param/point_set.h"
 
 #include "core/exact_predicates.h"
+#include "core/space_filling_curve.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
@@ -62,6 +63,10 @@ DistinctPoints findDistinctPoints(const Positions& points) {
     result.vertex_of_input[static_cast<std::size_t>(i)] = table[slot];
   }
   return result;
+}
+
+std::vector<Index> spatialOrder(const Positions& points) {
+  return internal::mortonOrder(points);
 }
 
 bool areCoplanar(const Positions& points) {

@@ -91,5 +91,21 @@ TEST(PointSet, LinesAndPointsAreCoplanar) {
   EXPECT_FALSE(areCoplanar(line));
 }
 
+TEST(SpatialOrder, HoldsEveryPointOnceAndNeighborsNearEachOther) {
+  const Positions points = test::randomSphere(5000, 3);
+  const std::vector<Index> order = spatialOrder(points);
+  std::vector<Index> sorted = order;
+  std::sort(sorted.begin(), sorted.end());
+  double length = 0.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    ASSERT_EQ(sorted[i], static_cast<Index>(i));
+    if (i > 0)
+      length += (points.col(order[i]) - points.col(order[i - 1])).norm();
+  }
+  // Points are 0.05 apart; from one to any other it is 1.3 on average.
+  EXPECT_LT(length / 5000.0, 0.15);
+  EXPECT_TRUE(spatialOrder(Positions(3, 0)).empty());
+}
+
 }  // namespace
 }  // namespace spherical_param
