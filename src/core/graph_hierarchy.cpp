@@ -33,9 +33,10 @@ std::vector<Index> scrambled(const Graph& graph, std::uint32_t seed) {
     keys[i].second = static_cast<Index>(i);
     sum += keys[i].first;
   }
-  // Several turns over the spread of the lengths, which is a fraction of their mean; each seed
-  // begins them elsewhere. More turns would let the rounding of the points decide more often.
-  constexpr double turns = 16.0;
+  // About one turn over the spread of the lengths, which is a part of their mean; each seed begins
+  // it elsewhere. More turns would look more random, but let the rounding of the points decide more
+  // often.
+  constexpr double turns = 2.0;
   constexpr double golden_ratio = 0.6180339887498949;
   const double factor = turns * static_cast<double>(n) / sum;
   for (auto& [key, node] : keys) {
