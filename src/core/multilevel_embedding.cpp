@@ -104,7 +104,7 @@ public:
       smooth(l, options_.weights, options_.sweeps, u);
       result_.levels[l].sweeps = options_.sweeps;
       if (isSolved(l))
-        solve(l, energyAt(l, u), std::nullopt, u);
+        solveUncollapsed(l, std::nullopt, u);
       if (l > 0)
         report(kStartShare + (kCascadeShare - kStartShare) * static_cast<double>(level - l) /
                                  static_cast<double>(level),
@@ -178,6 +178,10 @@ private:
     return best;
   }
 
+  static bool isCollapsed(const Positions& u) {
+    return !(u.rowwise().mean().norm() <= kCollapsedCentroid);
+  }
+
   /// Tells whether an embedding has not slipped along a tube to one of its ends, and is nowhere so
   /// small that rounding is about to destroy it: both are signs of too few nodes around a limb.
   bool isGood(std::size_t l, const Positions& u) const {
@@ -215,7 +219,7 @@ private:
       solve(l, energy, std::nullopt, u);
       ++result_.starts;
       const double value = energy.value(u);
-      if (!(u.rowwise().mean().norm() <= kCollapsedCentroid) || !std::isfinite(value)) {
+      if (isCollapsed(u) || !std::isfinite(value)) {
         ++result_.collapsed_starts;
       } else if (value < least) {
         least = value;
@@ -295,11 +299,26 @@ private:
     return newton;
   }
 
+  /// Solves a level from an embedding that is not collapsed; adds a barrier if it becomes so.
+  NewtonReport solveUncollapsed(std::size_t l, std::optional<double> tolerance, Positions& u) {
+    Positions solved = u;
+    NewtonReport newton = solve(l, energyAt(l, u), tolerance, solved);
+    if (isCollapsed(solved) && !result_.added_barrier) {
+      result_.added_barrier = true;
+      solved = u;
+      newton = solve(l, energyAt(l, u), tolerance, solved);
+    }
+    u = std::move(solved);
+    return newton;
+  }
+
   void finish(Positions& u) {
     if (options_.tolerance) {
-      NewtonReport newton = solve(0, energyAt(0, u), options_.tolerance, u);
-      result_.stop_reason = newton.residuals.back() <= *options_.tolerance ? StopReason::Converged
-                                                                           : StopReason::Stagnated;
+      NewtonReport newton = solveUncollapsed(0, options_.tolerance, u);
+      // Adaptive weights need no barrier for the Laplacian to vanish: with one it has not.
+      const bool converged = newton.residuals.back() <= *options_.tolerance &&
+                             !(isAdaptive() && result_.added_barrier);
+      result_.stop_reason = converged ? StopReason::Converged : StopReason::Stagnated;
       result_.residuals = std::move(newton.residuals);
     }
     Positions gradient;
@@ -308,7 +327,7 @@ private:
     result_.levels[0].residual = result_.residual;
     result_.energy = energy.value(u);
     result_.centroid_norm = u.rowwise().mean().norm();
-    if (!(result_.centroid_norm <= kCollapsedCentroid))
+    if (isCollapsed(u))
       result_.stop_reason = StopReason::Collapsed;
     result_.directions = std::move(u);
   }

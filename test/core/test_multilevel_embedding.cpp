@@ -11,6 +11,7 @@
 
 #include <Eigen/Dense>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -392,10 +393,13 @@ TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
       }
     open.offsets.push_back(open.neighbors.size());
   }
-  const MultilevelEmbedding result = embed(open);
-  ASSERT_EQ(result.directions.cols(), kept);
-  EXPECT_LT(result.centroid_norm, 0.95);
-  EXPECT_LT(shareBeyondTwoSteps(open, triangulateSphere(result.directions).triangles), 0.1);
+  const std::array<MultilevelOptions, 2> all_options = {MultilevelOptions(), converging(1e-9)};
+  for (const MultilevelOptions& options : all_options) {
+    const MultilevelEmbedding result = embed(open, options);
+    ASSERT_EQ(result.directions.cols(), kept);
+    EXPECT_LT(result.centroid_norm, 0.95);
+    EXPECT_LT(shareBeyondTwoSteps(open, triangulateSphere(result.directions).triangles), 0.1);
+  }
 }
 
 TEST(MultilevelEmbedding, ProgressRisesAndCancels) {
