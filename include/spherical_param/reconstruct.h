@@ -6,7 +6,9 @@
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/types.h"
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,19 +18,37 @@ namespace spherical_param {
 struct Progress {
   const char* stage;  ///< "graph", "embedding", "triangulation" or "check"
   double fraction;    ///< share of the stage that is done, in [0, 1]; 1 exactly once, at its end
-  int iteration;      ///< iteration of the embedding, else 0
+  int iteration;      ///< iteration of the embedding's current level, else 0
   double residual;    ///< residual of the embedding, else 0
 };
 
-/// Parameters of reconstruct(). The defaults are the paper's and need no tuning.
+/// Parameters of reconstruct(). The defaults need no tuning. The paper's own method is
+/// GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and TriangulationMethod::Qhull.
 struct Options {
-  int k = 25;  ///< neighbours of each point; 3 and up (k >= n: n - 1 are used)
+  GraphMethod graph = GraphMethod::LocalDelaunay;               ///< how points become neighbours
+  EmbeddingMethod solver = EmbeddingMethod::Multilevel;         ///< how the graph is embedded
+  TriangulationMethod hull = TriangulationMethod::Incremental;  ///< how the sphere is triangulated
+
+  /// Neighbours of each point; 3 and up (k >= n: n - 1 are used). Unset: 25 (the paper's) for the
+  /// graph of nearest neighbours; 12 for local Delaunay neighbourhoods, which ask for more where
+  /// they need them.
+  std::optional<int> k;
   EdgeWeights weights = EdgeWeights::Adaptive;  ///< weights of the Laplacian
-  double lambda = 0.5;                          ///< damping of the iteration; (0, 1]
-  int max_iterations = 1600;                    ///< iterations at most; >= 0
-  double tolerance = 1e-8;      ///< mean tangential Laplacian at convergence [radius]; >= 0
-  int stagnation_window = 100;  ///< iterations over which stagnation is judged; 0: never; else >= 2
-  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  /// p of the energy that adaptive weights minimise, sum |u_i - u_j|^p / (p |p_i - p_j|^(p - 2));
+  /// (2, 16]. 3 are the weights of the paper, and all that the iterative solver knows.
+  double exponent = 3.0;
+  double lambda = 0.5;  ///< damping of iteration and smoothing sweeps; (0, 1]
+  /// Mean tangential Laplacian at which the embedding counts as converged [radius]; >= 0. Unset:
+  /// 1e-8 for the iterative solver; the multilevel solver then ends with its smoothing sweeps.
+  std::optional<double> tolerance;
+
+  int max_iterations = 1600;  ///< of the iterative solver, at most; >= 0
+  int stagnation_window =
+      100;                 ///< its iterations over which stagnation is judged; 0: never; or >= 2
+  int starts = 2;          ///< of the multilevel solver's coarsest level; 1 to 100
+  std::uint32_t seed = 1;  ///< of the multilevel solver's random order of nodes
+
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Told how far the work is; returning false ends it with Cancelled. May be empty. Called from
   /// the calling thread only.
   std::function<bool(const Progress&)> progress;
@@ -45,6 +65,12 @@ struct GraphReport {
   std::size_t edges = 0;        ///< undirected edges, bridges included
   Index components = 0;         ///< connected components before bridging
   std::vector<Bridge> bridges;  ///< added edges; nodes are vertices of the Result
+  /// Vertices without a trustworthy tangent plane, ascending: the graph there is one of nearest
+  /// neighbours. This and all below of GraphMethod::LocalDelaunay alone.
+  std::vector<Index> without_tangent_plane;
+  Index searched_again = 0;  ///< points for which more neighbours were asked
+  Index uncertified = 0;     ///< points whose cell is not certified even so
+  Index weak = 0;            ///< points that too few neighbours agreed with, repaired
 };
 
 /// How the embedding ended.
@@ -56,12 +82,20 @@ struct EmbeddingReport {
   double centroid_norm = 0.0;     ///< length of the mean direction of Result::sphere; 1: collapsed
   /// The iteration collapsed: Result::sphere is a start that did not, without iteration.
   bool fallback_start = false;
+
+  // Of EmbeddingMethod::Multilevel alone.
+
+  std::vector<LevelReport> levels;  ///< finest first
+  int starts = 0;                   ///< starts of the coarsest level that were tried
+  int collapsed_starts = 0;         ///< of these, collapsed and rejected
+  bool added_barrier = false;       ///< all starts collapsed: a barrier against it was added
+  double energy = 0.0;              ///< that of the weights, at Result::sphere
 };
 
 /// How the triangulation came about.
 struct TriangulationReport {
-  Index hull_vertices = 0;     ///< points that the convex hull holds as vertices
-  Index reinserted = 0;        ///< points that the hull left out, put back
+  Index hull_vertices = 0;     ///< points that the triangulation held by itself as vertices
+  Index reinserted = 0;        ///< points that it left out, put back
   Index coincident = 0;        ///< of these, at exactly the position of another point
   bool hull_rejected = false;  ///< the hull could not be used; all points were inserted one by one
 };
@@ -91,19 +125,26 @@ struct Result {
   std::size_t vertexCount() const { return input_of_vertex.size(); }
 };
 
+/// The neighbours of each point that a caller should search for: Options::k or its default.
+int neighborsToSearch(const Options& options);
+
 /// Checks the ranges of all options, as reconstruct() does first: for callers who have long work to
 /// do before, such as a neighbour search.
 ///
 /// \throw InvalidInput with the option, its value and the remedy.
 void checkOptions(const Options& options);
 
-/// Meshes a point cloud: neighbour graph -> embedding on the sphere -> convex hull -> check.
+/// Meshes a point cloud: neighbour graph -> embedding on the sphere -> triangulation there ->
+/// check.
 ///
 /// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane, no
 ///               coordinate beyond 1e100. Differences below 1e-90 of the cloud's extent keep the
 ///               topology sound, but not the geometry.
 /// \param lists  n neighbour lists, e.g. the k nearest of each point; unsorted, with or without the
 ///               point itself. Those of points that repeat an earlier point may be empty.
+/// \param search asked for longer lists of some points, by local Delaunay neighbourhoods; of points
+///               that repeat an earlier one it is never asked. Called from the calling thread.
+///               May be empty: the lists are then all there is.
 /// \return the mesh. Triangles index vertices: v = 0 ... input_of_vertex.size() - 1.
 /// \throw InvalidInput for bad points, lists or options; ComputeError; Cancelled.
 ///
@@ -113,8 +154,9 @@ void checkOptions(const Options& options);
 ///
 /// Not guaranteed: that the mesh is free of self-intersections or near the sampled surface;
 /// `embedding`, `edges_outside_graph` and `warnings` tell how much to trust it.
-/// Cost: O(n log n) + iterations * O(n k), typically; below 2 KB of memory a point for k = 25.
-Result reconstruct(const Positions& points, const NeighborLists& lists,
-                   const Options& options = {});
+/// Cost: O(n log n), typically; with the iterative solver iterations * O(n k) more. Below 2 KB of
+/// memory a point.
+Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options = {},
+                   const NeighborSearch& search = {});
 
 }  // namespace spherical_param

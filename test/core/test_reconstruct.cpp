@@ -6,8 +6,13 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <random>
 
 namespace spherical_param {
 namespace {
@@ -21,8 +26,40 @@ using test::spiralSphere;
 constexpr EdgeWeights kAllWeights[] = {EdgeWeights::Uniform, EdgeWeights::InverseLength,
                                        EdgeWeights::Adaptive};
 
-Result mesh(const Positions& points, Options options = {}) {
-  return reconstruct(points, bruteForceNeighbors(points, options.k), options);
+/// The method as it was published.
+Options paper() {
+  Options options;
+  options.graph = GraphMethod::NearestNeighbors;
+  options.solver = EmbeddingMethod::Iterative;
+  options.hull = TriangulationMethod::Qhull;
+  return options;
+}
+
+/// Both methods, whole.
+const std::vector<Options>& bothMethods() {
+  static const std::vector<Options> methods = {Options(), paper()};
+  return methods;
+}
+
+/// Answers from all pairs of points.
+NeighborSearch bruteForceSearch(const Positions& points) {
+  return [&points](const std::vector<Index>& queries, int count) {
+    const NeighborLists all = bruteForceNeighbors(points, count);
+    NeighborLists answer;
+    for (const Index query : queries) {
+      const auto i = static_cast<std::size_t>(query);
+      answer.indices.insert(answer.indices.end(),
+                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i]),
+                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i + 1]));
+      answer.offsets.push_back(answer.indices.size());
+    }
+    return answer;
+  };
+}
+
+Result mesh(const Positions& points, const Options& options = {}) {
+  return reconstruct(points, bruteForceNeighbors(points, neighborsToSearch(options)), options,
+                     bruteForceSearch(points));
 }
 
 /// Everything that is guaranteed, recomputed from the output.
@@ -54,21 +91,21 @@ Positions ellipsoid(Index n, double a, double b, double c) {
 
 TEST(Reconstruct, EllipsoidIsMeshedTruly) {
   const Positions points = ellipsoid(800, 1.0, 0.7, 0.5);
-  for (const EdgeWeights weights : kAllWeights) {
-    Options options;
-    options.weights = weights;
-    const Result result = mesh(points, options);
-    expectGuarantees(points, result);
-    // An inscribed polyhedron of 800 points: volume and area of the ellipsoid less about 1 %.
-    EXPECT_NEAR(result.volume, 4.0 / 3.0 * test::kPi * 0.35, 0.03);
-    EXPECT_LT(result.edges_outside_graph, 1e-9);
-    EXPECT_EQ(result.triangulation.hull_vertices, 800);
-  }
+  for (Options options : bothMethods())
+    for (const EdgeWeights weights : kAllWeights) {
+      options.weights = weights;
+      const Result result = mesh(points, options);
+      expectGuarantees(points, result);
+      // An inscribed polyhedron of 800 points: volume and area of the ellipsoid less about 1 %.
+      EXPECT_NEAR(result.volume, 4.0 / 3.0 * test::kPi * 0.35, 0.03);
+      EXPECT_LT(result.edges_outside_graph, 1e-9);
+      EXPECT_EQ(result.triangulation.hull_vertices, 800);
+    }
 }
 
 TEST(Reconstruct, SphereIsItsOwnConvexHull) {
   const Positions points = spiralSphere(500);
-  Options options;
+  Options options = paper();
   options.max_iterations = 0;
   const Result result = mesh(points, options);
   expectGuarantees(points, result);
@@ -85,7 +122,8 @@ TEST(Reconstruct, FourToTenPointsAreMeshed) {
       Positions points(3, n);
       for (Index i = 0; i < n; ++i)
         points.col(i) << uniform(random), uniform(random), uniform(random);
-      expectGuarantees(points, mesh(points));
+      for (const Options& options : bothMethods())
+        expectGuarantees(points, mesh(points, options));
     }
 }
 
@@ -114,16 +152,16 @@ TEST(Reconstruct, NastySetsAreMeshed) {
   flat.row(2) *= 1e-14;
   sets.push_back(flat);
   for (std::size_t s = 0; s < sets.size(); ++s)
-    for (const EdgeWeights weights : kAllWeights) {
-      SCOPED_TRACE("set " + std::to_string(s));
-      Options options;
-      options.weights = weights;
-      options.max_iterations = 200;
-      const Result result = mesh(sets[s], options);
-      EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
-      EXPECT_TRUE(std::isfinite(result.embedding.residual));
-      EXPECT_TRUE(std::isfinite(result.volume) && std::isfinite(result.area));
-    }
+    for (Options options : bothMethods())
+      for (const EdgeWeights weights : kAllWeights) {
+        SCOPED_TRACE("set " + std::to_string(s));
+        options.weights = weights;
+        options.max_iterations = 200;
+        const Result result = mesh(sets[s], options);
+        EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
+        EXPECT_TRUE(std::isfinite(result.embedding.residual));
+        EXPECT_TRUE(std::isfinite(result.volume) && std::isfinite(result.area));
+      }
 }
 
 TEST(Reconstruct, DuplicatesBecomeOneVertexAndAreReported) {
@@ -143,8 +181,21 @@ TEST(Reconstruct, ListsOfRepeatedPointsMayBeEmpty) {
   const Positions points = horizontally(base, base.leftCols(50));
   NeighborLists lists = bruteForceNeighbors(base, 25);
   lists.offsets.insert(lists.offsets.end(), 50, lists.offsets.back());
-  const Result result = reconstruct(points, lists);
-  EXPECT_EQ(result.triangles, mesh(base).triangles);
+  const Result result = reconstruct(points, lists, paper());
+  EXPECT_EQ(result.triangles, mesh(base, paper()).triangles);
+  // The search is asked in terms of input points, and never of a repetition.
+  const NeighborSearch search = bruteForceSearch(points);
+  lists = bruteForceNeighbors(base, 5);
+  lists.offsets.insert(lists.offsets.end(), 50, lists.offsets.back());
+  bool asked = false;
+  const Result again =
+      reconstruct(points, lists, {}, [&](const std::vector<Index>& queries, int count) {
+        asked = true;
+        EXPECT_LT(*std::max_element(queries.begin(), queries.end()), 300);
+        return search(queries, count);
+      });
+  EXPECT_TRUE(asked);
+  expectGuarantees(points, again);
 }
 
 TEST(Reconstruct, ThousandCopiesOfFourPointsAreATetrahedron) {
@@ -156,14 +207,15 @@ TEST(Reconstruct, ThousandCopiesOfFourPointsAreATetrahedron) {
 
 TEST(Reconstruct, CollapseIsReportedAndItsSphereIsNotTheMesh) {
   const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
-  Options options;
+  Options options = paper();
   options.max_iterations = 0;
   const Result result = mesh(points, options);
   expectGuarantees(points, result);
   EXPECT_EQ(result.embedding.stop_reason, StopReason::Collapsed);
   EXPECT_TRUE(result.embedding.fallback_start);
   // The sphere of the result is not the collapsed one, and the figures are those of the former.
-  const Graph graph = buildNeighborGraph(points, bruteForceNeighbors(points, options.k)).graph;
+  const Graph graph =
+      buildNeighborGraph(points, bruteForceNeighbors(points, neighborsToSearch(options))).graph;
   EXPECT_NEAR(result.embedding.residual,
               meanTangentialLaplacian(graph, result.sphere, options.weights), 1e-12);
   EXPECT_NEAR(result.embedding.centroid_norm, result.sphere.rowwise().mean().norm(), 1e-12);
@@ -178,19 +230,21 @@ TEST(Reconstruct, SeveralPartsAreJoinedAndReported) {
   Positions second = spiralSphere(200);
   second.colwise() += Eigen::Vector3d(3.0, 0.0, 0.0);
   const Positions points = horizontally(spiralSphere(200), second);
-  Options options;
-  options.k = 10;
-  const Result result = mesh(points, options);
-  expectGuarantees(points, result);
-  EXPECT_EQ(result.graph.components, 2);
-  ASSERT_EQ(result.graph.bridges.size(), 1U);
-  const Bridge& bridge = result.graph.bridges.front();
-  EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
-  EXPECT_NE(bridge.from < 200, bridge.to < 200);
-  bool told = false;
-  for (const std::string& warning : result.warnings)
-    told = told || warning.find("2 pieces") != std::string::npos;
-  EXPECT_TRUE(told);
+  for (Options options : bothMethods()) {
+    options.k = 10;
+    const Result result = mesh(points, options);
+    expectGuarantees(points, result);
+    EXPECT_EQ(result.graph.components, 2);
+    ASSERT_FALSE(result.graph.bridges.empty());
+    for (const Bridge& bridge : result.graph.bridges) {
+      EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
+      EXPECT_NE(bridge.from < 200, bridge.to < 200);
+    }
+    bool told = false;
+    for (const std::string& warning : result.warnings)
+      told = told || warning.find("2 pieces") != std::string::npos;
+    EXPECT_TRUE(told);
+  }
 }
 
 TEST(Reconstruct, TorusIsMeshedAsASphereAndReported) {
@@ -202,49 +256,132 @@ TEST(Reconstruct, TorusIsMeshedAsASphereAndReported) {
       points.col(20 * i + j) << (1.0 + 0.5 * std::cos(b)) * std::cos(a),
           (1.0 + 0.5 * std::cos(b)) * std::sin(a), 0.5 * std::sin(b);
     }
-  Options options;
-  options.k = 10;
-  const Result result = mesh(points, options);
-  expectGuarantees(points, result);
-  EXPECT_GT(result.edges_outside_graph, 0.01);
-  EXPECT_FALSE(result.warnings.empty());
+  for (Options options : bothMethods()) {
+    options.k = 10;
+    const Result result = mesh(points, options);
+    expectGuarantees(points, result);
+    EXPECT_GT(result.edges_outside_graph, 0.01);
+    EXPECT_FALSE(result.warnings.empty());
+  }
 }
 
 TEST(Reconstruct, OpenBowlIsLiddedAndReported) {
   const Positions sphere = spiralSphere(1500);  // from top to bottom
   const Positions points = sphere.rightCols(1100);
-  const Result result = mesh(points);
-  expectGuarantees(points, result);
-  EXPECT_GT(result.edges_outside_graph, 0.001);
-  EXPECT_LT(mesh(sphere).edges_outside_graph, 1e-9);
-  ASSERT_FALSE(result.warnings.empty());
-  EXPECT_NE(result.warnings.back().find("not a closed surface"), std::string::npos);
+  for (const Options& options : bothMethods()) {
+    const Result result = mesh(points, options);
+    expectGuarantees(points, result);
+    EXPECT_GT(result.edges_outside_graph, 0.001);
+    EXPECT_LT(mesh(sphere, options).edges_outside_graph, 1e-9);
+    ASSERT_FALSE(result.warnings.empty());
+    EXPECT_NE(result.warnings.back().find("not a closed surface"), std::string::npos);
+  }
 }
 
 TEST(Reconstruct, ScaleByAPowerOfTwoAndShiftOfIndicesChangeNothing) {
   const Positions points = ellipsoid(300, 1.0, 0.7, 0.5);
-  const Result result = mesh(points);
-  for (const double scale : {std::ldexp(1.0, 60), std::ldexp(1.0, -70)}) {
-    const Result scaled = mesh(points * scale);
-    EXPECT_EQ(result.triangles, scaled.triangles);
-    EXPECT_EQ(result.sphere, scaled.sphere);
-    EXPECT_DOUBLE_EQ(scaled.volume, result.volume * scale * scale * scale);
-    EXPECT_DOUBLE_EQ(scaled.area, result.area * scale * scale);
+  for (const Options& options : bothMethods()) {
+    const Result result = mesh(points, options);
+    for (const double scale : {std::ldexp(1.0, 60), std::ldexp(1.0, -70)}) {
+      const Result scaled = mesh(points * scale, options);
+      EXPECT_EQ(result.triangles, scaled.triangles);
+      EXPECT_EQ(result.sphere, scaled.sphere);
+      EXPECT_DOUBLE_EQ(scaled.volume, result.volume * scale * scale * scale);
+      EXPECT_DOUBLE_EQ(scaled.area, result.area * scale * scale);
+    }
   }
 }
 
-TEST(Reconstruct, PermutedCloudGivesTheSameMesh) {
-  const Positions points = ellipsoid(400, 1.0, 0.7, 0.5);
-  std::vector<Index> order(400);
-  std::iota(order.begin(), order.end(), Index{0});
+/// Share of the triangles of one mesh that the other has as well, vertices renamed.
+double commonTriangles(const Result& result, const Result& moved, const std::vector<Index>& order) {
+  Triangles renamed =
+      moved.triangles.unaryExpr([&](Index i) { return order[static_cast<std::size_t>(i)]; });
+  const auto one = test::canonical(result.triangles);
+  const auto other = test::canonical(renamed);
+  std::vector<std::array<Index, 3>> common;
+  std::set_intersection(one.begin(), one.end(), other.begin(), other.end(),
+                        std::back_inserter(common));
+  return static_cast<double>(common.size()) / static_cast<double>(one.size());
+}
+
+TEST(Reconstruct, MovedAndPermutedCloudGivesTheSameMesh) {
+  const Index n = 3000;
+  const test::Tube tube = test::bentTube(20.0, 3.0, 14);
+  // No ties: points of a regular tube would be on common circles.
   std::mt19937_64 random(3);
-  std::shuffle(order.begin(), order.end(), random);
-  Positions permuted(3, 400);
-  for (Index i = 0; i < 400; ++i)
-    permuted.col(i) = points.col(order[static_cast<std::size_t>(i)]);
-  Triangles renamed = mesh(permuted).triangles;
-  renamed = renamed.unaryExpr([&](Index i) { return order[static_cast<std::size_t>(i)]; }).eval();
-  EXPECT_EQ(test::canonical(renamed), test::canonical(mesh(points).triangles));
+  std::uniform_real_distribution<double> jitter(-0.1, 0.1);
+  for (Positions points : {ellipsoid(n, 1.0, 0.7, 0.5), tube.points}) {
+    points = points.unaryExpr([&](double x) { return x + 0.2 * jitter(random) * 0.45; });
+    std::vector<Index> order(static_cast<std::size_t>(points.cols()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::shuffle(order.begin(), order.end(), random);
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(1.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    Positions moved(3, points.cols());
+    for (Index i = 0; i < points.cols(); ++i)
+      moved.col(i) = 7.0 * (rotation * points.col(order[static_cast<std::size_t>(i)])) +
+                     Eigen::Vector3d(3.0, -2.0, 5.0);
+    for (const bool converge : {false, true}) {
+      Options options;
+      if (converge)
+        options.tolerance = 1e-9;
+      const Result result = mesh(points, options);
+      expectGuarantees(points, result);
+      EXPECT_GE(commonTriangles(result, mesh(moved, options), order), 0.995);
+    }
+  }
+}
+
+TEST(Reconstruct, ConvergedLaplacianVanishesOnTheOutput) {
+  const Positions points = ellipsoid(2000, 1.0, 0.7, 0.5);
+  for (const GraphMethod method : {GraphMethod::LocalDelaunay, GraphMethod::NearestNeighbors}) {
+    Options options;
+    options.graph = method;
+    options.tolerance = 1e-10;
+    const Result result = mesh(points, options);
+    EXPECT_EQ(result.embedding.stop_reason, StopReason::Converged);
+    const NeighborLists lists = bruteForceNeighbors(points, neighborsToSearch(options));
+    LocalDelaunayOptions local;
+    const NeighborSearch search = bruteForceSearch(points);
+    local.search = search;
+    const Graph graph = method == GraphMethod::LocalDelaunay
+                            ? buildLocalDelaunayGraph(points, lists, local).graph
+                            : buildNeighborGraph(points, lists).graph;
+    EXPECT_LT(meanTangentialLaplacian(graph, result.sphere, EdgeWeights::Adaptive), 1e-10);
+    EXPECT_EQ(result.embedding.residuals.back(), result.embedding.residual);
+  }
+}
+
+TEST(Reconstruct, MethodsCanBeMixed) {
+  const Positions points = ellipsoid(600, 1.0, 0.7, 0.5);
+  for (const GraphMethod graph : {GraphMethod::NearestNeighbors, GraphMethod::LocalDelaunay})
+    for (const EmbeddingMethod solver : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel})
+      for (const TriangulationMethod hull :
+           {TriangulationMethod::Qhull, TriangulationMethod::Incremental}) {
+        Options options;
+        options.graph = graph;
+        options.solver = solver;
+        options.hull = hull;
+        const Result result = mesh(points, options);
+        expectGuarantees(points, result);
+        EXPECT_LT(result.edges_outside_graph, 1e-9);
+        // A planar graph has three edges a node, that of 25 neighbours far more.
+        EXPECT_EQ(result.graph.edges < 1900, graph == GraphMethod::LocalDelaunay);
+        EXPECT_EQ(result.embedding.levels.empty(), solver == EmbeddingMethod::Iterative);
+      }
+}
+
+TEST(Reconstruct, AWrongAnswerOfTheSearchIsInvalidInput) {
+  const Positions points = randomSphere(60, 1);
+  const NeighborLists few = bruteForceNeighbors(points, 4);
+  const auto answers = [&](const NeighborLists& answer) {
+    return [answer](const std::vector<Index>&, int) { return answer; };
+  };
+  NeighborLists wrong;
+  EXPECT_THROW(reconstruct(points, few, {}, answers(wrong)), InvalidInput);
+  wrong = few;
+  wrong.indices[7] = 60;
+  EXPECT_THROW(reconstruct(points, few, {}, answers(wrong)), InvalidInput);
 }
 
 TEST(Reconstruct, MirroredCloudIsOrientedOutward) {
@@ -258,7 +395,7 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutward) {
 
 TEST(Reconstruct, KLargerThanTheCloudUsesAllOthers) {
   const Positions points = randomSphere(12, 1);
-  Options options;
+  Options options = paper();
   options.k = 1000;
   const Result result = mesh(points, options);
   EXPECT_EQ(result.graph.edges, 12U * 11U / 2U);
@@ -291,23 +428,51 @@ TEST(Reconstruct, StagesAreTimedAndTold) {
 
 TEST(Reconstruct, EveryOptionReachesItsStage) {
   const Positions points = ellipsoid(200, 1.0, 0.7, 0.5);
-  Options options;
+  Options options = paper();
   options.max_iterations = 7;
   EXPECT_EQ(mesh(points, options).embedding.residuals.size(), 8U);
   options.tolerance = 1.0;
   EXPECT_EQ(mesh(points, options).embedding.stop_reason, StopReason::Converged);
-  options = Options();
-  const Result by_default = mesh(points);
+  const Result by_default = mesh(points, paper());
+  options = paper();
   options.lambda = 0.3;
   EXPECT_NE(mesh(points, options).embedding.residuals[1], by_default.embedding.residuals[1]);
-  options = Options();
+  options = paper();
   options.k = 5;
   EXPECT_LT(mesh(points, options).graph.edges, by_default.graph.edges);
-  options = Options();
+  options = paper();
   options.stagnation_window = 0;
   options.max_iterations = 3000;
   options.tolerance = 0.0;
   EXPECT_EQ(mesh(points, options).embedding.iterations, 3000);
+}
+
+TEST(Reconstruct, EveryOptionReachesTheMultilevelSolver) {
+  const Positions points = ellipsoid(12000, 1.0, 0.7, 0.5);
+  const Graph graph = test::graphOfMesh(points, triangulateSphere(spiralSphere(12000)).triangles);
+  NeighborLists lists;
+  lists.offsets = graph.offsets;
+  lists.indices = graph.neighbors;
+  const auto sphere = [&](const auto& change) {
+    Options options;
+    options.graph = GraphMethod::NearestNeighbors;
+    change(options);
+    return reconstruct(points, lists, options);
+  };
+  const Result by_default = sphere([](Options&) {});
+  EXPECT_EQ(by_default.embedding.stop_reason, StopReason::Unfinished);
+  EXPECT_EQ(by_default.embedding.starts, 2);
+  EXPECT_EQ(by_default.sphere, sphere([](Options&) {}).sphere);
+  EXPECT_NE(by_default.sphere, sphere([](Options& o) { o.lambda = 0.3; }).sphere);
+  EXPECT_NE(by_default.sphere, sphere([](Options& o) { o.exponent = 4.0; }).sphere);
+  EXPECT_NE(by_default.sphere, sphere([](Options& o) { o.seed = 2; }).sphere);
+  EXPECT_NE(by_default.sphere, sphere([](Options& o) { o.weights = EdgeWeights::Uniform; }).sphere);
+  EXPECT_EQ(sphere([](Options& o) { o.starts = 3; }).embedding.starts, 3);
+  const Result converged = sphere([](Options& o) { o.tolerance = 1e-9; });
+  EXPECT_EQ(converged.embedding.stop_reason, StopReason::Converged);
+  EXPECT_LE(converged.embedding.residual, 1e-9);
+  EXPECT_TRUE(converged.warnings.empty());
+  EXPECT_TRUE(by_default.warnings.empty());
 }
 
 TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
@@ -338,7 +503,7 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   expect_reason(good, wrong, {}, "neighbour 20 of 20");
   wrong = lists;
   wrong.offsets.pop_back();
-  expect_reason(good, wrong, {}, "n + 1 offsets");
+  expect_reason(good, wrong, {}, "do not fit 20 points");
   Options options;
   options.k = 2;
   expect_reason(good, lists, options, "k = 2");
@@ -362,6 +527,12 @@ TEST(Reconstruct, OptionsCanBeCheckedBeforehand) {
   bad([](Options& options) { options.max_iterations = -1; });
   bad([](Options& options) { options.tolerance = -1.0; });
   bad([](Options& options) { options.stagnation_window = 1; });
+  bad([](Options& options) { options.exponent = 2.0; });
+  bad([](Options& options) { options.starts = 0; });
+  bad([](Options& options) {
+    options.solver = EmbeddingMethod::Iterative;
+    options.exponent = 4.0;
+  });
   bad([](Options& options) { options.threads = 2000; });
 }
 

@@ -37,8 +37,11 @@ namespace {
 using pcl::Indices;
 using pcl::PointXYZ;
 using spherical_param::EdgeWeights;
+using spherical_param::EmbeddingMethod;
+using spherical_param::GraphMethod;
 using spherical_param::Progress;
 using spherical_param::StopReason;
+using spherical_param::TriangulationMethod;
 using Cloud = pcl::PointCloud<PointXYZ>;
 using Reconstruction = pcl::SphericalParamReconstruction<PointXYZ>;
 using Polygons = std::vector<pcl::Vertices>;
@@ -237,6 +240,14 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// The method of Zwicker and Gotsman 2004.
+template <typename PointT>
+void setPapersMethod(pcl::SphericalParamReconstruction<PointT>& reconstruction) {
+  reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
+  reconstruction.setSolver(EmbeddingMethod::Iterative);
+  reconstruction.setTriangulationMethod(TriangulationMethod::Qhull);
+}
+
 Polygons reconstructPolygons(Reconstruction& reconstruction) {
   Polygons polygons;
   reconstruction.reconstruct(polygons);
@@ -262,6 +273,19 @@ TEST_F(SphericalParamReconstruction, EveryPointIsAVertexOfAClosedOutwardGenus0Me
   EXPECT_EQ(reconstruction.getErrorMessage(), "");
   expectSphere(mesh.polygons, *cloud);
   EXPECT_TRUE(reconstruction.getResult().topology.isSphere());
+}
+
+TEST_F(SphericalParamReconstruction, PapersMethodMeshesEveryPointToo) {
+  const Cloud::Ptr cloud = makeEllipsoid(1000);
+  Reconstruction reconstruction;
+  setPapersMethod(reconstruction);
+  reconstruction.setInputCloud(cloud);
+  expectSphere(reconstructPolygons(reconstruction), *cloud);
+  const spherical_param::Result& result = reconstruction.getResult();
+  // The traces of the three stages: a graph of 25 neighbours, iterations, no levels.
+  EXPECT_GE(result.graph.edges, 1000U * 25U / 2U);
+  EXPECT_GT(result.embedding.iterations, 10);
+  EXPECT_TRUE(result.embedding.levels.empty());
 }
 
 TEST_F(SphericalParamReconstruction, VolumeIsThatOfTheEllipsoid) {
@@ -1021,7 +1045,7 @@ TEST_F(SphericalParamReconstruction, FailureAfterSuccessLeavesNothingStale) {
   expectCleared(reconstruction);
   EXPECT_EQ(mesh.header.frame_id, "scanner");
   // And a success after it leaves no message.
-  reconstruction.setKSearch(25);
+  reconstruction.setKSearch(12);
   reconstruction.reconstruct(mesh);
   expectSphere(mesh.polygons, *cloud);
   EXPECT_EQ(reconstruction.getErrorMessage(), "");
@@ -1158,6 +1182,7 @@ TEST_F(SphericalParamReconstruction, FirstStageIsTheSearch) {
 
 TEST_F(SphericalParamReconstruction, HasConvergedTellsWhetherTheToleranceWasReached) {
   Reconstruction reconstruction;
+  setPapersMethod(reconstruction);
   EXPECT_FALSE(reconstruction.hasConverged());
   reconstruction.setInputCloud(makeEllipsoid(300));
   reconstruction.setTolerance(1e-3);
@@ -1170,14 +1195,106 @@ TEST_F(SphericalParamReconstruction, HasConvergedTellsWhetherTheToleranceWasReac
   EXPECT_FALSE(reconstruction.hasConverged());
 }
 
+TEST_F(SphericalParamReconstruction, MultilevelSolverConvergesIfAndOnlyIfItIsAskedTo) {
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(makeEllipsoid(5000));
+  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+  EXPECT_FALSE(reconstruction.hasConverged());
+  EXPECT_EQ(reconstruction.getResult().embedding.stop_reason, StopReason::Unfinished);
+  reconstruction.setTolerance(1e-8);
+  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+  EXPECT_TRUE(reconstruction.hasConverged());
+  EXPECT_LE(reconstruction.getResult().embedding.residual, 1e-8);
+  reconstruction.unsetTolerance();
+  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+  EXPECT_FALSE(reconstruction.hasConverged());
+}
+
+// Smoothing keeps a trace of the levels that the seed made; the solution does not.
+TEST_F(SphericalParamReconstruction, SolutionDoesNotDependOnTheSeed) {
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(makeEllipsoid(5000));
+  std::vector<double> smoothed;
+  std::vector<double> solved;
+  for (const std::uint32_t seed : {1U, 2U, 3U}) {
+    reconstruction.setSeed(seed);
+    reconstruction.unsetTolerance();
+    EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+    smoothed.push_back(reconstruction.getResult().embedding.energy);
+    reconstruction.setTolerance(1e-10);
+    EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+    EXPECT_TRUE(reconstruction.hasConverged());
+    solved.push_back(reconstruction.getResult().embedding.energy);
+  }
+  for (std::size_t i = 1; i < solved.size(); ++i) {
+    EXPECT_NE(smoothed[i], smoothed[0]);
+    // At a minimum the energy is even closer to its value there than the gradient is to 0.
+    EXPECT_NEAR(solved[i], solved[0], 1e-10 * solved[0]);
+  }
+}
+
+// On the graph of nearest neighbours, which a brute-force search gives as well: the weights are
+// those of equation 4 of the paper, normalised, and the residual that is told is recomputed.
+TEST_F(SphericalParamReconstruction, ResidualIsThatOfTheSphereOnTheGraphOfNearestNeighbors) {
+  const Cloud::Ptr cloud = makeEllipsoid(1500);
+  Reconstruction reconstruction;
+  reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
+  reconstruction.setKSearch(8);
+  reconstruction.setTolerance(1e-8);
+  reconstruction.setInputCloud(cloud);
+  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+  const spherical_param::Result& result = reconstruction.getResult();
+  ASSERT_EQ(result.graph.components, 1);
+
+  const std::size_t n = cloud->size();
+  const auto position = [&](std::size_t i) {
+    return (*cloud)[i].getVector3fMap().cast<double>().eval();
+  };
+  std::vector<std::set<std::size_t>> neighbors(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<std::pair<double, std::size_t>> by_distance;
+    for (std::size_t j = 0; j < n; ++j)
+      if (j != i)
+        by_distance.emplace_back((position(i) - position(j)).squaredNorm(), j);
+    std::partial_sort(by_distance.begin(), by_distance.begin() + 8, by_distance.end());
+    for (std::size_t k = 0; k < 8; ++k) {
+      neighbors[i].insert(by_distance[k].second);
+      neighbors[by_distance[k].second].insert(i);
+    }
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d u = result.sphere.col(static_cast<Eigen::Index>(i));
+    Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
+    double weights = 0.0;
+    for (const std::size_t j : neighbors[i]) {
+      const Eigen::Vector3d edge = result.sphere.col(static_cast<Eigen::Index>(j)) - u;
+      const double weight = edge.norm() / (position(i) - position(j)).norm();
+      laplacian += weight * edge;
+      weights += weight;
+    }
+    laplacian /= weights;
+    sum += (laplacian - laplacian.dot(u) * u).norm();
+  }
+  EXPECT_LE(sum / static_cast<double>(n), 1e-8);
+  // Two ways of summing some ten terms of the size of an edge on the sphere, about 0.1.
+  EXPECT_NEAR(sum / static_cast<double>(n), result.embedding.residual, 1e-15);
+}
+
 // ----------------------------------------------------------------------------------------- options
 
 TEST_F(SphericalParamReconstruction, DefaultsAreThoseOfTheCore) {
   const Reconstruction reconstruction;
   const spherical_param::Options defaults;
-  EXPECT_EQ(reconstruction.getKSearch(), defaults.k);
+  EXPECT_EQ(reconstruction.getGraphMethod(), defaults.graph);
+  EXPECT_EQ(reconstruction.getSolver(), defaults.solver);
+  EXPECT_EQ(reconstruction.getTriangulationMethod(), defaults.hull);
+  EXPECT_EQ(reconstruction.getKSearch(), spherical_param::neighborsToSearch(defaults));
   EXPECT_EQ(reconstruction.getWeights(), defaults.weights);
+  EXPECT_EQ(reconstruction.getExponent(), defaults.exponent);
   EXPECT_EQ(reconstruction.getLambda(), defaults.lambda);
+  EXPECT_EQ(reconstruction.getStarts(), defaults.starts);
+  EXPECT_EQ(reconstruction.getSeed(), defaults.seed);
   EXPECT_EQ(reconstruction.getMaximumIterations(), defaults.max_iterations);
   EXPECT_EQ(reconstruction.getTolerance(), defaults.tolerance);
   EXPECT_EQ(reconstruction.getStagnationWindow(), defaults.stagnation_window);
@@ -1186,8 +1303,49 @@ TEST_F(SphericalParamReconstruction, DefaultsAreThoseOfTheCore) {
   EXPECT_EQ(reconstruction.getErrorMessage(), "");
 }
 
+TEST_F(SphericalParamReconstruction, NewMethodIsTheDefault) {
+  const Reconstruction reconstruction;
+  EXPECT_EQ(reconstruction.getGraphMethod(), GraphMethod::LocalDelaunay);
+  EXPECT_EQ(reconstruction.getSolver(), EmbeddingMethod::Multilevel);
+  EXPECT_EQ(reconstruction.getTriangulationMethod(), TriangulationMethod::Incremental);
+}
+
+TEST_F(SphericalParamReconstruction, DefaultsThatDependOnTheMethodAreThoseInForce) {
+  Reconstruction reconstruction;
+  EXPECT_EQ(reconstruction.getKSearch(), 12);
+  EXPECT_FALSE(reconstruction.getTolerance().has_value());
+  reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
+  EXPECT_EQ(reconstruction.getKSearch(), 25);
+  reconstruction.setSolver(EmbeddingMethod::Iterative);
+  EXPECT_EQ(reconstruction.getTolerance(), 1e-8);
+  // What is set stays, whatever the method.
+  reconstruction.setKSearch(17);
+  reconstruction.setTolerance(1e-3);
+  for (const GraphMethod graph : {GraphMethod::NearestNeighbors, GraphMethod::LocalDelaunay})
+    for (const EmbeddingMethod solver : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel}) {
+      reconstruction.setGraphMethod(graph);
+      reconstruction.setSolver(solver);
+      EXPECT_EQ(reconstruction.getKSearch(), 17);
+      EXPECT_EQ(reconstruction.getTolerance(), 1e-3);
+    }
+  reconstruction.unsetTolerance();
+  EXPECT_FALSE(reconstruction.getTolerance().has_value());
+  reconstruction.setSolver(EmbeddingMethod::Iterative);
+  EXPECT_EQ(reconstruction.getTolerance(), 1e-8);
+}
+
 TEST_F(SphericalParamReconstruction, GettersGiveWhatSettersSet) {
   Reconstruction reconstruction;
+  setPapersMethod(reconstruction);
+  EXPECT_EQ(reconstruction.getGraphMethod(), GraphMethod::NearestNeighbors);
+  EXPECT_EQ(reconstruction.getSolver(), EmbeddingMethod::Iterative);
+  EXPECT_EQ(reconstruction.getTriangulationMethod(), TriangulationMethod::Qhull);
+  reconstruction.setExponent(2.5);
+  EXPECT_EQ(reconstruction.getExponent(), 2.5);
+  reconstruction.setStarts(7);
+  EXPECT_EQ(reconstruction.getStarts(), 7);
+  reconstruction.setSeed(4294967295U);
+  EXPECT_EQ(reconstruction.getSeed(), 4294967295U);
   reconstruction.setKSearch(12);
   reconstruction.setWeights(EdgeWeights::InverseLength);
   reconstruction.setLambda(0.25);
@@ -1214,19 +1372,25 @@ spherical_param::Result runCore(const Cloud& cloud, const spherical_param::Optio
   spherical_param::Positions points(3, n);
   for (Eigen::Index i = 0; i < n; ++i)
     points.col(i) = cloud[static_cast<std::size_t>(i)].getVector3fMap().cast<double>();
-  spherical_param::NeighborLists lists;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    std::vector<std::pair<double, spherical_param::Index>> by_distance;
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (j != i)
-        by_distance.emplace_back((points.col(i) - points.col(j)).squaredNorm(),
-                                 static_cast<spherical_param::Index>(j));
-    std::sort(by_distance.begin(), by_distance.end());
-    for (std::size_t j = 0; j < static_cast<std::size_t>(options.k) && j < by_distance.size(); ++j)
-      lists.indices.push_back(by_distance[j].second);
-    lists.offsets.push_back(lists.indices.size());
-  }
-  return spherical_param::reconstruct(points, lists, options);
+  const auto search = [&](const std::vector<spherical_param::Index>& queries, int count) {
+    spherical_param::NeighborLists lists;
+    for (const spherical_param::Index i : queries) {
+      std::vector<std::pair<double, spherical_param::Index>> by_distance;
+      for (Eigen::Index j = 0; j < n; ++j)
+        if (j != i)
+          by_distance.emplace_back((points.col(i) - points.col(j)).squaredNorm(),
+                                   static_cast<spherical_param::Index>(j));
+      std::sort(by_distance.begin(), by_distance.end());
+      for (std::size_t j = 0; j < static_cast<std::size_t>(count) && j < by_distance.size(); ++j)
+        lists.indices.push_back(by_distance[j].second);
+      lists.offsets.push_back(lists.indices.size());
+    }
+    return lists;
+  };
+  std::vector<spherical_param::Index> all(cloud.size());
+  std::iota(all.begin(), all.end(), 0);
+  return spherical_param::reconstruct(
+      points, search(all, spherical_param::neighborsToSearch(options)), options, search);
 }
 
 /// Changes one option, of the core and by the setter.
@@ -1236,16 +1400,90 @@ struct OptionChange {
   std::function<void(Reconstruction&)> set;
 };
 
-class EveryOption : public testing::TestWithParam<OptionChange> {};
+/// The options of one of the two methods, of which the changes start.
+class EveryOption : public testing::TestWithParam<OptionChange> {
+protected:
+  static void expectToReachTheCore(const spherical_param::Options& start,
+                                   Reconstruction reconstruction) {
+    // Enough points that the graph is coarsened.
+    const Cloud::Ptr cloud = makeEllipsoid(1200);
+    spherical_param::Options options = start;
+    GetParam().change(options);
+    const spherical_param::Result expected = runCore(*cloud, options);
+    GetParam().set(reconstruction);
+    reconstruction.setInputCloud(cloud);
+    EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+    const spherical_param::Result& result = reconstruction.getResult();
+    EXPECT_EQ(result.embedding.residuals, expected.embedding.residuals);
+    EXPECT_EQ(result.embedding.residual, expected.embedding.residual);
+    EXPECT_EQ(result.embedding.stop_reason, expected.embedding.stop_reason);
+    EXPECT_EQ(result.embedding.levels.size(), expected.embedding.levels.size());
+    EXPECT_EQ(result.embedding.starts, expected.embedding.starts);
+    EXPECT_EQ(result.graph.edges, expected.graph.edges);
+    EXPECT_EQ(result.graph.searched_again, expected.graph.searched_again);
+    EXPECT_EQ(result.triangles, expected.triangles);
+    EXPECT_EQ(result.sphere, expected.sphere);
+    // Unless the option does something, the test above says nothing.
+    const spherical_param::Result plain = runCore(*cloud, start);
+    EXPECT_EQ(std::string(GetParam().name) != "None",
+              !(result.sphere == plain.sphere && result.triangles == plain.triangles &&
+                result.embedding.starts == plain.embedding.starts &&
+                result.graph.searched_again == plain.graph.searched_again));
+  }
+};
+
+class EveryOptionOfThePaper : public EveryOption {};
 
 INSTANTIATE_TEST_SUITE_P(
     Setters, EveryOption,
     testing::Values(
         OptionChange{"None", [](spherical_param::Options&) {}, [](Reconstruction&) {}},
+        OptionChange{"NearestNeighbors",
+                     [](spherical_param::Options& o) { o.graph = GraphMethod::NearestNeighbors; },
+                     [](Reconstruction& r) { r.setGraphMethod(GraphMethod::NearestNeighbors); }},
+        OptionChange{"Iterative",
+                     [](spherical_param::Options& o) { o.solver = EmbeddingMethod::Iterative; },
+                     [](Reconstruction& r) { r.setSolver(EmbeddingMethod::Iterative); }},
+        OptionChange{
+            "Qhull", [](spherical_param::Options& o) { o.hull = TriangulationMethod::Qhull; },
+            [](Reconstruction& r) { r.setTriangulationMethod(TriangulationMethod::Qhull); }},
         OptionChange{"FewNeighbors", [](spherical_param::Options& o) { o.k = 6; },
                      [](Reconstruction& r) { r.setKSearch(6); }},
-        OptionChange{"MoreNeighborsThanPoints", [](spherical_param::Options& o) { o.k = 100000; },
-                     [](Reconstruction& r) { r.setKSearch(100000); }},
+        OptionChange{"UniformWeights",
+                     [](spherical_param::Options& o) { o.weights = EdgeWeights::Uniform; },
+                     [](Reconstruction& r) { r.setWeights(EdgeWeights::Uniform); }},
+        OptionChange{"InverseLengthWeights",
+                     [](spherical_param::Options& o) { o.weights = EdgeWeights::InverseLength; },
+                     [](Reconstruction& r) { r.setWeights(EdgeWeights::InverseLength); }},
+        OptionChange{"Exponent", [](spherical_param::Options& o) { o.exponent = 4.0; },
+                     [](Reconstruction& r) { r.setExponent(4.0); }},
+        OptionChange{"Lambda", [](spherical_param::Options& o) { o.lambda = 0.125; },
+                     [](Reconstruction& r) { r.setLambda(0.125); }},
+        OptionChange{"Starts", [](spherical_param::Options& o) { o.starts = 3; },
+                     [](Reconstruction& r) { r.setStarts(3); }},
+        OptionChange{"Seed", [](spherical_param::Options& o) { o.seed = 99; },
+                     [](Reconstruction& r) { r.setSeed(99); }},
+        OptionChange{"Tolerance", [](spherical_param::Options& o) { o.tolerance = 1e-10; },
+                     [](Reconstruction& r) { r.setTolerance(1e-10); }}),
+    [](const testing::TestParamInfo<OptionChange>& parameter) {
+      return std::string(parameter.param.name);
+    });
+
+INSTANTIATE_TEST_SUITE_P(
+    Setters, EveryOptionOfThePaper,
+    testing::Values(
+        OptionChange{"None", [](spherical_param::Options&) {}, [](Reconstruction&) {}},
+        OptionChange{"FewNeighbors", [](spherical_param::Options& o) { o.k = 6; },
+                     [](Reconstruction& r) { r.setKSearch(6); }},
+        OptionChange{"MoreNeighborsThanPoints",
+                     [](spherical_param::Options& o) {
+                       o.k = 100000;
+                       o.max_iterations = 10;  // of more than enough edges
+                     },
+                     [](Reconstruction& r) {
+                       r.setKSearch(100000);
+                       r.setMaximumIterations(10);
+                     }},
         OptionChange{"UniformWeights",
                      [](spherical_param::Options& o) { o.weights = EdgeWeights::Uniform; },
                      [](Reconstruction& r) { r.setWeights(EdgeWeights::Uniform); }},
@@ -1266,28 +1504,22 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST_P(EveryOption, ReachesTheCore) {
-  const Cloud::Ptr cloud = makeEllipsoid(200);
+  expectToReachTheCore({}, Reconstruction());
+}
+
+TEST_P(EveryOptionOfThePaper, ReachesTheCore) {
   spherical_param::Options options;
-  GetParam().change(options);
-  const spherical_param::Result expected = runCore(*cloud, options);
+  options.graph = GraphMethod::NearestNeighbors;
+  options.solver = EmbeddingMethod::Iterative;
+  options.hull = TriangulationMethod::Qhull;
   Reconstruction reconstruction;
-  GetParam().set(reconstruction);
-  reconstruction.setInputCloud(cloud);
-  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
-  const spherical_param::Result& result = reconstruction.getResult();
-  EXPECT_EQ(result.embedding.residuals, expected.embedding.residuals);
-  EXPECT_EQ(result.embedding.stop_reason, expected.embedding.stop_reason);
-  EXPECT_EQ(result.graph.edges, expected.graph.edges);
-  EXPECT_EQ(result.triangles, expected.triangles);
-  EXPECT_EQ(result.sphere, expected.sphere);
-  // Unless the option does something, the test above says nothing.
-  if (std::string(GetParam().name) != "None") {
-    EXPECT_NE(result.embedding.residuals, runCore(*cloud, {}).embedding.residuals);
-  }
+  setPapersMethod(reconstruction);
+  expectToReachTheCore(options, reconstruction);
 }
 
 TEST_F(SphericalParamReconstruction, ThreeIterationsLeaveFourResiduals) {
   Reconstruction reconstruction;
+  reconstruction.setSolver(EmbeddingMethod::Iterative);
   reconstruction.setInputCloud(makeEllipsoid(300));
   reconstruction.setMaximumIterations(3);
   EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
@@ -1307,6 +1539,26 @@ TEST_F(SphericalParamReconstruction, OptionsOutOfRangeFail) {
       {"iterations", [](Reconstruction& r) { r.setMaximumIterations(-1); }},
       {"tolerance", [](Reconstruction& r) { r.setTolerance(-1e-9); }},
       {"tolerance", [nan](Reconstruction& r) { r.setTolerance(nan); }},
+      {"tolerance",
+       [](Reconstruction& r) {
+         r.setSolver(EmbeddingMethod::Iterative);
+         r.setTolerance(-1e-9);
+       }},
+      {"k = 2",
+       [](Reconstruction& r) {
+         r.setGraphMethod(GraphMethod::NearestNeighbors);
+         r.setKSearch(2);
+       }},
+      {"exponent", [](Reconstruction& r) { r.setExponent(2.0); }},
+      {"exponent", [](Reconstruction& r) { r.setExponent(17.0); }},
+      {"exponent", [nan](Reconstruction& r) { r.setExponent(nan); }},
+      {"exponent",
+       [](Reconstruction& r) {
+         r.setSolver(EmbeddingMethod::Iterative);
+         r.setExponent(4.0);
+       }},
+      {"starts", [](Reconstruction& r) { r.setStarts(0); }},
+      {"starts", [](Reconstruction& r) { r.setStarts(101); }},
       {"stagnation", [](Reconstruction& r) { r.setStagnationWindow(1); }},
       {"stagnation", [](Reconstruction& r) { r.setStagnationWindow(-1); }},
       {"threads",
@@ -1333,7 +1585,6 @@ TEST_F(SphericalParamReconstruction, ProgressTellsOfTheSearchAndThenOfTheStagesO
   const std::thread::id caller = std::this_thread::get_id();
   Reconstruction reconstruction;
   reconstruction.setInputCloud(makeEllipsoid(6000));  // enough to search in parallel
-  reconstruction.setMaximumIterations(3);
   reconstruction.setNumberOfThreads(4);
   reconstruction.setProgressCallback([&](const Progress& progress) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
@@ -1441,21 +1692,30 @@ TEST_F(SphericalParamReconstruction, CallbackMayReplaceItself) {
 
 TEST_F(SphericalParamReconstruction, ThreadCountDoesNotChangeTheResult) {
   const Cloud::Ptr cloud = makeEllipsoid(6000);  // enough to search in parallel
-  std::vector<Indices> expected;
-  std::vector<double> residuals;
-  for (const unsigned int threads : {1U, 2U, 3U, 4U, 0U}) {
-    Reconstruction reconstruction;
-    reconstruction.setInputCloud(cloud);
-    reconstruction.setMaximumIterations(5);
-    reconstruction.setNumberOfThreads(threads);
-    const std::vector<Indices> lists = asLists(reconstructPolygons(reconstruction));
-    ASSERT_EQ(lists.size(), 2 * cloud->size() - 4);
-    if (threads == 1U) {
-      expected = lists;
-      residuals = reconstruction.getResult().embedding.residuals;
+  const std::vector<std::function<void(Reconstruction&)>> methods{
+      [](Reconstruction&) {}, [](Reconstruction& r) { r.setTolerance(1e-8); },
+      [](Reconstruction& r) { r.setWeights(EdgeWeights::Uniform); },
+      [](Reconstruction& r) {
+        setPapersMethod(r);
+        r.setMaximumIterations(5);
+      }};
+  for (const auto& set_method : methods) {
+    std::vector<Indices> expected;
+    spherical_param::Positions sphere;
+    for (const unsigned int threads : {1U, 2U, 3U, 4U, 0U}) {
+      Reconstruction reconstruction;
+      set_method(reconstruction);
+      reconstruction.setInputCloud(cloud);
+      reconstruction.setNumberOfThreads(threads);
+      const std::vector<Indices> lists = asLists(reconstructPolygons(reconstruction));
+      ASSERT_EQ(lists.size(), 2 * cloud->size() - 4);
+      if (threads == 1U) {
+        expected = lists;
+        sphere = reconstruction.getResult().sphere;
+      }
+      EXPECT_EQ(lists, expected) << threads;
+      EXPECT_EQ(reconstruction.getResult().sphere, sphere) << threads;
     }
-    EXPECT_EQ(lists, expected) << threads;
-    EXPECT_EQ(reconstruction.getResult().embedding.residuals, residuals) << threads;
   }
 }
 
@@ -1466,14 +1726,17 @@ TEST_F(SphericalParamReconstruction, TwoObjectsInTwoThreadsGiveWhatEachGivesAlon
     reconstruction.setInputCloud(clouds[i % 2]);
     if (i == 1)  // of its own, not shared
       reconstruction.setSearchMethod(Search::Ptr(new pcl::search::Octree<PointXYZ>(0.1)));
-    reconstruction.setMaximumIterations(50);
+    if (i == 2) {
+      setPapersMethod(reconstruction);
+      reconstruction.setMaximumIterations(50);
+    }
     pcl::PolygonMesh mesh;
     reconstruction.reconstruct(mesh);
     const spherical_param::Positions& sphere = reconstruction.getResult().sphere;
     return std::make_pair(asLists(mesh.polygons),
                           std::vector<double>(sphere.data(), sphere.data() + sphere.size()));
   };
-  std::vector<decltype(run(0))> together(4);
+  std::vector<decltype(run(0))> together(5);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < together.size(); ++i)
     threads.emplace_back([&, i] { together[i] = run(i); });

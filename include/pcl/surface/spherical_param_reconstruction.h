@@ -7,20 +7,34 @@
 
 #include "spherical_param/reconstruct.h"
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+namespace spherical_param {
+struct DistinctPoints;
+}
+
 namespace pcl {
+namespace detail {
+struct NeighborSource;
+}
 
 /** \brief Meshes the point cloud of an object without holes through it (a topological sphere) into
  * a closed, manifold, consistently outward-oriented genus-0 triangle mesh through every distinct
  * finite input point. It needs no normals, no radius and no tuning.
  *
- * M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical Parameterization", Eurographics
- * Symposium on Point-Based Graphics, 2004: the k-nearest-neighbour graph is embedded on the unit
- * sphere so that its tangential Laplacian vanishes, and the convex hull of the embedded points
- * gives the connectivity.
+ * A graph of local Delaunay neighbourhoods is embedded on the unit sphere from coarse to fine, so
+ * that limbs are unfolded, towards a vanishing tangential Laplacian. The Delaunay triangulation of
+ * the embedded points, which is their convex hull, gives the connectivity; its decisions are exact.
+ *
+ * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
+ * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
+ * k nearest neighbours, a damped iteration from the projection from the centroid, and qhull, is
+ * setGraphMethod(GraphMethod::NearestNeighbors), setSolver(EmbeddingMethod::Iterative) and
+ * setTriangulationMethod(TriangulationMethod::Qhull).
  *
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
@@ -34,8 +48,9 @@ namespace pcl {
  * \note Two objects may work in two threads at the same time, unless they share a search object
  * (setSearchMethod()) whose setInputCloud() or queries would race. An object itself must not be
  * used from two threads at once.
- * \note The memory for k = 25 is below 2 KB a point, besides that of the process itself; the time
- * O(n log n) plus iterations times O(n k).
+ * \note The memory is below 2 KB a point, and below 4 KB where the multilevel solver has a
+ * tolerance, besides that of the process itself. The time is O(n log n), typically, and with the
+ * iterative solver iterations times O(n k) more.
  * \note Without a search object of the user, neighbours are found in single precision: within a
  * cluster smaller than 1e-19 of the largest coordinate they are arbitrary (the mesh stays sound).
  * \ingroup surface
@@ -50,55 +65,122 @@ public:
   using KdTreePtr = typename MeshConstruction<PointInT>::KdTreePtr;
   using PointCloudIn = pcl::PointCloud<PointInT>;
 
+  using GraphMethod = spherical_param::GraphMethod;
+  using EmbeddingMethod = spherical_param::EmbeddingMethod;
+  using TriangulationMethod = spherical_param::TriangulationMethod;
   using EdgeWeights = spherical_param::EdgeWeights;
   using ProgressCallback = std::function<bool(const spherical_param::Progress&)>;
 
   SphericalParamReconstruction();
   ~SphericalParamReconstruction() override = default;
 
-  /** \brief Set the number of nearest neighbours of each point in the neighbourhood graph.
-   * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default 25, the
-   * paper's.
-   * \note Raise it for clouds with noise or uneven density along scan lines; lower it where sheets
-   * of the surface come close to each other. */
+  /** \brief Set how points become neighbours.
+   * \param[in] method default GraphMethod::LocalDelaunay
+   * \note Set GraphMethod::NearestNeighbors to compare with the paper, or to join parts of a cloud
+   * by a large k (setKSearch()). */
+  inline void setGraphMethod(GraphMethod method) { options_.graph = method; }
+  /** \brief Get how points become neighbours. */
+  inline GraphMethod getGraphMethod() const { return options_.graph; }
+
+  /** \brief Set how the graph is embedded on the sphere.
+   * \param[in] method default EmbeddingMethod::Multilevel
+   * \note Set EmbeddingMethod::Iterative for the paper's iteration; it folds limbs. */
+  inline void setSolver(EmbeddingMethod method) { options_.solver = method; }
+  /** \brief Get how the graph is embedded on the sphere. */
+  inline EmbeddingMethod getSolver() const { return options_.solver; }
+
+  /** \brief Set how the points on the sphere are triangulated.
+   * \param[in] method default TriangulationMethod::Incremental
+   * \note Set TriangulationMethod::Qhull to compare with the paper; it is slower, and has to put
+   * back points where they are dense. */
+  inline void setTriangulationMethod(TriangulationMethod method) { options_.hull = method; }
+  /** \brief Get how the points on the sphere are triangulated. */
+  inline TriangulationMethod getTriangulationMethod() const { return options_.hull; }
+
+  /** \brief Set the number of neighbours of each point that are searched for.
+   * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Unless it is set,
+   * 25 (the paper's) for GraphMethod::NearestNeighbors and 12 for GraphMethod::LocalDelaunay, which
+   * asks for more where it needs them.
+   * \note For nearest neighbours, raise it for clouds with noise or uneven density along scan
+   * lines, and lower it where sheets of the surface come close to each other. Local Delaunay
+   * neighbourhoods hardly depend on it, and use no more than 32. */
   inline void setKSearch(int k) { options_.k = k; }
-  /** \brief Get the number of nearest neighbours of each point in the neighbourhood graph. */
-  inline int getKSearch() const { return options_.k; }
+  /** \brief Get the number of neighbours of each point that are searched for: that of setKSearch(),
+   * or the default of the graph method. */
+  inline int getKSearch() const { return spherical_param::neighborsToSearch(options_); }
 
   /** \brief Set the weights of the Laplacian (equations 2 to 4 of the paper).
    * \param[in] weights default EdgeWeights::Adaptive
-   * \note Adaptive weights keep the embedding from collapsing; the other two are for comparison. */
+   * \note Adaptive weights alone keep the embedding from collapsing by themselves. Of the other
+   * two, which are for comparison, the multilevel solver has to hold the centroid, and their
+   * tangential Laplacian vanishes only together with that pull. */
   inline void setWeights(EdgeWeights weights) { options_.weights = weights; }
   /** \brief Get the weights of the Laplacian. */
   inline EdgeWeights getWeights() const { return options_.weights; }
 
-  /** \brief Set the damping of the iteration.
+  /** \brief Set the exponent p of the energy that adaptive weights minimise.
+   * \param[in] exponent in (2, 16]; default 3, that of the paper's weights and all that the
+   * iterative solver takes. Other weights use it for their start alone.
+   * \note Raise it where the tips of long limbs become too dense on the sphere: along a limb of
+   * radius r the map shrinks like exp(-s / (r sqrt(p - 1))). Above 4, set a tolerance as well:
+   * smoothing alone then leaves folds; far above it Newton's method may not converge either. */
+  inline void setExponent(double exponent) { options_.exponent = exponent; }
+  /** \brief Get the exponent p of the energy that adaptive weights minimise. */
+  inline double getExponent() const { return options_.exponent; }
+
+  /** \brief Set the damping of the iteration, and of the smoothing sweeps of the multilevel solver.
    * \param[in] lambda share of the tangential Laplacian that a step makes, in (0, 1]; default 0.5,
    * the paper's.
    * \note Lower it if the residuals oscillate. */
   inline void setLambda(double lambda) { options_.lambda = lambda; }
-  /** \brief Get the damping of the iteration. */
+  /** \brief Get the damping of the iteration and of the smoothing sweeps. */
   inline double getLambda() const { return options_.lambda; }
 
-  /** \brief Set the number of iterations at most.
+  /** \brief Set how many starts the multilevel solver tries on its coarsest level.
+   * \param[in] starts 1 to 100; default 2. The one of least energy is kept.
+   * \note Raise it where starts collapse (getResult().embedding.collapsed_starts); it costs little
+   * for large clouds. */
+  inline void setStarts(int starts) { options_.starts = starts; }
+  /** \brief Get how many starts the multilevel solver tries. */
+  inline int getStarts() const { return options_.starts; }
+
+  /** \brief Set the seed of the order in which the multilevel solver coarsens the graph.
+   * \param[in] seed any number; default 1. The same seed gives the same result.
+   * \note Change it to see how much the result rests on that order. */
+  inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
+  /** \brief Get the seed of the multilevel solver. */
+  inline std::uint32_t getSeed() const { return options_.seed; }
+
+  /** \brief Set the number of iterations of the iterative solver at most.
    * \param[in] iterations 0 and up; default 1600, as in Table 1 of the paper.
    * \note Has no effect once the iteration has stagnated (getResult().embedding.stop_reason). */
   inline void setMaximumIterations(int iterations) { options_.max_iterations = iterations; }
-  /** \brief Get the number of iterations at most. */
+  /** \brief Get the number of iterations of the iterative solver at most. */
   inline int getMaximumIterations() const { return options_.max_iterations; }
 
   /** \brief Set the mean length of the tangential Laplacian at which the embedding has converged.
-   * \param[in] tolerance in radii of the sphere, 0 and up; default 1e-8.
-   * \note Raise it to save time where only the mesh matters. */
+   * \param[in] tolerance in radii of the sphere, 0 and up. Unless it is set, the iterative solver
+   * aims at 1e-8; the multilevel solver ends with its smoothing sweeps and does not converge.
+   * \note Set it, 1e-8 say, for a map that hardly depends on how it was reached, and where
+   * smoothing alone leaves folds (getResult().edges_outside_graph), as it may on long thin limbs.
+   * Otherwise the mesh hardly gains by the time. */
   inline void setTolerance(double tolerance) { options_.tolerance = tolerance; }
-  /** \brief Get the mean length of the tangential Laplacian at convergence. */
-  inline double getTolerance() const { return options_.tolerance; }
+  /** \brief Take back setTolerance().
+   * \note The way back to the default of the solver at hand. */
+  inline void unsetTolerance() { options_.tolerance.reset(); }
+  /** \brief Get the mean length of the tangential Laplacian at convergence that is in force: that
+   * of setTolerance(), or the default of the solver; none if convergence is not asked for. */
+  inline std::optional<double> getTolerance() const {
+    if (!options_.tolerance && options_.solver == EmbeddingMethod::Iterative)
+      return spherical_param::EmbeddingOptions().tolerance;
+    return options_.tolerance;
+  }
 
-  /** \brief Set the number of iterations over which stagnation is judged.
+  /** \brief Set the number of iterations over which the iterative solver judges stagnation.
    * \param[in] window 2 and up, or 0 to never stop for stagnation; default 100.
    * \note Set 0 to reproduce the paper's fixed number of iterations. */
   inline void setStagnationWindow(int window) { options_.stagnation_window = window; }
-  /** \brief Get the number of iterations over which stagnation is judged. */
+  /** \brief Get the number of iterations over which the iterative solver judges stagnation. */
   inline int getStagnationWindow() const { return options_.stagnation_window; }
 
   /** \brief Set the number of threads. The result does not depend on it.
@@ -149,7 +231,11 @@ public:
    * skipped or not in the indices are NaN. Empty after a failure. */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
 
-  /** \brief Tell whether the embedding of the last reconstruct() reached the tolerance. */
+  /** \brief Tell whether the embedding of the last reconstruct() reached the tolerance; false if
+   * none was in force (getTolerance()).
+   * \note Where the multilevel solver holds the centroid by a barrier (uniform and inverse-length
+   * weights, or getResult().embedding.added_barrier), what reached it is the tangential Laplacian
+   * together with the pull of that barrier. */
   inline bool hasConverged() const {
     return result_.sphere.cols() > 0 &&
            result_.embedding.stop_reason == spherical_param::StopReason::Converged;
@@ -190,22 +276,12 @@ private:
   spherical_param::Result reconstructPoints(const spherical_param::Positions& points,
                                             const spherical_param::Options& options) const;
 
-  /** \brief Finds the k nearest neighbours of each distinct point; the lists of points that repeat
-   * an earlier one are empty. */
-  spherical_param::NeighborLists findNeighbors(const spherical_param::Positions& points,
-                                               const spherical_param::Options& options) const;
+  /** \brief Makes a tree of our own of the distinct points, which must outlive it. */
+  detail::NeighborSource makeKdTree(const spherical_param::Positions& points,
+                                    const spherical_param::DistinctPoints& distinct) const;
 
-  /** \brief Writes list_size neighbours of each distinct point to neighbors, as positions in
-   * used_indices_, found by a tree of our own that is gone afterwards. */
-  void searchWithKdTree(const spherical_param::Positions& points,
-                        const std::vector<spherical_param::Index>& distinct, std::size_t list_size,
-                        int threads, const std::function<void(double)>& report,
-                        std::vector<spherical_param::Index>& neighbors) const;
-
-  /** \brief Does the same with the search object of setSearchMethod(). */
-  void searchWithUserTree(const std::vector<spherical_param::Index>& distinct,
-                          std::size_t list_size, const std::function<void(double)>& report,
-                          std::vector<spherical_param::Index>& neighbors) const;
+  /** \brief Gives the distinct points to the search object of setSearchMethod(). */
+  detail::NeighborSource useSearchMethod(const spherical_param::DistinctPoints& distinct) const;
 
   spherical_param::Options options_;
   spherical_param::Result result_;

@@ -95,6 +95,58 @@ inline int searchThreads([[maybe_unused]] int threads, [[maybe_unused]] std::siz
   return 1;
 }
 
+/** \brief Finds all neighbours of a set of points; it is searched once more for some of them. */
+struct NeighborSource {
+  std::size_t size = 0;     ///< number of points that can be found
+  bool concurrent = false;  ///< whether query may be called by several threads at once
+  int threads = 0;          ///< threads that it may be called by; 0: as many as OpenMP would use
+  /** \brief Writes `count` (at most size) neighbours of a point to `neighbors`, the point itself
+   * among them, all as positions in the indices used. The two vectors are scratch memory. */
+  std::function<void(spherical_param::Index point, std::size_t count, pcl::Indices& indices,
+                     std::vector<float>& distances, spherical_param::Index* neighbors)>
+      query;
+};
+
+/** \brief Finds the nearest neighbours of each point, besides itself.
+ * \param[in] order the points are asked for in this order of their places in `points`, so that each
+ * search finds what it needs in the cache; empty: as they are */
+template <typename Report>
+spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
+                                             const std::vector<spherical_param::Index>& points,
+                                             const std::vector<spherical_param::Index>& order,
+                                             int neighbors, const Report& report) {
+  // One more, since a point is its own neighbour.
+  const std::size_t list_size =
+      std::min(static_cast<std::size_t>(std::max(neighbors, 0)), source.size - 1) + 1;
+  spherical_param::NeighborLists lists;
+  lists.offsets.resize(points.size() + 1);
+  for (std::size_t i = 0; i < lists.offsets.size(); ++i)
+    lists.offsets[i] = i * list_size;
+  lists.indices.resize(points.size() * list_size);
+  queryInBlocks(
+      points.size(), source.concurrent ? searchThreads(source.threads, points.size()) : 1,
+      [&](std::size_t i, pcl::Indices& indices, std::vector<float>& distances) {
+        const std::size_t place = order.empty() ? i : static_cast<std::size_t>(order[i]);
+        source.query(points[place], list_size, indices, distances,
+                     lists.indices.data() + lists.offsets[place]);
+      },
+      report);
+  return lists;
+}
+
+/** \brief Turns lists of the distinct points into lists of all: those of points that repeat an
+ * earlier one are empty. */
+inline void insertEmptyLists(const spherical_param::DistinctPoints& distinct,
+                             spherical_param::NeighborLists& lists) {
+  std::vector<std::size_t> offsets(distinct.vertex_of_input.size() + 1, 0);
+  for (std::size_t v = 0; v < distinct.input_of_vertex.size(); ++v)
+    offsets[static_cast<std::size_t>(distinct.input_of_vertex[v]) + 1] =
+        lists.offsets[v + 1] - lists.offsets[v];
+  for (std::size_t i = 1; i < offsets.size(); ++i)
+    offsets[i] += offsets[i - 1];
+  lists.offsets = std::move(offsets);
+}
+
 /** \brief Finds out which numbers `search` returns for a subset. Points are told apart by asking
  * for the one neighbour of a point of the subset, which is the point itself. */
 template <typename PointInT>
@@ -350,16 +402,6 @@ spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoint
     const spherical_param::Positions& points, const spherical_param::Options& options) const {
   spherical_param::checkOptions(options);
   const auto start = std::chrono::steady_clock::now();
-  const spherical_param::NeighborLists lists = findNeighbors(points, options);
-  const std::chrono::duration<double> search_time = std::chrono::steady_clock::now() - start;
-  spherical_param::Result result = spherical_param::reconstruct(points, lists, options);
-  result.stages.insert(result.stages.begin(), {"neighbors", search_time.count()});
-  return result;
-}
-
-template <typename PointInT>
-spherical_param::NeighborLists SphericalParamReconstruction<PointInT>::findNeighbors(
-    const spherical_param::Positions& points, const spherical_param::Options& options) const {
   const auto report = [&options](double fraction) {
     if (options.progress && !options.progress({"neighbors", fraction, 0, 0.0}))
       throw spherical_param::Cancelled("cancelled by the progress callback");
@@ -374,57 +416,60 @@ spherical_param::NeighborLists SphericalParamReconstruction<PointInT>::findNeigh
         "at least 4 distinct finite points are needed, but there are " + std::to_string(count) +
         " (" + std::to_string(ignored_points_) + " are not finite)");
 
-  // One more than k, since a point is its own neighbour.
-  const auto list_size = static_cast<std::size_t>(
-      std::min<std::int64_t>(options.k, static_cast<std::int64_t>(count) - 1) + 1);
-  spherical_param::NeighborLists lists;
-  lists.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
-  for (const spherical_param::Index first : distinct.input_of_vertex)
-    lists.offsets[static_cast<std::size_t>(first) + 1] = list_size;
-  for (std::size_t i = 1; i < lists.offsets.size(); ++i)
-    lists.offsets[i] += lists.offsets[i - 1];
-  lists.indices.resize(count * list_size);
+  detail::NeighborSource source = tree_ ? useSearchMethod(distinct) : makeKdTree(points, distinct);
+  source.threads = options.threads;
+  spherical_param::NeighborLists lists = detail::findNeighbors(
+      source, distinct.input_of_vertex,
+      spherical_param::spatialOrder(points(Eigen::all, distinct.input_of_vertex)),
+      spherical_param::neighborsToSearch(options), report);
+  detail::insertEmptyLists(distinct, lists);
+  const std::chrono::duration<double> search_time = std::chrono::steady_clock::now() - start;
 
-  if (tree_)
-    searchWithUserTree(distinct.input_of_vertex, list_size, report, lists.indices);
-  else
-    searchWithKdTree(points, distinct.input_of_vertex, list_size,
-                     detail::searchThreads(options.threads, count), report, lists.indices);
-  return lists;
+  spherical_param::Result result = spherical_param::reconstruct(
+      points, lists, options,
+      [&source](const std::vector<spherical_param::Index>& some_points, int neighbors) {
+        return detail::findNeighbors(source, some_points, {}, neighbors, [](double) {});
+      });
+  result.stages.insert(result.stages.begin(), {"neighbors", search_time.count()});
+  return result;
 }
 
 template <typename PointInT>
-void SphericalParamReconstruction<PointInT>::searchWithKdTree(
-    const spherical_param::Positions& points, const std::vector<spherical_param::Index>& distinct,
-    std::size_t list_size, int threads, const std::function<void(double)>& report,
-    std::vector<spherical_param::Index>& neighbors) const {
+detail::NeighborSource SphericalParamReconstruction<PointInT>::makeKdTree(
+    const spherical_param::Positions& points,
+    const spherical_param::DistinctPoints& distinct) const {
   // A cloud of its own, because PCL takes the first three floats of a custom point type for its
   // coordinates, and scaled by a power of two (exactly), because squared distances in float
   // underflow for small clouds and overflow for large ones.
+  const std::vector<spherical_param::Index>& point_of_vertex = distinct.input_of_vertex;
   const int exponent = std::ilogb(points.cwiseAbs().maxCoeff());
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  cloud->resize(distinct.size());
-  for (std::size_t v = 0; v < distinct.size(); ++v)
+  cloud->resize(point_of_vertex.size());
+  for (std::size_t v = 0; v < point_of_vertex.size(); ++v)
     for (Eigen::Index axis = 0; axis < 3; ++axis)
-      (*cloud)[v].data[axis] = static_cast<float>(std::ldexp(points(axis, distinct[v]), -exponent));
-  pcl::search::KdTree<pcl::PointXYZ> tree(false);
-  tree.setInputCloud(cloud);
+      (*cloud)[v].data[axis] =
+          static_cast<float>(std::ldexp(points(axis, point_of_vertex[v]), -exponent));
+  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>(false));
+  tree->setInputCloud(cloud);
 
-  detail::queryInBlocks(
-      distinct.size(), threads,
-      [&](std::size_t v, pcl::Indices& indices, std::vector<float>& distances) {
-        tree.nearestKSearch((*cloud)[v], static_cast<int>(list_size), indices, distances);
-        for (std::size_t i = 0; i < list_size; ++i)
-          neighbors[v * list_size + i] = distinct[static_cast<std::size_t>(indices.at(i))];
-      },
-      report);
+  detail::NeighborSource source;
+  source.size = point_of_vertex.size();
+  source.concurrent = true;
+  source.query = [cloud, tree, &distinct](spherical_param::Index point, std::size_t count,
+                                          pcl::Indices& indices, std::vector<float>& distances,
+                                          spherical_param::Index* neighbors) {
+    const auto v =
+        static_cast<std::size_t>(distinct.vertex_of_input[static_cast<std::size_t>(point)]);
+    tree->nearestKSearch((*cloud)[v], static_cast<int>(count), indices, distances);
+    for (std::size_t i = 0; i < count; ++i)
+      neighbors[i] = distinct.input_of_vertex[static_cast<std::size_t>(indices.at(i))];
+  };
+  return source;
 }
 
 template <typename PointInT>
-void SphericalParamReconstruction<PointInT>::searchWithUserTree(
-    const std::vector<spherical_param::Index>& distinct, std::size_t list_size,
-    const std::function<void(double)>& report,
-    std::vector<spherical_param::Index>& neighbors) const {
+detail::NeighborSource SphericalParamReconstruction<PointInT>::useSearchMethod(
+    const spherical_param::DistinctPoints& distinct) const {
   const auto* organized =
       dynamic_cast<const pcl::search::OrganizedNeighbor<PointInT>*>(tree_.get());
   if (organized && (input_->height <= 1 || input_->width <= 1))
@@ -432,45 +477,48 @@ void SphericalParamReconstruction<PointInT>::searchWithUserTree(
         "the search object is an OrganizedNeighbor, but the cloud is not organized; use a "
         "pcl::search::KdTree");
 
-  pcl::IndicesPtr subset(new pcl::Indices(distinct.size()));
+  const std::vector<spherical_param::Index>& point_of_vertex = distinct.input_of_vertex;
+  pcl::IndicesPtr subset(new pcl::Indices(point_of_vertex.size()));
   std::vector<spherical_param::Index> point_of_cloud(input_->size(), -1);
-  for (std::size_t v = 0; v < distinct.size(); ++v) {
-    (*subset)[v] = used_indices_[static_cast<std::size_t>(distinct[v])];
-    point_of_cloud[static_cast<std::size_t>((*subset)[v])] = distinct[v];
+  for (std::size_t v = 0; v < point_of_vertex.size(); ++v) {
+    (*subset)[v] = used_indices_[static_cast<std::size_t>(point_of_vertex[v])];
+    point_of_cloud[static_cast<std::size_t>((*subset)[v])] = point_of_vertex[v];
   }
   tree_->setInputCloud(input_, subset);
   if (organized)
     detail::checkCameraModel(*organized, *input_, *subset);
   const bool whole_in_order =
       std::is_sorted(subset->begin(), subset->end()) && subset->size() == input_->size();
-  const std::vector<spherical_param::Index>& point_of_answer =
+  std::vector<spherical_param::Index> point_of_answer =
       whole_in_order || detail::findSearchIndexSpace(*tree_, *input_, *subset) ==
                             detail::SearchIndexSpace::Cloud
-          ? point_of_cloud
-          : distinct;
+          ? std::move(point_of_cloud)
+          : point_of_vertex;
 
-  // One after the other: a search object of the user need not be ready for concurrent queries.
-  detail::queryInBlocks(
-      distinct.size(), 1,
-      [&](std::size_t v, pcl::Indices& indices, std::vector<float>& distances) {
-        const PointInT& point = (*input_)[static_cast<std::size_t>((*subset)[v])];
-        const int answers =
-            tree_->nearestKSearch(point, static_cast<int>(list_size), indices, distances);
-        const std::size_t found =
-            std::min({static_cast<std::size_t>(std::max(answers, 0)), indices.size(), list_size});
-        for (std::size_t i = 0; i < found; ++i) {
-          const auto answer = static_cast<std::size_t>(indices[i]);
-          if (answer >= point_of_answer.size() || point_of_answer[answer] < 0)
-            throw spherical_param::ComputeError(
-                "the search object returned index " + std::to_string(indices[i]) +
-                ", which is not among the points it was given; use a pcl::search::KdTree");
-          neighbors[v * list_size + i] = point_of_answer[answer];
-        }
-        // A search that finds fewer is made up for by the point itself, which the core ignores.
-        for (std::size_t i = found; i < list_size; ++i)
-          neighbors[v * list_size + i] = distinct[v];
-      },
-      report);
+  detail::NeighborSource source;
+  source.size = point_of_vertex.size();
+  // A search object of the user need not be ready for concurrent queries.
+  source.concurrent = false;
+  source.query = [this, point_of_answer = std::move(point_of_answer)](
+                     spherical_param::Index point, std::size_t count, pcl::Indices& indices,
+                     std::vector<float>& distances, spherical_param::Index* neighbors) {
+    const pcl::index_t index = used_indices_[static_cast<std::size_t>(point)];
+    const int answers = tree_->nearestKSearch((*input_)[static_cast<std::size_t>(index)],
+                                              static_cast<int>(count), indices, distances);
+    const std::size_t found =
+        std::min({static_cast<std::size_t>(std::max(answers, 0)), indices.size(), count});
+    for (std::size_t i = 0; i < found; ++i) {
+      const auto answer = static_cast<std::size_t>(indices[i]);
+      if (answer >= point_of_answer.size() || point_of_answer[answer] < 0)
+        throw spherical_param::ComputeError(
+            "the search object returned index " + std::to_string(indices[i]) +
+            ", which is not among the points it was given; use a pcl::search::KdTree");
+      neighbors[i] = point_of_answer[answer];
+    }
+    // A search that finds fewer is made up for by the point itself, which the core ignores.
+    std::fill(neighbors + found, neighbors + count, point);
+  };
+  return source;
 }
 
 }  // namespace pcl
