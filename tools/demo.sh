@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The whole way on a bare Debian 12: installs what is missing, builds, scans a generated head,
+# The whole way on a bare Debian 12: installs what is missing, builds, scans a generated hand,
 # meshes it, and draws cloud, mesh and sphere side by side.
 #
 #   tools/demo.sh [OUTPUT_FOLDER]      default: demo_output in the checkout
@@ -44,7 +44,7 @@ can_render=yes
 cmake --build "$build" --target pcl_spherical_param_render >>"$log" 2>&1 || can_render=no
 
 remedy="the message above says why; the tools are in $build/bin"
-"$build/bin/pcl_spherical_param_scan" head "$out/scan.ply" -points "$points"
+"$build/bin/pcl_spherical_param_scan" hand "$out/scan.ply" -points "$points"
 "$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
   -sphere "$out/sphere.ply" -json "$out/report.json"
 
@@ -57,7 +57,8 @@ if [ "$can_render" = yes ]; then
   fi
   if "${display[@]}" "$build/bin/pcl_spherical_param_render" "$out/demo.png" \
     "$out/scan.ply" "$out/mesh.ply" "$out/sphere.ply" -colors "$out/sphere.ply" \
-    -view 62,10 -caption "point cloud" -caption "closed mesh" -caption "its map to the sphere" \
+    -size 1320x440 -view 25,20 \
+    -caption "point cloud" -caption "closed mesh" -caption "its map to the sphere" \
     >"$out/render.log" 2>&1; then
     picture="$out/demo.png"
     rm -f "$out/render.log"

@@ -28,7 +28,10 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,8 +42,11 @@ namespace {
 
 using namespace spherical_param::tools;
 using spherical_param::EdgeWeights;
+using spherical_param::EmbeddingMethod;
+using spherical_param::GraphMethod;
 using spherical_param::Index;
 using spherical_param::StopReason;
+using spherical_param::TriangulationMethod;
 using Reconstruction = pcl::SphericalParamReconstruction<pcl::PointXYZ>;
 using Json = nlohmann::ordered_json;
 
@@ -48,12 +54,18 @@ const std::string tool_name = "pcl_spherical_param_reconstruction";
 const std::string standard_output = "-";
 
 const std::vector<OptionInfo> option_table = {
-    {"k", "N", "neighbours of each point, 3 and up (25)"},
+    {"graph", "NAME", "knn (the paper's) or delaunay (delaunay)"},
+    {"k", "N", "neighbours of each point, 3 and up (25 for knn, 12 for delaunay)"},
+    {"solver", "NAME", "iterative (the paper's) or multilevel (multilevel)"},
     {"weights", "NAME", "uniform, inverse or adaptive (adaptive)"},
-    {"iterations", "N", "iterations at most (1600)"},
-    {"tolerance", "X", "mean tangential Laplacian at convergence, 0 to 1 (1e-8)"},
-    {"lambda", "X", "damping of the iteration, above 0 and up to 1 (0.5)"},
-    {"stagnation", "N", "iterations over which stagnation is judged, 0: never (100)"},
+    {"exponent", "X", "p of adaptive weights, multilevel: above 2 and up to 16 (3)"},
+    {"tolerance", "X", "mean tangential Laplacian at convergence, 0 to 1 (off; iterative: 1e-8)"},
+    {"lambda", "X", "damping of iterations and sweeps, above 0 and up to 1 (0.5)"},
+    {"iterations", "N", "iterative: iterations at most (1600)"},
+    {"stagnation", "N", "iterative: iterations over which stagnation is judged, 0: never (100)"},
+    {"starts", "N", "multilevel: starts of the coarsest level, 1 to 100 (2)"},
+    {"seed", "N", "multilevel: seed of the order in which nodes are taken (1)"},
+    {"hull", "NAME", "qhull (the paper's) or incremental (incremental)"},
     {"threads", "N", "threads, 0: as many as there are processors (0)"},
     {"sphere", "FILE", "write the points on the sphere with the same triangles"},
     {"json", "FILE", "write a report, - for the standard output and nothing else there"},
@@ -86,25 +98,48 @@ struct Settings {
   bool jsonToStandardOutput() const { return json == standard_output; }
 };
 
-const std::vector<std::pair<std::string, EdgeWeights>> weight_names = {
+/// The values of an enumeration with the names that the user gives them.
+template <typename Value>
+using Names = std::vector<std::pair<std::string, Value>>;
+
+const Names<GraphMethod> graph_names = {
+    {"knn", GraphMethod::NearestNeighbors},
+    {"delaunay", GraphMethod::LocalDelaunay},
+};
+
+const Names<EmbeddingMethod> solver_names = {
+    {"iterative", EmbeddingMethod::Iterative},
+    {"multilevel", EmbeddingMethod::Multilevel},
+};
+
+const Names<EdgeWeights> weight_names = {
     {"uniform", EdgeWeights::Uniform},
     {"inverse", EdgeWeights::InverseLength},
     {"adaptive", EdgeWeights::Adaptive},
 };
 
-EdgeWeights parseWeights(const std::string& name) {
-  for (const auto& [known, weights] : weight_names) {
-    if (known == name) {
-      return weights;
+const Names<TriangulationMethod> hull_names = {
+    {"qhull", TriangulationMethod::Qhull},
+    {"incremental", TriangulationMethod::Incremental},
+};
+
+template <typename Value>
+Value parseName(const std::string& option, const std::string& text, const Names<Value>& names) {
+  std::string known;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].first == text) {
+      return names[i].second;
     }
+    known += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i].first;
   }
-  throw UsageError("option -weights: " + inQuotes(name) + " is unknown",
-                   "give -weights uniform, inverse or adaptive");
+  throw UsageError("option -" + option + ": " + inQuotes(text) + " is unknown",
+                   "give -" + option + " " + known);
 }
 
-std::string nameOf(EdgeWeights weights) {
-  for (const auto& [name, known] : weight_names) {
-    if (known == weights) {
+template <typename Value>
+std::string nameOf(Value value, const Names<Value>& names) {
+  for (const auto& [name, known] : names) {
+    if (known == value) {
       return name;
     }
   }
@@ -121,37 +156,96 @@ std::string nameOf(StopReason reason) {
     return "stagnated";
   case StopReason::Collapsed:
     return "collapsed";
+  case StopReason::Unfinished:
+    return "unfinished";
   }
   return "";
 }
 
+bool isIterative(const spherical_param::Options& options) {
+  return options.solver == EmbeddingMethod::Iterative;
+}
+
+/// Tells whether the exponent has a say.
+bool hasExponent(const spherical_param::Options& options) {
+  return !isIterative(options) && options.weights == EdgeWeights::Adaptive;
+}
+
+/// The tolerance in force, none if convergence is not asked for.
+std::optional<double> toleranceOf(const spherical_param::Options& options) {
+  if (!options.tolerance && isIterative(options)) {
+    return spherical_param::EmbeddingOptions().tolerance;
+  }
+  return options.tolerance;
+}
+
+/// Refuses options that would change nothing, because they belong to the method that was not
+/// chosen.
+void checkCombination(const CommandLine& command_line, const spherical_param::Options& options) {
+  const auto refuse = [&command_line](const std::string& option, const std::string& other,
+                                      const std::string& wanted) {
+    if (command_line.has(option)) {
+      throw UsageError("option -" + option + " does nothing with " + other,
+                       "leave -" + option + " out, or give " + wanted);
+    }
+  };
+  if (isIterative(options)) {
+    for (const char* option : {"exponent", "starts", "seed"}) {
+      refuse(option, "-solver iterative", "-solver multilevel");
+    }
+  } else {
+    for (const char* option : {"iterations", "stagnation"}) {
+      refuse(option, "-solver multilevel", "-solver iterative");
+    }
+  }
+  if (options.weights != EdgeWeights::Adaptive) {
+    refuse("exponent", "-weights " + nameOf(options.weights, weight_names), "-weights adaptive");
+  }
+}
+
 spherical_param::Options parseOptions(const CommandLine& command_line) {
   spherical_param::Options options;
-  const auto take_integer = [&command_line](const std::string& name, int& value,
-                                            const IntegerRange& range) {
+  const auto take = [&command_line](const std::string& name, auto& value, const auto& parse) {
     if (command_line.has(name)) {
-      value = static_cast<int>(parseInteger(name, command_line.value(name, ""), range));
+      value = parse(name, command_line.value(name, ""));
     }
   };
-  const auto take_real = [&command_line](const std::string& name, double& value,
-                                         const RealRange& range) {
-    if (command_line.has(name)) {
-      value = parseReal(name, command_line.value(name, ""), range);
-    }
+  const auto integer = [](const IntegerRange& range) {
+    return [range](const std::string& name, const std::string& text) {
+      return static_cast<int>(parseInteger(name, text, range));
+    };
   };
-  take_integer("k", options.k, {3});
-  take_integer("iterations", options.max_iterations, {0});
-  take_integer("stagnation", options.stagnation_window, {0});
-  take_integer("threads", options.threads, {0, 1024});
-  take_real("tolerance", options.tolerance, {0.0, 1.0, true});
-  take_real("lambda", options.lambda, {0.0, 1.0, false});
+  const auto real = [](const RealRange& range) {
+    return [range](const std::string& name, const std::string& text) {
+      return parseReal(name, text, range);
+    };
+  };
+  const auto one_of = [](const auto& names) {
+    return [&names](const std::string& name, const std::string& text) {
+      return parseName(name, text, names);
+    };
+  };
+  take("graph", options.graph, one_of(graph_names));
+  take("k", options.k, integer({3}));
+  take("solver", options.solver, one_of(solver_names));
+  take("weights", options.weights, one_of(weight_names));
+  take("exponent", options.exponent, real({2.0, 16.0, false}));
+  take("tolerance", options.tolerance, real({0.0, 1.0, true}));
+  take("lambda", options.lambda, real({0.0, 1.0, false}));
+  take("iterations", options.max_iterations, integer({0}));
+  take("stagnation", options.stagnation_window, integer({0}));
+  take("starts", options.starts, integer({1, 100}));
+  take("seed", options.seed, [](const std::string& name, const std::string& text) {
+    return static_cast<std::uint32_t>(
+        parseInteger(name, text, {0, std::numeric_limits<std::uint32_t>::max()}));
+  });
+  take("hull", options.hull, one_of(hull_names));
+  take("threads", options.threads, integer({0, 1024}));
   if (options.stagnation_window == 1) {
     throw UsageError("option -stagnation: a window of 1 has nothing to compare",
                      "give -stagnation 0 for never, or 2 and up");
   }
-  if (command_line.has("weights")) {
-    options.weights = parseWeights(command_line.value("weights", ""));
-  }
+  checkCombination(command_line, options);
 #ifdef _OPENMP
   options.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
 #else
@@ -241,26 +335,38 @@ void printParameters(const Settings& settings, Console& console) {
   if (!settings.json.empty()) {
     console.entry("json", oneLine(settings.json));
   }
-  console.entry("k", std::to_string(options.k));
-  console.entry("weights", nameOf(options.weights));
-  console.entry("iterations", std::to_string(options.max_iterations));
-  console.entry("tolerance", formatted(options.tolerance, 6));
+  const std::optional<double> tolerance = toleranceOf(options);
+  console.entry("graph", nameOf(options.graph, graph_names));
+  console.entry("k", std::to_string(neighborsToSearch(options)));
+  console.entry("solver", nameOf(options.solver, solver_names));
+  console.entry("weights", nameOf(options.weights, weight_names));
+  if (hasExponent(options)) {
+    console.entry("exponent", formatted(options.exponent, 6));
+  }
+  console.entry("tolerance", tolerance ? formatted(*tolerance, 6) : "off");
   console.entry("lambda", formatted(options.lambda, 6));
-  console.entry("stagnation", options.stagnation_window == 0
-                                  ? "never"
-                                  : std::to_string(options.stagnation_window));
+  if (isIterative(options)) {
+    console.entry("iterations", std::to_string(options.max_iterations));
+    console.entry("stagnation", options.stagnation_window == 0
+                                    ? "never"
+                                    : std::to_string(options.stagnation_window));
+  } else {
+    console.entry("starts", std::to_string(options.starts));
+    console.entry("seed", std::to_string(options.seed));
+  }
+  console.entry("hull", nameOf(options.hull, hull_names));
   console.entry("threads", std::to_string(options.threads));
 }
 
 /// Neighbour lists take memory before anything else fails: an absurd k is told first.
 void checkMemory(const Settings& settings, std::size_t points) {
   constexpr std::uint64_t entry_limit = std::uint64_t{1} << 31;
-  const std::uint64_t neighbors =
-      std::min(static_cast<std::uint64_t>(settings.options.k), std::uint64_t{points});
+  const std::uint64_t neighbors = std::min(
+      static_cast<std::uint64_t>(neighborsToSearch(settings.options)), std::uint64_t{points});
   if (neighbors * points > entry_limit) {
     throw Failure("option -k: " + std::to_string(neighbors) + " neighbours of each of " +
                       std::to_string(points) + " points do not fit into memory",
-                  "give a smaller -k, 25 is usual");
+                  "leave -k out, its default will do");
   }
 }
 
@@ -275,12 +381,20 @@ void reconstruct(const Settings& settings, const PointData& data, Reconstruction
   cloud->is_dense = false;
 
   const spherical_param::Options& options = settings.options;
-  reconstruction.setKSearch(options.k);
+  reconstruction.setGraphMethod(options.graph);
+  reconstruction.setKSearch(neighborsToSearch(options));
+  reconstruction.setSolver(options.solver);
   reconstruction.setWeights(options.weights);
+  reconstruction.setExponent(options.exponent);
+  if (options.tolerance) {
+    reconstruction.setTolerance(*options.tolerance);
+  }
   reconstruction.setLambda(options.lambda);
   reconstruction.setMaximumIterations(options.max_iterations);
-  reconstruction.setTolerance(options.tolerance);
   reconstruction.setStagnationWindow(options.stagnation_window);
+  reconstruction.setStarts(options.starts);
+  reconstruction.setSeed(options.seed);
+  reconstruction.setTriangulationMethod(options.hull);
   reconstruction.setNumberOfThreads(static_cast<unsigned>(options.threads));
   std::string stage;
   std::string detail;
@@ -290,14 +404,16 @@ void reconstruct(const Settings& settings, const PointData& data, Reconstruction
       detail.clear();
       console.begin(stage);
     }
-    if (progress.iteration > 0) {
-      detail = "iteration " + std::to_string(progress.iteration) + ", residual " +
-               formatted(progress.residual, 3);
+    if (progress.residual > 0.0) {
+      detail = (progress.iteration > 0 ? "iteration " + std::to_string(progress.iteration) + ", "
+                                       : std::string()) +
+               "residual " + formatted(progress.residual, 3);
     }
     if (progress.fraction < 1.0) {
       console.update(progress.fraction, detail);
     } else {
-      console.end(detail);
+      // The last that the multilevel solver told may be the residual of a coarser level.
+      console.end(isIterative(options) ? detail : "");
     }
     return true;
   });
@@ -381,12 +497,21 @@ std::uint64_t peakMemory() {
 Json optionsToJson(const Settings& settings) {
   const spherical_param::Options& options = settings.options;
   Json json;
-  json["k"] = options.k;
-  json["weights"] = nameOf(options.weights);
-  json["iterations"] = options.max_iterations;
-  json["tolerance"] = options.tolerance;
+  const std::optional<double> tolerance = toleranceOf(options);
+  // What has no say with the chosen method is null.
+  const auto unless = [](bool idle, const Json& value) { return idle ? Json(nullptr) : value; };
+  json["graph"] = nameOf(options.graph, graph_names);
+  json["k"] = neighborsToSearch(options);
+  json["solver"] = nameOf(options.solver, solver_names);
+  json["weights"] = nameOf(options.weights, weight_names);
+  json["exponent"] = unless(!hasExponent(options), options.exponent);
+  json["tolerance"] = tolerance ? Json(*tolerance) : Json(nullptr);
   json["lambda"] = options.lambda;
-  json["stagnation"] = options.stagnation_window;
+  json["iterations"] = unless(!isIterative(options), options.max_iterations);
+  json["stagnation"] = unless(!isIterative(options), options.stagnation_window);
+  json["starts"] = unless(isIterative(options), options.starts);
+  json["seed"] = unless(isIterative(options), options.seed);
+  json["hull"] = nameOf(options.hull, hull_names);
   json["threads"] = options.threads;
   json["sphere"] = settings.sphere.empty() ? Json(nullptr) : Json(settings.sphere);
   json["json"] = settings.json;
@@ -395,17 +520,86 @@ Json optionsToJson(const Settings& settings) {
   return json;
 }
 
-Json graphToJson(const Reconstruction& reconstruction) {
+Json graphToJson(const Settings& settings, const Reconstruction& reconstruction) {
   const spherical_param::GraphReport& graph = reconstruction.getResult().graph;
   const pcl::Indices& cloud_indices = reconstruction.getVertexIndices();
+  const auto index_of = [&cloud_indices](Index vertex) {
+    return cloud_indices[static_cast<std::size_t>(vertex)];
+  };
   Json json;
+  json["method"] = nameOf(settings.options.graph, graph_names);
   json["edges"] = graph.edges;
   json["components"] = graph.components;
   json["bridges"] = Json::array();
   for (const spherical_param::Bridge& bridge : graph.bridges) {
-    json["bridges"].push_back({{"from", cloud_indices[static_cast<std::size_t>(bridge.from)]},
-                               {"to", cloud_indices[static_cast<std::size_t>(bridge.to)]},
-                               {"length", bridge.length}});
+    json["bridges"].push_back(
+        {{"from", index_of(bridge.from)}, {"to", index_of(bridge.to)}, {"length", bridge.length}});
+  }
+  json["without_tangent_plane_count"] = graph.without_tangent_plane.size();
+  json["without_tangent_plane"] = Json::array();
+  for (const Index vertex : graph.without_tangent_plane) {
+    json["without_tangent_plane"].push_back(index_of(vertex));
+  }
+  json["searched_again"] = graph.searched_again;
+  json["uncertified"] = graph.uncertified;
+  json["weak"] = graph.weak;
+  return json;
+}
+
+/// Nodes or edges of all levels over those of the finest.
+double complexityOf(const std::vector<spherical_param::LevelReport>& levels,
+                    std::size_t spherical_param::LevelReport::*size) {
+  double sum = 0.0;
+  for (const spherical_param::LevelReport& level : levels) {
+    sum += static_cast<double>(level.*size);
+  }
+  return sum / static_cast<double>(levels.front().*size);
+}
+
+/// How many times fewer nodes a level has than the next finer one; the finest has no such ratio.
+std::optional<double> coarseningRatio(const std::vector<spherical_param::LevelReport>& levels,
+                                      std::size_t level) {
+  if (level == 0) {
+    return std::nullopt;
+  }
+  return static_cast<double>(levels[level - 1].nodes) / static_cast<double>(levels[level].nodes);
+}
+
+/// Tells whether the solver held the centroid of the sphere, so that it did not collapse.
+bool hasBarrier(const Settings& settings, const spherical_param::EmbeddingReport& embedding) {
+  return !embedding.levels.empty() &&
+         (embedding.added_barrier || settings.options.weights != EdgeWeights::Adaptive);
+}
+
+Json embeddingToJson(const Settings& settings, const Reconstruction& reconstruction) {
+  const spherical_param::EmbeddingReport& embedding = reconstruction.getResult().embedding;
+  const std::vector<spherical_param::LevelReport>& levels = embedding.levels;
+  Json json;
+  json["solver"] = nameOf(settings.options.solver, solver_names);
+  json["centroid_norm"] = embedding.centroid_norm;
+  // The iteration knows neither levels nor energy.
+  if (levels.empty()) {
+    return json;
+  }
+  json["starts"] = embedding.starts;
+  json["collapsed_starts"] = embedding.collapsed_starts;
+  json["barrier"] = hasBarrier(settings, embedding);
+  json["added_barrier"] = embedding.added_barrier;
+  json["energy"] = embedding.energy;
+  json["operator_complexity"] = complexityOf(levels, &spherical_param::LevelReport::edges);
+  json["grid_complexity"] = complexityOf(levels, &spherical_param::LevelReport::nodes);
+  json["levels"] = Json::array();
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const std::optional<double> ratio = coarseningRatio(levels, i);
+    // Of coarser levels, the solver looks at the residual of those alone that it solves.
+    const bool is_known = i == 0 || levels[i].newton_iterations > 0;
+    json["levels"].push_back({{"nodes", levels[i].nodes},
+                              {"edges", levels[i].edges},
+                              {"coarsening_ratio", ratio ? Json(*ratio) : Json(nullptr)},
+                              {"sweeps", levels[i].sweeps},
+                              {"newton_iterations", levels[i].newton_iterations},
+                              {"linear_iterations", levels[i].linear_iterations},
+                              {"residual", is_known ? Json(levels[i].residual) : Json(nullptr)}});
   }
   return json;
 }
@@ -438,8 +632,10 @@ std::string report(const Settings& settings, const PointData& data,
   json["fallback_start"] = result.embedding.fallback_start;
   json["residual"] = result.embedding.residual;
   json["residuals"] = result.embedding.residuals;
-  json["graph"] = graphToJson(reconstruction);
-  json["triangulation"] = {{"hull_vertices", result.triangulation.hull_vertices},
+  json["graph"] = graphToJson(settings, reconstruction);
+  json["embedding"] = embeddingToJson(settings, reconstruction);
+  json["triangulation"] = {{"method", nameOf(settings.options.hull, hull_names)},
+                           {"hull_vertices", result.triangulation.hull_vertices},
                            {"reinserted", result.triangulation.reinserted},
                            {"coincident", result.triangulation.coincident},
                            {"hull_rejected", result.triangulation.hull_rejected}};
@@ -457,22 +653,96 @@ std::string yesOrNo(bool value) {
   return value ? "yes" : "no";
 }
 
-void printVerdict(const PointData& data, const Reconstruction& reconstruction, Console& console) {
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+void printGraph(const Settings& settings, const spherical_param::GraphReport& graph,
+                Console& console) {
+  console.entry("graph edges",
+                std::to_string(graph.edges) + " (" +
+                    counted(static_cast<std::size_t>(graph.components), "component") + ", " +
+                    counted(graph.bridges.size(), "bridge") + ")");
+  if (settings.options.graph == GraphMethod::LocalDelaunay) {
+    console.entry("local Delaunay", std::to_string(graph.searched_again) + " searched again, " +
+                                        std::to_string(graph.uncertified) + " uncertified, " +
+                                        std::to_string(graph.weak) + " weak");
+    console.entry("tangent plane",
+                  "missing at " + counted(graph.without_tangent_plane.size(), "point"));
+  }
+}
+
+/// Prints the levels as multigrid solvers print theirs.
+void printHierarchy(const std::vector<spherical_param::LevelReport>& levels, Console& console) {
+  if (levels.empty()) {
+    return;
+  }
+  console.heading("");
+  console.heading("  Number of levels:    " + std::to_string(levels.size()));
+  console.heading("  Operator complexity: " +
+                  formatted(complexityOf(levels, &spherical_param::LevelReport::edges), 3));
+  console.heading("  Grid complexity:     " +
+                  formatted(complexityOf(levels, &spherical_param::LevelReport::nodes), 3));
+  console.heading("");
+  const std::string head = "level      nodes      edges  ratio  sweeps  Newton     CG";
+  console.heading("  " + head);
+  console.heading("  " + std::string(head.size(), '-'));
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const spherical_param::LevelReport& level = levels[i];
+    const std::optional<double> ratio = coarseningRatio(levels, i);
+    std::array<char, 128> line{};
+    std::snprintf(line.data(), line.size(), "  %5zu %10zu %10zu %6s %7d %7d %6d", i, level.nodes,
+                  level.edges, ratio ? formatted(*ratio, 3).c_str() : "", level.sweeps,
+                  level.newton_iterations, level.linear_iterations);
+    console.heading(line.data());
+  }
+  console.heading("");
+}
+
+/// Whether the embedding converged, and why it ended.
+std::string convergence(const Settings& settings, const Reconstruction& reconstruction) {
+  const spherical_param::EmbeddingReport& embedding = reconstruction.getResult().embedding;
+  if (embedding.stop_reason == StopReason::Unfinished) {
+    return "not asked for (-tolerance does)";
+  }
+  const std::string steps =
+      embedding.levels.empty()
+          ? counted(static_cast<std::size_t>(embedding.iterations), "iteration")
+          : counted(static_cast<std::size_t>(embedding.levels.front().newton_iterations),
+                    "Newton iteration");
+  return yesOrNo(reconstruction.hasConverged()) + " (" + nameOf(embedding.stop_reason) + " after " +
+         steps +
+         (hasBarrier(settings, embedding) ? ", together with the pull of the barrier)" : ")");
+}
+
+void printVerdict(const Settings& settings, const PointData& data,
+                  const Reconstruction& reconstruction, Console& console) {
   const spherical_param::Result& result = reconstruction.getResult();
+  printHierarchy(result.embedding.levels, console);
   console.entry("points", std::to_string(data.points.size()));
   console.entry("used", std::to_string(result.vertexCount()) + " (" +
                             std::to_string(result.duplicates) + " duplicate, " +
                             std::to_string(reconstruction.getIgnoredPointCount()) + " not finite)");
+  printGraph(settings, result.graph, console);
+  if (!result.embedding.levels.empty()) {
+    console.entry("starts tried",
+                  std::to_string(result.embedding.starts) + " (" +
+                      std::to_string(result.embedding.collapsed_starts) + " collapsed)" +
+                      (hasBarrier(settings, result.embedding) ? ", with a barrier" : ""));
+    console.entry("energy", formatted(result.embedding.energy, 6));
+  }
+  console.entry("residual", formatted(result.embedding.residual, 4));
+  console.entry("converged", convergence(settings, reconstruction));
+  console.entry("hull vertices",
+                std::to_string(result.triangulation.hull_vertices) + " (" +
+                    std::to_string(result.triangulation.reinserted) + " put back, " +
+                    std::to_string(result.triangulation.coincident) + " coincident)");
   console.entry("triangles", std::to_string(result.triangles.cols()));
   console.entry("closed", yesOrNo(result.topology.closed));
   console.entry("manifold", yesOrNo(result.topology.manifold()));
   console.entry("oriented", yesOrNo(result.topology.oriented));
   console.entry("genus",
                 result.topology.genus ? std::to_string(*result.topology.genus) : "undefined");
-  console.entry("residual", formatted(result.embedding.residual, 4));
-  console.entry("converged", yesOrNo(reconstruction.hasConverged()) + " (" +
-                                 nameOf(result.embedding.stop_reason) + " after " +
-                                 std::to_string(result.embedding.iterations) + " iterations)");
   for (const std::string& warning : warningsOf(data, reconstruction)) {
     console.entry("warning", oneLine(warning));
   }
@@ -526,7 +796,7 @@ void run(const std::vector<std::string>& words) {
       files.back()->finish();
     }
   }
-  printVerdict(data, reconstruction, console);
+  printVerdict(settings, data, reconstruction, console);
   console.flush();
   for (const auto& file : files) {
     file->commit();

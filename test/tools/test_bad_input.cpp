@@ -143,6 +143,14 @@ Row option(const std::string& name, const std::string& option_name, const std::s
           2,      "option " + option_name + ": '" + value + "'"};
 }
 
+/// An option is refused because it would do nothing with another.
+Row idle(const std::string& name, const std::vector<std::string>& options,
+         const std::string& other) {
+  std::vector<std::string> arguments = {"good.xyz", "out.ply"};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  return usage(name, arguments, " does nothing with " + other);
+}
+
 Row scanUsage(const std::string& name, const std::vector<std::string>& arguments,
               const std::string& cause) {
   return {name, scan_tool, {}, arguments, 2, cause};
@@ -406,6 +414,35 @@ std::vector<Row> commandLines() {
       option("KExponent", "-k", "1e2"),
       option("WeightsUnknown", "-weights", "heavy"),
       option("WeightsEmpty", "-weights", ""),
+      option("WeightsInCapitals", "-weights", "Uniform"),
+      option("GraphUnknown", "-graph", "gabriel"),
+      option("GraphEmpty", "-graph", ""),
+      option("SolverUnknown", "-solver", "newton"),
+      option("SolverEmpty", "-solver", ""),
+      option("HullUnknown", "-hull", "cgal"),
+      option("HullEmpty", "-hull", ""),
+      option("ExponentOfTwo", "-exponent", "2"),
+      option("ExponentTooLarge", "-exponent", "16.1"),
+      option("ExponentNan", "-exponent", "nan"),
+      option("ExponentOfLetters", "-exponent", "three"),
+      option("StartsZero", "-starts", "0"),
+      option("StartsTooMany", "-starts", "101"),
+      option("StartsReal", "-starts", "1.5"),
+      option("SeedNegative", "-seed", "-1"),
+      option("SeedTooLarge", "-seed", "4294967296"),
+      option("SeedReal", "-seed", "0.5"),
+      idle("IterationsOfTheMultilevelSolver", {"-iterations", "5"}, "-solver multilevel"),
+      idle("StagnationOfTheMultilevelSolver", {"-solver", "multilevel", "-stagnation", "0"},
+           "-solver multilevel"),
+      idle("ExponentOfTheIterativeSolver", {"-exponent", "3", "-solver", "iterative"},
+           "-solver iterative"),
+      idle("StartsOfTheIterativeSolver", {"-starts", "2", "-solver", "iterative"},
+           "-solver iterative"),
+      idle("SeedOfTheIterativeSolver", {"-seed", "1", "-solver", "iterative"}, "-solver iterative"),
+      idle("ExponentOfUniformWeights", {"-exponent", "4", "-weights", "uniform"},
+           "-weights uniform"),
+      idle("ExponentOfInverseLengthWeights", {"-exponent", "4", "-weights", "inverse"},
+           "-weights inverse"),
       option("IterationsNegative", "-iterations", "-1"),
       option("IterationsOfLetters", "-iterations", "many"),
       option("IterationsTooLarge", "-iterations", "3000000000"),
@@ -522,7 +559,8 @@ std::vector<Row> outputFiles() {
       {"FullDiskForJson",
        mesh_tool,
        {large},
-       {"large.xyz", "out.ply", "-json", "r.json", "-stagnation", "0", "-tolerance", "0"},
+       {"large.xyz", "out.ply", "-json", "r.json", "-solver", "iterative", "-stagnation", "0",
+        "-tolerance", "0"},
        1,
        "cannot write 'r.json': File too large",
        false,

@@ -361,7 +361,7 @@ TEST_P(Formats, KeepCoordinatesColorsAndNormals) {
   const TemporaryDirectory directory;
   const Mesh cloud = ellipsoid(300);
   writeCloud(directory.file(input), input, cloud);
-  std::vector<std::string> arguments = {input, output, "-iterations", "100"};
+  std::vector<std::string> arguments = {input, output};
   if (encoding == "ascii") {
     arguments.push_back("-ascii");
   }
@@ -516,7 +516,10 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   EXPECT_EQ(report["genus"], 0);
   EXPECT_GT(report["volume"], 0.0);
   EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
-  EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
+  // Smoothing is no step to a solution.
+  EXPECT_EQ(report["stop_reason"], "unfinished");
+  EXPECT_EQ(report["converged"], false);
+  EXPECT_EQ(report["iterations"], 0);
 
   std::vector<std::string> stages;
   for (const json& stage : report["stages"]) {
@@ -526,20 +529,252 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   const std::vector<std::string> expected = {"read",          "neighbors", "graph", "embedding",
                                              "triangulation", "check",     "write"};
   EXPECT_EQ(stages, expected);
-  for (const char* key : {"k", "weights", "iterations", "tolerance", "lambda", "stagnation",
-                          "threads", "sphere", "json", "ascii", "quiet"}) {
+  for (const char* key :
+       {"graph", "k", "solver", "weights", "exponent", "tolerance", "lambda", "iterations",
+        "stagnation", "starts", "seed", "hull", "threads", "sphere", "json", "ascii", "quiet"}) {
     EXPECT_TRUE(report["options"].contains(key)) << key;
   }
   EXPECT_EQ(report["options"]["k"], 9);
   EXPECT_EQ(report["options"]["weights"], "adaptive");
-  EXPECT_EQ(report["options"]["tolerance"], 1e-8);
-  EXPECT_TRUE(report["graph"]["edges"].is_number_integer());
+  EXPECT_EQ(report["graph"]["method"], "delaunay");
+  for (const char* key : {"edges", "components", "without_tangent_plane_count", "searched_again",
+                          "uncertified", "weak"}) {
+    EXPECT_TRUE(report["graph"][key].is_number_integer()) << key;
+  }
   EXPECT_EQ(report["graph"]["components"], 1);
   EXPECT_TRUE(report["graph"]["bridges"].empty());
+  EXPECT_TRUE(report["graph"]["without_tangent_plane"].is_array());
+  EXPECT_EQ(report["embedding"]["solver"], "multilevel");
+  for (const char* key : {"starts", "collapsed_starts"}) {
+    EXPECT_TRUE(report["embedding"][key].is_number_integer()) << key;
+  }
+  for (const char* key : {"centroid_norm", "energy", "operator_complexity", "grid_complexity"}) {
+    EXPECT_TRUE(report["embedding"][key].is_number_float()) << key;
+  }
+  for (const char* key : {"barrier", "added_barrier"}) {
+    EXPECT_TRUE(report["embedding"][key].is_boolean()) << key;
+  }
+  EXPECT_EQ(report["triangulation"]["method"], "incremental");
   for (const char* key : {"hull_vertices", "reinserted", "coincident"}) {
     EXPECT_TRUE(report["triangulation"][key].is_number_integer()) << key;
   }
   EXPECT_TRUE(report["triangulation"]["hull_rejected"].is_boolean());
+}
+
+TEST_F(ReconstructionTool, ReportOfTheIterationHasAResidualBeforeEachStepAndAtItsEnd) {
+  const json report = reportOf({"in.ply", "out.ply", "-solver", "iterative"});
+  EXPECT_GT(report["iterations"], 1);
+  EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
+  EXPECT_EQ(report["residuals"].back(), report["residual"]);
+  EXPECT_EQ(report["embedding"]["solver"], "iterative");
+  EXPECT_FALSE(report["embedding"].contains("levels"));
+}
+
+TEST_F(ReconstructionTool, ReportTellsTheOptionsInForce) {
+  const json standard = reportOf({"in.ply", "out.ply"})["options"];
+  EXPECT_EQ(standard["graph"], "delaunay");
+  EXPECT_EQ(standard["k"], 12);
+  EXPECT_EQ(standard["solver"], "multilevel");
+  EXPECT_EQ(standard["exponent"], 3.0);
+  EXPECT_EQ(standard["starts"], 2);
+  EXPECT_EQ(standard["seed"], 1);
+  EXPECT_EQ(standard["hull"], "incremental");
+  for (const char* key : {"tolerance", "iterations", "stagnation"}) {
+    EXPECT_TRUE(standard[key].is_null()) << key;
+  }
+  const json paper = reportOf(
+      {"in.ply", "out.ply", "-graph", "knn", "-solver", "iterative", "-hull", "qhull"})["options"];
+  EXPECT_EQ(paper["graph"], "knn");
+  EXPECT_EQ(paper["k"], 25);
+  EXPECT_EQ(paper["solver"], "iterative");
+  EXPECT_EQ(paper["tolerance"], 1e-8);
+  EXPECT_EQ(paper["iterations"], 1600);
+  EXPECT_EQ(paper["stagnation"], 100);
+  EXPECT_EQ(paper["hull"], "qhull");
+  for (const char* key : {"exponent", "starts", "seed"}) {
+    EXPECT_TRUE(paper[key].is_null()) << key;
+  }
+  EXPECT_TRUE(
+      reportOf({"in.ply", "out.ply", "-weights", "uniform"})["options"]["exponent"].is_null());
+}
+
+TEST_F(ReconstructionTool, EachMethodIsTheOneThatWasAskedFor) {
+  const json delaunay = reportOf({"in.ply", "out.ply", "-graph", "delaunay"});
+  const json knn = reportOf({"in.ply", "out.ply", "-graph", "knn"});
+  EXPECT_EQ(knn["graph"]["method"], "knn");
+  // 25 neighbours of each of 200 points, and about 6 of each that are Delaunay neighbours.
+  EXPECT_GE(knn["graph"]["edges"], 200 * 25 / 2);
+  EXPECT_LT(delaunay["graph"]["edges"], 200 * 4);
+
+  const json qhull = reportOf({"in.ply", "qhull.ply", "-hull", "qhull"});
+  const json incremental = reportOf({"in.ply", "incremental.ply", "-hull", "incremental"});
+  EXPECT_EQ(qhull["triangulation"]["method"], "qhull");
+  EXPECT_EQ(incremental["triangulation"]["method"], "incremental");
+  // The Delaunay triangulation of the same points, which is unique but for the order.
+  const auto triangles = [&](const char* file) {
+    std::set<std::array<int, 3>> set;
+    for (std::array<int, 3> triangle : readPly(directory.file(file)).triangles) {
+      std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
+                  triangle.end());
+      set.insert(triangle);
+    }
+    return set;
+  };
+  EXPECT_EQ(triangles("qhull.ply"), triangles("incremental.ply"));
+}
+
+// A seed changes the levels, and smoothing keeps a trace of them; a large exponent changes all.
+TEST_F(ReconstructionTool, SeedStartsAndExponentReachTheSolver) {
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(5000));
+  const auto sphere_of = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"large.ply", "out.ply", "-sphere", "sphere.ply"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    EXPECT_EQ(runTool(directory, arguments).exit_code, 0);
+    return tool_test::readFile(directory.file("sphere.ply"));
+  };
+  const std::string standard = sphere_of({});
+  EXPECT_EQ(sphere_of({"-seed", "1", "-starts", "2", "-exponent", "3"}), standard);
+  EXPECT_EQ(sphere_of({"-seed", "4294967295"}), sphere_of({"-seed", "4294967295"}));
+  EXPECT_NE(sphere_of({"-seed", "4294967295"}), standard);
+  EXPECT_NE(sphere_of({"-exponent", "4"}), standard);
+  for (const char* starts : {"1", "5"}) {
+    const json report = reportOf({"large.ply", "out.ply", "-starts", starts});
+    EXPECT_EQ(report["embedding"]["starts"], std::stoi(starts));
+  }
+}
+
+TEST_F(ReconstructionTool, ReportTellsTheHierarchy) {
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(5000));
+  const json report = reportOf({"large.ply", "out.ply"});
+  const json& levels = report["embedding"]["levels"];
+  ASSERT_GE(levels.size(), 2U);
+  EXPECT_EQ(levels[0]["nodes"], report["vertices"]);
+  EXPECT_EQ(levels[0]["edges"], report["graph"]["edges"]);
+  EXPECT_TRUE(levels[0]["coarsening_ratio"].is_null());
+  EXPECT_EQ(levels[0]["residual"], report["residual"]);
+  EXPECT_GT(levels[0]["sweeps"], 0);
+  double nodes = levels[0]["nodes"];
+  double edges = levels[0]["edges"];
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    EXPECT_LT(levels[i]["nodes"], levels[i - 1]["nodes"]);
+    EXPECT_EQ(levels[i]["coarsening_ratio"].get<double>(),
+              levels[i - 1]["nodes"].get<double>() / levels[i]["nodes"].get<double>());
+    nodes += levels[i]["nodes"].get<double>();
+    edges += levels[i]["edges"].get<double>();
+  }
+  EXPECT_EQ(report["embedding"]["grid_complexity"].get<double>(),
+            nodes / levels[0]["nodes"].get<double>());
+  EXPECT_EQ(report["embedding"]["operator_complexity"].get<double>(),
+            edges / levels[0]["edges"].get<double>());
+  EXPECT_GT(levels.back()["newton_iterations"], 0);
+  EXPECT_GE(levels.back()["linear_iterations"], levels.back()["newton_iterations"]);
+}
+
+TEST_F(ReconstructionTool, PrintsTheHierarchyThatTheReportTells) {
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(5000));
+  const RunResult result = runTool(directory, {"large.ply", "out.ply", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  const json& levels = report["embedding"]["levels"];
+  EXPECT_NE(result.output.find("Number of levels:    " + std::to_string(levels.size()) + "\n"),
+            std::string::npos);
+  for (const char* word : {"Operator complexity: 1.", "Grid complexity:     1."}) {
+    EXPECT_NE(result.output.find(word), std::string::npos) << word;
+  }
+  const std::string head = "level      nodes      edges  ratio  sweeps  Newton     CG\n";
+  const std::size_t table = result.output.find(head);
+  ASSERT_NE(table, std::string::npos);
+  std::istringstream lines(result.output.substr(table + head.size()));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line.find_first_not_of(" -"), std::string::npos);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    std::getline(lines, line);
+    std::istringstream words(line);
+    std::size_t level = 0;
+    std::size_t nodes = 0;
+    std::size_t edges = 0;
+    words >> level >> nodes >> edges;
+    EXPECT_EQ(level, i);
+    EXPECT_EQ(levels[i]["nodes"], nodes);
+    EXPECT_EQ(levels[i]["edges"], edges);
+    if (i > 0) {
+      double ratio = 0.0;
+      words >> ratio;
+      // Three digits are printed.
+      EXPECT_NEAR(ratio, levels[i]["coarsening_ratio"].get<double>(), 0.01 * ratio);
+    }
+    int sweeps = 0;
+    int newton = 0;
+    int linear = 0;
+    words >> sweeps >> newton >> linear;
+    EXPECT_FALSE(words.fail()) << line;
+    EXPECT_EQ(levels[i]["sweeps"], sweeps);
+    EXPECT_EQ(levels[i]["newton_iterations"], newton);
+    EXPECT_EQ(levels[i]["linear_iterations"], linear);
+  }
+}
+
+// Without a tolerance nothing is promised; with one the report keeps the promise.
+TEST_F(ReconstructionTool, ToleranceMakesTheMultilevelSolverConverge) {
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(20000));
+  const json smoothed = reportOf({"large.ply", "out.ply"});
+  EXPECT_EQ(smoothed["stop_reason"], "unfinished");
+  EXPECT_GT(smoothed["residual"], 1e-8);
+  for (const char* graph : {"delaunay", "knn"}) {
+    const json report = reportOf({"large.ply", "out.ply", "-tolerance", "1e-8", "-graph", graph});
+    EXPECT_EQ(report["stop_reason"], "converged") << graph;
+    EXPECT_EQ(report["converged"], true) << graph;
+    EXPECT_LE(report["residual"], 1e-8) << graph;
+    EXPECT_EQ(report["options"]["tolerance"], 1e-8);
+    EXPECT_EQ(report["iterations"], report["embedding"]["levels"][0]["newton_iterations"]);
+    EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
+    EXPECT_GT(report["iterations"], 0) << graph;
+  }
+}
+
+// What is held by a barrier converges together with it: the tool says so.
+TEST_F(ReconstructionTool, TellsOfTheBarrierOfWeightsThatHaveNone) {
+  for (const char* weights : {"uniform", "inverse"}) {
+    const RunResult result = runTool(directory, {"in.ply", "out.ply", "-weights", weights,
+                                                 "-tolerance", "1e-8", "-json", "report.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+    EXPECT_EQ(report["embedding"]["barrier"], true);
+    EXPECT_EQ(report["embedding"]["added_barrier"], false);
+    EXPECT_LT(report["embedding"]["centroid_norm"], 0.5);
+    EXPECT_NE(result.output.find("together with the pull of the barrier"), std::string::npos);
+  }
+  const RunResult adaptive = runTool(directory, {"in.ply", "out.ply", "-tolerance", "1e-8"});
+  EXPECT_EQ(adaptive.output.find("barrier"), std::string::npos);
+}
+
+// Points on a needle have all their neighbours on a line, hence no tangent plane.
+TEST_F(ReconstructionTool, NamesPointsOfTheInputWithoutATangentPlane) {
+  std::string text = "nan nan nan\n";
+  for (const Point& point : cloud.points) {
+    text += digits(point) + "\n";
+  }
+  for (int i = 0; i < 100; ++i) {
+    text += digits(Point{0.35F + 0.01F * static_cast<float>(i), 0.0F, 10.0F}) + "\n";
+  }
+  tool_test::writeFile(directory.file("needle.xyz"), text);
+  const RunResult result = runTool(directory, {"needle.xyz", "out.ply", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  const auto points = report["graph"]["without_tangent_plane"].get<std::set<int>>();
+  EXPECT_EQ(report["graph"]["without_tangent_plane_count"], points.size());
+  // The far half of the needle, counted from the line of NaN on.
+  for (int i = 251; i < 301; ++i) {
+    EXPECT_EQ(points.count(i), 1U) << i;
+  }
+  EXPECT_EQ(points.count(0), 0U);
+  EXPECT_LT(*points.rbegin(), 301);
+  EXPECT_NE(
+      result.output.find("tangent plane  missing at " + std::to_string(points.size()) + " points"),
+      std::string::npos);
+  const json knn = reportOf({"needle.xyz", "out.ply", "-graph", "knn"});
+  EXPECT_EQ(knn["graph"]["without_tangent_plane_count"], 0);
 }
 
 TEST_F(ReconstructionTool, ReportNamesBridgesByPointsOfTheInput) {
@@ -550,7 +785,7 @@ TEST_F(ReconstructionTool, ReportNamesBridgesByPointsOfTheInput) {
     }
   }
   tool_test::writeFile(directory.file("pair.xyz"), text);
-  const json report = reportOf({"pair.xyz", "out.ply"});
+  const json report = reportOf({"pair.xyz", "out.ply", "-graph", "knn"});
   EXPECT_EQ(report["graph"]["components"], 2);
   ASSERT_EQ(report["graph"]["bridges"].size(), 1U);
   const json& bridge = report["graph"]["bridges"][0];
@@ -567,12 +802,14 @@ TEST_F(ReconstructionTool, ReportNamesBridgesByPointsOfTheInput) {
 
 TEST_F(ReconstructionTool, OptionsReachTheLibraryInEveryNotation) {
   const std::vector<std::vector<std::string>> notations = {
-      {"-k", "7", "-weights", "inverse", "in.ply", "-iterations", "3", "out.ply", "-lambda",
-       "0.25"},
+      {"-k", "7", "-weights", "inverse", "in.ply", "-iterations", "3", "out.ply", "-lambda", "0.25",
+       "-solver", "iterative"},
       {"--k", "7", "in.ply", "out.ply", "--weights", "inverse", "--iterations", "3", "--lambda",
-       "0.25"},
-      {"in.ply", "--k=7", "--weights=inverse", "out.ply", "--iterations=3", "--lambda=0.25"},
-      {"in.ply", "out.ply", "-k=7", "-weights=inverse", "-iterations=3", "-lambda=+.25"},
+       "0.25", "--solver", "iterative"},
+      {"in.ply", "--k=7", "--weights=inverse", "out.ply", "--iterations=3", "--lambda=0.25",
+       "--solver=iterative"},
+      {"in.ply", "out.ply", "-k=7", "-weights=inverse", "-iterations=3", "-lambda=+.25",
+       "-solver=iterative"},
   };
   std::set<std::string> meshes;
   for (const auto& arguments : notations) {
@@ -619,7 +856,7 @@ TEST_F(ReconstructionTool, TellsWhenSinglePrecisionMovesThePoints) {
       text += line.data();
     }
     tool_test::writeFile(directory.file("offset.xyz"), text);
-    const json report = reportOf({"offset.xyz", "out.ply", "-iterations", "5"});
+    const json report = reportOf({"offset.xyz", "out.ply"});
     return report["warnings"].dump().find("rounded to single precision") != std::string::npos;
   };
   EXPECT_FALSE(warned(0.0));
@@ -636,20 +873,32 @@ TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
   options.directory = directory.path();
   options.address_space_limit = std::size_t{3} << 30;
   const RunResult result =
-      run(RECONSTRUCTION_TOOL,
-          {"large.ply", "out.ply", "-threads", "1024", "-iterations", "5", "-k", "6"}, options);
+      run(RECONSTRUCTION_TOOL, {"large.ply", "out.ply", "-threads", "1024"}, options);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(directory.listing().count("out.ply"), 1U);
 }
 
-// Below 2 KB a point besides what the process takes without any.
-TEST_F(ReconstructionTool, TakesLessThanTwoKilobytesAPoint) {
-  const auto peak = [&](int points) {
-    writeCloud(directory.file("many.ply"), "in.ply", ellipsoid(points));
-    const json report = reportOf({"many.ply", "out.ply", "-iterations", "3"});
-    return report["peak_memory_bytes"].get<double>();
+// Besides what the process takes without any.
+TEST_F(ReconstructionTool, TakesLessThanTwoKilobytesAPointOrFourToConverge) {
+  struct Case {
+    std::vector<std::string> options;
+    double limit;  ///< bytes a point
   };
-  EXPECT_LT((peak(100000) - peak(200)) / 100000.0, 2048.0);
+  const std::vector<Case> cases = {
+      {{}, 2048.0},
+      {{"-graph", "knn", "-solver", "iterative", "-iterations", "3", "-hull", "qhull"}, 2048.0},
+      {{"-tolerance", "1e-8"}, 4096.0},
+      {{"-graph", "knn", "-tolerance", "1e-8"}, 4096.0}};
+  for (const Case& test : cases) {
+    const auto peak = [&](int points) {
+      writeCloud(directory.file("many.ply"), "in.ply", ellipsoid(points));
+      std::vector<std::string> arguments = {"many.ply", "out.ply"};
+      arguments.insert(arguments.end(), test.options.begin(), test.options.end());
+      return reportOf(arguments)["peak_memory_bytes"].get<double>();
+    };
+    EXPECT_LT((peak(100000) - peak(200)) / 100000.0, test.limit)
+        << testing::PrintToString(test.options);
+  }
 }
 #endif
 
@@ -664,7 +913,11 @@ TEST_F(ReconstructionTool, HelpAndVersionSucceed) {
   for (const char* option : {"-h", "--h", "-help", "--help"}) {
     const RunResult result = runTool(directory, {option});
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_NE(result.output.find("-iterations N"), std::string::npos);
+    for (const char* line : {"-graph NAME", "-k N", "-solver NAME", "-weights NAME", "-exponent X",
+                             "-tolerance X", "-lambda X", "-iterations N", "-stagnation N",
+                             "-starts N", "-seed N", "-hull NAME", "-threads N"}) {
+      EXPECT_NE(result.output.find(std::string("\n  ") + line), std::string::npos) << line;
+    }
   }
   for (const char* option : {"-version", "--version"}) {
     const RunResult result = runTool(directory, {option});
@@ -676,12 +929,64 @@ TEST_F(ReconstructionTool, HelpAndVersionSucceed) {
 TEST_F(ReconstructionTool, PrintsStagesInPlainLinesAndTheVerdict) {
   const RunResult result = runTool(directory, {"in.ply", "out.ply"});
   EXPECT_EQ(result.output.find_first_of("\r\033"), std::string::npos);
-  for (const char* word :
-       {"read", "neighbors", "graph", "embedding", "triangulation", "check", "write",
-        "points         200", "used           200", "triangles      396", "closed         yes",
-        "manifold       yes", "oriented       yes", "genus          0", "residual", "converged"}) {
+  for (const char* word : {"read",
+                           "neighbors",
+                           "graph",
+                           "embedding",
+                           "triangulation",
+                           "check",
+                           "write",
+                           "points         200",
+                           "used           200",
+                           "graph edges    ",
+
+                           "local Delaunay ",
+                           "tangent plane  missing at 0 points",
+                           "starts tried   2 (0 collapsed)",
+                           "triangles      396",
+                           "closed         yes",
+                           "manifold       yes",
+                           "oriented       yes",
+                           "genus          0",
+                           "residual",
+                           "hull vertices  200 (0 put back, 0 coincident)",
+                           "converged      not asked for"}) {
     EXPECT_NE(result.output.find(std::string("\n  ") + word), std::string::npos) << word;
   }
+  EXPECT_NE(result.output.find(" (1 component, 0 bridges)\n"), std::string::npos);
+}
+
+TEST_F(ReconstructionTool, PrintsTheParametersInForce) {
+  const auto expect_lines = [&](std::vector<std::string> arguments,
+                                const std::vector<std::string>& lines,
+                                const std::vector<std::string>& missing) {
+    arguments.insert(arguments.begin(), {"in.ply", "out.ply"});
+    const RunResult result = runTool(directory, arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    for (const std::string& line : lines) {
+      EXPECT_NE(result.output.find("\n  " + line + "\n"), std::string::npos) << line;
+    }
+    for (const std::string& label : missing) {
+      EXPECT_EQ(result.output.find("\n  " + label + " "), std::string::npos) << label;
+    }
+  };
+  expect_lines({},
+               {"graph          delaunay", "k              12", "solver         multilevel",
+                "weights        adaptive", "exponent       3", "tolerance      off",
+                "lambda         0.5", "starts         2", "seed           1",
+                "hull           incremental"},
+               {"iterations", "stagnation"});
+  expect_lines({"-graph", "knn", "-solver", "iterative", "-hull", "qhull"},
+               {"graph          knn", "k              25", "solver         iterative",
+                "tolerance      1e-08", "iterations     1600", "stagnation     100",
+                "hull           qhull"},
+               {"exponent", "starts", "seed", "local Delaunay", "energy", "level"});
+  expect_lines(
+      {"-exponent", "2.5", "-starts", "7", "-seed", "42", "-tolerance", "1e-5"},
+      {"exponent       2.5", "starts         7", "seed           42", "tolerance      1e-05"}, {});
+  expect_lines({"-solver", "iterative", "-stagnation", "0", "-iterations", "7"},
+               {"stagnation     never", "iterations     7"}, {});
+  expect_lines({"-weights", "uniform"}, {"weights        uniform"}, {"exponent"});
 }
 
 TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
@@ -693,17 +998,28 @@ TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
   EXPECT_NE(result.output.find("\r  embedding      ["), std::string::npos);
 }
 
+// Enough points that all stages use their threads, and several levels.
 TEST_F(ReconstructionTool, SameBytesForAnyNumberOfThreads) {
-  for (const char* threads : {"1", "2", "3"}) {
-    ASSERT_EQ(runTool(directory, {"in.ply", std::string("out") + threads + ".ply", "-sphere",
-                                  std::string("sphere") + threads + ".ply", "-threads", threads})
-                  .exit_code,
-              0);
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(20000));
+  const std::vector<std::vector<std::string>> methods = {
+      {},
+      {"-tolerance", "1e-8"},
+      {"-weights", "uniform"},
+      {"-graph", "knn", "-solver", "iterative", "-iterations", "20", "-hull", "qhull"}};
+  for (const std::vector<std::string>& method : methods) {
+    std::set<std::string> meshes;
+    std::set<std::string> spheres;
+    for (const char* threads : {"1", "2", "3"}) {
+      std::vector<std::string> arguments = {"large.ply",  "out.ply",  "-sphere",
+                                            "sphere.ply", "-threads", threads};
+      arguments.insert(arguments.end(), method.begin(), method.end());
+      ASSERT_EQ(runTool(directory, arguments).exit_code, 0);
+      meshes.insert(tool_test::readFile(directory.file("out.ply")));
+      spheres.insert(tool_test::readFile(directory.file("sphere.ply")));
+    }
+    EXPECT_EQ(meshes.size(), 1U) << testing::PrintToString(method);
+    EXPECT_EQ(spheres.size(), 1U) << testing::PrintToString(method);
   }
-  const auto files = directory.listing();
-  EXPECT_EQ(files.at("out1.ply"), files.at("out2.ply"));
-  EXPECT_EQ(files.at("out1.ply"), files.at("out3.ply"));
-  EXPECT_EQ(files.at("sphere1.ply"), files.at("sphere2.ply"));
 }
 
 TEST_F(ReconstructionTool, ReplacesAnOldFileAndKeepsItsRightsAndLinks) {
@@ -728,8 +1044,7 @@ TEST_F(ReconstructionTool, SignalsLeaveNothingBehind) {
     options.directory = directory.path();
     options.signal_when_temporary = signal;
     const RunResult result =
-        run(RECONSTRUCTION_TOOL,
-            {"large.ply", "out.off", "-sphere", "sphere.off", "-iterations", "0"}, options);
+        run(RECONSTRUCTION_TOOL, {"large.ply", "out.off", "-sphere", "sphere.off"}, options);
     EXPECT_EQ(result.signal, signal);
     EXPECT_EQ(directory.listing(), before);
   }

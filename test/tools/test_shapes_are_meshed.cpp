@@ -1,5 +1,6 @@
-// Every generated shape, with every weight, becomes a sphere through all of its points, those that
-// are no sphere included: the scans of the tools, the PCL class and the core together.
+// Every generated shape, with every weight and by both methods, becomes a sphere through all of its
+// points, those that are no sphere included: the scans of the tools, the PCL class and the core
+// together.
 
 #include "scan_shapes.h"
 
@@ -22,19 +23,33 @@ namespace {
 
 constexpr std::size_t point_count = 1000;
 
-class ShapesAreMeshed : public testing::TestWithParam<std::tuple<ShapeInfo, EdgeWeights>> {};
+enum class Method { Default, Converged, Paper };
 
-std::string nameOfCase(const testing::TestParamInfo<std::tuple<ShapeInfo, EdgeWeights>>& info) {
+using Case = std::tuple<ShapeInfo, EdgeWeights, Method>;
+
+class ShapesAreMeshed : public testing::TestWithParam<Case> {};
+
+std::string nameOfCase(const testing::TestParamInfo<Case>& info) {
   const char* const weights[] = {"Uniform", "Inverse", "Adaptive"};
+  const char* const methods[] = {"ByDefault", "Converged", "AsInThePaper"};
   return std::string(std::get<0>(info.param).name) + "With" +
-         weights[static_cast<std::size_t>(std::get<1>(info.param))];
+         weights[static_cast<std::size_t>(std::get<1>(info.param))] +
+         methods[static_cast<std::size_t>(std::get<2>(info.param))];
 }
 
 std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& cloud,
-                                  EdgeWeights weights) {
+                                  EdgeWeights weights, Method method) {
   pcl::SphericalParamReconstruction<pcl::PointXYZ> reconstruction;
   reconstruction.setWeights(weights);
-  reconstruction.setMaximumIterations(100);
+  if (method == Method::Converged) {
+    reconstruction.setTolerance(1e-8);
+  }
+  if (method == Method::Paper) {
+    reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
+    reconstruction.setSolver(EmbeddingMethod::Iterative);
+    reconstruction.setTriangulationMethod(TriangulationMethod::Qhull);
+    reconstruction.setMaximumIterations(100);
+  }
   reconstruction.setInputCloud(cloud);
   std::vector<pcl::Vertices> polygons;
   reconstruction.reconstruct(polygons);
@@ -43,7 +58,7 @@ std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& clo
 }
 
 TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
-  const auto& [shape, weights] = GetParam();
+  const auto& [shape, weights, method] = GetParam();
   ScanOptions options;
   options.shape = shape.shape;
   options.points = point_count;
@@ -53,7 +68,7 @@ TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
     const Eigen::Vector3f p = scan.points.col(i).cast<float>();
     cloud->emplace_back(p.x(), p.y(), p.z());
   }
-  const std::vector<pcl::Vertices> polygons = meshOf(cloud, weights);
+  const std::vector<pcl::Vertices> polygons = meshOf(cloud, weights, method);
 
   // Every directed edge once and its reverse once, every link one cycle, V - E + F = 2 over all
   // points and positive volume: a closed outward sphere in one piece.
@@ -108,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
     AllShapes, ShapesAreMeshed,
     testing::Combine(
         testing::ValuesIn(std::vector<ShapeInfo>(allShapes().begin(), allShapes().end())),
-        testing::Values(EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive)),
+        testing::Values(EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive),
+        testing::Values(Method::Default, Method::Converged, Method::Paper)),
     nameOfCase);
 
 }  // namespace
