@@ -31,7 +31,7 @@ struct Options {
 
   /// Neighbours of each point; 3 and up (k >= n: n - 1 are used). Unset: 25 (the paper's) for the
   /// graph of nearest neighbours; 12 for local Delaunay neighbourhoods, which ask for more where
-  /// they need them.
+  /// they need them, up to 32 in all.
   std::optional<int> k;
   EdgeWeights weights = EdgeWeights::Adaptive;  ///< weights of the Laplacian
   /// p of the energy that adaptive weights minimise, sum |u_i - u_j|^p / (p |p_i - p_j|^(p - 2));
@@ -76,7 +76,7 @@ struct GraphReport {
 /// How the embedding ended.
 struct EmbeddingReport {
   StopReason stop_reason = StopReason::IterationLimit;
-  int iterations = 0;             ///< steps made
+  int iterations = 0;             ///< steps made; of Newton's method for the multilevel solver
   double residual = 0.0;          ///< mean tangential Laplacian of Result::sphere [radius]
   std::vector<double> residuals;  ///< of the iteration, before each step and at its end [radius]
   double centroid_norm = 0.0;     ///< length of the mean direction of Result::sphere; 1: collapsed

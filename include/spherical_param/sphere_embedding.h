@@ -103,8 +103,7 @@ struct MultilevelOptions {
   double lambda = 0.5;                          ///< damping of the smoothing sweeps; (0, 1]
   int sweeps = 10;                              ///< smoothing sweeps on each level; >= 0
   /// Levels of at most so many nodes are solved fully, not only smoothed; >= 0.
-  Index solved_size = 4000;
-  Index solved_finest_size = 10000;  ///< the same for the finest level, the graph itself; >= 0
+  Index solved_size = 10000;
   /// Mean length of the tangential Laplacian to which the finest level is solved [radius of the
   /// sphere]; >= 0. Unset: the finest level is smoothed like the others.
   std::optional<double> tolerance;
@@ -128,8 +127,8 @@ struct LevelReport {
 /// An embedding by levels.
 struct MultilevelEmbedding {
   Positions directions;  ///< 3 x n, unit vectors, column i = node i
-  /// Unfinished without a tolerance. Converged and Stagnated speak of the Laplacian together with
-  /// the pull of the barrier, for weights that need one.
+  /// Unfinished without a tolerance; else Converged if the residual is at most that. A barrier
+  /// mostly keeps it above, by its pull: Stagnated.
   StopReason stop_reason = StopReason::Unfinished;
   double residual = 0.0;       ///< mean length of the tangential Laplacian at `directions` [radius]
   double energy = 0.0;         ///< that of the weights, without barrier, at `directions`
@@ -161,7 +160,7 @@ struct MultilevelEmbedding {
 ///    rejected, and if all collapse the next finer level is tried. If those collapse too, as on
 ///    graphs of a few nodes or with wide gaps, a barrier (below) is added.
 /// 2. Up: positions are interpolated and smoothed by a few damped sweeps; levels of at most
-///    `solved_size` nodes (the finest: `solved_finest_size`) are solved fully, so that even their
+///    `solved_size` nodes are solved fully, so that even their
 ///    smallest parts come to rest.
 /// 3. With a `tolerance`, the finest level is solved too: Newton's method, each step by conjugate
 ///    gradients with a V-cycle on the same levels as preconditioner. The number of steps does not

@@ -131,6 +131,16 @@ std::vector<Eigen::Matrix2d> invertedDiagonal(const BlockMatrix& matrix) {
   return result;
 }
 
+/// y = A^T x
+void multiplyTransposed(const BlockMatrix& matrix, std::size_t columns, const TangentVector& x,
+                        TangentVector& y) {
+  y.setZero(2 * static_cast<Eigen::Index>(columns));
+  for (std::size_t i = 0; i < matrix.size(); ++i)
+    for (std::size_t e = matrix.offsets[i]; e < matrix.offsets[i + 1]; ++e)
+      y.segment<2>(2 * static_cast<Eigen::Index>(matrix.columns[e])) +=
+          matrix.blocks[e].transpose() * entry(x, i);
+}
+
 /// One Gauss-Seidel sweep for matrix x = b.
 template <bool forward>
 void smooth(const BlockMatrix& matrix, const std::vector<Eigen::Matrix2d>& inverse_diagonal,
@@ -192,21 +202,22 @@ MultigridPreconditioner::MultigridPreconditioner(const GraphHierarchy& hierarchy
 
 void MultigridPreconditioner::compute(const BlockMatrix& matrix,
                                       const std::vector<TangentBasis>& bases) {
-  std::vector<TangentBasis> fine = bases;
+  std::vector<TangentBasis> coarser;  // bases of the level at hand, below the finest
   const BlockMatrix* current = &matrix;
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
     const HierarchyLevel& next = hierarchy_.levels[first_ + l];
+    const std::vector<TangentBasis>& fine = l == 0 ? bases : coarser;
     std::vector<TangentBasis> coarse(next.seeds.size());
     for (std::size_t s = 0; s < coarse.size(); ++s)
       coarse[s] = fine[static_cast<std::size_t>(next.seeds[s])];
     level.matrix = current;
     level.inverse_diagonal = invertedDiagonal(*current);
     level.prolongation = prolongationBlocks(next.prolongation, fine, coarse);
-    level.restriction = transposed(level.prolongation, coarse.size());
-    levels_[l + 1].galerkin = galerkinProduct(level.restriction, *current, level.prolongation);
+    levels_[l + 1].galerkin = galerkinProduct(transposed(level.prolongation, coarse.size()),
+                                              *current, level.prolongation);
     current = &levels_[l + 1].galerkin;
-    fine = std::move(coarse);
+    coarser = std::move(coarse);
   }
   levels_.back().matrix = current;
   const Eigen::SparseMatrix<double> scalar = scalarMatrix(*current);
@@ -231,7 +242,7 @@ void MultigridPreconditioner::cycle(std::size_t l, const TangentVector& b, Tange
   smooth<true>(*level.matrix, level.inverse_diagonal, b, x);
   multiply(*level.matrix, x, level.residual, threads_);
   level.residual = b - level.residual;
-  multiply(level.restriction, level.residual, next.right_side, threads_);
+  multiplyTransposed(level.prolongation, next.matrix->size(), level.residual, next.right_side);
   cycle(l + 1, next.right_side, next.solution);
   multiply(level.prolongation, next.solution, level.residual, threads_);
   x += level.residual;

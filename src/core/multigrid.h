@@ -40,7 +40,6 @@ private:
     BlockMatrix galerkin;  ///< storage of *matrix below the finest level
     std::vector<Eigen::Matrix2d> inverse_diagonal;
     BlockMatrix prolongation;  ///< this level's nodes x those of the next; not square
-    BlockMatrix restriction;   ///< its transpose
     TangentVector right_side;
     TangentVector solution;
     TangentVector residual;

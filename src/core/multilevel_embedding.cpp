@@ -39,10 +39,6 @@ constexpr double kCollapsedCentroid = 0.95;
 constexpr std::size_t kLargestStart = 100000;
 /// Beyond this mean the embedding has slipped along a tube towards one of its ends.
 constexpr double kSlippedCentroid = 0.5;
-/// Edges below this length on the sphere are about to be lost in rounding, which no more than this
-/// share of the nodes should suffer.
-constexpr double kSmallestEdge = 1e-12;
-constexpr double kSmallShare = 0.005;
 /// Share of the work that the coarsest level counts for in the progress, and the other levels
 /// before the finest is solved.
 constexpr double kStartShare = 0.3;
@@ -68,8 +64,6 @@ void checkInput(const Graph& graph, const GraphHierarchy& hierarchy,
     fail("sweeps = " + std::to_string(options.sweeps) + "; use 0 or more");
   if (options.solved_size < 0)
     fail("solved_size = " + std::to_string(options.solved_size) + "; use 0 or more");
-  if (options.solved_finest_size < 0)
-    fail("solved_finest_size = " + std::to_string(options.solved_finest_size) + "; use 0 or more");
   if (options.tolerance && !(*options.tolerance >= 0.0))
     fail("tolerance = " + std::to_string(*options.tolerance) + "; use 0 or more");
   constexpr int most_starts = 100;
@@ -105,6 +99,7 @@ public:
       result_.levels[l].sweeps = options_.sweeps;
       if (isSolved(l))
         solveUncollapsed(l, std::nullopt, u);
+      result_.levels[l].residual = residualOf(l, u);
       if (l > 0)
         report(kStartShare + (kCascadeShare - kStartShare) * static_cast<double>(level - l) /
                                  static_cast<double>(level),
@@ -120,8 +115,7 @@ private:
   }
 
   bool isSolved(std::size_t l) const {
-    return graphOf(l).size() <=
-           static_cast<std::size_t>(l == 0 ? options_.solved_finest_size : options_.solved_size);
+    return graphOf(l).size() <= static_cast<std::size_t>(options_.solved_size);
   }
 
   bool isAdaptive() const { return options_.weights == EdgeWeights::Adaptive; }
@@ -145,6 +139,12 @@ private:
     return energy;
   }
 
+  /// Mean length of the tangential Laplacian on a level.
+  double residualOf(std::size_t l, const Positions& u) const {
+    Positions gradient;
+    return energyWithout(l).gradient(u, gradient).absolute;
+  }
+
   /// Tells the callback; the share never falls.
   void report(double share, double residual) {
     share_ = std::max(share_, share);
@@ -152,7 +152,7 @@ private:
       throw Cancelled("embedMultilevel: cancelled by the progress callback");
   }
 
-  /// The start on the coarsest level that has a good one, or else the last that was found. If none
+  /// The start on the coarsest level that has a good one, or else the last one found. If none
   /// is, as on graphs of a few nodes or with wide gaps, that on the coarsest level with a barrier.
   Positions solveCoarsest(std::size_t& level) {
     Positions best;
@@ -165,7 +165,8 @@ private:
         continue;
       best = std::move(u);
       level = l;
-      if (isGood(l, best))
+      // With too few nodes around a limb it may have slipped along it: try more.
+      if (best.rowwise().mean().norm() < kSlippedCentroid)
         break;
     }
     if (best.cols() == 0) {
@@ -180,22 +181,6 @@ private:
 
   static bool isCollapsed(const Positions& u) {
     return !(u.rowwise().mean().norm() <= kCollapsedCentroid);
-  }
-
-  /// Tells whether an embedding has not slipped along a tube to one of its ends, and is nowhere so
-  /// small that rounding is about to destroy it: both are signs of too few nodes around a limb.
-  bool isGood(std::size_t l, const Positions& u) const {
-    const Graph& graph = graphOf(l);
-    std::size_t small = 0;
-    for (std::size_t i = 0; i < graph.size(); ++i) {
-      double longest = 0.0;
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        longest = std::max(
-            longest, (u.col(graph.neighbors[e]) - u.col(static_cast<Eigen::Index>(i))).norm());
-      small += longest < kSmallestEdge ? 1 : 0;
-    }
-    return u.rowwise().mean().norm() < kSlippedCentroid &&
-           static_cast<double>(small) <= kSmallShare * static_cast<double>(graph.size());
   }
 
   /// The best of several starts on a level, solved fully; without columns if all collapse. With
@@ -315,17 +300,16 @@ private:
   void finish(Positions& u) {
     if (options_.tolerance) {
       NewtonReport newton = solveUncollapsed(0, options_.tolerance, u);
-      // Adaptive weights need no barrier for the Laplacian to vanish: with one it has not.
-      const bool converged = newton.residuals.back() <= *options_.tolerance &&
-                             !(isAdaptive() && result_.added_barrier);
-      result_.stop_reason = converged ? StopReason::Converged : StopReason::Stagnated;
       result_.residuals = std::move(newton.residuals);
     }
-    Positions gradient;
-    const EmbeddingEnergy energy = energyWithout(0);
-    result_.residual = energy.gradient(u, gradient).absolute;
+    result_.residual = residualOf(0, u);
     result_.levels[0].residual = result_.residual;
-    result_.energy = energy.value(u);
+    result_.energy = energyWithout(0).value(u);
+    // The Laplacian alone decides: where a barrier pulls, its solution has not converged.
+    if (options_.tolerance)
+      result_.stop_reason =
+          result_.residual <= *options_.tolerance ? StopReason::Converged : StopReason::Stagnated;
+    report(1.0, result_.residual);
     result_.centroid_norm = u.rowwise().mean().norm();
     if (isCollapsed(u))
       result_.stop_reason = StopReason::Collapsed;

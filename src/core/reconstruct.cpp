@@ -226,7 +226,7 @@ Positions embedByLevels(const Graph& graph, const Options& options, StageLog& lo
   report.stop_reason = outcome.stop_reason;
   report.residual = outcome.residual;
   report.residuals = std::move(outcome.residuals);
-  report.iterations = report.residuals.empty() ? 0 : static_cast<int>(report.residuals.size()) - 1;
+  report.iterations = outcome.levels.front().newton_iterations;
   report.centroid_norm = outcome.centroid_norm;
   report.energy = outcome.energy;
   report.levels = std::move(outcome.levels);
@@ -292,12 +292,17 @@ void collectWarnings(Result& result) {
   if (result.graph.components > 1)
     warn("The neighbour graph was in " + std::to_string(result.graph.components) +
          " pieces, joined by their shortest bridges: the cloud may show several objects, or "
-         "parts farther apart than their points; a larger k joins them if it is one.");
+         "parts farther apart than their points; the graph of nearest neighbours with a larger k "
+         "joins them if it is one.");
   const auto vertices = static_cast<double>(result.vertexCount());
   if (static_cast<double>(result.graph.without_tangent_plane.size()) > kManyPoints * vertices)
     warn(std::to_string(result.graph.without_tangent_plane.size()) +
          " points have no trustworthy tangent plane: the cloud is too coarse or too noisy there, "
          "and the mesh may be folded.");
+  if (static_cast<double>(result.graph.uncertified) > kManyPoints * vertices)
+    warn(
+        std::to_string(result.graph.uncertified) +
+        " points may have neighbours that were not found: the cloud is open or very uneven there.");
   if (result.embedding.fallback_start)
     warn("The embedding collapsed to one place; the mesh comes from a start without iteration and "
          "is likely to be folded.");
@@ -315,7 +320,10 @@ void collectWarnings(Result& result) {
   if (result.edges_outside_graph > kSuspiciousEdges)
     warn(percent(result.edges_outside_graph) +
          " of the mesh's edges join points that are not near each other in the cloud: the "
-         "embedding is folded, or the cloud is not a closed surface without holes through it.");
+         "embedding is folded" +
+         (result.embedding.stop_reason == StopReason::Unfinished ? " (a tolerance may unfold it)"
+                                                                 : "") +
+         ", or the cloud is not a closed surface without holes through it.");
 }
 
 }  // namespace
