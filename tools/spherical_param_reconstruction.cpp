@@ -711,8 +711,7 @@ std::string convergence(const Settings& settings, const Reconstruction& reconstr
           : counted(static_cast<std::size_t>(embedding.levels.front().newton_iterations),
                     "Newton iteration");
   return yesOrNo(reconstruction.hasConverged()) + " (" + nameOf(embedding.stop_reason) + " after " +
-         steps +
-         (hasBarrier(settings, embedding) ? ", together with the pull of the barrier)" : ")");
+         steps + (hasBarrier(settings, embedding) ? ", the pull of a barrier is left)" : ")");
 }
 
 void printVerdict(const Settings& settings, const PointData& data,

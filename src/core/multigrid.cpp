@@ -142,12 +142,12 @@ void multiplyTransposed(const BlockMatrix& matrix, std::size_t columns, const Ta
 }
 
 /// One Gauss-Seidel sweep for matrix x = b.
-template <bool forward>
+template <bool Forward>
 void smooth(const BlockMatrix& matrix, const std::vector<Eigen::Matrix2d>& inverse_diagonal,
             const TangentVector& b, TangentVector& x) {
   const std::size_t n = matrix.size();
   for (std::size_t step = 0; step < n; ++step) {
-    const std::size_t i = forward ? step : n - 1 - step;
+    const std::size_t i = Forward ? step : n - 1 - step;
     Eigen::Vector2d rest = entry(b, i);
     for (std::size_t e = matrix.offsets[i]; e < matrix.offsets[i + 1]; ++e)
       rest -= matrix.blocks[e] * entry(x, static_cast<std::size_t>(matrix.columns[e]));

@@ -97,7 +97,7 @@ public:
       u.colwise().normalize();
       smooth(l, options_.weights, options_.sweeps, u);
       result_.levels[l].sweeps = options_.sweeps;
-      if (isSolved(l))
+      if (isSolved(l) && !(l == 0 && options_.tolerance))  // which finish() solves further
         solveUncollapsed(l, std::nullopt, u);
       result_.levels[l].residual = residualOf(l, u);
       if (l > 0)
@@ -239,10 +239,10 @@ private:
     u = current.topRows<3>();
   }
 
-  template <WeightRule rule>
+  template <WeightRule Rule>
   void sweepOnce(const Rows& rows, const PaddedPositions& current, PaddedPositions& next) const {
     // Along an edge the energy is p - 1 times as stiff as its weight: beyond p = 3 shorter steps.
-    const double lambda = rule == WeightRule::Power
+    const double lambda = Rule == WeightRule::Power
                               ? options_.lambda * std::min(1.0, 2.0 / (options_.exponent - 1.0))
                               : options_.lambda;
     const auto n = static_cast<std::size_t>(rows.size());
@@ -252,7 +252,7 @@ private:
           for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row)
             next.col(row).head<3>() =
                 (current.col(row).head<3>() +
-                 lambda * internal::tangentialLaplacian<rule>(rows, current, row))
+                 lambda * internal::tangentialLaplacian<Rule>(rows, current, row))
                     .normalized();
         });
   }

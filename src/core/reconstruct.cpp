@@ -226,7 +226,8 @@ Positions embedByLevels(const Graph& graph, const Options& options, StageLog& lo
   report.stop_reason = outcome.stop_reason;
   report.residual = outcome.residual;
   report.residuals = std::move(outcome.residuals);
-  report.iterations = outcome.levels.front().newton_iterations;
+  report.iterations = report.residuals.empty() ? outcome.levels.front().newton_iterations
+                                               : static_cast<int>(report.residuals.size()) - 1;
   report.centroid_norm = outcome.centroid_norm;
   report.energy = outcome.energy;
   report.levels = std::move(outcome.levels);

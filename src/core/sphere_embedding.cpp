@@ -157,12 +157,12 @@ private:
   Index beginOf(Index block) const { return block * kBlockSize; }
   Index endOf(Index block) const { return std::min(n_, (block + 1) * kBlockSize); }
 
-  template <WeightRule rule>
+  template <WeightRule Rule>
   void evaluateBlock(Index block) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double residual = 0.0;
     for (Index row = beginOf(block); row < endOf(block); ++row) {
-      const Eigen::Vector3d step = internal::tangentialLaplacian<rule>(rows_, u_, row);
+      const Eigen::Vector3d step = internal::tangentialLaplacian<Rule>(rows_, u_, row);
       residual += step.norm();
       // Never zero: the step is orthogonal to a unit vector.
       const Eigen::Vector3d moved = (u_.col(row).head<3>() + lambda_ * step).normalized();

@@ -82,7 +82,7 @@ inline double total(const Lanes& lanes) {
 
 /// Tangential part of the Laplacian of a row (Zwicker and Gotsman 2004, equations 1 and 2), weights
 /// normalised to sum 1.
-template <WeightRule rule>
+template <WeightRule Rule>
 Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, Index row) {
   const Eigen::Vector3d center = u.col(row).head<3>();
   const double* positions = u.data();
@@ -102,9 +102,9 @@ Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, 
     const Lanes y = Lanes(a[1], b[1], c[1], d[1]) - center[1];
     const Lanes z = Lanes(a[2], b[2], c[2], d[2]) - center[2];
     Lanes weights = Eigen::Map<const Lanes>(rows.factors.data() + e);
-    if constexpr (rule != WeightRule::Fixed) {
+    if constexpr (Rule != WeightRule::Fixed) {
       weights *= (x * x + y * y + z * z).sqrt();
-      if constexpr (rule == WeightRule::Power)
+      if constexpr (Rule == WeightRule::Power)
         for (double& weight : weights)
           weight = std::pow(weight, rows.power);
     }

@@ -48,12 +48,11 @@ struct NeighborSource;
  * \note Two objects may work in two threads at the same time, unless they share a search object
  * (setSearchMethod()) whose setInputCloud() or queries would race. An object itself must not be
  * used from two threads at once.
- * \note The memory is below 2 KB a point, and below 4 KB where the multilevel solver has a
- * tolerance, besides that of the process itself. The time is O(n log n), typically, and with the
- * iterative solver iterations times O(n k) more.
- * \note Without a search object of the user, neighbours are found in single precision: within a
- * cluster smaller than 1e-19 of the largest coordinate they are arbitrary (the mesh stays sound).
- * \ingroup surface
+ * \note The memory is below 2 KB a point, besides that of the process itself; 3 KB where the
+ * multilevel solver has a tolerance on the graph of 25 nearest neighbours. The time is O(n log n),
+ * typically, and with the iterative solver iterations times O(n k) more. \note Without a search
+ * object of the user, neighbours are found in single precision: within a cluster smaller than 1e-19
+ * of the largest coordinate they are arbitrary (the mesh stays sound). \ingroup surface
  */
 template <typename PointInT>
 class SphericalParamReconstruction : public MeshConstruction<PointInT> {
@@ -234,8 +233,8 @@ public:
   /** \brief Tell whether the embedding of the last reconstruct() reached the tolerance; false if
    * none was in force (getTolerance()).
    * \note Where the multilevel solver holds the centroid by a barrier (uniform and inverse-length
-   * weights, or getResult().embedding.added_barrier), what reached it is the tangential Laplacian
-   * together with the pull of that barrier. */
+   * weights, or getResult().embedding.added_barrier), its pull mostly keeps the tangential
+   * Laplacian above a small tolerance. */
   inline bool hasConverged() const {
     return result_.sphere.cols() > 0 &&
            result_.embedding.stop_reason == spherical_param::StopReason::Converged;
