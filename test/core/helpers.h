@@ -82,6 +82,22 @@ inline NeighborLists bruteForceNeighbors(const Positions& points, int k) {
   return lists;
 }
 
+/// Answers from all pairs of points, which must outlive it.
+inline auto bruteForceSearch(const Positions& points) {
+  return [&points](const std::vector<Index>& queries, int count) {
+    const NeighborLists all = bruteForceNeighbors(points, count);
+    NeighborLists answer;
+    for (const Index query : queries) {
+      const auto i = static_cast<std::size_t>(query);
+      answer.indices.insert(answer.indices.end(),
+                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i]),
+                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i + 1]));
+      answer.offsets.push_back(answer.indices.size());
+    }
+    return answer;
+  };
+}
+
 /// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold sphere in
 /// one piece over exactly the vertices [0, n): every directed edge once and its reverse once, the
 /// link of every vertex one cycle, V - E + F = 2 with one piece.

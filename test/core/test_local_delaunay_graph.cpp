@@ -16,6 +16,7 @@ namespace spherical_param {
 namespace {
 
 using test::bruteForceNeighbors;
+using test::bruteForceSearch;
 using test::horizontally;
 using test::randomSphere;
 
@@ -84,22 +85,6 @@ void expectSound(const Positions& points, const NeighborGraph& result) {
     }
   }
   EXPECT_EQ(countReachable(graph, -1), points.cols());
-}
-
-/// A search that finds the same as bruteForceNeighbors().
-NeighborSearch bruteForceSearch(const Positions& points) {
-  return [&points](const std::vector<Index>& some, int count) {
-    const NeighborLists all = bruteForceNeighbors(points, count);
-    NeighborLists lists;
-    for (const Index point : some) {
-      const auto i = static_cast<std::size_t>(point);
-      lists.indices.insert(lists.indices.end(),
-                           all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i]),
-                           all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i + 1]));
-      lists.offsets.push_back(lists.indices.size());
-    }
-    return lists;
-  };
 }
 
 NeighborGraph build(const Positions& points, int k = 12, int threads = 0) {

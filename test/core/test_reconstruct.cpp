@@ -18,6 +18,7 @@ namespace spherical_param {
 namespace {
 
 using test::bruteForceNeighbors;
+using test::bruteForceSearch;
 using test::horizontally;
 using test::isSphereOverAll;
 using test::randomSphere;
@@ -39,22 +40,6 @@ Options paper() {
 const std::vector<Options>& bothMethods() {
   static const std::vector<Options> methods = {Options(), paper()};
   return methods;
-}
-
-/// Answers from all pairs of points.
-NeighborSearch bruteForceSearch(const Positions& points) {
-  return [&points](const std::vector<Index>& queries, int count) {
-    const NeighborLists all = bruteForceNeighbors(points, count);
-    NeighborLists answer;
-    for (const Index query : queries) {
-      const auto i = static_cast<std::size_t>(query);
-      answer.indices.insert(answer.indices.end(),
-                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i]),
-                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i + 1]));
-      answer.offsets.push_back(answer.indices.size());
-    }
-    return answer;
-  };
 }
 
 Result mesh(const Positions& points, const Options& options = {}) {
