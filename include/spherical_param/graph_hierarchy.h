@@ -31,11 +31,11 @@ struct HierarchyOptions {
   std::uint32_t seed = 1;      ///< of the order in which nodes are taken
 };
 
-/// Coarsens a graph by geometric clustering: seeds are a maximal independent set in an
-/// order that looks random, but comes from the edge lengths alone;
-/// each seed's aggregate is its geodesic Voronoi cell (Dijkstra along the edges); two aggregates
-/// are joined if an edge joins nodes of them, by the length of the shortest path from seed to seed
-/// through such an edge. The energy of an embedding is then about the same on all levels.
+/// Coarsens a graph by geometric clustering: seeds are a maximal independent set in an order that
+/// looks random, but comes from the edge lengths alone; each seed's aggregate is its geodesic
+/// Voronoi cell; two aggregates are joined if an edge joins nodes of them, by the length of the
+/// shortest path from seed to seed through such an edge. The energy of an embedding is then about
+/// the same on all levels.
 ///
 /// \param graph connected, with positive edge lengths.
 /// \return the levels, each of some 4 to 5 times fewer nodes than the one before; none for a graph

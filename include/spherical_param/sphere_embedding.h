@@ -107,7 +107,7 @@ struct MultilevelOptions {
   /// Mean length of the tangential Laplacian to which the finest level is solved [radius of the
   /// sphere]; >= 0. Unset: the finest level is smoothed like the others.
   std::optional<double> tolerance;
-  int starts = 2;   ///< starts of the coarsest level, of which the one of least energy is kept
+  int starts = 2;   ///< of the coarsest level; the one of least energy is kept; 1 to 100
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Called with (share done in [0, 1], residual of the level at hand); returning false ends the
   /// work with Cancelled. May be empty. Called from the calling thread only.
@@ -160,8 +160,7 @@ struct MultilevelEmbedding {
 ///    rejected, and if all collapse the next finer level is tried. If those collapse too, as on
 ///    graphs of a few nodes or with wide gaps, a barrier (below) is added.
 /// 2. Up: positions are interpolated and smoothed by a few damped sweeps; levels of at most
-///    `solved_size` nodes are solved fully, so that even their
-///    smallest parts come to rest.
+///    `solved_size` nodes are solved fully, so that even their smallest parts come to rest.
 /// 3. With a `tolerance`, the finest level is solved too: Newton's method, each step by conjugate
 ///    gradients with a V-cycle on the same levels as preconditioner. The number of steps does not
 ///    grow with the graph, so that the time is near-linear.
