@@ -13,17 +13,8 @@ namespace spherical_param::internal {
 
 std::vector<TangentBasis> tangentBases(const Positions& directions) {
   std::vector<TangentBasis> bases(static_cast<std::size_t>(directions.cols()));
-  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
-    const Eigen::Vector3d u = directions.col(i);
-    // J. R. Frisvad: "Building an Orthonormal Basis from a 3D Unit Vector Without Normalization",
-    // 2012, in the form of T. Duff et al., 2017.
-    const double sign = std::copysign(1.0, u.z());
-    const double a = -1.0 / (sign + u.z());
-    const double b = u.x() * u.y() * a;
-    TangentBasis& basis = bases[static_cast<std::size_t>(i)];
-    basis.col(0) << 1.0 + sign * u.x() * u.x() * a, sign * b, -sign * u.x();
-    basis.col(1) << b, sign + u.y() * u.y() * a, -u.y();
-  }
+  for (Eigen::Index i = 0; i < directions.cols(); ++i)
+    bases[static_cast<std::size_t>(i)] = tangentBasis(directions.col(i));
   return bases;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/block_matrix.h"
+#include "core/tangent_basis.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>
@@ -8,9 +9,6 @@
 #include <vector>
 
 namespace spherical_param::internal {
-
-/// Two orthonormal tangent vectors at a point of the sphere.
-using TangentBasis = Eigen::Matrix<double, 3, 2>;
 
 /// \param directions 3 x n, unit vectors.
 std::vector<TangentBasis> tangentBases(const Positions& directions);

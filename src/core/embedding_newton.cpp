@@ -56,9 +56,9 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
     report.residuals.push_back(residual.absolute);
     if (options.progress)
       options.progress(report.iterations, residual.absolute);
-    report.converged =
+    const bool converged =
         residual.absolute <= options.tolerance && residual.relative <= options.relative_tolerance;
-    if (report.converged || report.iterations >= options.max_iterations)
+    if (converged || report.iterations >= options.max_iterations)
       return report;
 
     const std::vector<TangentBasis> bases = tangentBases(directions);

@@ -18,7 +18,6 @@ struct NewtonOptions {
 };
 
 struct NewtonReport {
-  bool converged = false;
   int iterations = 0;
   int linear_iterations = 0;      ///< conjugate gradient steps
   std::vector<double> residuals;  ///< absolute, before each step and at the end

@@ -1,6 +1,7 @@
 #include "core/graph_building.h"
 
 #include "core/component_tree.h"
+#include "core/members.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,37 +11,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-/// The nodes of each component, one component after the other.
-class Members {
-public:
-  explicit Members(const std::vector<Index>& part) : begin_(part.size() + 1, 0) {
-    for (const Index component : part)
-      ++begin_[static_cast<std::size_t>(component) + 1];
-    for (std::size_t i = 0; i < part.size(); ++i)
-      begin_[i + 1] += begin_[i];
-    nodes_.resize(part.size());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::size_t i = 0; i < part.size(); ++i)
-      nodes_[next[static_cast<std::size_t>(part[i])]++] = static_cast<Index>(i);
-  }
-
-  std::size_t count(Index component) const {
-    const auto c = static_cast<std::size_t>(component);
-    return begin_[c + 1] - begin_[c];
-  }
-
-  template <typename Visit>
-  void forEach(Index component, const Visit& visit) const {
-    const auto c = static_cast<std::size_t>(component);
-    for (std::size_t k = begin_[c]; k < begin_[c + 1]; ++k)
-      visit(nodes_[k]);
-  }
-
-private:
-  std::vector<std::size_t> begin_;
-  std::vector<Index> nodes_;
-};
 
 Bridge bridgeOf(const Positions& points, const ComponentTree::Pair& pair) {
   return {pair.from, pair.to, edgeLength(points, pair.from, pair.to)};
@@ -182,7 +152,7 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
   Index component_count = countSets(part);
   ComponentTree tree(points);
   while (component_count > 1) {
-    const Members members(part);
+    const Members members(part, n);
     Index largest = 0;
     for (Index component = 1; component < static_cast<Index>(n); ++component)
       if (members.count(component) > members.count(largest))
@@ -216,7 +186,7 @@ std::vector<Bridge> furtherBridges(const Positions& points, const std::vector<In
     return bridges;
   ComponentTree tree(points);
   tree.setComponents(part);
-  appendFurther(points, tree, part, Members(part), joints, count, bridges);
+  appendFurther(points, tree, part, Members(part, part.size()), joints, count, bridges);
   return bridges;
 }
 

@@ -1,5 +1,6 @@
 #include "spherical_param/graph_hierarchy.h"
 
+#include "core/members.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
@@ -107,36 +108,17 @@ Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds) {
   return cells;
 }
 
-/// Nodes of each aggregate, ascending, stored one aggregate after the other.
-struct Members {
-  std::vector<std::size_t> offsets;
-  std::vector<Index> nodes;
-};
-
-Members membersOf(const Aggregates& cells, std::size_t count) {
-  Members members;
-  members.offsets.assign(count + 1, 0);
-  for (const Index cell : cells.of_node)
-    ++members.offsets[static_cast<std::size_t>(cell) + 1];
-  std::partial_sum(members.offsets.begin(), members.offsets.end(), members.offsets.begin());
-  members.nodes.resize(cells.of_node.size());
-  std::vector<std::size_t> next(members.offsets.begin(), members.offsets.end() - 1);
-  for (std::size_t i = 0; i < cells.of_node.size(); ++i)
-    members.nodes[next[static_cast<std::size_t>(cells.of_node[i])]++] = static_cast<Index>(i);
-  return members;
-}
-
 /// The graph of the aggregates that touch.
 Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count) {
-  const Members members = membersOf(cells, count);
+  const internal::Members members(cells.of_node, count);
   Graph coarse;
   coarse.offsets.reserve(count + 1);
   std::vector<double> shortest(count, std::numeric_limits<double>::infinity());
   std::vector<Index> touched;
   for (std::size_t c = 0; c < count; ++c) {
     touched.clear();
-    for (std::size_t m = members.offsets[c]; m < members.offsets[c + 1]; ++m) {
-      const auto i = static_cast<std::size_t>(members.nodes[m]);
+    members.forEach(static_cast<Index>(c), [&](Index member) {
+      const auto i = static_cast<std::size_t>(member);
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
         const auto j = static_cast<std::size_t>(graph.neighbors[e]);
         const auto other = static_cast<std::size_t>(cells.of_node[j]);
@@ -148,7 +130,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
         const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
         shortest[other] = std::min(shortest[other], length);
       }
-    }
+    });
     std::sort(touched.begin(), touched.end());
     for (const Index other : touched) {
       coarse.neighbors.push_back(other);

@@ -2,6 +2,7 @@
 
 #include "core/exact_predicates.h"
 #include "core/space_filling_curve.h"
+#include "core/tangent_basis.h"
 
 #include <Eigen/Geometry>
 
@@ -26,14 +27,9 @@ namespace {
 class StereographicProjection {
 public:
   /// Right-handed axes of the plane as seen from outside the sphere, looking past the antipode of
-  /// the pole (after T. Duff et al., "Building an orthonormal basis, revisited", 2017).
-  explicit StereographicProjection(const Eigen::Vector3d& pole) : pole_(pole) {
-    const double sign = std::copysign(1.0, pole.z());
-    const double a = -1.0 / (sign + pole.z());
-    const double b = pole.x() * pole.y() * a;
-    y_axis_ << 1.0 + sign * pole.x() * pole.x() * a, sign * b, -sign * pole.x();
-    x_axis_ << b, sign + pole.y() * pole.y() * a, -pole.y();
-  }
+  /// the pole.
+  explicit StereographicProjection(const Eigen::Vector3d& pole)
+      : pole_(pole), axes_(tangentBasis(pole)) {}
 
   /// Finds the place of a direction in the plane, as doubles with which the predicates are exact:
   /// multiples of 2^-200 below 2^200, so that no product of four differences leaves the range of
@@ -41,7 +37,7 @@ public:
   bool project(const Eigen::Vector3d& direction, Eigen::Vector2d& place) const {
     const Eigen::Vector3d chord = direction - pole_;
     const double squared = chord.squaredNorm();
-    place << snapped(chord.dot(x_axis_) / squared), snapped(chord.dot(y_axis_) / squared);
+    place << snapped(chord.dot(axes_.col(1)) / squared), snapped(chord.dot(axes_.col(0)) / squared);
     constexpr double farthest = 0x1p200;
     return std::abs(place.x()) < farthest && std::abs(place.y()) < farthest;  // and not NaN
   }
@@ -54,8 +50,7 @@ private:
   }
 
   Eigen::Vector3d pole_;
-  Eigen::Vector3d x_axis_;
-  Eigen::Vector3d y_axis_;
+  TangentBasis axes_;  ///< y, x
 };
 
 /// Corner k of triangle t is written 4 t + k. It stands for the side opposite to it as well.

@@ -99,11 +99,12 @@ public:
       result_.levels[l].sweeps = options_.sweeps;
       if (isSolved(l) && !(l == 0 && options_.tolerance))  // which finish() solves further
         solveUncollapsed(l, std::nullopt, u);
+      if (l == 0)
+        break;  // finish() has the rest
       result_.levels[l].residual = residualOf(l, u);
-      if (l > 0)
-        report(kStartShare + (kCascadeShare - kStartShare) * static_cast<double>(level - l) /
-                                 static_cast<double>(level),
-               result_.levels[l].residual);
+      report(kStartShare + (kCascadeShare - kStartShare) * static_cast<double>(level - l) /
+                               static_cast<double>(level),
+             result_.levels[l].residual);
     }
     finish(u);
     return std::move(result_);

@@ -1,5 +1,6 @@
 #include "spherical_param/point_set.h"
 
+#include "core/bit_mixing.h"
 #include "core/exact_predicates.h"
 #include "core/space_filling_curve.h"
 #include "spherical_param/errors.h"
@@ -14,15 +15,12 @@
 namespace spherical_param {
 namespace {
 
-/// Mixes the bits of a coordinate into a hash (finaliser of splitmix64, S. Vigna).
+/// Mixes the bits of a coordinate into a hash.
 std::uint64_t mix(std::uint64_t hash, double coordinate) {
   const double value = coordinate == 0.0 ? 0.0 : coordinate;  // -0 equals +0
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
-  std::uint64_t z = (hash ^ bits) + 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31U);
+  return internal::splitmix64(hash ^ bits);
 }
 
 bool areCollinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {

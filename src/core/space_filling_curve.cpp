@@ -1,5 +1,7 @@
 #include "core/space_filling_curve.h"
 
+#include "core/bit_mixing.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,13 +55,9 @@ std::uint32_t hilbertIndex(std::uint32_t x, std::uint32_t y, unsigned bits) {
   return index;
 }
 
-/// Bits of a hash of i that look random and are the same on every platform (the finaliser of
-/// splitmix64: G. L. Steele, D. Lea and C. H. Flood, 2014).
+/// Element i of the sequence of splitmix64 from 0.
 std::uint64_t hash(std::uint64_t i) {
-  i = (i + 1) * 0x9e3779b97f4a7c15ULL;
-  i = (i ^ i >> 30U) * 0xbf58476d1ce4e5b9ULL;
-  i = (i ^ i >> 27U) * 0x94d049bb133111ebULL;
-  return i ^ i >> 31U;
+  return splitmix64(i * 0x9e3779b97f4a7c15ULL);
 }
 
 constexpr unsigned kCurveBits = 14;    ///< an axis, for the whole sphere
