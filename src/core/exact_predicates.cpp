@@ -164,30 +164,8 @@ int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
       .sign();
 }
 
-int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                  const Eigen::Vector3d& d) {
-  // Bound of the error of the plain evaluation relative to the permanent: o3derrboundA of
-  // Shewchuk, section 4.3.
-  constexpr double filter = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
-  const Eigen::Vector3d ad = b - a;
-  const Eigen::Vector3d bd = c - a;
-  const Eigen::Vector3d cd = d - a;
-  const double bc = bd.x() * cd.y();
-  const double cb = cd.x() * bd.y();
-  const double ca = cd.x() * ad.y();
-  const double ac = ad.x() * cd.y();
-  const double ab = ad.x() * bd.y();
-  const double ba = bd.x() * ad.y();
-  const double determinant = ad.z() * (bc - cb) + bd.z() * (ca - ac) + cd.z() * (ab - ba);
-  const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(ad.z()) +
-                           (std::abs(ca) + std::abs(ac)) * std::abs(bd.z()) +
-                           (std::abs(ab) + std::abs(ba)) * std::abs(cd.z());
-  const double bound = filter * permanent;
-  if (determinant > bound || -determinant > bound)
-    return determinant > 0.0 ? 1 : -1;
-  if (bound == 0.0)
-    return 0;
-
+int exactOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                       const Eigen::Vector3d& d) {
   const Expansion<2> ax = difference(b.x(), a.x());
   const Expansion<2> ay = difference(b.y(), a.y());
   const Expansion<2> az = difference(b.z(), a.z());

@@ -11,9 +11,11 @@
 
 namespace spherical_param::internal {
 
-/// The predicates without the filter. \see orientation2d, inCircle
+/// The predicates without the filter. \see orientation2d, orientation3d, inCircle
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                        const Eigen::Vector2d& c);
+int exactOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                       const Eigen::Vector3d& d);
 int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                   const Eigen::Vector2d& d);
 
@@ -41,8 +43,31 @@ inline int orientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
 
 /// Sign of the determinant | b - a, c - a, d - a |, exact unless products of coordinate
 /// differences leave the range of double: 0 if the four points lie in one plane.
-int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                  const Eigen::Vector3d& d);
+inline int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                         const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+  // Bound of the error of the plain evaluation relative to the permanent: o3derrboundA of
+  // Shewchuk, section 4.3.
+  constexpr double filter = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
+  const Eigen::Vector3d ad = b - a;
+  const Eigen::Vector3d bd = c - a;
+  const Eigen::Vector3d cd = d - a;
+  const double bc = bd.x() * cd.y();
+  const double cb = cd.x() * bd.y();
+  const double ca = cd.x() * ad.y();
+  const double ac = ad.x() * cd.y();
+  const double ab = ad.x() * bd.y();
+  const double ba = bd.x() * ad.y();
+  const double determinant = ad.z() * (bc - cb) + bd.z() * (ca - ac) + cd.z() * (ab - ba);
+  const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(ad.z()) +
+                           (std::abs(ca) + std::abs(ac)) * std::abs(bd.z()) +
+                           (std::abs(ab) + std::abs(ba)) * std::abs(cd.z());
+  const double bound = filter * permanent;
+  if (determinant > bound)
+    return 1;
+  if (-determinant > bound)
+    return -1;
+  return bound == 0.0 ? 0 : exactOrientation3d(a, b, c, d);
+}
 
 /// 1 if d is inside the circle through a, b and c (counter-clockwise), 0 if it is on the circle, -1
 /// outside; the other way round if a, b and c are clockwise. Exact unless products of four

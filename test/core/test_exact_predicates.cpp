@@ -175,14 +175,17 @@ TEST(ExactPredicates, InCircleTurnsWithTheOrderOfItsPoints) {
 TEST(ExactPredicates, FilterAgreesWithTheExactEvaluation) {
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
-  const auto point = [&] { return Vector2d(normal(random), normal(random)); };
+  const auto point = [&] { return Vector3d(normal(random), normal(random), normal(random)); };
   for (int i = 0; i < 20000; ++i) {
-    const Vector2d a = point();
-    const Vector2d b = point();
-    const Vector2d c = point();
-    const Vector2d d = point();
-    ASSERT_EQ(orientation2d(a, b, c), exactOrientation2d(a, b, c));
-    ASSERT_EQ(inCircle(a, b, c, d), exactInCircle(a, b, c, d));
+    const Vector3d a = point();
+    const Vector3d b = point();
+    const Vector3d c = point();
+    const Vector3d d = point();
+    ASSERT_EQ(orientation2d(a.head<2>(), b.head<2>(), c.head<2>()),
+              exactOrientation2d(a.head<2>(), b.head<2>(), c.head<2>()));
+    ASSERT_EQ(orientation3d(a, b, c, d), exactOrientation3d(a, b, c, d));
+    ASSERT_EQ(inCircle(a.head<2>(), b.head<2>(), c.head<2>(), d.head<2>()),
+              exactInCircle(a.head<2>(), b.head<2>(), c.head<2>(), d.head<2>()));
   }
 }
 

@@ -1,0 +1,692 @@
+#include "spherical_param/self_intersection.h"
+
+#include "core/exact_predicates.h"
+#include "core/parallel.h"
+#include "spherical_param/errors.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+// Candidates come from a tree of bounding boxes over the triangles in the order of a space-filling
+// curve. Nearly all of them are neighbours that a plane separates, which few operations and a bound
+// of their error show. Exact arithmetic decides about the rest, straight from the definition.
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using internal::kUnitRoundoff;
+using internal::orientation2d;
+using internal::orientation3d;
+using Pairs = std::vector<std::array<Index, 2>>;
+
+/// A triangle with all that the tests need, in one place of the memory.
+struct Face {
+  std::array<Vector3d, 3> corners;  ///< scaled, see scaleOf()
+  double size;                      ///< longest side of the bounding box
+  std::array<Index, 3> vertices;
+  Index triangle;
+};
+
+// --- The definition, in exact arithmetic ---------------------------------------------------------
+
+/// The axis along which a triangle is projected without losing its area; 3 if it has none.
+int projectionAxis(const std::array<Vector3d, 3>& t) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto flat = [&](const Vector3d& p) {
+      return Vector2d(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+    };
+    if (orientation2d(flat(t[0]), flat(t[1]), flat(t[2])) != 0)
+      return axis;
+  }
+  return 3;
+}
+
+/// A triangle with area, and its plane seen along an axis.
+struct ExactTriangle {
+  std::array<Vector3d, 3> corners;
+  int axis;  ///< of projectionAxis(), below 3
+
+  Vector2d flat(const Vector3d& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+  /// Sign of the side of the plane that p is on.
+  int side(const Vector3d& p) const { return orientation3d(corners[0], corners[1], corners[2], p); }
+  /// Sign of the side of the line from a to b that c is on; all in the plane.
+  int turn(const Vector3d& a, const Vector3d& b, const Vector3d& c) const {
+    return orientation2d(flat(a), flat(b), flat(c));
+  }
+  /// Whether a point of the plane is in the closed triangle.
+  bool contains(const Vector3d& p) const {
+    const int first = turn(corners[0], corners[1], p);
+    const int second = turn(corners[1], corners[2], p);
+    const int third = turn(corners[2], corners[0], p);
+    return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
+  }
+};
+
+/// Whether two closed segments in the plane of a triangle, both longer than zero, have a point in
+/// common, besides an end of the first inside the triangle that the second is a side of.
+bool segmentsCross(const ExactTriangle& plane, const Vector3d& p, const Vector3d& q,
+                   const Vector3d& a, const Vector3d& b) {
+  const int a_side = plane.turn(p, q, a);
+  const int b_side = plane.turn(p, q, b);
+  const int p_side = plane.turn(a, b, p);
+  const int q_side = plane.turn(a, b, q);
+  // On one line they overlap only if an end of one is in the other: of the two ends of the first,
+  // contains() knows; if those of the second are in the first, so is a corner, and with it a point
+  // of another side, which is not on this line.
+  return a_side * b_side <= 0 && p_side * q_side <= 0 && (a_side != 0 || b_side != 0);
+}
+
+/// Whether a closed segment and a closed triangle have a point in common.
+bool segmentMeets(const Vector3d& p, const Vector3d& q, const ExactTriangle& t) {
+  const int p_side = t.side(p);
+  const int q_side = t.side(q);
+  if (p_side * q_side > 0)
+    return false;
+  if ((p_side == 0 && t.contains(p)) || (q_side == 0 && t.contains(q)))
+    return true;
+  const auto& [a, b, c] = t.corners;
+  if (p_side == 0 && q_side == 0)
+    return segmentsCross(t, p, q, a, b) || segmentsCross(t, p, q, b, c) ||
+           segmentsCross(t, p, q, c, a);
+  if (p_side == 0 || q_side == 0)
+    return false;
+  const int first = orientation3d(p, q, a, b);
+  const int second = orientation3d(p, q, b, c);
+  const int third = orientation3d(p, q, c, a);
+  return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
+}
+
+/// The definition of the header.
+bool intersectExactly(const Face& face_a, const Face& face_b) {
+  ExactTriangle a{face_a.corners, projectionAxis(face_a.corners)};
+  ExactTriangle b{face_b.corners, projectionAxis(face_b.corners)};
+  if (a.axis == 3 || b.axis == 3)
+    return false;
+  // Common corners to the front, in the same order.
+  std::size_t common = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = common; j < 3; ++j)
+      if (a.corners[i] == b.corners[j]) {
+        std::swap(a.corners[i], a.corners[common]);
+        std::swap(b.corners[j], b.corners[common]);
+        ++common;
+        break;
+      }
+  switch (common) {
+  case 0:
+    // Where two triangles meet, a side of one of them meets the other.
+    for (std::size_t i = 0; i < 3; ++i)
+      if (segmentMeets(a.corners[i], a.corners[(i + 1) % 3], b) ||
+          segmentMeets(b.corners[i], b.corners[(i + 1) % 3], a))
+        return true;
+    return false;
+  case 1:
+    return segmentMeets(a.corners[1], a.corners[2], b) ||
+           segmentMeets(b.corners[1], b.corners[2], a);
+  case 2:
+    // The cheap question first: in a flat mesh, neighbours lie on different sides.
+    return a.turn(a.corners[0], a.corners[1], a.corners[2]) *
+                   a.turn(a.corners[0], a.corners[1], b.corners[2]) >
+               0 &&
+           a.side(b.corners[2]) == 0;
+  default:
+    return true;
+  }
+}
+
+// --- Quick tests that only ever say that two triangles do not intersect
+// ---------------------------
+
+double largest(const Vector3d& v) {
+  return v.cwiseAbs().maxCoeff();
+}
+
+/// The plane of a triangle, rounded.
+struct Plane {
+  Vector3d origin;
+  Vector3d normal;
+  double error;  ///< bound of that of value(), relative to the distance from the origin
+
+  explicit Plane(const Face& face) : origin(face.corners[0]) {
+    const Vector3d u = face.corners[1] - origin;
+    const Vector3d v = face.corners[2] - origin;
+    normal = u.cross(v);
+    // A coordinate of the normal is wrong by up to 8 units of roundoff of |u| |v| (largest
+    // coordinates), and at most 2 |u| |v|; each of the three products of the value with a distance
+    // d thus by 8 + 2 * 4 units of |u| |v| d. The rest up to 64 covers higher powers.
+    error = 64.0 * kUnitRoundoff * largest(u) * largest(v);
+  }
+  /// Distance of p from the plane, times the length of the normal.
+  double value(const Vector3d& p) const { return normal.dot(p - origin); }
+  /// Whether all of some values are on one side for sure.
+  /// \param reach bound of the coordinates of p - origin.
+  template <typename... Values>
+  bool isBeside(double reach, Values... values) const {
+    const double bound = error * reach;
+    return std::min({values...}) > bound || std::max({values...}) < -bound;
+  }
+};
+
+/// Whether a plane through a common corner v lies between the other corners of two triangles.
+///
+/// \param reach bound of the coordinates of differences of corners.
+bool separatedAt(const Vector3d& v, const Vector3d& a1, const Vector3d& a2, const Vector3d& b1,
+                 const Vector3d& b2, double reach) {
+  // Any direction will do: it has no error. This one is mostly normal to such a plane.
+  const Vector3d direction = (a1 - b1) + (a2 - b2);
+  // 4 roundings in each of three products of a coordinate of the direction, up to 2 reach, with a
+  // distance.
+  const double bound = 32.0 * kUnitRoundoff * reach * reach;
+  return std::min(direction.dot(a1 - v), direction.dot(a2 - v)) > bound &&
+         std::max(direction.dot(b1 - v), direction.dot(b2 - v)) < -bound;
+}
+
+/// Whether a plane across the line between their centres lies between two triangles.
+bool separated(const Face& a, const Face& b, double reach) {
+  const auto& [a0, a1, a2] = a.corners;
+  const auto& [b0, b1, b2] = b.corners;
+  const Vector3d direction = (a0 - b0) + (a1 - b1) + (a2 - b2);
+  const double least = std::min({0.0, direction.dot(a1 - a0), direction.dot(a2 - a0)});
+  const double most =
+      std::max({direction.dot(b0 - a0), direction.dot(b1 - a0), direction.dot(b2 - a0)});
+  // As above, for two distances and a direction up to 3 reach.
+  return least - most > 128.0 * kUnitRoundoff * reach * reach;
+}
+
+/// Whether two triangles whose boxes overlap evidently do not intersect.
+///
+/// \param plane_a of a.
+bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
+  // How many corners they have in common, and the sums of the numbers of these in either.
+  unsigned common = 0;
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j)
+      common += a.vertices[i] == b.vertices[j] ? 1U + (i << 8U) + (j << 16U) : 0U;
+  const std::size_t of_a = common >> 8U & 0xffU;
+  const std::size_t of_b = common >> 16U;
+  const double reach = a.size + b.size;
+  // A triangle that names a vertex twice makes nonsense of the sums, but it has no area. Corners
+  // that are equal but not named alike do no harm: nothing separates them.
+  constexpr std::array<std::size_t, 4> next{1, 2, 0, 1};
+  switch (common & 0xffU) {
+  case 0:
+    return separated(a, b, reach) ||
+           plane_a.isBeside(reach, plane_a.value(b.corners[0]), plane_a.value(b.corners[1]),
+                            plane_a.value(b.corners[2]));
+  case 1: {
+    const Vector3d& b1 = b.corners[next[of_b]];
+    const Vector3d& b2 = b.corners[next[of_b + 1]];
+    return separatedAt(a.corners[of_a], a.corners[next[of_a]], a.corners[next[of_a + 1]], b1, b2,
+                       reach) ||
+           plane_a.isBeside(reach, plane_a.value(b1), plane_a.value(b2));
+  }
+  case 2:
+    return of_b <= 3 && plane_a.isBeside(reach, plane_a.value(b.corners[3 - of_b]));
+  default:
+    return false;
+  }
+}
+
+/// For what is left after evidentlyApart(a, plane_a, b).
+bool intersectCarefully(const Face& a, const Face& b) {
+  return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
+}
+
+// --- The tree of boxes ---------------------------------------------------------------------------
+
+struct Box {
+  Vector3d lower;
+  Vector3d upper;
+
+  double size() const { return (upper - lower).maxCoeff(); }
+  bool overlaps(const Box& other) const {
+    return (lower.array() <= other.upper.array()).all() &&
+           (other.lower.array() <= upper.array()).all();
+  }
+};
+
+Box boxOf(const std::array<Vector3d, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+/// Whether a box lies on one side of a plane.
+bool clears(const Plane& plane, const Box& box) {
+  const Vector3d center = 0.5 * (box.lower + box.upper) - plane.origin;
+  const Vector3d half = 0.5 * (box.upper - box.lower);
+  const double reach = plane.normal.cwiseAbs().dot(half);
+  const double bound = plane.error * (largest(center) + largest(half));
+  return std::abs(plane.normal.dot(center)) > reach + 2.0 * bound;
+}
+
+constexpr std::size_t kWidth = 8;  ///< boxes of a group: as wide as several processors' registers
+constexpr unsigned kWidthBits = 3;
+using Lanes = Eigen::Array<double, static_cast<int>(kWidth), 1>;
+
+/// Boxes side by side, so that one is compared with all of them at once.
+struct BoxGroup {
+  std::array<Lanes, 3> lower;
+  std::array<Lanes, 3> upper;
+
+  BoxGroup() {
+    lower.fill(Lanes::Constant(std::numeric_limits<double>::infinity()));
+    upper.fill(Lanes::Constant(-std::numeric_limits<double>::infinity()));
+  }
+  void set(std::size_t lane, const Box& box) {
+    const auto l = static_cast<Eigen::Index>(lane);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis][l] = box.lower[static_cast<Eigen::Index>(axis)];
+      upper[axis][l] = box.upper[static_cast<Eigen::Index>(axis)];
+    }
+  }
+  Box at(std::size_t lane) const {
+    const auto l = static_cast<Eigen::Index>(lane);
+    return {{lower[0][l], lower[1][l], lower[2][l]}, {upper[0][l], upper[1][l], upper[2][l]}};
+  }
+  Box all() const {
+    return {{lower[0].minCoeff(), lower[1].minCoeff(), lower[2].minCoeff()},
+            {upper[0].maxCoeff(), upper[1].maxCoeff(), upper[2].maxCoeff()}};
+  }
+  /// Gaps along the axis on which each box is farthest from another; up to 0 where they overlap.
+  Lanes gaps(const Box& box) const {
+    const Lanes x = (lower[0] - box.upper.x()).max(box.lower.x() - upper[0]);
+    const Lanes y = (lower[1] - box.upper.y()).max(box.lower.y() - upper[1]);
+    const Lanes z = (lower[2] - box.upper.z()).max(box.lower.z() - upper[2]);
+    return x.max(y).max(z);
+  }
+};
+
+/// Lanes of a group whose boxes overlap a box.
+struct Overlaps {
+  std::array<std::size_t, kWidth> lanes;
+  std::size_t count = 0;
+
+  Overlaps(const BoxGroup& group, const Box& box) {
+    const Lanes gaps = group.gaps(box);
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      lanes[count] = lane;
+      count += gaps[static_cast<Eigen::Index>(lane)] <= 0.0 ? 1 : 0;
+    }
+  }
+  const std::size_t* begin() const { return lanes.data(); }
+  const std::size_t* end() const { return lanes.data() + count; }
+};
+
+/// Moves the lowest 10 bits of x to every third bit.
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | x << 16U) & 0x030000ffU;
+  x = (x | x << 8U) & 0x0300f00fU;
+  x = (x | x << 4U) & 0x030c30c3U;
+  x = (x | x << 2U) & 0x09249249U;
+  return x;
+}
+
+/// A triangle's place in the order.
+struct Place {
+  std::uint32_t key;
+  Index triangle;
+  bool operator<(const Place& other) const {
+    return key != other.key ? key < other.key : triangle < other.triangle;
+  }
+};
+
+/// Sorts places of ascending triangles by key: three passes of counting sort.
+void radixSort(std::vector<Place>& places) {
+  constexpr unsigned digit_bits = 11;
+  constexpr std::uint32_t mask = (1U << digit_bits) - 1U;
+  std::vector<Place> sorted(places.size());
+  for (unsigned shift = 0; shift < 32; shift += digit_bits) {
+    std::array<std::size_t, mask + 1> begin{};
+    for (const Place& place : places)
+      ++begin[place.key >> shift & mask];
+    std::size_t sum = 0;
+    for (std::size_t& count : begin)
+      count = std::exchange(sum, sum + count);
+    for (const Place& place : places)
+      sorted[begin[place.key >> shift & mask]++] = place;
+    places.swap(sorted);
+  }
+}
+
+/// A mesh as the tests want it.
+class Mesh {
+public:
+  /// \param scale a power of two; coordinates times it are at most 1.
+  Mesh(const Positions& points, const Triangles& triangles, double scale)
+      : points_(points), triangles_(triangles), scale_(scale) {}
+
+  std::size_t size() const { return static_cast<std::size_t>(triangles_.cols()); }
+
+  Box box(Index triangle) const { return boxOf(corners(triangle)); }
+  Face face(Index triangle, double size) const {
+    return {corners(triangle),
+            size,
+            {triangles_(0, triangle), triangles_(1, triangle), triangles_(2, triangle)},
+            triangle};
+  }
+
+private:
+  std::array<Vector3d, 3> corners(Index triangle) const {
+    return {points_.col(triangles_(0, triangle)) * scale_,
+            points_.col(triangles_(1, triangle)) * scale_,
+            points_.col(triangles_(2, triangle)) * scale_};
+  }
+
+  const Positions& points_;
+  const Triangles& triangles_;
+  double scale_;
+};
+
+constexpr unsigned kCurveBits = 10;          ///< an axis
+constexpr std::uint32_t kMostSizeClass = 3;  ///< what is left of the 32 bits of a key
+
+/// Sorts triangles with the same key along the curve in the bounding cube of their own centres, and
+/// so on: however unevenly the mesh is sampled, triangles that follow each other are near.
+void refine(const Mesh& mesh, Place* begin, Place* end) {
+  const auto center = [&](const Place& place) {
+    const Box box = mesh.box(place.triangle);
+    return Vector3d(0.5 * (box.lower + box.upper));
+  };
+  Vector3d low = center(*begin);
+  Vector3d high = low;
+  for (const Place* place = begin; place != end; ++place) {
+    low = low.cwiseMin(center(*place));
+    high = high.cwiseMax(center(*place));
+  }
+  const double extent = (high - low).maxCoeff();
+  if (extent < 1e-290)  // below that, the scale overflows
+    return;
+  const double scale = ((1U << kCurveBits) - 1U) / extent;
+  for (Place* place = begin; place != end; ++place) {
+    const Vector3d cell = (center(*place) - low) * scale;
+    place->key = spread(static_cast<std::uint32_t>(cell.x())) |
+                 spread(static_cast<std::uint32_t>(cell.y())) << 1U |
+                 spread(static_cast<std::uint32_t>(cell.z())) << 2U;
+  }
+  std::sort(begin, end);
+  for (Place* crowd = begin; crowd != end;) {
+    const std::uint32_t key = crowd->key;
+    Place* rest = std::find_if(crowd, end, [&](const Place& place) { return place.key != key; });
+    if (rest - crowd > static_cast<std::ptrdiff_t>(kWidth))
+      refine(mesh, crowd, rest);
+    crowd = rest;
+  }
+}
+
+/// The triangles by size, then along a space-filling curve (G. M. Morton, 1966). Large ones have a
+/// part of the tree for themselves: among small ones they would make large boxes of all above them.
+///
+/// \param subset triangles, ascending.
+std::vector<Place> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads) {
+  std::vector<Place> places(subset.size());
+  if (subset.empty())
+    return places;
+  // The median of a sample tells what is usual.
+  constexpr std::size_t sample = 1000;
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < subset.size(); i += 1 + subset.size() / sample)
+    sizes.push_back(mesh.box(subset[i]).size());
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double usual = *middle;
+
+  // Coordinates are in [-1, 1].
+  constexpr double scale = ((1U << kCurveBits) - 1U) / 2.0;
+  internal::forEachBlock(
+      subset.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Box box = mesh.box(subset[i]);
+          std::uint32_t size_class = 0;
+          for (double size = box.size() / 8.0; size > usual && size_class < kMostSizeClass;
+               size /= 8.0)
+            ++size_class;
+          const Vector3d cell = (0.5 * (box.lower + box.upper) + Vector3d::Ones()) * scale;
+          places[i] = {spread(static_cast<std::uint32_t>(cell.x())) |
+                           spread(static_cast<std::uint32_t>(cell.y())) << 1U |
+                           spread(static_cast<std::uint32_t>(cell.z())) << 2U |
+                           size_class << 3U * kCurveBits,
+                       subset[i]};
+        }
+      });
+  radixSort(places);
+  for (std::size_t begin = 0; begin < places.size();) {
+    std::size_t end = begin + 1;
+    while (end < places.size() && places[end].key == places[begin].key)
+      ++end;
+    if (end - begin > kWidth)
+      refine(mesh, places.data() + begin, places.data() + end);
+    begin = end;
+  }
+  return places;
+}
+
+/// Triangles with a tree of their bounding boxes: group i of a level holds the boxes of the groups
+/// 8 i ... 8 i + 7 of the level below, and of triangles on the lowest level (I. Kamel and C.
+/// Faloutsos, "On packing R-trees", 1993).
+class Tree {
+public:
+  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads);
+
+  std::size_t leafCount() const { return levels_.front().size(); }
+  /// Bounding box of all.
+  Box box() const { return levels_.back().front().all(); }
+
+  /// Appends the intersecting pairs of a triangle of this leaf and one of the same or a later leaf.
+  void findPairs(std::size_t leaf, Pairs& pairs) const;
+  /// Appends the intersecting pairs of a triangle that is not in the tree and one that is.
+  void findPairs(const Face& face, const Box& box, Pairs& pairs) const;
+
+private:
+  /// Calls visit(leaf, box) for the leaves from `first` on that overlap a box.
+  template <typename Visit>
+  void visitLeaves(const Box& box, std::size_t first, const Visit& visit) const;
+
+  static void append(const Face& a, const Face& b, Pairs& pairs) {
+    pairs.push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
+  }
+
+  std::vector<Face> faces_;
+  std::vector<std::vector<BoxGroup>> levels_;  ///< from the leaves to the root
+};
+
+Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads)
+    : faces_(subset.size()) {
+  const std::vector<Place> places = ordered(mesh, subset, threads);
+  levels_.emplace_back((subset.size() + kWidth - 1) / kWidth);
+  static_assert(internal::kBlockSize % kWidth == 0, "a leaf is in one block");
+  internal::forEachBlock(faces_.size(), threads,
+                         [&](std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t i = begin; i < end; ++i) {
+                             const Box box = mesh.box(places[i].triangle);
+                             faces_[i] = mesh.face(places[i].triangle, box.size());
+                             levels_.front()[i / kWidth].set(i % kWidth, box);
+                           }
+                         });
+  do {
+    const std::vector<BoxGroup>& below = levels_.back();
+    std::vector<BoxGroup> level((below.size() + kWidth - 1) / kWidth);
+    for (std::size_t i = 0; i < below.size(); ++i)
+      level[i / kWidth].set(i % kWidth, below[i].all());
+    levels_.push_back(std::move(level));
+  } while (levels_.back().size() > 1);
+}
+
+template <typename Visit>
+void Tree::visitLeaves(const Box& box, std::size_t first, const Visit& visit) const {
+  struct Node {
+    std::size_t level;
+    std::size_t group;
+  };
+  // At most 7 wait on each level but the last; there are at most 2^30 triangles.
+  std::array<Node, kWidth*(30 / kWidthBits + 2)> open;
+  std::size_t count = 0;
+  open[count++] = {levels_.size() - 1, 0};
+  while (count > 0) {
+    const Node node = open[--count];
+    const BoxGroup& group = levels_[node.level][node.group];
+    for (const std::size_t lane : Overlaps(group, box)) {
+      const std::size_t below = node.group * kWidth + lane;
+      if (node.level == 1) {
+        if (below >= first)
+          visit(below, group.at(lane));
+      } else if (below >= first >> kWidthBits * (node.level - 1)) {
+        open[count++] = {node.level - 1, below};
+      }
+    }
+  }
+}
+
+void Tree::findPairs(std::size_t leaf, Pairs& pairs) const {
+  const BoxGroup& group = levels_.front()[leaf];
+  const std::size_t begin = leaf * kWidth;
+  const std::size_t end = std::min(faces_.size(), begin + kWidth);
+  std::vector<Plane> planes;
+  planes.reserve(kWidth);
+  for (std::size_t i = begin; i < end; ++i)
+    planes.emplace_back(faces_[i]);
+  visitLeaves(group.all(), leaf, [&](std::size_t other, const Box& box) {
+    for (const std::size_t lane : Overlaps(group, box)) {
+      const Face& a = faces_[begin + lane];
+      const Plane& plane = planes[lane];
+      const Box box_a = group.at(lane);
+      // A triangle that is large beside a leaf is likely to pass it by.
+      if (a.size > 2.0 * box.size() && clears(plane, box))
+        continue;
+      for (const std::size_t lane_b : Overlaps(levels_.front()[other], box_a)) {
+        if (other == leaf && lane_b <= lane)
+          continue;
+        const Face& b = faces_[other * kWidth + lane_b];
+        if (!evidentlyApart(a, plane, b) && intersectCarefully(a, b))
+          append(a, b, pairs);
+      }
+    }
+  });
+}
+
+void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
+  const Plane plane(face);
+  visitLeaves(box, 0, [&](std::size_t leaf, const Box& leaf_box) {
+    if (clears(plane, leaf_box))
+      return;
+    for (const std::size_t lane : Overlaps(levels_.front()[leaf], box)) {
+      const Face& other = faces_[leaf * kWidth + lane];
+      if (!evidentlyApart(face, plane, other) && intersectCarefully(face, other))
+        append(face, other, pairs);
+    }
+  });
+}
+
+// --- The functions of the header -----------------------------------------------------------------
+
+[[noreturn]] void fail(const std::string& message) {
+  throw InvalidInput("findSelfIntersections: " + message);
+}
+
+/// A power of two that brings the largest coordinate to 1/2 ... 1: the predicates multiply three
+/// differences. Throws InvalidInput.
+double checkedScale(const Positions& points, const Triangles& triangles,
+                    const SelfIntersectionOptions& options) {
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
+         std::to_string(internal::kMostThreads));
+  double most = 0.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!points.col(i).allFinite())
+      fail("point " + std::to_string(i) + " is not finite; remove such points first");
+    most = std::max(most, largest(points.col(i)));
+  }
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k)
+      if (triangles(k, t) < 0 || triangles(k, t) >= points.cols())
+        fail("triangle " + std::to_string(t) + " names vertex " + std::to_string(triangles(k, t)) +
+             ", but there are " + std::to_string(points.cols()) + " points");
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  return std::ldexp(1.0, std::min(-exponent, 1000));
+}
+
+/// Runs find(i, pairs) for i in [0, count) and joins what it appends.
+template <typename Find>
+Pairs collect(std::size_t count, int threads, const Find& find) {
+  std::vector<Pairs> parts((count + internal::kBlockSize - 1) / internal::kBlockSize);
+  internal::forEachBlock(count, threads,
+                         [&](std::size_t block, std::size_t begin, std::size_t end) {
+                           for (std::size_t i = begin; i < end; ++i)
+                             find(i, parts[block]);
+                         });
+  Pairs pairs;
+  for (const Pairs& part : parts)
+    pairs.insert(pairs.end(), part.begin(), part.end());
+  return pairs;
+}
+
+Pairs pairsWithin(const Tree& tree, int threads) {
+  return collect(tree.leafCount(), threads,
+                 [&](std::size_t leaf, Pairs& pairs) { tree.findPairs(leaf, pairs); });
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
+                                                        const Triangles& triangles,
+                                                        const SelfIntersectionOptions& options) {
+  const Mesh mesh(points, triangles, checkedScale(points, triangles, options));
+  std::vector<Index> all(mesh.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  if (all.empty())
+    return {};
+  const int threads =
+      internal::threadCount(options.threads, all.size(), internal::kParallelThreshold);
+  Pairs pairs = pairsWithin(Tree(mesh, all, threads), threads);
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
+                                                          const Triangles& triangles,
+                                                          const std::vector<Index>& of,
+                                                          const SelfIntersectionOptions& options) {
+  const Mesh mesh(points, triangles, checkedScale(points, triangles, options));
+  std::vector<char> in_set(mesh.size(), 0);
+  for (const Index t : of) {
+    if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
+      fail("triangle " + std::to_string(t) + " is asked for, but there are " +
+           std::to_string(mesh.size()));
+    in_set[static_cast<std::size_t>(t)] = 1;
+  }
+  std::vector<Index> subset;
+  for (std::size_t t = 0; t < in_set.size(); ++t)
+    if (in_set[t] != 0)
+      subset.push_back(static_cast<Index>(t));
+  if (subset.empty())
+    return {};
+  const int threads =
+      internal::threadCount(options.threads, mesh.size(), internal::kShortPassThreshold);
+  const Tree tree(mesh, subset, threads);
+  Pairs pairs = pairsWithin(tree, threads);
+  const Box bounds = tree.box();
+  const Pairs others = collect(mesh.size(), threads, [&](std::size_t t, Pairs& found) {
+    if (in_set[t] != 0)
+      return;
+    const auto triangle = static_cast<Index>(t);
+    const Box box = mesh.box(triangle);
+    if (box.overlaps(bounds))
+      tree.findPairs(mesh.face(triangle, box.size()), box, found);
+  });
+  pairs.insert(pairs.end(), others.begin(), others.end());
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace spherical_param
