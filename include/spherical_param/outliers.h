@@ -1,0 +1,72 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <vector>
+
+namespace spherical_param {
+
+/// Parameters of findOutliers().
+struct OutlierOptions {
+  /// Outliers are further off than the mean by so many standard deviations; [0, 1000].
+  double sigma = 4.0;
+  /// Nearest neighbours used of each list; lists that hold fewer are used whole. Range: 3 and up.
+  int k = 16;
+  /// Nothing nearer to the surface of its neighbours than this is an outlier [share of their mean
+  /// distances]; >= 0. Points of a surface, even those at sharp corners, hardly reach 1.
+  double least_score = 1.0;
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+};
+
+/// Points that do not belong to the surface of the others.
+struct Outliers {
+  std::vector<Index> indices;  ///< the outliers, ascending
+  /// n entries: how far each point is off the surface of its neighbours, relative to the mean
+  /// distances there; that of an outlier as of the round in which it was found.
+  std::vector<double> scores;
+  int rounds = 0;  ///< passes over the points; the last one finds none
+  // Of the scores, each counted as 1 at most, of the points that are not outliers.
+  double mean = 0.0;
+  double standard_deviation = 0.0;
+  double threshold = 0.0;  ///< what they are compared to: no point but the outliers is above it
+};
+
+/// Finds points that are too far from the average of their neighbours (Zwicker and Gotsman 2004,
+/// section 4.2).
+///
+/// What is compared is
+///
+///   score_i = |n_i . (p_i - c_i)| / M_i,
+///
+/// with the median M_i of the mean distances that the k nearest neighbours have to their own, the
+/// centroid c_i of the neighbours, and the normal n_i of their plane of least squares. Neighbours
+/// with mean distances above 2 M_i have no say in centroid and plane: they may be outliers too.
+/// Outliers are points with
+///
+///   score_i > max(mean + sigma * standard deviation, least_score),
+///
+/// mean and deviation over all points, with scores above 1 counted as 1, so that a few far outliers
+/// do not hide the nearer ones. They are taken out of the neighbour lists, and it is done again
+/// until no more are found: a group of outliers dissolves from its rim.
+///
+/// Why not plainly |p_i - c_i|: on a surface that is sampled unevenly, a point at the rim of a
+/// dense part is far from the centroid, but along the surface; and far or near depends on the
+/// sampling around. The neighbours' distances are what tells that, not those of the point itself,
+/// which are long at an outlier.
+///
+/// \param points 3 x n, finite, distinct.
+/// \param lists  n neighbour lists, the nearest of each point; unsorted, longer or shorter than k,
+///               with or without the point itself. What is beyond the k nearest steps in for
+///               outliers. A list of fewer than three others gives score 0.
+/// \return the outliers, the same, bit by bit, for any number of threads.
+/// \throw InvalidInput for coordinates that are not finite, sizes that disagree, an index out of
+///        range, or options out of range.
+/// Cost: O(n k log k) per round, a few rounds.
+///
+/// No guarantees: a group as dense as the surface, or larger than k, is a surface of its own;
+/// beyond the tip of a thin limb, an outlier may be in the plane of its neighbours; where the
+/// spacing jumps by ten and more, points at the rim may be taken for outliers.
+Outliers findOutliers(const Positions& points, const NeighborLists& lists,
+                      const OutlierOptions& options = {});
+
+}  // namespace spherical_param

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+namespace spherical_param {
+
+/// How noise is taken off a surface. Each is a low-pass filter: with the uniform Laplacian of the
+/// mesh (the mean of the neighbours minus the point), whose frequencies k lie in [0, 3/2], a part
+/// of the surface of frequency k is multiplied by a gain.
+enum class SmoothingMethod {
+  /// Laplacian smoothing (Zwicker and Gotsman 2004, section 4.2): a step moves each point by a
+  /// share lambda towards the mean of its neighbours. Gain (1 - lambda k)^steps. Shrinks.
+  Umbrella,
+  /// Taubin 1995, "A signal processing approach to fair surface design": each step by lambda is
+  /// followed by one of mu < -lambda outward. Gain ((1 - lambda k)(1 - mu k))^steps. Hardly
+  /// shrinks, but removes little strong noise in few steps.
+  Taubin,
+  /// The biharmonic flow dx/dt = -L^2 x (the higher order of Desbrun et al. 1999, "Implicit fairing
+  /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2,
+  /// its
+  /// frequency of gain one half, c, that of so many steps of Umbrella with lambda = 1. As strong as
+  /// those on noise, and hardly shrinks.
+  Biharmonic,
+};
+
+/// Parameters of smoothSurface().
+struct SmoothingOptions {
+  SmoothingMethod method = SmoothingMethod::Biharmonic;  ///< the filter
+  int steps = 5;                 ///< strength, as in section 4.2 of the paper; [0, 10000]
+  double umbrella_lambda = 1.0;  ///< lambda of Umbrella, share of the Laplacian per step; (0, 1]
+  double taubin_lambda = 0.8;    ///< lambda of Taubin; (0, 1]
+  /// Frequency below which Taubin's filter does not shrink, 1 / lambda + 1 / mu; [0, 1). Together
+  /// with lambda it must not amplify the highest frequency, 3/2: with 0.05, lambda is at most 0.93.
+  double taubin_pass_band = 0.05;
+  /// Move all points alike along their normals at the end, so that the volume is that of the input.
+  bool restore_volume = true;
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+};
+
+/// A smoothed surface, and how far it is from the one given.
+struct Smoothing {
+  Positions points;                ///< 3 x n, column i = point i [unit of the input]
+  double max_displacement = 0.0;   ///< of a point [unit of the input]
+  double mean_displacement = 0.0;  ///< over the points of triangles [unit of the input]
+  double rms_displacement = 0.0;   ///< over the points of triangles [unit of the input]
+  double volume_before = 0.0;      ///< signed volume enclosed [cubed unit of the input]
+  double volume_after = 0.0;       ///< signed volume enclosed [cubed unit of the input]
+};
+
+/// Smooths the points of a closed mesh. The triangles stay as they are.
+///
+/// \param points    3 x n, finite. Points of no triangle stay where they are. The largest
+/// coordinate
+///                  difference should be between 1e-90 and 1e90, so that the volume can be formed.
+/// \param triangles 3 x m, closed, manifold, consistently oriented, any genus and number of pieces.
+/// \return the points, the same, bit by bit, for any number of threads.
+/// \throw InvalidInput for coordinates that are not finite, indices out of range, a mesh that is
+/// not
+///        as said, or options out of range.
+/// Cost: O(n) per step of Umbrella, twice that of Taubin; Biharmonic O(n sqrt(steps)), five steps
+/// as much as some thirty of Umbrella.
+///
+/// No guarantees: corners and edges are rounded, and points drift within the surface until they are
+/// spread evenly among their neighbours. The volume cannot be restored where there is none to speak
+/// of (volume_after tells).
+Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
+                        const SmoothingOptions& options = {});
+
+}  // namespace spherical_param
