@@ -1,0 +1,35 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+namespace spherical_param {
+
+/// Size, place and mass properties of a closed mesh and the solid that it encloses.
+struct MeshMeasures {
+  double volume = 0.0;  ///< signed, positive if oriented outward [cubed unit of the input]
+  double area = 0.0;    ///< [squared unit of the input]
+  double mean_edge_length = 0.0;  ///< [unit of the input]
+  /// Corners of the box along the axes around the vertices of the triangles [unit of the input].
+  Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
+  Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
+  /// Centre of mass of the solid; without a volume that is more than rounding, that of the surface
+  /// [unit of the input].
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  /// Inertia tensor of the solid at unit density about `centroid`: symmetric, and positive definite
+  /// if the volume is positive [unit of the input to the fifth].
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+};
+
+/// Measures a closed mesh: exact integrals over the polyhedron, by the divergence theorem (Mirtich
+/// 1996: Fast and accurate computation of polyhedral mass properties; in the closed form of Eberly
+/// 2002: Polyhedral mass properties (revisited)).
+///
+/// The integrals are formed about a point of the mesh, so a far origin costs no digits. Where the
+/// mesh intersects itself, regions count as often as it winds around them.
+///
+/// \param points    3 x n; \param triangles 3 x m, consistently oriented, each edge twice.
+/// \return all zero for a mesh without triangles.
+/// \throw InvalidInput for an index out of range. Cost: O(m).
+MeshMeasures measureMesh(const Positions& points, const Triangles& triangles);
+
+}  // namespace spherical_param

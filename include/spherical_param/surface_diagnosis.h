@@ -1,0 +1,103 @@
+#pragma once
+
+#include "spherical_param/neighbor_graph.h"
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace spherical_param {
+
+/// What a cloud shows, judged by its mesh and its neighbour graph.
+enum class SurfaceKind {
+  ClosedGenus0,  ///< nothing speaks against a closed surface without handles, in one piece
+  Open,          ///< the surface has openings, which the mesh closes by lids
+  Handles,       ///< the surface has handles, which the mesh cuts
+  SeveralParts,  ///< there are several surfaces, which the mesh joins
+  Unclear,       ///< the mesh leaves the graph in too many places: noise, or the mesh is folded
+};
+
+/// Parameters of diagnoseSurface(). The defaults need no tuning.
+struct DiagnosisOptions {
+  /// The least diameter of a lid [distance of the points at its rim]; > 0.
+  double lid_diameter = 5.0;
+  /// Neighbours in the graph that are more steps apart on the mesh were torn apart; 3 to 100.
+  int handle_steps = 8;
+  /// The least gap between parts [distance of the points at the gap]; > 0.
+  double part_gap = 4.0;
+  /// At most so many vertices are listed of each finding.
+  std::size_t max_vertices = 64;
+};
+
+/// Connected triangles over a place without points that is wide against the distance of the points
+/// around it: an opening of the surface, or a cut through a handle or between parts.
+struct Lid {
+  SurfaceKind cause = SurfaceKind::Open;  ///< or Handles, SeveralParts, of which it is a trace
+  std::size_t triangles = 0;
+  double area = 0.0;             ///< [squared unit of the input]
+  double boundary_length = 0.0;  ///< of all its rims [unit of the input]
+  double diameter = 0.0;         ///< of the disc that area and boundary make [unit of the input]
+  double spacing = 0.0;          ///< distance of the points at its rim [unit of the input]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centroid of its triangles
+  std::vector<Index> vertices;                       ///< of its rim, ascending
+};
+
+/// Neighbours in the graph, along the surface, that the mesh tears apart.
+struct CollapsedHandle {
+  std::size_t edges = 0;  ///< of the graph that are torn
+  double size = 0.0;      ///< diagonal of the box around them [unit of the input]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of their ends
+  std::vector<Index> vertices;                       ///< their ends, ascending
+};
+
+/// Two parts of the cloud with a gap between them.
+struct PartBridge {
+  std::size_t points = 0;        ///< of the smaller part
+  std::size_t other_points = 0;  ///< of the larger part
+  double gap = 0.0;              ///< least distance that a bridge spans [unit of the input]
+  double spacing = 0.0;          ///< distance of the points at its ends [unit of the input]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the ends of all its bridges
+  std::vector<Index> vertices;                       ///< the ends, ascending
+};
+
+/// What speaks against a closed genus-0 surface, and where.
+struct SurfaceDiagnosis {
+  SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest of what was found
+  std::vector<Lid> lids;                         ///< by falling area
+  std::vector<CollapsedHandle> handles;          ///< by falling number of edges
+  std::vector<PartBridge> bridges;               ///< by falling number of points
+  /// Share of the mesh's edges that join points more than two steps apart in the graph, in [0, 1].
+  double edges_outside_graph = 0.0;
+  std::string summary;  ///< one sentence
+
+  bool looksClosedGenus0() const { return kind == SurfaceKind::ClosedGenus0; }
+  std::size_t openings() const;  ///< lids that are a trace of nothing else
+};
+
+/// SurfaceDiagnosis::summary, from all else: for who changed the unit of what was found.
+std::string summaryOf(const SurfaceDiagnosis& diagnosis);
+
+/// Tells whether a cloud looks like a closed genus-0 surface: the mesh always is one, whatever the
+/// cloud shows. An opening is closed by triangles that leave the graph and are long against the
+/// distance of the points around them; a handle is cut, and neighbours become distant; the graph
+/// itself falls into the parts that were joined by bridges.
+///
+/// \param points    3 x n, finite; extent about 1, or at least such that areas are numbers.
+/// \param triangles 3 x m, a closed manifold over the points.
+/// \param graph     n nodes, lengths in the unit of the points: local Delaunay neighbourhoods, on
+///                  which all thresholds were measured.
+/// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
+/// \throw InvalidInput for sizes that disagree, no triangles, an index or an option out of range.
+/// Cost: O(n) where nothing is wrong.
+///
+/// Handles are sought where the mesh is not folded and there is one part only.
+///
+/// Not guaranteed: openings of less than some 8 spacings and handles of less than some 9 points
+/// around are not told from uneven sampling. A place without points in the middle of dense ones is
+/// a lid, also where it is flat and nothing is missing. Where the mesh is folded, little is told.
+SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
+                                 const Graph& graph, const std::vector<Bridge>& bridges,
+                                 const DiagnosisOptions& options = {});
+
+}  // namespace spherical_param

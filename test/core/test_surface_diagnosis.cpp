@@ -1,0 +1,409 @@
+#include "spherical_param/surface_diagnosis.h"
+
+#include "helpers.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace spherical_param {
+namespace {
+
+using test::graphOfMesh;
+using test::isSphereOverAll;
+using test::kPi;
+using test::randomSphere;
+using test::spiralSphere;
+
+struct Scene {
+  Positions points;
+  Triangles triangles;
+  NeighborGraph graph;
+};
+
+NeighborGraph localDelaunayGraph(const Positions& points) {
+  LocalDelaunayOptions options;
+  options.search = test::bruteForceSearch(points);
+  return buildLocalDelaunayGraph(points, test::bruteForceNeighbors(points, 12), options);
+}
+
+/// A star-shaped cloud and its mesh: the convex hull of the directions.
+Scene starShaped(const Positions& directions, const Positions& points) {
+  return {points, triangulateSphere(directions, TriangulationMethod::Incremental).triangles,
+          localDelaunayGraph(points)};
+}
+
+SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {}) {
+  return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph, scene.graph.bridges,
+                         options);
+}
+
+/// Distance of neighbours among so many even points on the unit sphere: a hexagonal grid has
+/// sqrt(3) / 2 of its square of area for each point.
+double sphereSpacing(Index points) {
+  return std::sqrt(4.0 * kPi / (points * std::sqrt(3.0) / 2.0));
+}
+
+/// The columns for which keep(point) holds.
+template <typename Keep>
+Positions filtered(const Positions& points, const Keep& keep) {
+  Positions result(3, points.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (keep(Eigen::Vector3d(points.col(i))))
+      result.col(count++) = points.col(i);
+  return result.leftCols(count);
+}
+
+void expectClosed(const Scene& scene) {
+  const SurfaceDiagnosis diagnosis = diagnose(scene);
+  EXPECT_EQ(diagnosis.kind, SurfaceKind::ClosedGenus0) << diagnosis.summary;
+  EXPECT_TRUE(diagnosis.looksClosedGenus0());
+  EXPECT_TRUE(diagnosis.lids.empty() && diagnosis.handles.empty() && diagnosis.bridges.empty());
+  EXPECT_EQ(diagnosis.summary, "Looks like a closed genus-0 surface.");
+}
+
+TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
+  const Positions even = spiralSphere(1500);
+  expectClosed(starShaped(even, even));
+  const Positions random = randomSphere(1500, 7);
+  expectClosed(starShaped(random, random));
+  const Positions cube = test::cubeGrid(13);
+  expectClosed(starShaped((cube.array() - 0.5).matrix().colwise().normalized(), cube));
+  const test::Tube tube = test::bentTube(12.0, 2.0, 20);
+  expectClosed({tube.points, tube.triangles, localDelaunayGraph(tube.points)});
+}
+
+TEST(SurfaceDiagnosis, UnevenSamplingRaisesNoAlarm) {
+  const Positions even = spiralSphere(1500);
+  // Distances of the points at the two ends that differ as 1 : 12, in all directions.
+  Positions crowded = even;
+  for (Eigen::Index i = 0; i < crowded.cols(); ++i) {
+    // The Moebius transform of the sphere that scales the plane beneath by sqrt(12).
+    const Eigen::Vector3d p = crowded.col(i);
+    const Eigen::Vector2d plane = std::sqrt(12.0) * p.head<2>() / (1.0 - p.z());
+    const double square = plane.squaredNorm();
+    crowded.col(i) << 2.0 * plane / (square + 1.0), (square - 1.0) / (square + 1.0);
+  }
+  expectClosed(starShaped(crowded, crowded));
+  // Four times denser in one direction than in the other.
+  expectClosed(starShaped(even, Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal() * even));
+}
+
+TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
+  for (const Index n : {800, 2000}) {
+    const double spacing = sphereSpacing(n);
+    for (const double across : {8.0, 10.0}) {
+      const double radius = across * spacing / 2.0;
+      const double height = std::sqrt(1.0 - radius * radius);
+      const Positions open =
+          filtered(spiralSphere(n), [&](const Eigen::Vector3d& p) { return p.x() < height; });
+      const Scene scene = starShaped(open, open);
+      const SurfaceDiagnosis diagnosis = diagnose(scene);
+      EXPECT_EQ(diagnosis.kind, SurfaceKind::Open) << n << " " << across;
+      ASSERT_EQ(diagnosis.lids.size(), 1U) << n << " " << across;
+      EXPECT_EQ(diagnosis.openings(), 1U);
+      EXPECT_TRUE(diagnosis.handles.empty() && diagnosis.bridges.empty());
+      const Lid& lid = diagnosis.lids.front();
+      EXPECT_EQ(lid.cause, SurfaceKind::Open);
+      // The rim is ragged by up to one spacing outward, and its flat triangles may stay out.
+      EXPECT_NEAR(lid.diameter, 2.0 * radius, 1.5 * spacing);
+      EXPECT_NEAR(std::sqrt(4.0 * lid.area / kPi), 2.0 * radius, 2.0 * spacing);
+      EXPECT_NEAR(lid.spacing, spacing, 0.3 * spacing);
+      EXPECT_LT((lid.center - height * Eigen::Vector3d::UnitX()).norm(), spacing);
+      EXPECT_GE(lid.triangles, lid.vertices.size() - 2);
+      for (const Index v : lid.vertices) {
+        const Eigen::Vector3d p = open.col(v);
+        EXPECT_LT(p.x(), height);
+        EXPECT_LT(p.tail<2>().norm(), radius + 1.5 * spacing);
+      }
+    }
+  }
+}
+
+TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
+  const Positions open = filtered(spiralSphere(1600), [&](const Eigen::Vector3d& p) {
+    return p.x() < 0.9 && p.y() > -0.85 && p.z() > -0.8;
+  });
+  const SurfaceDiagnosis diagnosis = diagnose(starShaped(open, open));
+  EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
+  ASSERT_EQ(diagnosis.openings(), 3U) << diagnosis.summary;
+  // By falling area.
+  EXPECT_LT(diagnosis.lids[0].center.z(), -0.75);
+  EXPECT_LT(diagnosis.lids[1].center.y(), -0.8);
+  EXPECT_GT(diagnosis.lids[2].center.x(), 0.85);
+  EXPECT_NE(diagnosis.summary.find("3 openings"), std::string::npos) << diagnosis.summary;
+  EXPECT_EQ(diagnosis.summary, summaryOf(diagnosis));
+}
+
+/// A torus whose mesh is cut through the tube and closed by two flat lids there: a sphere. The
+/// graph is that of the whole torus.
+struct CutTorus {
+  Scene scene;
+  std::size_t torn = 0;    ///< edges of the graph across the cut
+  Eigen::Vector3d center;  ///< of the cut
+};
+
+CutTorus cutTorus(int rings, int ring, double tube_radius) {
+  const auto n = static_cast<Index>(rings * ring);
+  CutTorus torus{{Positions(3, n), Triangles(3, 2 * n - 4), {}}, 0, Eigen::Vector3d::UnitX()};
+  for (int r = 0; r < rings; ++r)
+    for (int k = 0; k < ring; ++k) {
+      const double around = 2.0 * kPi * r / rings;
+      const double angle = 2.0 * kPi * k / ring;
+      const double radius = 1.0 + tube_radius * std::cos(angle);
+      torus.scene.points.col(r * ring + k) << radius * std::cos(around), radius * std::sin(around),
+          tube_radius * std::sin(angle);
+    }
+  Triangles whole(3, 2 * n);
+  for (int r = 0; r < rings; ++r)
+    for (int k = 0; k < ring; ++k) {
+      const Index a = r * ring + k;
+      const Index b = r * ring + (k + 1) % ring;
+      const Index c = (r + 1) % rings * ring + (k + 1) % ring;
+      const Index d = (r + 1) % rings * ring + k;
+      whole.col(2 * a) << a, d, c;
+      whole.col(2 * a + 1) << a, c, b;
+    }
+  // The last ring of quads makes place for two polygons, cut in zigzag.
+  const Index kept = 2 * (n - ring);
+  torus.scene.triangles.leftCols(kept) = whole.leftCols(kept);
+  Eigen::Index t = kept;
+  for (int low = 0, high = ring - 1; high - low >= 2;) {
+    const Index next = low <= ring - 1 - high ? low + 1 : high - 1;
+    torus.scene.triangles.col(t++) << low, next, high;
+    torus.scene.triangles.col(t++) << n - ring + low, n - ring + high, n - ring + next;
+    (next == low + 1 ? low : high) = next;
+  }
+  torus.scene.graph.graph = graphOfMesh(torus.scene.points, whole);
+  torus.torn = static_cast<std::size_t>(2 * ring);  // a quad's side and its diagonal
+  torus.center = (torus.scene.points.leftCols(ring).rowwise().mean() +
+                  torus.scene.points.rightCols(ring).rowwise().mean()) /
+                 2.0;
+  return torus;
+}
+
+TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
+  for (const int ring : {12, 24}) {
+    const double tube_radius = 0.4;
+    const CutTorus torus = cutTorus(5 * ring / 2, ring, tube_radius);
+    ASSERT_TRUE(
+        isSphereOverAll(torus.scene.triangles, static_cast<Index>(torus.scene.points.cols())));
+    const SurfaceDiagnosis diagnosis = diagnose(torus.scene);
+    EXPECT_EQ(diagnosis.kind, SurfaceKind::Handles) << diagnosis.summary;
+    ASSERT_EQ(diagnosis.handles.size(), 1U);
+    const CollapsedHandle& handle = diagnosis.handles.front();
+    EXPECT_EQ(handle.edges, torus.torn);
+    EXPECT_LT((handle.center - torus.center).norm(), 0.02);
+    // The box around the two rims of the cut: square, and as thick as the step between them.
+    EXPECT_NEAR(handle.size, std::sqrt(8.0) * tube_radius, 0.1);
+    EXPECT_EQ(diagnosis.openings(), 0U);
+    EXPECT_TRUE(diagnosis.bridges.empty());
+    // Those of the finer torus are wide enough to be seen.
+    EXPECT_EQ(diagnosis.lids.size(), ring == 24 ? 2U : 0U);
+    for (const Lid& lid : diagnosis.lids) {
+      EXPECT_EQ(lid.cause, SurfaceKind::Handles);
+      EXPECT_NEAR(lid.area, kPi * tube_radius * tube_radius, 0.1);
+    }
+  }
+}
+
+TEST(SurfaceDiagnosis, CutOfFewerPointsThanAnErrorOfTheGraphIsNoHandle) {
+  expectClosed(cutTorus(20, 5, 0.4).scene);
+}
+
+TEST(SurfaceDiagnosis, DenseCreasesAroundCoarseFacesAreNoOpening) {
+  // The grid of a cube, with 8 times as many points along its edges.
+  const int m = 8;
+  const int fine = 8 * (m - 1) + 1;
+  const Positions cube =
+      filtered(test::cubeGrid(fine).array() - 0.5, [&](const Eigen::Vector3d& p) {
+        int at_end = 0;
+        bool coarse = true;
+        for (int c = 0; c < 3; ++c) {
+          const long step = std::lround((p[c] + 0.5) * (fine - 1));
+          at_end += step % (fine - 1) == 0 ? 1 : 0;
+          coarse = coarse && step % 8 == 0;
+        }
+        return coarse || at_end >= 2;
+      });
+  expectClosed(starShaped(cube.colwise().normalized(), cube));
+}
+
+TEST(SurfaceDiagnosis, FalseNeighborsOfThinSheetsAreNoHandle) {
+  const Positions directions = spiralSphere(1500);
+  const Positions points = Eigen::Vector3d(1.0, 1.0, 0.04).asDiagonal() * directions;
+  Scene scene = starShaped(directions, points);
+  // Shortcuts from the top to the bottom, in the middle, where the way round is long.
+  std::vector<std::pair<Index, Index>> shortcuts;
+  for (Index i = 0; i < points.cols(); ++i) {
+    Index nearest = -1;
+    for (Index j = 0; j < points.cols(); ++j)
+      if (points(2, i) > 0.0 && points(2, j) < 0.0 && points.col(i).head<2>().norm() < 0.3 &&
+          (nearest < 0 || (points.col(i) - points.col(j)).squaredNorm() <
+                              (points.col(i) - points.col(nearest)).squaredNorm()))
+        nearest = j;
+    if (nearest >= 0)
+      shortcuts.emplace_back(i, nearest);
+  }
+  ASSERT_GT(shortcuts.size(), 20U);
+  Graph graph;
+  for (Index i = 0; i < points.cols(); ++i) {
+    const auto v = static_cast<std::size_t>(i);
+    std::vector<Index> row(scene.graph.graph.neighbors.begin() +
+                               static_cast<std::ptrdiff_t>(scene.graph.graph.offsets[v]),
+                           scene.graph.graph.neighbors.begin() +
+                               static_cast<std::ptrdiff_t>(scene.graph.graph.offsets[v + 1]));
+    for (const auto& [a, b] : shortcuts)
+      if (a == i || b == i)
+        row.push_back(a == i ? b : a);
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    for (const Index j : row) {
+      graph.neighbors.push_back(j);
+      graph.lengths.push_back((points.col(i) - points.col(j)).norm());
+    }
+    graph.offsets.push_back(graph.neighbors.size());
+  }
+  scene.graph.graph = graph;
+  expectClosed(scene);
+}
+
+/// Two spheres, joined by a tube of six triangles.
+Scene twoSpheres(Index n, Index m, double distance) {
+  const Positions a = spiralSphere(n);
+  const Positions b = spiralSphere(m).colwise() + Eigen::Vector3d(distance, 0.0, 0.0);
+  Triangles of_a = triangulateSphere(a, TriangulationMethod::Incremental).triangles;
+  Triangles of_b = triangulateSphere(spiralSphere(m), TriangulationMethod::Incremental).triangles;
+  of_b.array() += n;
+  Scene scene{test::horizontally(a, b), Triangles(3, of_a.cols() + of_b.cols() + 4), {}};
+  const Eigen::Vector3i p = of_a.col(of_a.cols() - 1);
+  const Eigen::Vector3i q = of_b.col(of_b.cols() - 1);
+  const Eigen::Index tube = of_a.cols() + of_b.cols() - 2;
+  scene.triangles.leftCols(tube) << of_a.leftCols(of_a.cols() - 1), of_b.leftCols(of_b.cols() - 1);
+  for (int k = 0; k < 3; ++k) {
+    const int next = (k + 1) % 3;
+    scene.triangles.col(tube + 2 * k) << p[k], p[next], q[(3 - k) % 3];
+    scene.triangles.col(tube + 2 * k + 1) << p[next], q[(3 - next) % 3], q[(3 - k) % 3];
+  }
+  scene.graph = localDelaunayGraph(scene.points);
+  return scene;
+}
+
+TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
+  const Index n = 600;
+  const Index m = 400;
+  const Scene scene = twoSpheres(n, m, 3.5);
+  ASSERT_TRUE(isSphereOverAll(scene.triangles, n + m));
+  const SurfaceDiagnosis diagnosis = diagnose(scene);
+  EXPECT_EQ(diagnosis.kind, SurfaceKind::SeveralParts);
+  ASSERT_EQ(diagnosis.bridges.size(), 1U);
+  const PartBridge& bridge = diagnosis.bridges.front();
+  EXPECT_EQ(bridge.points, static_cast<std::size_t>(m));
+  EXPECT_EQ(bridge.other_points, static_cast<std::size_t>(n));
+  double gap = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < n; ++i)
+    for (Index j = n; j < n + m; ++j)
+      gap = std::min(gap, (scene.points.col(i) - scene.points.col(j)).norm());
+  EXPECT_DOUBLE_EQ(bridge.gap, gap);
+  EXPECT_NEAR(bridge.spacing, sphereSpacing(m), 0.3 * sphereSpacing(m));
+  // In the middle between the two, to within the distance of the points.
+  EXPECT_LT((bridge.center - Eigen::Vector3d(1.75, 0.0, 0.0)).norm(), 2.0 * sphereSpacing(m));
+  for (const Bridge& edge : scene.graph.bridges)
+    EXPECT_TRUE(std::binary_search(bridge.vertices.begin(), bridge.vertices.end(), edge.from) &&
+                std::binary_search(bridge.vertices.begin(), bridge.vertices.end(), edge.to));
+  EXPECT_EQ(diagnosis.openings(), 0U);
+}
+
+TEST(SurfaceDiagnosis, NarrowGapIsNoGapBetweenParts) {
+  const Scene scene = twoSpheres(600, 400, 3.5);
+  DiagnosisOptions options;
+  options.part_gap = 2.0 * 1.5 / sphereSpacing(600);
+  EXPECT_TRUE(diagnose(scene, options).bridges.empty());
+}
+
+TEST(SurfaceDiagnosis, FoldedMeshIsUnclear) {
+  const Positions points = spiralSphere(500);
+  Scene scene = starShaped(points, points);
+  std::mt19937 random(3);
+  std::vector<Index> shuffled(500);
+  std::iota(shuffled.begin(), shuffled.end(), Index{0});
+  std::shuffle(shuffled.begin(), shuffled.end(), random);
+  scene.triangles =
+      scene.triangles.unaryExpr([&](Index v) { return shuffled[static_cast<std::size_t>(v)]; })
+          .eval();
+  const SurfaceDiagnosis diagnosis = diagnose(scene);
+  EXPECT_EQ(diagnosis.kind, SurfaceKind::Unclear) << diagnosis.summary;
+  EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,
+                   test::shareBeyondTwoSteps(scene.graph.graph, scene.triangles));
+  EXPECT_GT(diagnosis.edges_outside_graph, 0.5);
+}
+
+TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
+  const Positions open =
+      filtered(spiralSphere(1000), [&](const Eigen::Vector3d& p) { return p.x() < 0.9; });
+  const Scene scene = starShaped(open, open);
+  const SurfaceDiagnosis still = diagnose(scene);
+  ASSERT_EQ(still.lids.size(), 1U);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
+  const Eigen::Vector3d shift(5.0, 6.0, -7.0);
+  const double scale = 1e-3;
+  Scene moved = scene;
+  moved.points = (scale * turn * scene.points).colwise() + shift;
+  for (double& length : moved.graph.graph.lengths)
+    length *= scale;
+  const SurfaceDiagnosis diagnosis = diagnose(moved);
+  ASSERT_EQ(diagnosis.lids.size(), 1U);
+  EXPECT_EQ(diagnosis.kind, still.kind);
+  const Lid& a = still.lids.front();
+  const Lid& b = diagnosis.lids.front();
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.vertices, b.vertices);
+  // The shift costs a factor of 1e4 of the digits.
+  EXPECT_NEAR(b.area, scale * scale * a.area, 1e-16);
+  EXPECT_NEAR(b.diameter, scale * a.diameter, 1e-13);
+  EXPECT_LT((b.center - (scale * turn * a.center + shift)).norm(), 1e-13);
+}
+
+TEST(SurfaceDiagnosis, OptionsDecideWhatIsFoundAndListed) {
+  const Positions open =
+      filtered(spiralSphere(1000), [&](const Eigen::Vector3d& p) { return p.x() < 0.9; });
+  const Scene scene = starShaped(open, open);
+  DiagnosisOptions options;
+  options.max_vertices = 7;
+  const SurfaceDiagnosis few = diagnose(scene, options);
+  ASSERT_EQ(few.lids.size(), 1U);
+  EXPECT_EQ(few.lids.front().vertices.size(), 7U);
+  EXPECT_TRUE(std::is_sorted(few.lids.front().vertices.begin(), few.lids.front().vertices.end()));
+  options.lid_diameter = 1.1 * few.lids.front().diameter / few.lids.front().spacing;
+  EXPECT_TRUE(diagnose(scene, options).looksClosedGenus0());
+}
+
+TEST(SurfaceDiagnosis, BadInputIsRefused) {
+  const Positions points = spiralSphere(50);
+  const Scene good = starShaped(points, points);
+  const auto expect_refused = [&](const auto& spoil) {
+    Scene scene = good;
+    DiagnosisOptions options;
+    spoil(scene, options);
+    EXPECT_THROW(diagnose(scene, options), InvalidInput);
+  };
+  expect_refused([](Scene& scene, DiagnosisOptions&) { scene.points = spiralSphere(49); });
+  expect_refused([](Scene& scene, DiagnosisOptions&) { scene.triangles.resize(3, 0); });
+  expect_refused([](Scene& scene, DiagnosisOptions&) { scene.triangles(1, 3) = 50; });
+  expect_refused([](Scene& scene, DiagnosisOptions&) { scene.triangles(1, 3) = -1; });
+  expect_refused([](Scene& scene, DiagnosisOptions&) {
+    scene.graph.bridges.push_back({0, 50, 1.0});
+  });
+  expect_refused([](Scene&, DiagnosisOptions& options) { options.lid_diameter = 0.0; });
+  expect_refused([](Scene&, DiagnosisOptions& options) { options.part_gap = -1.0; });
+  expect_refused([](Scene&, DiagnosisOptions& options) { options.handle_steps = 2; });
+  expect_refused([](Scene&, DiagnosisOptions& options) { options.handle_steps = 101; });
+}
+
+}  // namespace
+}  // namespace spherical_param
