@@ -2,21 +2,31 @@
 
 #include "spherical_param/types.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 
 /// A closed genus-0 triangle mesh with neighbours, changed only by moves that keep it one: a
-/// triangle is split in three by a new vertex, or an edge is flipped whose opposite vertices are
-/// not yet joined.
+/// triangle is split in three by a new vertex, three triangles around a vertex are merged to one,
+/// or an edge is flipped whose opposite vertices are not yet joined. Moves can be taken back, to
+/// the last index.
 class SphereMesh {
 public:
-  /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices.
+  /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices,
+  /// with
+  ///                  indices in range; isSphere() tells whether they are.
   SphereMesh(const Triangles& triangles, std::size_t vertex_count);
 
+  /// Tells whether the mesh is as it should be, right after it was made.
+  bool isSphere() const;
+
+  /// Places for triangles; those that merge() freed are no triangles.
   Index size() const { return static_cast<Index>(vertices_.size()); }
+  bool isTriangle(Index t) const { return vertex(t, 0) >= 0; }
   Index vertex(Index triangle, int corner) const {
     return vertices_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(corner)];
   }
@@ -24,31 +34,95 @@ public:
   Index neighbor(Index triangle, int corner) const {
     return neighbors_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(corner)];
   }
+  int cornerOf(Index triangle, Index v) const {
+    const auto& corners = vertices_[static_cast<std::size_t>(triangle)];
+    return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
+  }
   /// The corner of neighbor(triangle, corner) that is opposite to the common side.
-  int oppositeCorner(Index triangle, int corner) const;
-  /// A triangle that has the vertex, or -1.
+  int oppositeCorner(Index triangle, int corner) const {
+    // The common side runs the other way round in the neighbour, from corner + 2 to corner + 1; the
+    // vertex behind its end is the opposite one.
+    const Index end = vertex(triangle, (corner + 1) % 3);
+    return (cornerOf(neighbor(triangle, corner), end) + 1) % 3;
+  }
+  /// A triangle that has the vertex; -1 if none has.
   Index triangleAt(Index vertex) const { return triangle_at_[static_cast<std::size_t>(vertex)]; }
+  Index degree(Index vertex) const { return degree_[static_cast<std::size_t>(vertex)]; }
 
-  /// Splits a triangle in three by a vertex that is not in the mesh yet. The parts are the
-  /// triangle itself and the last two; the new vertex is corner 0 of each.
+  /// Calls visit(triangle, corner) for the triangles around a vertex of the mesh,
+  /// counter-clockwise.
+  template <typename Visit>
+  void forEachAround(Index v, const Visit& visit) const {
+    const Index first = triangleAt(v);
+    Index t = first;
+    do {
+      const int corner = cornerOf(t, v);
+      const Index next = neighbor(t, (corner + 1) % 3);
+      visit(t, corner);
+      t = next;
+    } while (t != first);
+  }
+
+  /// Tells whether two vertices of the mesh have a common edge.
+  bool areJoined(Index v, Index w) const;
+
+  /// Splits a triangle in three by a vertex that is not in the mesh. The parts are the triangle
+  /// itself and two new ones; the new vertex is corner 0 of each.
   std::array<Index, 3> split(Index triangle, Index new_vertex);
+
+  /// Takes out a vertex of degree 3, unless the mesh is a tetrahedron: returns the triangle that
+  /// takes the place of its three, or -1.
+  Index merge(Index vertex);
 
   /// Replaces the side opposite to `corner` by the other diagonal of the two triangles, unless
   /// its ends are joined already: returns whether it did. The triangle keeps the vertex of
   /// `corner`, as corner 0; the neighbour has it as corner 0 too.
   bool flip(Index triangle, int corner);
 
+  /// Begins to write down all changes, until keep() or takeBack(). There must be room for all
+  /// splits: places that merge() freed.
+  void record() { is_recording_ = true; }
+  void keep() {
+    is_recording_ = false;
+    changes_.clear();
+  }
+  void takeBack();
+
   Triangles triangles() const;
 
 private:
-  bool areJoined(Index v, Index w) const;
-  int cornerOf(Index triangle, Index vertex) const;
-  void replaceNeighbor(Index triangle, Index old_neighbor, Index new_neighbor);
+  void set(Index& entry, Index value) {
+    if (is_recording_)
+      changes_.emplace_back(&entry, entry);
+    entry = value;
+  }
+  void setTriangle(Index t, const std::array<Index, 3>& vertices,
+                   const std::array<Index, 3>& neighbors) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      set(vertices_[static_cast<std::size_t>(t)][k], vertices[k]);
+      set(neighbors_[static_cast<std::size_t>(t)][k], neighbors[k]);
+    }
+  }
+  void setTriangleAt(Index v, Index t) { set(triangle_at_[static_cast<std::size_t>(v)], t); }
+  void addDegree(Index v, Index change) {
+    set(degree_[static_cast<std::size_t>(v)], degree(v) + change);
+  }
+  void replaceNeighbor(Index triangle, Index old_neighbor, Index new_neighbor) {
+    auto& around = neighbors_[static_cast<std::size_t>(triangle)];
+    set(*std::find(around.begin(), around.end(), old_neighbor), new_neighbor);
+  }
+  /// A free place for a triangle, the last that was freed first.
+  Index takePlace();
+  void freePlace(Index t);
 
-  std::vector<std::array<Index, 3>> vertices_;
+  std::vector<std::array<Index, 3>> vertices_;   ///< -1 and the next free place, if it is free
   std::vector<std::array<Index, 3>> neighbors_;  ///< across the side opposite to each corner
   std::vector<Index> triangle_at_;
   std::vector<Index> degree_;
+  Index free_ = -1;  ///< first free place
+  Index triangle_count_ = 0;
+  bool is_recording_ = false;
+  std::vector<std::pair<Index*, Index>> changes_;  ///< entries and what they were
 };
 
 }  // namespace spherical_param::internal

@@ -1,0 +1,536 @@
+#include "core/mesh_optimizer.h"
+
+#include "core/bit_mixing.h"
+#include "core/parallel.h"
+#include "spherical_param/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Changes of the energy below this are rounding [mean length of the graph's edges].
+constexpr double kLeastGain = 1e-9;
+
+/// Neighbours in the graph up to so many mean lengths of a vertex's edges should be near on the
+/// mesh.
+constexpr double kNearNeighbor = 1.5;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
+                             const Graph& graph, int threads)
+    : points_(&points), graph_(graph),
+      threads_(
+          threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
+      mesh_(triangles, static_cast<std::size_t>(points.cols())),
+      facets_(static_cast<std::size_t>(triangles.cols())), stamps_(3 * facets_.size(), 0),
+      seen_triangles_(facets_.size(), 0),
+      seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
+  double lengths = 0.0;
+  for (const double length : graph_.lengths)
+    lengths += length;
+  if (lengths > 0.0)
+    unit_ = lengths / static_cast<double>(graph_.lengths.size());
+  recomputeFacets();
+}
+
+void MeshOptimizer::recomputeFacets() {
+  forEachBlock(facets_.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      facets_[i] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
+    }
+  });
+  energy_ = recomputedEnergy();
+}
+
+void MeshOptimizer::reset(const Triangles& triangles) {
+  mesh_ = SphereMesh(triangles, seen_vertices_.size());
+  recomputeFacets();
+}
+
+void MeshOptimizer::setEnergy(const SurfaceEnergy& energy) {
+  const bool has_same_facets = terms_.mu == energy.mu;
+  terms_ = energy;
+  if (has_same_facets)
+    energy_ = recomputedEnergy();
+  else
+    recomputeFacets();
+}
+
+void MeshOptimizer::setPoints(const Positions& points) {
+  points_ = &points;
+  recomputeFacets();
+}
+
+double MeshOptimizer::recomputedEnergy() const {
+  return sumOfBlocks(facets_.size(), threads_, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      sum += facets_[i].cost;
+      for (int k = 0; k < 3; ++k) {
+        const Index other = mesh_.neighbor(t, k);
+        if (t < other)
+          sum += edge(mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3), facets_[i],
+                      facetOf(other));
+      }
+    }
+    return sum;
+  });
+}
+
+void MeshOptimizer::setFacet(Index t) {
+  if (is_recording_)
+    old_facets_.emplace_back(t, facetOf(t));
+  facets_[at(t)] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
+}
+
+double MeshOptimizer::flipGain(Index t, int k) const {
+  // (c, a, b) and (d, b, a) would become (c, a, d) and (c, d, b).
+  const Index o = mesh_.neighbor(t, k);
+  const int l = mesh_.oppositeCorner(t, k);
+  const Index c = mesh_.vertex(t, k);
+  const Index a = mesh_.vertex(t, (k + 1) % 3);
+  const Index b = mesh_.vertex(t, (k + 2) % 3);
+  const Index d = mesh_.vertex(o, l);
+  if (c == d)
+    return 0.0;
+  const Facet& cab = facetOf(t);
+  const Facet& dba = facetOf(o);
+  const Facet& bc = facetOf(mesh_.neighbor(t, (k + 1) % 3));
+  const Facet& ca = facetOf(mesh_.neighbor(t, (k + 2) % 3));
+  const Facet& ad = facetOf(mesh_.neighbor(o, (l + 1) % 3));
+  const Facet& db = facetOf(mesh_.neighbor(o, (l + 2) % 3));
+  const Facet cad = facet(c, a, d);
+  const Facet cdb = facet(c, d, b);
+  const double before = cab.cost + dba.cost + edge(a, b, cab, dba) + edge(b, c, cab, bc) +
+                        edge(c, a, cab, ca) + edge(a, d, dba, ad) + edge(d, b, dba, db);
+  const double after = cad.cost + cdb.cost + edge(c, d, cad, cdb) + edge(b, c, cdb, bc) +
+                       edge(c, a, cad, ca) + edge(a, d, cad, ad) + edge(d, b, cdb, db);
+  return before - after;
+}
+
+void MeshOptimizer::queueFlip(Index t, int k) {
+  const double gain = flipGain(t, k);
+  if (gain <= kLeastGain * unit_)
+    return;
+  queue_.push_back(
+      {gain, t, stamps_[3 * at(t) + static_cast<std::size_t>(k)], static_cast<std::uint8_t>(k)});
+}
+
+void MeshOptimizer::queueSides(Index t) {
+  for (int k = 0; k < 3; ++k) {
+    const Index o = mesh_.neighbor(t, k);
+    if (t > o && seen_triangles_[at(o)] == pass_)
+      continue;  // that triangle's turn
+    // Each side has its place in the queue with the lower of its triangles.
+    const Index low = std::min(t, o);
+    const int corner = t < o ? k : mesh_.oppositeCorner(t, k);
+    ++stamps_[3 * at(low) + static_cast<std::size_t>(corner)];
+    const std::size_t size = queue_.size();
+    queueFlip(low, corner);
+    if (queue_.size() > size)
+      std::push_heap(queue_.begin(), queue_.end());
+  }
+}
+
+bool MeshOptimizer::flip(Index t, int k, double gain) {
+  const Index o = mesh_.neighbor(t, k);
+  if (!mesh_.flip(t, k))
+    return false;
+  setFacet(t);
+  setFacet(o);
+  energy_ -= gain;
+  return true;
+}
+
+std::size_t MeshOptimizer::flipQueued() {
+  std::size_t flips = 0;
+  while (!queue_.empty()) {
+    const Candidate best = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end());
+    queue_.pop_back();
+    const Index t = best.triangle;
+    if (stamps_[3 * at(t) + best.corner] != best.stamp)
+      continue;
+    const Index o = mesh_.neighbor(t, best.corner);
+    if (!flip(t, best.corner, best.gain))
+      continue;
+    ++flips;
+    // All sides whose gain depends on one of the two triangles: theirs, and their neighbours'.
+    std::array<Index, 6> affected{t,
+                                  o,
+                                  mesh_.neighbor(t, 0),
+                                  mesh_.neighbor(t, 2),
+                                  mesh_.neighbor(o, 0),
+                                  mesh_.neighbor(o, 1)};
+    ++pass_;
+    for (const Index i : affected) {
+      seen_triangles_[at(i)] = pass_;
+      for (std::size_t k = 0; k < 3; ++k)
+        ++stamps_[3 * at(i) + k];
+    }
+    std::sort(affected.begin(), affected.end());
+    const auto* end = std::unique(affected.begin(), affected.end());
+    for (const auto* i = affected.begin(); i != end; ++i)
+      queueSides(*i);
+  }
+  return flips;
+}
+
+void MeshOptimizer::flipAround(const std::vector<Index>& triangles) {
+  queue_.clear();
+  ++pass_;
+  for (const Index t : triangles)
+    seen_triangles_[at(t)] = pass_;
+  for (const Index t : triangles)
+    queueSides(t);
+  flipQueued();
+}
+
+std::size_t MeshOptimizer::flipAll() {
+  std::vector<std::vector<Candidate>> found((facets_.size() + kBlockSize - 1) / kBlockSize);
+  forEachBlock(
+      facets_.size(), threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto t = static_cast<Index>(i);
+          for (int k = 0; k < 3; ++k) {
+            if (t > mesh_.neighbor(t, k))
+              continue;
+            const double gain = flipGain(t, k);
+            if (gain > kLeastGain * unit_)
+              found[block].push_back({gain, t, stamps_[3 * i + static_cast<std::size_t>(k)],
+                                      static_cast<std::uint8_t>(k)});
+          }
+        }
+      });
+  queue_.clear();
+  for (const auto& part : found)
+    queue_.insert(queue_.end(), part.begin(), part.end());
+  std::make_heap(queue_.begin(), queue_.end());
+  return flipQueued();
+}
+
+double MeshOptimizer::splitCost(Index t, Index v) const {
+  const Index a = mesh_.vertex(t, 0);
+  const Index b = mesh_.vertex(t, 1);
+  const Index c = mesh_.vertex(t, 2);
+  const Facet& abc = facetOf(t);
+  const Facet& bc = facetOf(mesh_.neighbor(t, 0));
+  const Facet& ca = facetOf(mesh_.neighbor(t, 1));
+  const Facet& ab = facetOf(mesh_.neighbor(t, 2));
+  const Facet vbc = facet(v, b, c);
+  const Facet vca = facet(v, c, a);
+  const Facet vab = facet(v, a, b);
+  const double before = abc.cost + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
+  const double after = vbc.cost + vca.cost + vab.cost + edge(b, c, vbc, bc) + edge(c, a, vca, ca) +
+                       edge(a, b, vab, ab) + edge(v, a, vca, vab) + edge(v, b, vab, vbc) +
+                       edge(v, c, vbc, vca);
+  return after - before;
+}
+
+bool MeshOptimizer::remove(Index v) {
+  while (mesh_.degree(v) > 3) {
+    // Of the flips that take an edge from the vertex, the one that costs least.
+    double best = -std::numeric_limits<double>::infinity();
+    Index triangle = -1;
+    int corner = 0;
+    mesh_.forEachAround(v, [&](Index t, int corner_of_v) {
+      const int k = (corner_of_v + 1) % 3;
+      const Index c = mesh_.vertex(t, k);
+      const Index d = mesh_.vertex(mesh_.neighbor(t, k), mesh_.oppositeCorner(t, k));
+      if (c == d || mesh_.areJoined(c, d))
+        return;
+      const double gain = flipGain(t, k);
+      if (gain > best) {
+        best = gain;
+        triangle = t;
+        corner = k;
+      }
+    });
+    if (triangle < 0 || !flip(triangle, corner, best))
+      return false;
+  }
+  std::array<Index, 3> fan{};
+  std::size_t count = 0;
+  mesh_.forEachAround(v, [&](Index t, int) { fan[count++] = t; });
+  const Index t = mesh_.merge(v);
+  if (t < 0)
+    return false;
+  for (const Index old : fan)
+    if (is_recording_ && old != t)
+      old_facets_.emplace_back(old, facetOf(old));
+  setFacet(t);
+  energy_ -= splitCost(t, v);
+  return true;
+}
+
+bool MeshOptimizer::insert(Index v, const std::vector<Index>& neighbors) {
+  ++pass_;
+  double least = std::numeric_limits<double>::infinity();
+  Index best = -1;
+  for (const Index w : neighbors) {
+    if (mesh_.triangleAt(w) < 0)
+      continue;
+    mesh_.forEachAround(w, [&](Index t, int) {
+      if (seen_triangles_[at(t)] == pass_)
+        return;
+      seen_triangles_[at(t)] = pass_;
+      const double cost = splitCost(t, v);
+      if (cost < least) {
+        least = cost;
+        best = t;
+      }
+    });
+  }
+  if (best < 0)
+    return false;
+  const auto parts = mesh_.split(best, v);
+  changed_.assign(parts.begin(), parts.end());
+  for (const Index t : parts) {
+    setFacet(t);
+    changed_.push_back(mesh_.neighbor(t, 0));
+  }
+  energy_ += least;
+  flipAround(changed_);
+  return true;
+}
+
+void MeshOptimizer::appendNeighbors(Index v, std::vector<Index>& neighbors) const {
+  mesh_.forEachAround(
+      v, [&](Index t, int corner) { neighbors.push_back(mesh_.vertex(t, (corner + 1) % 3)); });
+  neighbors.insert(neighbors.end(),
+                   graph_.neighbors.begin() + static_cast<std::ptrdiff_t>(graph_.offsets[at(v)]),
+                   graph_.neighbors.begin() +
+                       static_cast<std::ptrdiff_t>(graph_.offsets[at(v) + 1]));
+}
+
+void MeshOptimizer::begin() {
+  mesh_.record();
+  is_recording_ = true;
+  energy_before_ = energy_;
+}
+
+void MeshOptimizer::keep() {
+  mesh_.keep();
+  is_recording_ = false;
+  old_facets_.clear();
+}
+
+void MeshOptimizer::takeBack() {
+  mesh_.takeBack();
+  for (auto old = old_facets_.rbegin(); old != old_facets_.rend(); ++old)
+    facets_[at(old->first)] = old->second;
+  energy_ = energy_before_;
+  is_recording_ = false;
+  old_facets_.clear();
+}
+
+bool MeshOptimizer::isGain(double change) {
+  return change < -kLeastGain;
+}
+
+bool MeshOptimizer::relocate(Index v) {
+  around_.clear();
+  appendNeighbors(v, around_);
+  begin();
+  if (remove(v) && insert(v, around_) && isGain(change())) {
+    keep();
+    return true;
+  }
+  takeBack();
+  return false;
+}
+
+bool MeshOptimizer::recreate(const std::vector<Index>& vertices,
+                             const std::function<bool(double)>& accept, std::uint64_t& random) {
+  std::vector<std::vector<Index>> neighbors(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    appendNeighbors(vertices[i], neighbors[i]);
+  begin();
+  std::vector<std::size_t> removed;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    if (remove(vertices[i]))
+      removed.push_back(i);
+  for (std::size_t i = removed.size(); i > 1; --i) {
+    random = splitmix64(random);
+    std::swap(removed[i - 1], removed[random % i]);
+  }
+  // Vertices none of whose neighbours are back yet wait for them.
+  while (!removed.empty()) {
+    std::vector<std::size_t> waiting;
+    for (const std::size_t i : removed)
+      if (!insert(vertices[i], neighbors[i]))
+        waiting.push_back(i);
+    if (waiting.size() == removed.size())
+      break;
+    removed = std::move(waiting);
+  }
+  if (removed.empty() && accept(change())) {
+    keep();
+    return true;
+  }
+  takeBack();
+  return false;
+}
+
+std::vector<Index> MeshOptimizer::spread(const std::vector<Index>& seeds, std::size_t count,
+                                         std::uint64_t& random) {
+  ++pass_;
+  std::vector<Index> region;
+  std::vector<Index> front;
+  const auto add = [&](Index v) {
+    if (seen_vertices_[at(v)] == pass_)
+      return;
+    seen_vertices_[at(v)] = pass_;
+    front.push_back(v);
+  };
+  for (const Index v : seeds)
+    add(v);
+  const std::size_t distinct_seeds = front.size();
+  std::vector<Index> neighbors;
+  while (!front.empty() && region.size() < count) {
+    std::size_t pick = 0;  // the seeds come first
+    if (region.size() >= distinct_seeds) {
+      random = splitmix64(random);
+      pick = random % front.size();
+    }
+    const Index v = front[pick];
+    if (region.size() >= distinct_seeds) {
+      front[pick] = front.back();
+      front.pop_back();
+    } else {
+      front.erase(front.begin());
+    }
+    region.push_back(v);
+    neighbors.clear();
+    appendNeighbors(v, neighbors);
+    for (const Index w : neighbors)
+      add(w);
+  }
+  return region;
+}
+
+template <typename Condition>
+std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& meets) const {
+  std::vector<std::vector<Index>> found((count + kBlockSize - 1) / kBlockSize);
+  forEachBlock(count, threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (meets(static_cast<Index>(i)))
+        found[block].push_back(static_cast<Index>(i));
+  });
+  std::vector<Index> all;
+  for (const auto& part : found)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+std::vector<std::pair<Index, Index>> MeshOptimizer::edgesBelow(double cosine) const {
+  const auto is_below = [&](Index t, int k) {
+    const Index other = mesh_.neighbor(t, k);
+    return t < other && facetOf(t).normal.dot(facetOf(other).normal) < cosine;
+  };
+  std::vector<std::pair<Index, Index>> edges;
+  for (const Index t : filter(facets_.size(), [&](Index i) {
+         return is_below(i, 0) || is_below(i, 1) || is_below(i, 2);
+       }))
+    for (int k = 0; k < 3; ++k)
+      if (is_below(t, k))
+        edges.emplace_back(mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3));
+  return edges;
+}
+
+bool MeshOptimizer::isRough(Index v, double cosine) const {
+  bool is_sharp = false;
+  double lengths = 0.0;
+  mesh_.forEachAround(v, [&](Index t, int corner) {
+    const Index next = mesh_.neighbor(t, (corner + 1) % 3);
+    is_sharp = is_sharp || facetOf(t).normal.dot(facetOf(next).normal) < cosine;
+    lengths += (points_->col(v) - points_->col(mesh_.vertex(t, (corner + 1) % 3))).norm();
+  });
+  if (is_sharp)
+    return true;
+  // In a graph of many neighbours, most of them are far.
+  const double near = kNearNeighbor * lengths / mesh_.degree(v);
+  const auto is_around = [this](Index center, Index w) {
+    bool found = false;
+    mesh_.forEachAround(center, [&](Index t, int corner) {
+      found = found || mesh_.vertex(t, (corner + 1) % 3) == w;
+    });
+    return found;
+  };
+  for (std::size_t e = graph_.offsets[at(v)]; e < graph_.offsets[at(v) + 1]; ++e) {
+    const Index w = graph_.neighbors[e];
+    if (graph_.lengths[e] > near || is_around(v, w))
+      continue;
+    bool is_near = false;
+    mesh_.forEachAround(w, [&](Index t, int corner) {
+      is_near = is_near || is_around(v, mesh_.vertex(t, (corner + 1) % 3));
+    });
+    if (!is_near)
+      return true;
+  }
+  return false;
+}
+
+std::vector<Index> MeshOptimizer::roughVertices(double cosine) const {
+  return filter(seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); });
+}
+
+std::vector<double> MeshOptimizer::medianAngles() const {
+  std::vector<double> medians(seen_vertices_.size());
+  forEachBlock(medians.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::vector<double> cosines;
+    for (std::size_t v = begin; v < end; ++v) {
+      cosines.clear();
+      mesh_.forEachAround(static_cast<Index>(v), [&](Index t, int corner) {
+        for (const int k : {corner, (corner + 1) % 3})
+          cosines.push_back(facetOf(t).normal.dot(facetOf(mesh_.neighbor(t, k)).normal));
+      });
+      const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
+      std::nth_element(cosines.begin(), middle, cosines.end());
+      medians[v] = fastAcos(*middle);
+    }
+  });
+  return medians;
+}
+
+std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) const {
+  const auto distinct = [](std::vector<Index>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+  };
+  std::vector<Index> triangles;
+  for (const Index v : vertices)
+    mesh_.forEachAround(v, [&](Index t, int) { triangles.push_back(t); });
+  distinct(triangles);
+  std::vector<Index> corners;
+  for (const Index t : triangles)
+    for (int k = 0; k < 3; ++k)
+      corners.push_back(mesh_.vertex(t, k));
+  distinct(corners);
+  Positions points(3, static_cast<Eigen::Index>(corners.size()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    points.col(i) = points_->col(corners[static_cast<std::size_t>(i)]);
+  Triangles part(3, static_cast<Eigen::Index>(triangles.size()));
+  for (Eigen::Index i = 0; i < part.cols(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const Index v = mesh_.vertex(triangles[static_cast<std::size_t>(i)], k);
+      part(k, i) =
+          static_cast<Index>(std::lower_bound(corners.begin(), corners.end(), v) - corners.begin());
+    }
+  SelfIntersectionOptions options;
+  options.threads = 1;
+  return findSelfIntersections(points, part, options).size();
+}
+
+}  // namespace spherical_param::internal

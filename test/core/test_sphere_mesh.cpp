@@ -1,0 +1,382 @@
+#include "core/sphere_mesh.h"
+
+#include "helpers.h"
+#include "spherical_param/mesh_topology.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using internal::SphereMesh;
+
+Triangles tetrahedron() {
+  return Triangles{{0, 0, 1, 2}, {2, 1, 2, 0}, {1, 3, 3, 3}};
+}
+
+/// Two hubs, 0 and 1, over and under a ring of `ring` vertices.
+Triangles bipyramid(Index ring) {
+  Triangles triangles(3, 2 * ring);
+  for (Index i = 0; i < ring; ++i) {
+    const Index a = 2 + i;
+    const Index b = 2 + (i + 1) % ring;
+    triangles.col(2 * i) << 0, a, b;
+    triangles.col(2 * i + 1) << 1, b, a;
+  }
+  return triangles;
+}
+
+bool isInMesh(const SphereMesh& mesh, Index v) {
+  return mesh.triangleAt(v) >= 0;
+}
+
+/// The triangles with the vertices of the mesh numbered from 0 on.
+Triangles compact(const SphereMesh& mesh, Index vertex_count, Index& present) {
+  std::vector<Index> number(static_cast<std::size_t>(vertex_count), -1);
+  present = 0;
+  for (Index v = 0; v < vertex_count; ++v)
+    if (isInMesh(mesh, v))
+      number[static_cast<std::size_t>(v)] = present++;
+  return mesh.triangles().unaryExpr([&](Index v) { return number[static_cast<std::size_t>(v)]; });
+}
+
+/// A closed genus-0 manifold over the vertices that it says it has, with true neighbours, degrees
+/// and places.
+void expectSound(const SphereMesh& mesh, Index vertex_count) {
+  Index present = 0;
+  const Triangles triangles = compact(mesh, vertex_count, present);
+  ASSERT_TRUE(checkTopology(triangles, static_cast<std::size_t>(present)).isSphere());
+  ASSERT_TRUE(test::isSphereOverAll(triangles, present));
+  std::vector<Index> degree(static_cast<std::size_t>(vertex_count), 0);
+  Index count = 0;
+  for (Index t = 0; t < mesh.size(); ++t) {
+    if (!mesh.isTriangle(t))
+      continue;
+    ++count;
+    for (int k = 0; k < 3; ++k) {
+      ++degree[static_cast<std::size_t>(mesh.vertex(t, k))];
+      ASSERT_EQ(mesh.cornerOf(t, mesh.vertex(t, k)), k);
+      const Index o = mesh.neighbor(t, k);
+      ASSERT_TRUE(o >= 0 && o < mesh.size() && mesh.isTriangle(o));
+      const int l = mesh.oppositeCorner(t, k);
+      ASSERT_EQ(mesh.neighbor(o, l), t);
+      ASSERT_EQ(mesh.vertex(o, (l + 1) % 3), mesh.vertex(t, (k + 2) % 3));
+      ASSERT_EQ(mesh.vertex(o, (l + 2) % 3), mesh.vertex(t, (k + 1) % 3));
+    }
+  }
+  ASSERT_EQ(count, mesh.triangles().cols());
+  for (Index v = 0; v < vertex_count; ++v) {
+    ASSERT_EQ(mesh.degree(v), degree[static_cast<std::size_t>(v)]);
+    if (!isInMesh(mesh, v))
+      continue;
+    const Index t = mesh.triangleAt(v);
+    ASSERT_EQ(mesh.vertex(t, mesh.cornerOf(t, v)), v);
+    Index around = 0;
+    Index last = -1;
+    bool counter_clockwise = true;
+    mesh.forEachAround(v, [&](Index u, int corner) {
+      ++around;
+      counter_clockwise = counter_clockwise && mesh.vertex(u, corner) == v &&
+                          (last < 0 || mesh.vertex(u, (corner + 1) % 3) == last);
+      last = mesh.vertex(u, (corner + 2) % 3);
+    });
+    ASSERT_EQ(around, mesh.degree(v));
+    ASSERT_TRUE(counter_clockwise);
+  }
+}
+
+/// All that a mesh tells, free places included.
+struct State {
+  std::vector<Index> vertices;
+  std::vector<Index> neighbors;
+  std::vector<Index> triangle_at;
+  std::vector<Index> degree;
+  Triangles triangles;
+
+  bool operator==(const State& other) const {
+    return vertices == other.vertices && neighbors == other.neighbors &&
+           triangle_at == other.triangle_at && degree == other.degree &&
+           triangles.cols() == other.triangles.cols() && triangles == other.triangles;
+  }
+};
+
+State stateOf(const SphereMesh& mesh, Index vertex_count) {
+  State state;
+  for (Index t = 0; t < mesh.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      state.vertices.push_back(mesh.vertex(t, k));
+      state.neighbors.push_back(mesh.neighbor(t, k));
+    }
+  for (Index v = 0; v < vertex_count; ++v) {
+    state.triangle_at.push_back(mesh.triangleAt(v));
+    state.degree.push_back(mesh.degree(v));
+  }
+  state.triangles = mesh.triangles();
+  return state;
+}
+
+/// Random moves, and what each of them must answer.
+class Moves {
+public:
+  Moves(SphereMesh& mesh, Index vertex_count, std::uint64_t seed)
+      : mesh_(mesh), vertex_count_(vertex_count), random_(seed) {}
+
+  bool split() {
+    const Index v = below(vertex_count_);
+    if (isInMesh(mesh_, v))
+      return false;
+    const Index t = triangle();
+    const std::array<Index, 3> corners{mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)};
+    const auto parts = mesh_.split(t, v);
+    EXPECT_EQ(parts[0], t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(mesh_.vertex(parts[k], 0), v);
+      EXPECT_EQ(mesh_.vertex(parts[k], 1), corners[(k + 1) % 3]);
+      EXPECT_EQ(mesh_.vertex(parts[k], 2), corners[(k + 2) % 3]);
+    }
+    return true;
+  }
+
+  bool merge() {
+    const Index v = below(vertex_count_);
+    if (!isInMesh(mesh_, v))
+      return false;
+    const bool may = mesh_.degree(v) == 3 && mesh_.triangles().cols() > 4;
+    std::vector<Index> around;
+    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+    const Index t = mesh_.merge(v);
+    EXPECT_EQ(t >= 0, may);
+    EXPECT_EQ(isInMesh(mesh_, v), !may);
+    if (may) {
+      EXPECT_NE(std::find(around.begin(), around.end(), t), around.end());
+    }
+    return may;
+  }
+
+  bool flip() {
+    const Index t = triangle();
+    const int k = static_cast<int>(below(3));
+    const Index c = mesh_.vertex(t, k);
+    const Index a = mesh_.vertex(t, (k + 1) % 3);
+    const Index b = mesh_.vertex(t, (k + 2) % 3);
+    const Index other = mesh_.neighbor(t, k);
+    const Index d = mesh_.vertex(other, mesh_.oppositeCorner(t, k));
+    bool joined = false;
+    mesh_.forEachAround(
+        c, [&](Index u, int corner) { joined = joined || mesh_.vertex(u, (corner + 1) % 3) == d; });
+    EXPECT_EQ(mesh_.areJoined(c, d), joined);
+    EXPECT_EQ(mesh_.areJoined(d, c), joined);
+    EXPECT_EQ(mesh_.flip(t, k), !joined);
+    if (!joined) {
+      EXPECT_EQ(mesh_.vertex(t, 0), c);
+      EXPECT_EQ(mesh_.vertex(other, 0), c);
+      EXPECT_TRUE(mesh_.areJoined(c, d));
+      EXPECT_FALSE(mesh_.areJoined(a, b));
+    }
+    return !joined;
+  }
+
+  bool any() {
+    const Index kind = below(4);
+    return kind == 0 ? split() : kind == 1 ? merge() : flip();
+  }
+
+private:
+  Index below(Index bound) {
+    return static_cast<Index>(random_() % static_cast<std::uint64_t>(bound));
+  }
+  Index triangle() {
+    Index t = below(mesh_.size());
+    while (!mesh_.isTriangle(t))
+      t = below(mesh_.size());
+    return t;
+  }
+
+  SphereMesh& mesh_;
+  Index vertex_count_;
+  std::mt19937_64 random_;
+};
+
+TEST(SphereMesh, HoldsTheTrianglesThatItWasGiven) {
+  for (const Index n : {4, 5, 30, 500}) {
+    const Triangles triangles = triangulateSphere(test::randomSphere(n, 1)).triangles;
+    const SphereMesh mesh(triangles, static_cast<std::size_t>(n));
+    EXPECT_EQ(mesh.triangles(), triangles);
+    expectSound(mesh, n);
+  }
+}
+
+TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphere) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Index n = 60;
+    SphereMesh mesh(tetrahedron(), static_cast<std::size_t>(n));
+    Moves moves(mesh, n, seed);
+    int made = 0;
+    for (int i = 0; i < 5000; ++i) {
+      made += moves.any() ? 1 : 0;
+      if (i < 100 || i % 50 == 0)
+        expectSound(mesh, n);
+      ASSERT_FALSE(HasFailure());
+    }
+    EXPECT_GT(made, 1000);
+    EXPECT_LE(mesh.size(), 2 * n - 4);  // places are used again
+  }
+}
+
+TEST(SphereMesh, MergeUndoesSplit) {
+  const Index n = 51;
+  const Triangles triangles = triangulateSphere(test::randomSphere(n - 1, 2)).triangles;
+  SphereMesh mesh(triangles, static_cast<std::size_t>(n));
+  for (Index t = 0; t < triangles.cols(); ++t) {
+    mesh.split(t, n - 1);
+    EXPECT_EQ(mesh.degree(n - 1), 3);
+    expectSound(mesh, n);
+    EXPECT_EQ(mesh.merge(n - 1), t);
+    expectSound(mesh, n);
+    EXPECT_FALSE(isInMesh(mesh, n - 1));
+    ASSERT_EQ(test::canonical(mesh.triangles()), test::canonical(triangles));
+  }
+}
+
+TEST(SphereMesh, FlipUndoesFlip) {
+  const Index n = 50;
+  const Triangles triangles = triangulateSphere(test::randomSphere(n, 3)).triangles;
+  SphereMesh mesh(triangles, static_cast<std::size_t>(n));
+  int flips = 0;
+  for (Index t = 0; t < mesh.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      if (!mesh.flip(t, k))
+        continue;
+      ++flips;
+      ASSERT_NE(test::canonical(mesh.triangles()), test::canonical(triangles));
+      // The triangle is (c, a, d) now: its new side is opposite to a.
+      ASSERT_TRUE(mesh.flip(t, 1));
+      ASSERT_EQ(test::canonical(mesh.triangles()), test::canonical(triangles));
+    }
+  EXPECT_GT(flips, 200);
+}
+
+TEST(SphereMesh, ATetrahedronStaysOne) {
+  SphereMesh mesh(tetrahedron(), 4);
+  const State before = stateOf(mesh, 4);
+  for (Index v = 0; v < 4; ++v)
+    EXPECT_EQ(mesh.merge(v), -1);
+  for (Index t = 0; t < 4; ++t)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_FALSE(mesh.flip(t, k));
+  EXPECT_EQ(stateOf(mesh, 4), before);
+}
+
+TEST(SphereMesh, OnlyVerticesOfThreeTrianglesAreMerged) {
+  SphereMesh mesh(bipyramid(4), 6);
+  const State before = stateOf(mesh, 6);
+  for (Index v = 0; v < 6; ++v)
+    EXPECT_EQ(mesh.merge(v), -1);
+  EXPECT_EQ(stateOf(mesh, 6), before);
+}
+
+TEST(SphereMesh, AFlipWhoseEndsAreJoinedIsRefused) {
+  const Index ring = 3000;
+  const Index n = ring + 2;
+  SphereMesh mesh(bipyramid(ring), static_cast<std::size_t>(n));
+  EXPECT_EQ(mesh.degree(0), ring);
+  EXPECT_FALSE(mesh.areJoined(0, 1));
+  // The other diagonal of each side of the ring is the axis.
+  ASSERT_TRUE(mesh.flip(0, 0));
+  EXPECT_TRUE(mesh.areJoined(0, 1));
+  EXPECT_TRUE(mesh.areJoined(1, 0));
+  const State before = stateOf(mesh, n);
+  for (Index t = 2; t < mesh.size(); ++t)
+    EXPECT_FALSE(mesh.flip(t, 0));
+  EXPECT_EQ(stateOf(mesh, n), before);
+  expectSound(mesh, n);
+}
+
+TEST(SphereMesh, HubsOfManyTrianglesAreTakenDownAndPutBack) {
+  const Index ring = 2000;
+  const Index n = ring + 2;
+  SphereMesh mesh(bipyramid(ring), static_cast<std::size_t>(n));
+  const State before = stateOf(mesh, n);
+  mesh.record();
+  while (mesh.degree(0) > 3) {
+    const Index t = mesh.triangleAt(0);
+    const int k = (mesh.cornerOf(t, 0) + 1) % 3;
+    if (!mesh.flip(t, k)) {
+      // Ears that are joined already: go on with the next triangle.
+      bool flipped = false;
+      std::vector<Index> around;
+      mesh.forEachAround(0, [&](Index u, int) { around.push_back(u); });
+      for (std::size_t i = 0; i < around.size() && !flipped; ++i)
+        flipped = mesh.flip(around[i], (mesh.cornerOf(around[i], 0) + 1) % 3);
+      ASSERT_TRUE(flipped);
+    }
+  }
+  const Index place = mesh.merge(0);
+  ASSERT_GE(place, 0);
+  expectSound(mesh, n);
+  mesh.split(place, 0);
+  expectSound(mesh, n);
+  mesh.takeBack();
+  EXPECT_EQ(stateOf(mesh, n), before);
+  expectSound(mesh, n);
+}
+
+TEST(SphereMesh, TakeBackRestoresEverythingToTheLastIndex) {
+  const Index n = 80;
+  SphereMesh mesh(triangulateSphere(test::randomSphere(n, 4)).triangles,
+                  static_cast<std::size_t>(n));
+  std::mt19937_64 random(5);
+  Moves moves(mesh, n, 6);
+  for (int round = 0; round < 300; ++round) {
+    const State before = stateOf(mesh, n);
+    mesh.record();
+    // Splits are of vertices that merges took out, so there is room for them.
+    const auto length = static_cast<int>(random() % 60);
+    int made = 0;
+    for (int i = 0; i < length; ++i)
+      made += moves.any() ? 1 : 0;
+    if (round % 2 == 0) {
+      mesh.takeBack();
+      ASSERT_EQ(stateOf(mesh, n), before);
+    } else {
+      const State after = stateOf(mesh, n);
+      mesh.keep();
+      ASSERT_EQ(stateOf(mesh, n), after);
+      // What was kept is not taken back later, and nothing is written down any more.
+      mesh.takeBack();
+      ASSERT_EQ(stateOf(mesh, n), after);
+      ASSERT_TRUE(made == 0 || !(after == before));
+    }
+    expectSound(mesh, n);
+  }
+  EXPECT_LE(mesh.size(), 2 * n - 4);
+}
+
+TEST(SphereMesh, MovesAfterTakeBackAreThoseOfAMeshThatNeverMoved) {
+  const Index n = 40;
+  const Triangles triangles = triangulateSphere(test::randomSphere(n, 7)).triangles;
+  SphereMesh mesh(triangles, static_cast<std::size_t>(n));
+  SphereMesh untouched(triangles, static_cast<std::size_t>(n));
+  mesh.record();
+  Moves moves(mesh, n, 8);
+  for (int i = 0; i < 500; ++i)
+    moves.any();
+  mesh.takeBack();
+  // The list of free places is restored as well: the same moves use the same places.
+  Moves one(mesh, n, 9);
+  Moves other(untouched, n, 9);
+  for (int i = 0; i < 500; ++i) {
+    one.any();
+    other.any();
+  }
+  EXPECT_EQ(stateOf(mesh, n), stateOf(untouched, n));
+}
+
+}  // namespace
+}  // namespace spherical_param
