@@ -2,22 +2,26 @@
 #
 #   types.h, errors.h     nothing of ours
 #   a stage's header      types.h, and headers of stages before it
-#   a stage's source      its own header, types.h, errors.h, private helpers, and the two headers
-#                         that answer questions and change nothing: point_set.h, mesh_topology.h
+#   a stage's source      its own header, types.h, errors.h, private helpers, and the three headers
+#                         that answer questions and change nothing: point_set.h, mesh_topology.h,
+#                         self_intersection.h
 #   reconstruct           every stage
 #   pcl/surface           reconstruct.h, the stages' headers, PCL without I/O
-#   tools                 everything of ours but private helpers, pcl/io, Boost.Program_options
+#   tools                 everything of ours but private helpers, pcl/filters, pcl/io,
+#                         Boost.Program_options
 #
 # A header of ours that is in none of the lists below is a violation as well: say where it belongs.
 cmake_minimum_required(VERSION 3.21)
 
 # In the order of the pipeline.
-set(stages point_set neighbor_graph graph_hierarchy sphere_embedding sphere_triangulation
-           mesh_topology mesh_optimization smoothing sphere_map resampling morphing)
+set(stages point_set outliers neighbor_graph graph_hierarchy sphere_embedding sphere_triangulation
+           mesh_topology mesh_measures self_intersection mesh_optimization surface_diagnosis
+           smoothing sphere_map resampling morphing)
 
 # Sources of a stage besides the one of its name: part, then stage.
 set(graph_building_stage neighbor_graph)
 set(local_delaunay_graph_stage neighbor_graph)
+set(mesh_optimizer_stage mesh_optimization)
 foreach(part embedding_energy embedding_newton multigrid multilevel_embedding planar_start)
   set(${part}_stage sphere_embedding)
 endforeach()
@@ -68,7 +72,7 @@ function(allowed_includes result file)
     set(allowed ${of_eigen_and_std} "omp\\.h" "spherical_param/(types|errors)\\.h"
                 "core/[a-z_]+\\.h")
     if(NOT position EQUAL -1)
-      list(APPEND allowed "spherical_param/(${stem}|point_set|mesh_topology)\\.h")
+      list(APPEND allowed "spherical_param/(${stem}|point_set|mesh_topology|self_intersection)\\.h")
     endif()
     if(file STREQUAL "src/core/sphere_triangulation.cpp")
       list(APPEND allowed "libqhull_r/[a-z_]+\\.h")
@@ -82,7 +86,7 @@ function(allowed_includes result file)
     set(allowed ${of_eigen_and_std} ${ours_any} "(common/)?[a-z_]+\\.h" "sys/[a-z_]+\\.h"
                 "boost/program_options\\.hpp" "boost/program_options/.*" "nlohmann/json\\.hpp"
                 "pcl/[A-Za-z0-9_]+\\.h"
-                "pcl/(common|console|io|kdtree|search|surface)/(impl/)?[a-z_]+\\.(h|hpp)")
+                "pcl/(common|console|filters|io|kdtree|search|surface)/(impl/)?[a-z_]+\\.(h|hpp)")
     if(file MATCHES "^tools/common/")
       # Formats that pcl/io does not read, and the messages of those that it does.
       list(APPEND allowed "vtk[A-Za-z0-9]+\\.h")

@@ -48,8 +48,15 @@ struct NeighborGraph {
   Index weak = 0;            ///< points that fewer than three neighbours agreed with, repaired
 };
 
+/// Which pairs of points local Delaunay neighbourhoods join.
+enum class StarAgreement {
+  Both,    ///< those of which each is in the star of the other
+  Either,  ///< those of which one is in the star of the other: more edges, and more shortcuts
+};
+
 /// Parameters of buildLocalDelaunayGraph().
 struct LocalDelaunayOptions {
+  StarAgreement agreement = StarAgreement::Both;  ///< of the stars of two points
   /// Nearest neighbours that span the tangent plane; more where these are on a line; 3 and up.
   int tangent_neighbors = 10;
   /// Candidates steeper than this to the tangent plane are on another sheet [sine of the angle];
@@ -82,7 +89,7 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
 /// star is the set of its Voronoi neighbours there. Points i and j are joined if both stars agree.
 /// A star is certified if no point outside of the list can change it: twice the radius of the
 /// Voronoi cell is within the list; `search` is asked for more where it is not, once a round for
-/// all such points together.
+/// all such points together. StarAgreement::Either joins them if one star is enough.
 ///
 /// Where the nearest neighbours span no plane (a line, all directions alike, too few points), the
 /// star is that of the Gabriel graph of the list (Gabriel and Sokal 1969).

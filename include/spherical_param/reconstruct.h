@@ -1,11 +1,17 @@
 #pragma once
 
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/neighbor_graph.h"
+#include "spherical_param/smoothing.h"
 #include "spherical_param/sphere_embedding.h"
 #include "spherical_param/sphere_triangulation.h"
+#include "spherical_param/surface_diagnosis.h"
 #include "spherical_param/types.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,14 +22,17 @@ namespace spherical_param {
 
 /// State of the work, as told to Options::progress.
 struct Progress {
-  const char* stage;  ///< "graph", "embedding", "triangulation" or "check"
-  double fraction;    ///< share of the stage that is done, in [0, 1]; 1 exactly once, at its end
-  int iteration;      ///< iteration of the embedding's current level, else 0
-  double residual;    ///< residual of the embedding, else 0
+  /// "graph", "embedding", "triangulation", "optimization", "smoothing" or "check"; the first four
+  /// once more for each further attempt
+  const char* stage;
+  double fraction;  ///< share of the stage that is done, in [0, 1]; 1 at its end alone
+  int iteration;    ///< iteration of the embedding's current level, else 0
+  double residual;  ///< residual of the embedding, else 0
 };
 
 /// Parameters of reconstruct(). The defaults need no tuning. The paper's own method is
-/// GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and TriangulationMethod::Qhull.
+/// GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and TriangulationMethod::Qhull, with
+/// OptimizationMethod::None.
 struct Options {
   GraphMethod graph = GraphMethod::LocalDelaunay;               ///< how points become neighbours
   EmbeddingMethod solver = EmbeddingMethod::Multilevel;         ///< how the graph is embedded
@@ -46,7 +55,16 @@ struct Options {
   int stagnation_window =
       100;                 ///< its iterations over which stagnation is judged; 0: never; or >= 2
   int starts = 2;          ///< of the multilevel solver's coarsest level; 1 to 100
-  std::uint32_t seed = 1;  ///< of the multilevel solver's random order of nodes
+  std::uint32_t seed = 1;  ///< of all that is random: the solver's starts, parts taken out
+
+  OptimizationMethod optimization = OptimizationMethod::Full;  ///< of the mesh on the points
+  /// Whole runs, at most, while the mesh intersects itself although the cloud looks like a closed
+  /// surface: with other graphs, then other seeds, then the radial start. The best counts. 1 to
+  /// 100.
+  int attempts = 4;
+  /// Steps of smoothing, 0: none; [0, 10000]. They move Result::smoothed, never the points of the
+  /// mesh; the mesh is then optimised on the smoothed points.
+  int smoothing_steps = 0;
 
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Told how far the work is; returning false ends it with Cancelled. May be empty. Called from
@@ -100,6 +118,38 @@ struct TriangulationReport {
   bool hull_rejected = false;  ///< the hull could not be used; all points were inserted one by one
 };
 
+/// How the mesh was optimised. \see MeshOptimization
+struct OptimizationReport {
+  std::vector<OptimizationPhase> phases;  ///< of the attempt that counts
+  double energy = 0.0;                    ///< equation (1) of optimizeMesh() [unit of the input]
+  double rough = 0.0;  ///< share of rough vertices after the first flips, in [0, 1]
+  /// Steps of smoothing of the positions that the mesh was optimised on because the cloud is noisy;
+  /// 0: it is not.
+  int noise_steps = 0;
+  double alignment = 0.0;   ///< how far the sampling follows the curvature, in [-1, 1]
+  double unevenness = 0.0;  ///< relative deviation of the distances of a point's neighbours
+};
+
+/// One whole run, of Options::attempts.
+struct AttemptReport {
+  std::string description;  ///< what is different from the first
+  /// Pairs of triangles; of a noisy cloud on smoothed positions, if these are fewer.
+  std::size_t self_intersections = 0;
+  double energy = 0.0;   ///< equation (1) of optimizeMesh() [unit of the input]
+  double seconds = 0.0;  ///< wall time [s]
+  bool chosen = false;   ///< the least (self_intersections, energy)
+};
+
+/// The smoothed surface. \see Smoothing
+struct SmoothingReport {
+  double max_displacement = 0.0;       ///< of a point [unit of the input]
+  double mean_displacement = 0.0;      ///< [unit of the input]
+  double rms_displacement = 0.0;       ///< [unit of the input]
+  double volume_before = 0.0;          ///< [cubed unit of the input]
+  double volume_after = 0.0;           ///< [cubed unit of the input]
+  std::size_t self_intersections = 0;  ///< pairs of triangles, on the smoothed points
+};
+
 /// A closed genus-0 mesh through all points, the map to the sphere, and their quality.
 struct Result {
   Triangles triangles;  ///< 3 x (2v - 4), indices of vertices, counter-clockwise from outside
@@ -109,9 +159,16 @@ struct Result {
   std::vector<Index> input_of_vertex;  ///< v entries: first input point at that position
   std::size_t duplicates = 0;          ///< n - v: points merged into an earlier one
 
-  MeshTopology topology;  ///< checked on `triangles`
-  double volume = 0.0;    ///< enclosed signed volume [cubed unit of the input]
-  double area = 0.0;      ///< [squared unit of the input]
+  /// Pairs of triangles that intersect, ascending. \see findSelfIntersections
+  std::vector<std::array<Index, 2>> self_intersections;
+  /// 3 x v, the points after Options::smoothing_steps; empty without [unit of the input].
+  Positions smoothed;
+
+  MeshTopology topology;       ///< checked on `triangles`
+  MeshMeasures measures;       ///< of the mesh on the input's points
+  SurfaceDiagnosis diagnosis;  ///< does the cloud look like a closed genus-0 surface?
+  double volume = 0.0;         ///< enclosed signed volume [cubed unit of the input]
+  double area = 0.0;           ///< [squared unit of the input]
   /// Share of the mesh's edges that join points more than two steps apart in the neighbour graph,
   /// in [0, 1]. Large where the embedding is folded, or the cloud is no closed genus-0 surface.
   double edges_outside_graph = 0.0;
@@ -119,8 +176,11 @@ struct Result {
   GraphReport graph;
   EmbeddingReport embedding;
   TriangulationReport triangulation;
-  std::vector<StageTime> stages;      ///< in the order of the work
-  std::vector<std::string> warnings;  ///< one sentence each; empty if nothing is to be said
+  OptimizationReport optimization;
+  SmoothingReport smoothing;            ///< all zero without smoothing
+  std::vector<AttemptReport> attempts;  ///< in the order of the work; at least one
+  std::vector<StageTime> stages;        ///< in the order of the work, of all attempts together
+  std::vector<std::string> warnings;    ///< one sentence each; empty if nothing is to be said
 
   std::size_t vertexCount() const { return input_of_vertex.size(); }
 };
@@ -135,7 +195,7 @@ int neighborsToSearch(const Options& options);
 void checkOptions(const Options& options);
 
 /// Meshes a point cloud: neighbour graph -> embedding on the sphere -> triangulation there ->
-/// check.
+/// optimisation on the points -> check.
 ///
 /// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane, no
 ///               coordinate beyond 1e100. Differences below 1e-90 of the cloud's extent keep the
@@ -153,7 +213,7 @@ void checkOptions(const Options& options);
 /// bit, whatever the number of threads. Reentrant: no state is shared between calls.
 ///
 /// Not guaranteed: that the mesh is free of self-intersections or near the sampled surface;
-/// `embedding`, `edges_outside_graph` and `warnings` tell how much to trust it.
+/// `self_intersections`, `diagnosis` and `warnings` tell how much to trust it.
 /// Cost: O(n log n), typically; with the iterative solver iterations * O(n k) more. Below 2 KB of
 /// memory a point; 3 KB for the multilevel solver with a tolerance on a graph of 25 neighbours.
 Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options = {},

@@ -408,6 +408,17 @@ Bridge edgeBetween(const Positions& points, Index i, Index j) {
   return {std::min(i, j), std::max(i, j), internal::edgeLength(points, i, j)};
 }
 
+/// Joins all pairs that one of the stars has.
+void joinAllOfStars(const Positions& points, const Stars& stars, Graph& graph) {
+  std::vector<Bridge> edges;
+  for (std::size_t i = 0; i < stars.size(); ++i)
+    for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e)
+      if (!stars.holds(stars.nodes[e], static_cast<Index>(i)))
+        edges.push_back(edgeBetween(points, static_cast<Index>(i), stars.nodes[e]));
+  if (!edges.empty())
+    graph = internal::withEdges(graph, edges);
+}
+
 /// Joins points without a tangent plane that only one of them finds near: their neighbourhood is
 /// the same from both ends, but for the ends of the lists.
 void joinWithoutPlane(const Positions& points, const Stars& stars,
@@ -536,7 +547,10 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   }
 
   result.graph = agreedEdges(points, stars, threads);
-  joinWithoutPlane(points, stars, result.without_tangent_plane, result.graph);
+  if (options.agreement == StarAgreement::Either)
+    joinAllOfStars(points, stars, result.graph);
+  else
+    joinWithoutPlane(points, stars, result.without_tangent_plane, result.graph);
   result.weak = repairWeak(points, stars, result.graph);
 
   internal::UnionFind parts = internal::connectedComponents(result.graph);

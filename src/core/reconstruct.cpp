@@ -4,12 +4,14 @@
 #include "core/space_filling_curve.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/point_set.h"
+#include "spherical_param/self_intersection.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -20,6 +22,20 @@ namespace {
 /// embeddings of closed surfaces have a share of 0.0005 and less, folded limbs 0.003 and more, the
 /// lid over the opening of a bowl of some thousand points 0.002.
 constexpr double kSuspiciousEdges = 0.001;
+
+/// Far more than what helps.
+constexpr int kMostAttempts = 100;
+
+/// Self-intersections for each triangle up to which further attempts are worth it even if the cloud
+/// does not look like a closed surface.
+constexpr double kFewIntersections = 0.001;
+
+/// Steps of smoothing and optimising on the smoothed points, one after the other, until no
+/// triangles intersect.
+constexpr int kSmoothingRounds = 3;
+
+/// Neighbours of the graph of an attempt, fewer than usual: no far ones.
+constexpr int kFewNeighbors = 8;
 
 /// A share of the points that deserves a warning.
 constexpr double kManyPoints = 0.01;
@@ -59,7 +75,14 @@ LocalDelaunayOptions localDelaunayOptions(const Options& options) {
   return graph;
 }
 
-/// Times the stages and tells the callback of their beginning and end.
+SmoothingOptions smoothingOptions(const Options& options) {
+  SmoothingOptions smoothing;
+  smoothing.steps = options.smoothing_steps;
+  smoothing.threads = options.threads;
+  return smoothing;
+}
+
+/// Times the stages, all attempts together, and tells the callback of their beginning and end.
 class StageLog {
 public:
   StageLog(const Options& options, Result& result) : options_(options), result_(result) {}
@@ -70,7 +93,12 @@ public:
     const auto begin = std::chrono::steady_clock::now();
     auto outcome = work();
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    result_.stages.push_back({stage, time.count()});
+    const auto known = std::find_if(result_.stages.begin(), result_.stages.end(),
+                                    [&](const StageTime& other) { return other.name == stage; });
+    if (known == result_.stages.end())
+      result_.stages.push_back({stage, time.count()});
+    else
+      known->seconds += time.count();
     report(stage, 1.0);
     return outcome;
   }
@@ -165,28 +193,137 @@ NeighborSearch searchOfNodes(const NeighborSearch& search, const Nodes& nodes) {
   };
 }
 
+/// Gives the result, computed on scaled points, the unit of the input.
+void scaleBack(int exponent, Result& result) {
+  const auto scale = [exponent](double& value, int power = 1) {
+    value = std::ldexp(value, power * exponent);
+  };
+  const auto scale_all = [exponent](auto& values, int power = 1) {
+    values = values.unaryExpr([=](double x) { return std::ldexp(x, power * exponent); }).eval();
+  };
+  scale(result.measures.volume, 3);
+  scale(result.measures.area, 2);
+  scale(result.measures.mean_edge_length);
+  scale_all(result.measures.box_min);
+  scale_all(result.measures.box_max);
+  scale_all(result.measures.centroid);
+  scale_all(result.measures.inertia, 5);
+  result.volume = result.measures.volume;
+  result.area = result.measures.area;
+  scale(result.optimization.energy);
+  for (OptimizationPhase& phase : result.optimization.phases) {
+    scale(phase.energy_before);
+    scale(phase.energy);
+  }
+  if (result.smoothed.cols() > 0) {
+    scale_all(result.smoothed);
+    scale(result.smoothing.max_displacement);
+    scale(result.smoothing.mean_displacement);
+    scale(result.smoothing.rms_displacement);
+    scale(result.smoothing.volume_before, 3);
+    scale(result.smoothing.volume_after, 3);
+  }
+  for (Bridge& bridge : result.graph.bridges)
+    scale(bridge.length);
+  for (Lid& lid : result.diagnosis.lids) {
+    scale(lid.area, 2);
+    scale(lid.boundary_length);
+    scale(lid.diameter);
+    scale(lid.spacing);
+    scale_all(lid.center);
+  }
+  for (CollapsedHandle& handle : result.diagnosis.handles) {
+    scale(handle.size);
+    scale_all(handle.center);
+  }
+  for (PartBridge& bridge : result.diagnosis.bridges) {
+    scale(bridge.gap);
+    scale(bridge.spacing);
+    scale_all(bridge.center);
+  }
+  result.diagnosis.summary = summaryOf(result.diagnosis);
+  result.edges_outside_graph = result.diagnosis.edges_outside_graph;
+}
+
 /// Gives the result, computed on nodes, the numbers of the vertices.
 void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
   const auto vertex = [&](Index node) { return vertex_of_node[static_cast<std::size_t>(node)]; };
+  const auto renumber_all = [&](std::vector<Index>& nodes) {
+    std::transform(nodes.begin(), nodes.end(), nodes.begin(), vertex);
+    std::sort(nodes.begin(), nodes.end());
+  };
+  const auto permute = [&](Positions& of_nodes) {
+    Positions of_vertices(3, of_nodes.cols());
+    for (Eigen::Index node = 0; node < of_nodes.cols(); ++node)
+      of_vertices.col(vertex(static_cast<Index>(node))) = of_nodes.col(node);
+    of_nodes = std::move(of_vertices);
+  };
   result.triangles = result.triangles.unaryExpr(vertex).eval();
-  Positions sphere(3, result.sphere.cols());
-  for (Eigen::Index node = 0; node < sphere.cols(); ++node)
-    sphere.col(vertex(static_cast<Index>(node))) = result.sphere.col(node);
-  result.sphere = std::move(sphere);
+  permute(result.sphere);
+  permute(result.smoothed);
   for (Bridge& bridge : result.graph.bridges) {
     bridge.from = vertex(bridge.from);
     bridge.to = vertex(bridge.to);
   }
-  for (Index& node : result.graph.without_tangent_plane)
-    node = vertex(node);
-  std::sort(result.graph.without_tangent_plane.begin(), result.graph.without_tangent_plane.end());
+  renumber_all(result.graph.without_tangent_plane);
+  for (Lid& lid : result.diagnosis.lids)
+    renumber_all(lid.vertices);
+  for (CollapsedHandle& handle : result.diagnosis.handles)
+    renumber_all(handle.vertices);
+  for (PartBridge& bridge : result.diagnosis.bridges)
+    renumber_all(bridge.vertices);
 }
 
-NeighborGraph buildGraph(const Positions& points, const NeighborLists& lists,
+/// What an attempt does.
+struct Plan {
+  std::string description;
+  GraphMethod graph = GraphMethod::LocalDelaunay;
+  StarAgreement agreement = StarAgreement::Both;
+  int k = 0;  ///< of GraphMethod::NearestNeighbors
+  std::uint32_t seed = 1;
+  bool radial_start = false;  ///< instead of an embedding
+};
+
+/// The first attempt is what was asked for; others differ in one thing.
+Plan planOf(int attempt, const Options& options) {
+  Plan plan;
+  plan.graph = options.graph;
+  plan.k = neighborsToSearch(options);
+  plan.seed = options.seed;
+  if (attempt == 0) {
+    plan.description = "as asked";
+    return plan;
+  }
+  if (options.graph == GraphMethod::LocalDelaunay) {
+    if (attempt == 1) {
+      plan.description = "one star is enough";
+      plan.agreement = StarAgreement::Either;
+      return plan;
+    }
+    if (attempt == 2) {
+      plan.description = std::to_string(kFewNeighbors) + " nearest neighbours";
+      plan.graph = GraphMethod::NearestNeighbors;
+      plan.k = kFewNeighbors;
+      return plan;
+    }
+    attempt -= 2;
+  }
+  if (attempt == 2) {
+    plan.description = "radial start";
+    plan.radial_start = true;
+    return plan;
+  }
+  plan.seed = options.seed + static_cast<std::uint32_t>(attempt);
+  plan.description = "seed " + std::to_string(plan.seed);
+  return plan;
+}
+
+NeighborGraph buildGraph(const Positions& points, const NeighborLists& lists, const Plan& plan,
                          const Options& options, const NeighborSearch& search) {
-  if (options.graph == GraphMethod::NearestNeighbors)
-    return buildNeighborGraph(points, lists, {neighborsToSearch(options)});
+  if (plan.graph == GraphMethod::NearestNeighbors)
+    return buildNeighborGraph(points, lists, {plan.k});
   LocalDelaunayOptions graph = localDelaunayOptions(options);
+  graph.agreement = plan.agreement;
   graph.search = search;
   return buildLocalDelaunayGraph(points, lists, graph);
 }
@@ -210,8 +347,8 @@ Positions embedIteratively(const Graph& graph, const Positions& points, const Op
   return std::move(outcome.directions);
 }
 
-Positions embedByLevels(const Graph& graph, const Options& options, StageLog& log,
-                        EmbeddingReport& report) {
+Positions embedByLevels(const Graph& graph, const Options& options, std::uint32_t seed,
+                        StageLog& log, EmbeddingReport& report) {
   MultilevelOptions embedding = multilevelOptions(options);
   if (options.progress)
     embedding.progress = [&](double share, double residual) {
@@ -220,7 +357,7 @@ Positions embedByLevels(const Graph& graph, const Options& options, StageLog& lo
       return true;
     };
   HierarchyOptions hierarchy;
-  hierarchy.seed = options.seed;
+  hierarchy.seed = seed;
   MultilevelEmbedding outcome =
       embedMultilevel(graph, buildGraphHierarchy(graph, hierarchy), embedding);
   report.stop_reason = outcome.stop_reason;
@@ -238,11 +375,18 @@ Positions embedByLevels(const Graph& graph, const Options& options, StageLog& lo
 }
 
 /// The embedding, or a start that is not collapsed where the solver collapses.
-Positions embed(const Graph& graph, const Positions& points, const Options& options, StageLog& log,
-                EmbeddingReport& report) {
+Positions embed(const Graph& graph, const Positions& points, const Plan& plan,
+                const Options& options, StageLog& log, EmbeddingReport& report) {
+  if (plan.radial_start) {
+    Positions directions = projectFromCentroid(points);
+    report.stop_reason = StopReason::Unfinished;
+    report.residual = meanTangentialLaplacian(graph, directions, options.weights, options.exponent);
+    report.centroid_norm = directions.rowwise().mean().norm();
+    return directions;
+  }
   Positions directions = options.solver == EmbeddingMethod::Iterative
                              ? embedIteratively(graph, points, options, log, report)
-                             : embedByLevels(graph, options, log, report);
+                             : embedByLevels(graph, options, plan.seed, log, report);
   if (report.stop_reason != StopReason::Collapsed)
     return directions;
   report.fallback_start = true;
@@ -252,40 +396,13 @@ Positions embed(const Graph& graph, const Positions& points, const Options& opti
   return directions;
 }
 
-/// Share of the edges whose ends are neither neighbours nor have a common neighbour.
-double shareOutsideGraph(const Graph& graph, const Triangles& triangles) {
-  std::size_t outside = 0;
-  std::size_t edges = 0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::size_t>(triangles(k, t));
-      const auto b = static_cast<std::size_t>(triangles((k + 1) % 3, t));
-      if (a > b)
-        continue;  // each edge is seen from both sides
-      ++edges;
-      auto i = graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[a]);
-      auto j = graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[b]);
-      const auto i_end =
-          graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[a + 1]);
-      const auto j_end =
-          graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[b + 1]);
-      bool near = std::binary_search(i, i_end, static_cast<Index>(b));
-      while (!near && i != i_end && j != j_end) {
-        near = *i == *j;
-        *i < *j ? ++i : ++j;
-      }
-      outside += near ? 0 : 1;
-    }
-  return edges == 0 ? 0.0 : static_cast<double>(outside) / static_cast<double>(edges);
-}
-
 std::string percent(double share) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.2f %%", 100.0 * share);
   return text.data();
 }
 
-void collectWarnings(Result& result) {
+void collectWarnings(const Options& options, Result& result) {
   const auto warn = [&](const std::string& text) { result.warnings.push_back(text); };
   if (result.duplicates > 0)
     warn(std::to_string(result.duplicates) +
@@ -318,13 +435,135 @@ void collectWarnings(Result& result) {
     warn(std::to_string(result.triangulation.coincident) +
          " points cannot be told from others on the sphere: long thin parts shrink below the "
          "rounding of numbers there, and their mesh is arbitrary.");
-  if (result.edges_outside_graph > kSuspiciousEdges)
+  if (!result.diagnosis.looksClosedGenus0())
+    warn(result.diagnosis.summary + " The mesh is a closed surface without handles all the same.");
+  if (result.edges_outside_graph > kSuspiciousEdges &&
+      options.optimization == OptimizationMethod::None)
     warn(percent(result.edges_outside_graph) +
          " of the mesh's edges join points that are not near each other in the cloud: the "
          "embedding is folded" +
          (result.embedding.stop_reason == StopReason::Unfinished ? " (a tolerance may unfold it)"
                                                                  : "") +
          ", or the cloud is not a closed surface without holes through it.");
+  if (result.optimization.noise_steps > 0 && result.smoothed.cols() == 0)
+    warn("The cloud is noisy: the mesh was optimised on smoothed positions of its points; "
+         "smoothing gives a surface without the noise.");
+  if (!result.self_intersections.empty())
+    warn(std::to_string(result.self_intersections.size()) + " pairs of triangles intersect" +
+         (result.smoothed.cols() > 0 ? " (" + std::to_string(result.smoothing.self_intersections) +
+                                           " on the smoothed points)"
+                                     : std::string()) +
+         ".");
+}
+
+/// One whole run, on nodes.
+struct Attempt {
+  Triangles triangles;
+  Positions sphere;
+  NeighborGraph graph;
+  EmbeddingReport embedding;
+  TriangulationReport triangulation;
+  MeshOptimization optimization;
+  Positions smoothed;  ///< with Options::smoothing_steps
+  SmoothingReport smoothing;
+
+  /// What makes an attempt bad: intersections that noise does not excuse.
+  std::size_t intersections() const {
+    if (smoothed.cols() > 0)
+      return smoothing.self_intersections;
+    const std::size_t count = optimization.self_intersections.size();
+    return optimization.smoothing_steps > 0
+               ? std::min(count, optimization.smoothed_self_intersections)
+               : count;
+  }
+};
+
+std::size_t countIntersections(const Positions& points, const Triangles& triangles, int threads) {
+  SelfIntersectionOptions options;
+  options.threads = threads;
+  return findSelfIntersections(points, triangles, options).size();
+}
+
+void optimize(const Positions& points, const Plan& plan, const Options& options, StageLog& log,
+              Attempt& attempt) {
+  OptimizationOptions optimization;
+  optimization.method = options.optimization;
+  optimization.seed = plan.seed;
+  optimization.threads = options.threads;
+  optimization.finish_on_points = options.smoothing_steps == 0;
+  optimization.smoother = [&](const Triangles& triangles, int steps) {
+    SmoothingOptions smoothing = smoothingOptions(options);
+    smoothing.method = SmoothingMethod::Umbrella;
+    smoothing.steps = steps;
+    smoothing.restore_volume = false;
+    return smoothSurface(points, triangles, smoothing).points;
+  };
+  if (options.progress)
+    optimization.progress = [&](double share) { log.report("optimization", share); };
+  attempt.optimization = optimizeMesh(points, attempt.triangles, attempt.graph.graph, optimization);
+  attempt.triangles = attempt.optimization.triangles;
+}
+
+/// Smooths the points, and optimises the mesh on the smoothed ones. Where that leaves triangles
+/// that intersect, the points are smoothed anew with the better mesh; the best round counts.
+void smooth(const Positions& points, const Plan& plan, const Options& options, Attempt& attempt) {
+  Triangles triangles = attempt.triangles;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (int round = 0; round < kSmoothingRounds && fewest > 0; ++round) {
+    Smoothing smoothing = smoothSurface(points, triangles, smoothingOptions(options));
+    std::size_t count = countIntersections(smoothing.points, triangles, options.threads);
+    if (count > 0 && options.optimization == OptimizationMethod::Full) {
+      OptimizationOptions optimization;
+      optimization.seed = plan.seed + static_cast<std::uint32_t>(round);
+      optimization.threads = options.threads;
+      MeshOptimization outcome =
+          optimizeMesh(smoothing.points, triangles, attempt.graph.graph, optimization);
+      triangles = std::move(outcome.triangles);
+      count = outcome.self_intersections.size();
+    }
+    if (count < fewest) {
+      fewest = count;
+      attempt.triangles = triangles;
+      attempt.smoothed = std::move(smoothing.points);
+      attempt.smoothing = {smoothing.max_displacement, smoothing.mean_displacement,
+                           smoothing.rms_displacement, smoothing.volume_before,
+                           smoothing.volume_after,     count};
+    }
+    if (options.optimization != OptimizationMethod::Full)
+      return;
+  }
+}
+
+Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& points,
+                   const Options& options, StageLog& log) {
+  Attempt attempt;
+  attempt.graph = std::move(graph);
+  attempt.sphere = log.run("embedding", [&] {
+    return embed(attempt.graph.graph, points, plan, options, log, attempt.embedding);
+  });
+  log.run("triangulation", [&] {
+    SphereTriangulation triangulation = triangulateSphere(attempt.sphere, options.hull);
+    attempt.triangulation = {triangulation.hull_vertices, triangulation.reinserted,
+                             triangulation.coincident, triangulation.hull_rejected};
+    attempt.triangles = std::move(triangulation.triangles);
+    if (signedVolume(points, attempt.triangles) < 0.0) {
+      // The embedding is a mirror image: turn mesh and sphere inside out together, so that the
+      // triangles face outward on both.
+      flipOrientation(attempt.triangles);
+      attempt.sphere = -attempt.sphere;
+    }
+    return true;
+  });
+  log.run("optimization", [&] {
+    optimize(points, plan, options, log, attempt);
+    return true;
+  });
+  if (options.smoothing_steps > 0)
+    log.run("smoothing", [&] {
+      smooth(points, plan, options, attempt);
+      return true;
+    });
+  return attempt;
 }
 
 }  // namespace
@@ -340,6 +579,11 @@ void checkOptions(const Options& options) {
   buildLocalDelaunayGraph(Positions(3, 0), NeighborLists(), localDelaunayOptions(options));
   embedOnSphere(Graph(), Positions(3, 0), iterativeOptions(options));
   embedMultilevel(Graph(), GraphHierarchy(), multilevelOptions(options));
+  smoothSurface(Positions(3, 0), Triangles(3, 0), smoothingOptions(options));
+  if (options.attempts < 1 || options.attempts > kMostAttempts)
+    throw InvalidInput("reconstruct: attempts = " + std::to_string(options.attempts) +
+                       " is out of range; use 1 (no more than one) to " +
+                       std::to_string(kMostAttempts));
   if (options.solver == EmbeddingMethod::Iterative && options.exponent != 3.0)
     throw InvalidInput("reconstruct: the iterative solver knows exponent = 3 alone; use the "
                        "multilevel solver for others");
@@ -353,6 +597,8 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
 
   int exponent = 0;
   Nodes nodes;
+  NeighborLists node_lists;
+  const NeighborSearch node_search = searchOfNodes(search, nodes);
   NeighborGraph graph = log.run("graph", [&] {
     internal::checkNeighborLists("reconstruct", lists, static_cast<std::size_t>(points.cols()));
     DistinctPoints distinct = findDistinctPoints(points);
@@ -370,52 +616,88 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
     result.vertex_of_input = std::move(distinct.vertex_of_input);
     result.input_of_vertex = std::move(distinct.input_of_vertex);
     result.duplicates = result.vertex_of_input.size() - count;
-    return buildGraph(nodes.points, listsOfNodes(lists, nodes), options,
-                      searchOfNodes(search, nodes));
-  });
-  result.graph.without_tangent_plane = std::move(graph.without_tangent_plane);
-  result.graph.searched_again = graph.searched_again;
-  result.graph.uncertified = graph.uncertified;
-  result.graph.weak = graph.weak;
-  result.graph.edges = graph.graph.edgeCount();
-  result.graph.components = graph.components;
-  result.graph.bridges = std::move(graph.bridges);
-  for (Bridge& bridge : result.graph.bridges)
-    bridge.length = std::ldexp(bridge.length, exponent);
-
-  result.sphere = log.run("embedding", [&] {
-    return embed(graph.graph, nodes.points, options, log, result.embedding);
+    node_lists = listsOfNodes(lists, nodes);
+    return buildGraph(nodes.points, node_lists, planOf(0, options), options, node_search);
   });
 
-  result.triangles = log.run("triangulation", [&] {
-    SphereTriangulation triangulation = triangulateSphere(result.sphere, options.hull);
-    result.triangulation.hull_vertices = triangulation.hull_vertices;
-    result.triangulation.reinserted = triangulation.reinserted;
-    result.triangulation.coincident = triangulation.coincident;
-    result.triangulation.hull_rejected = triangulation.hull_rejected;
-    return std::move(triangulation.triangles);
-  });
+  // More than one attempt only where the first result is bad although the cloud is as it should be.
+  Attempt best;
+  NeighborGraph first_graph;  // once `best` has another
+  for (int i = 0; i < options.attempts; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Plan plan = planOf(i, options);
+    if (i > 0)
+      graph = log.run("graph", [&] {
+        return buildGraph(nodes.points, node_lists, plan, options, node_search);
+      });
+    Attempt attempt = runAttempt(plan, std::move(graph), nodes.points, options, log);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    result.attempts.push_back({plan.description, attempt.intersections(),
+                               std::ldexp(attempt.optimization.energy, exponent), time.count(),
+                               false});
+    const auto quality = [](const Attempt& of) {
+      return std::pair(of.intersections(), of.optimization.energy);
+    };
+    if (i == 0 || quality(attempt) < quality(best)) {
+      if (i > 0 && first_graph.graph.size() == 0)
+        first_graph = std::move(best.graph);
+      best = std::move(attempt);
+      for (AttemptReport& other : result.attempts)
+        other.chosen = &other == &result.attempts.back();
+    }
+    if (best.intersections() == 0 || options.optimization != OptimizationMethod::Full)
+      break;
+    const bool has_few = static_cast<double>(best.intersections()) <=
+                         kFewIntersections * static_cast<double>(best.triangles.cols());
+    if (i == 0 && !has_few &&
+        !diagnoseSurface(nodes.points, best.triangles, best.graph.graph, best.graph.bridges)
+             .looksClosedGenus0())
+      break;
+  }
 
   result.topology = log.run("check", [&] {
-    double volume = signedVolume(nodes.points, result.triangles);
-    if (volume < 0.0) {
-      // The embedding is a mirror image: turn mesh and sphere inside out together, so that the
-      // triangles face outward on both.
-      flipOrientation(result.triangles);
-      result.sphere = -result.sphere;
-      volume = -volume;
+    if (signedVolume(nodes.points, best.triangles) < 0.0) {
+      flipOrientation(best.triangles);
+      best.sphere = -best.sphere;
     }
-    result.volume = std::ldexp(volume, 3 * exponent);
-    result.area = std::ldexp(surfaceArea(nodes.points, result.triangles), 2 * exponent);
-    result.edges_outside_graph = shareOutsideGraph(graph.graph, result.triangles);
-    MeshTopology topology = checkTopology(result.triangles, result.vertexCount());
+    if (best.smoothed.cols() == 0) {
+      result.self_intersections = std::move(best.optimization.self_intersections);
+    } else {
+      SelfIntersectionOptions intersections;
+      intersections.threads = options.threads;
+      result.self_intersections =
+          findSelfIntersections(nodes.points, best.triangles, intersections);
+    }
+    const NeighborGraph& judge = first_graph.graph.size() > 0 ? first_graph : best.graph;
+    result.diagnosis = diagnoseSurface(nodes.points, best.triangles, judge.graph, judge.bridges);
+    result.measures = measureMesh(nodes.points, best.triangles);
+    result.optimization = {std::move(best.optimization.phases),
+                           best.optimization.energy,
+                           best.optimization.rough,
+                           best.optimization.smoothing_steps,
+                           best.optimization.alignment,
+                           best.optimization.unevenness};
+    result.graph.edges = best.graph.graph.edgeCount();
+    result.graph.components = best.graph.components;
+    result.graph.bridges = std::move(best.graph.bridges);
+    result.graph.without_tangent_plane = std::move(best.graph.without_tangent_plane);
+    result.graph.searched_again = best.graph.searched_again;
+    result.graph.uncertified = best.graph.uncertified;
+    result.graph.weak = best.graph.weak;
+    result.triangles = std::move(best.triangles);
+    result.sphere = std::move(best.sphere);
+    result.smoothed = std::move(best.smoothed);
+    result.smoothing = best.smoothing;
+    result.embedding = std::move(best.embedding);
+    result.triangulation = best.triangulation;
+    scaleBack(exponent, result);
     renumber(nodes.vertex_of_node, result);
-    return topology;
+    return checkTopology(result.triangles, result.vertexCount());
   });
   if (!result.topology.isSphere())
     throw ComputeError("reconstruct: the mesh is not a closed genus-0 manifold; please report "
                        "this cloud as a defect of the library");
-  collectWarnings(result);
+  collectWarnings(options, result);
   return result;
 }
 

@@ -57,6 +57,16 @@ inline Positions cubeGrid(int m) {
   return result;
 }
 
+/// Independent normal noise on each coordinate.
+inline Positions withNoise(Positions points, double sigma, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, sigma);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      points(axis, i) += normal(random);
+  return points;
+}
+
 inline Positions horizontally(const Positions& a, const Positions& b) {
   Positions result(3, a.cols() + b.cols());
   result << a, b;

@@ -193,6 +193,59 @@ TEST(LocalDelaunayGraph, JoinsThePairsWhoseStarsAmongAllPointsAgree) {
   EXPECT_EQ(edgesOf(result.graph), expected);
 }
 
+TEST(LocalDelaunayGraph, OneStarIsEnoughWhereThatIsAskedFor) {
+  const Positions points = randomSphere(150, 1);
+  std::vector<Index> others;
+  Edges either;
+  Edges both;
+  for (Index i = 0; i < points.cols(); ++i) {
+    others.clear();
+    for (Index j = 0; j < points.cols(); ++j)
+      if (j != i)
+        others.push_back(j);
+    for (const Index j : bruteForceStar(points, i, others).nodes) {
+      if (either.count({i, j}) > 0)
+        both.insert({std::pair(i, j), std::pair(j, i)});
+      either.insert({std::pair(i, j), std::pair(j, i)});
+    }
+  }
+  ASSERT_GT(either.size(), both.size());
+  LocalDelaunayOptions options;
+  options.search = bruteForceSearch(points);
+  const NeighborLists lists = bruteForceNeighbors(points, 12);
+  EXPECT_EQ(edgesOf(buildLocalDelaunayGraph(points, lists, options).graph), both);
+  options.agreement = StarAgreement::Either;
+  const NeighborGraph result = buildLocalDelaunayGraph(points, lists, options);
+  expectSound(points, result);
+  EXPECT_EQ(edgesOf(result.graph), either);
+  EXPECT_EQ(result.weak, 0);
+}
+
+TEST(LocalDelaunayGraph, OneStarGivesAllThatTwoGive) {
+  // Of clouds with and without tangent planes, creases, and parts.
+  Positions away = randomSphere(60, 3);
+  away.colwise() += Eigen::Vector3d(10.0, 0.0, 0.0);
+  for (const Positions& points :
+       {jitteredSheet(12, 0.0, 2), test::cubeGrid(6), horizontally(randomSphere(80, 2), away),
+        horizontally(jitteredSheet(8, 0.0, 4), jitteredSheet(8, 0.7, 5)), randomSphere(5, 6)}) {
+    LocalDelaunayOptions options;
+    options.search = bruteForceSearch(points);
+    const NeighborLists lists = bruteForceNeighbors(points, 12);
+    const NeighborGraph both = buildLocalDelaunayGraph(points, lists, options);
+    options.agreement = StarAgreement::Either;
+    options.threads = 1;
+    const NeighborGraph either = buildLocalDelaunayGraph(points, lists, options);
+    expectSound(points, either);
+    EXPECT_LE(either.weak, both.weak);
+    EXPECT_LE(either.components, both.components);
+    EXPECT_GE(either.graph.edgeCount() + both.bridges.size(), both.graph.edgeCount());
+    options.threads = 3;
+    const NeighborGraph again = buildLocalDelaunayGraph(points, lists, options);
+    EXPECT_EQ(again.graph.neighbors, either.graph.neighbors);
+    EXPECT_EQ(again.graph.lengths, either.graph.lengths);
+  }
+}
+
 TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified) {
   const Positions points = randomSphere(150, 2);
   const auto uncertified = [&](int k) {

@@ -2,17 +2,23 @@
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -47,6 +53,26 @@ Result mesh(const Positions& points, const Options& options = {}) {
                      bruteForceSearch(points));
 }
 
+/// For clouds that no attempt meshes well: one, without the search for a better mesh.
+Options quick(Options options = {}) {
+  options.attempts = 1;
+  options.optimization = OptimizationMethod::Flips;
+  return options;
+}
+
+Positions verticesOf(const Positions& points, const Result& result) {
+  Positions vertices(3, static_cast<Eigen::Index>(result.vertexCount()));
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+    vertices.col(v) = points.col(result.input_of_vertex[static_cast<std::size_t>(v)]);
+  return vertices;
+}
+
+bool isWarnedOf(const Result& result, const std::string& text) {
+  return std::any_of(
+      result.warnings.begin(), result.warnings.end(),
+      [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
 /// Everything that is guaranteed, recomputed from the output.
 void expectGuarantees(const Positions& points, const Result& result) {
   const auto v = static_cast<Index>(result.vertexCount());
@@ -60,9 +86,25 @@ void expectGuarantees(const Positions& points, const Result& result) {
     EXPECT_EQ(points.col(i), points.col(result.input_of_vertex[static_cast<std::size_t>(vertex)]));
   }
   EXPECT_EQ(result.duplicates, static_cast<std::size_t>(points.cols() - v));
-  Positions vertices(3, v);
-  for (Index i = 0; i < v; ++i)
-    vertices.col(i) = points.col(result.input_of_vertex[static_cast<std::size_t>(i)]);
+  Positions vertices = verticesOf(points, result);
+  EXPECT_EQ(result.self_intersections, findSelfIntersections(vertices, result.triangles));
+  EXPECT_EQ(std::count_if(result.attempts.begin(), result.attempts.end(),
+                          [](const AttemptReport& attempt) { return attempt.chosen; }),
+            1);
+  const auto are_vertices = [&](const std::vector<Index>& indices) {
+    return std::is_sorted(indices.begin(), indices.end()) &&
+           (indices.empty() || (indices.front() >= 0 && indices.back() < v));
+  };
+  for (const Lid& lid : result.diagnosis.lids)
+    EXPECT_TRUE(are_vertices(lid.vertices));
+  for (const CollapsedHandle& handle : result.diagnosis.handles)
+    EXPECT_TRUE(are_vertices(handle.vertices));
+  for (const PartBridge& bridge : result.diagnosis.bridges)
+    EXPECT_TRUE(are_vertices(bridge.vertices));
+  EXPECT_FALSE(result.diagnosis.summary.empty());
+  EXPECT_EQ(result.edges_outside_graph, result.diagnosis.edges_outside_graph);
+  EXPECT_EQ(result.volume, result.measures.volume);
+  EXPECT_EQ(result.area, result.measures.area);
   EXPECT_GE(result.volume, 0.0);
   vertices.colwise() -= Eigen::Vector3d(vertices.col(0));
   const double volume = test::volumeOf(vertices, result.triangles);
@@ -108,7 +150,7 @@ TEST(Reconstruct, FourToTenPointsAreMeshed) {
       for (Index i = 0; i < n; ++i)
         points.col(i) << uniform(random), uniform(random), uniform(random);
       for (const Options& options : bothMethods())
-        expectGuarantees(points, mesh(points, options));
+        expectGuarantees(points, mesh(points, seed < 3 ? options : quick(options)));
     }
 }
 
@@ -142,7 +184,7 @@ TEST(Reconstruct, NastySetsAreMeshed) {
         SCOPED_TRACE("set " + std::to_string(s));
         options.weights = weights;
         options.max_iterations = 200;
-        const Result result = mesh(sets[s], options);
+        const Result result = mesh(sets[s], quick(options));
         EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
         EXPECT_TRUE(std::isfinite(result.embedding.residual));
         EXPECT_TRUE(std::isfinite(result.volume) && std::isfinite(result.area));
@@ -192,7 +234,7 @@ TEST(Reconstruct, ThousandCopiesOfFourPointsAreATetrahedron) {
 
 TEST(Reconstruct, CollapseIsReportedAndItsSphereIsNotTheMesh) {
   const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
-  Options options = paper();
+  Options options = quick(paper());
   options.max_iterations = 0;
   const Result result = mesh(points, options);
   expectGuarantees(points, result);
@@ -217,7 +259,7 @@ TEST(Reconstruct, SeveralPartsAreJoinedAndReported) {
   const Positions points = horizontally(spiralSphere(200), second);
   for (Options options : bothMethods()) {
     options.k = 10;
-    const Result result = mesh(points, options);
+    const Result result = mesh(points, quick(options));
     expectGuarantees(points, result);
     EXPECT_EQ(result.graph.components, 2);
     ASSERT_FALSE(result.graph.bridges.empty());
@@ -243,10 +285,11 @@ TEST(Reconstruct, TorusIsMeshedAsASphereAndReported) {
     }
   for (Options options : bothMethods()) {
     options.k = 10;
-    const Result result = mesh(points, options);
+    const Result result = mesh(points, quick(options));
     expectGuarantees(points, result);
     EXPECT_GT(result.edges_outside_graph, 0.01);
     EXPECT_FALSE(result.warnings.empty());
+    EXPECT_FALSE(result.diagnosis.looksClosedGenus0());
   }
 }
 
@@ -258,8 +301,9 @@ TEST(Reconstruct, OpenBowlIsLiddedAndReported) {
     expectGuarantees(points, result);
     EXPECT_GT(result.edges_outside_graph, 0.001);
     EXPECT_LT(mesh(sphere, options).edges_outside_graph, 1e-9);
-    ASSERT_FALSE(result.warnings.empty());
-    EXPECT_NE(result.warnings.back().find("not a closed surface"), std::string::npos);
+    EXPECT_EQ(result.diagnosis.kind, SurfaceKind::Open);
+    EXPECT_EQ(result.diagnosis.openings(), 1U);
+    EXPECT_TRUE(isWarnedOf(result, result.diagnosis.summary));
   }
 }
 
@@ -398,12 +442,12 @@ TEST(Reconstruct, StagesAreTimedAndTold) {
     return true;
   };
   const Result result = mesh(points, options);
-  ASSERT_EQ(result.stages.size(), 4U);
+  ASSERT_EQ(result.stages.size(), 5U);
   for (const StageTime& stage : result.stages) {
     EXPECT_GE(stage.seconds, 0.0);
     EXPECT_EQ(ends[stage.name], 1) << stage.name;
   }
-  for (const char* stage : {"graph", "embedding", "triangulation", "check"}) {
+  for (const char* stage : {"graph", "embedding", "triangulation", "optimization", "check"}) {
     options.progress = [&](const Progress& progress) {
       return std::string(progress.stage) != stage;
     };
@@ -460,6 +504,350 @@ TEST(Reconstruct, EveryOptionReachesTheMultilevelSolver) {
   EXPECT_TRUE(by_default.warnings.empty());
 }
 
+// --- Optimisation, attempts, smoothing, measures
+// ---------------------------------------------------
+
+/// A sphere with noise of so many distances of its points.
+Positions noisySphere(Index n, double noise, std::uint64_t seed) {
+  const double spacing = std::sqrt(8.0 * test::kPi / (std::sqrt(3.0) * n));
+  return test::withNoise(spiralSphere(n), noise * spacing, seed);
+}
+
+TEST(Reconstruct, ACleanCloudIsMeshedAtTheFirstAttempt) {
+  for (const Positions& points : {ellipsoid(600, 1.0, 0.7, 0.5), test::cubeGrid(8)})
+    for (const Options& options : bothMethods()) {
+      const Result result = mesh(points, options);
+      expectGuarantees(points, result);
+      EXPECT_TRUE(result.self_intersections.empty());
+      ASSERT_EQ(result.attempts.size(), 1U);
+      EXPECT_TRUE(result.attempts[0].chosen);
+      EXPECT_EQ(result.attempts[0].self_intersections, 0U);
+      EXPECT_EQ(result.attempts[0].energy, result.optimization.energy);
+      EXPECT_TRUE(result.diagnosis.looksClosedGenus0());
+      EXPECT_TRUE(result.smoothed.cols() == 0);
+      EXPECT_EQ(result.smoothing.volume_before, 0.0);
+      EXPECT_FALSE(isWarnedOf(result, "intersect"));
+    }
+}
+
+TEST(Reconstruct, ACleanCloudIsNotTakenForANoisyOneWhateverItsGraph) {
+  for (const Options& options : bothMethods()) {
+    const Result result = mesh(ellipsoid(400, 1.0, 0.7, 0.5), options);
+    EXPECT_LT(result.optimization.rough, 0.1);
+    EXPECT_EQ(result.optimization.noise_steps, 0);
+    EXPECT_FALSE(isWarnedOf(result, "nois"));
+  }
+}
+
+TEST(Reconstruct, OptimizationMethodIsThatAskedFor) {
+  const Positions points = randomSphere(400, 5);
+  Options options;
+  options.optimization = OptimizationMethod::None;
+  const Result none = mesh(points, options);
+  EXPECT_TRUE(none.optimization.phases.empty());
+  options.optimization = OptimizationMethod::Flips;
+  const Result flips = mesh(points, options);
+  ASSERT_EQ(flips.optimization.phases.size(), 1U);
+  EXPECT_EQ(flips.optimization.phases[0].name, "flips");
+  const Result full = mesh(points);
+  EXPECT_GT(full.optimization.phases.size(), 1U);
+  for (const Result& result : {none, flips, full}) {
+    expectGuarantees(points, result);
+    EXPECT_GT(result.optimization.energy, 0.0);
+  }
+  EXPECT_LT(flips.optimization.energy, none.optimization.energy);
+  EXPECT_EQ(none.sphere, full.sphere);
+}
+
+TEST(Reconstruct, CreasesOfACubeAreItsEdges) {
+  const int m = 9;
+  const Positions points = test::cubeGrid(m);
+  const Result result = mesh(points);
+  expectGuarantees(points, result);
+  // Corners are cut if any crease is missing.
+  EXPECT_NEAR(result.volume, 1.0, 1e-12);
+  EXPECT_NEAR(result.area, 6.0, 1e-12);
+}
+
+TEST(Reconstruct, FurtherAttemptsAreMadeWhileTrianglesIntersectAndTheBestCounts) {
+  // So few points that they show no surface, which nothing tells: some meshes have no way out.
+  int several = 0;
+  for (std::uint64_t seed = 0; seed < 30 && several < 1; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    Positions points(3, seed % 2 == 0 ? 8 : 16);
+    points = points.unaryExpr([&](double) { return uniform(random); });
+    Options options;
+    for (const int attempts : {1, 4}) {
+      options.attempts = attempts;
+      const Result result = mesh(points, options);
+      expectGuarantees(points, result);
+      EXPECT_LE(result.attempts.size(), static_cast<std::size_t>(attempts));
+      several += result.attempts.size() > 1 ? 1 : 0;
+      const auto best = std::min_element(result.attempts.begin(), result.attempts.end(),
+                                         [](const AttemptReport& one, const AttemptReport& other) {
+                                           return std::pair(one.self_intersections, one.energy) <
+                                                  std::pair(other.self_intersections, other.energy);
+                                         });
+      EXPECT_TRUE(best->chosen);
+      EXPECT_EQ(best->energy, result.optimization.energy);
+      EXPECT_EQ(result.attempts[0].description, "as asked");
+      std::set<std::string> descriptions;
+      for (std::size_t i = 0; i < result.attempts.size(); ++i) {
+        descriptions.insert(result.attempts[i].description);
+        EXPECT_GT(result.attempts[i].energy, 0.0);
+        // Only the last may be without an intersection.
+        EXPECT_TRUE(i + 1 == result.attempts.size() || result.attempts[i].self_intersections > 0);
+      }
+      EXPECT_EQ(descriptions.size(), result.attempts.size());
+    }
+  }
+  EXPECT_GE(several, 1);
+}
+
+TEST(Reconstruct, NoFurtherAttemptIsMadeOnceNoTrianglesIntersect) {
+  int clean = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> radius(0.7, 1.3);
+    Positions points = randomSphere(40, seed + 1);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      points.col(i) *= radius(random);
+    Options options;
+    options.attempts = 1;
+    const Result once = mesh(points, options);
+    if (!once.self_intersections.empty())
+      continue;
+    ++clean;
+    options.attempts = 4;
+    const Result result = mesh(points, options);
+    EXPECT_EQ(result.attempts.size(), 1U);
+    EXPECT_EQ(result.attempts[0].self_intersections, 0U);
+    EXPECT_EQ(result.triangles, once.triangles);
+  }
+  EXPECT_GE(clean, 3);
+}
+
+TEST(Reconstruct, ACloudThatIsNoClosedSurfaceIsTriedOnce) {
+  Positions second = spiralSphere(60);
+  second.colwise() += Eigen::Vector3d(6.0, 0.0, 0.0);
+  const Positions points = horizontally(spiralSphere(80), second);
+  const Result result = mesh(points);
+  expectGuarantees(points, result);
+  EXPECT_EQ(result.diagnosis.kind, SurfaceKind::SeveralParts);
+  EXPECT_EQ(result.attempts.size(), 1U);
+  ASSERT_FALSE(result.diagnosis.bridges.empty());
+  EXPECT_EQ(result.diagnosis.bridges[0].points, 60U);
+  EXPECT_EQ(result.diagnosis.bridges[0].other_points, 80U);
+  EXPECT_NEAR(result.diagnosis.bridges[0].center.x(), 3.0, 0.2);
+  for (const Index v : result.diagnosis.bridges[0].vertices)
+    EXPECT_LT(std::abs(points(0, v) - 3.0), 3.0);  // the ends look at each other
+}
+
+TEST(Reconstruct, SmoothingMovesTheSmoothedPointsAlone) {
+  const Positions points = noisySphere(500, 0.15, 6);
+  const Result rough = mesh(points);
+  EXPECT_EQ(rough.smoothed.cols(), 0);
+  Options options;
+  options.smoothing_steps = 3;
+  const Result result = mesh(points, options);
+  expectGuarantees(points, result);
+  ASSERT_EQ(result.smoothed.cols(), points.cols());
+  // Without intersections on the smoothed points the triangles are those without smoothing.
+  EXPECT_EQ(result.smoothing.self_intersections, 0U);
+  EXPECT_EQ(result.triangles, rough.triangles);
+  EXPECT_EQ(result.sphere, rough.sphere);
+  EXPECT_EQ(result.volume, rough.volume);
+  const Eigen::VectorXd moved = (result.smoothed - points).colwise().norm();
+  EXPECT_GT(moved.minCoeff(), 0.0);
+  EXPECT_NEAR(result.smoothing.max_displacement, moved.maxCoeff(), 1e-12);
+  EXPECT_NEAR(result.smoothing.mean_displacement, moved.mean(), 1e-12);
+  EXPECT_NEAR(result.smoothing.rms_displacement, std::sqrt(moved.squaredNorm() / 500.0), 1e-12);
+  const double volume = test::volumeOf(result.smoothed, result.triangles);
+  EXPECT_NEAR(result.smoothing.volume_before, result.volume, 1e-12);
+  EXPECT_NEAR(result.smoothing.volume_after, volume, 1e-12);
+  EXPECT_NEAR(volume, result.volume, 1e-3 * result.volume);
+  const auto deviation = [](const Positions& of) {
+    return (of.colwise().norm().array() - 1.0).matrix().norm();
+  };
+  EXPECT_LT(deviation(result.smoothed), 0.5 * deviation(points));
+}
+
+TEST(Reconstruct, ANoisySphereIsSmoothedWithoutSelfIntersections) {
+  for (const double noise : {0.3, 0.5}) {
+    const Positions points = noisySphere(600, noise, 7);
+    Options options;
+    options.smoothing_steps = 5;
+    const Result result = mesh(points, options);
+    expectGuarantees(points, result);
+    EXPECT_EQ(result.smoothing.self_intersections, 0U);
+    EXPECT_TRUE(findSelfIntersections(result.smoothed, result.triangles).empty());
+    EXPECT_GT(result.optimization.noise_steps, 0);
+    const double volume = test::volumeOf(result.smoothed, result.triangles);
+    EXPECT_NEAR(volume, result.smoothing.volume_after, 1e-12);
+    EXPECT_NEAR(volume, 4.0 / 3.0 * test::kPi, 0.3);
+  }
+}
+
+TEST(Reconstruct, NoiseIsToldToWhoDoesNotSmooth) {
+  const Positions points = noisySphere(200, 0.4, 7);
+  const Result rough = mesh(points);
+  expectGuarantees(points, rough);
+  EXPECT_GT(rough.optimization.noise_steps, 0);
+  EXPECT_TRUE(isWarnedOf(rough, "nois"));
+  Options options;
+  options.smoothing_steps = 5;
+  EXPECT_FALSE(isWarnedOf(mesh(points, options), "nois"));
+}
+
+TEST(Reconstruct, SmoothedPointsOfRepeatedInputsAreOfTheirVertex) {
+  const Positions base = ellipsoid(300, 1.0, 0.8, 0.6);
+  const Positions points = horizontally(base.leftCols(50), base);
+  Options options;
+  options.smoothing_steps = 1;
+  const Result result = mesh(points, options);
+  ASSERT_EQ(result.smoothed.cols(), 300);
+  const Positions vertices = verticesOf(points, result);
+  // Each near its own point, none in the place of another.
+  EXPECT_LT((result.smoothed - vertices).colwise().norm().maxCoeff(), 0.1);
+  EXPECT_LT((result.smoothed - vertices).colwise().norm().maxCoeff(),
+            1.0001 * result.smoothing.max_displacement);
+}
+
+TEST(Reconstruct, MeasuresOfAShiftedCubeAreThoseOfACube) {
+  const Eigen::Vector3d shift(5.0, -3.0, 7.0);
+  Positions points = 2.0 * test::cubeGrid(7);
+  points.colwise() += shift;
+  const Result result = mesh(points);
+  expectGuarantees(points, result);
+  const MeshMeasures& measures = result.measures;
+  EXPECT_NEAR(measures.volume, 8.0, 1e-12);
+  EXPECT_NEAR(measures.area, 24.0, 1e-12);
+  EXPECT_EQ(measures.box_min, shift);
+  EXPECT_EQ(measures.box_max, Eigen::Vector3d(shift.array() + 2.0));
+  EXPECT_LT((measures.centroid - shift - Eigen::Vector3d::Ones()).norm(), 1e-12);
+  // m a^2 / 6
+  EXPECT_LT((measures.inertia - 8.0 * 4.0 / 6.0 * Eigen::Matrix3d::Identity()).norm(), 1e-11);
+}
+
+/// Everything that has a unit, with its power.
+std::vector<std::pair<double, int>> quantitiesOf(const Result& result) {
+  std::vector<std::pair<double, int>> all = {{result.volume, 3},
+                                             {result.area, 2},
+                                             {result.measures.volume, 3},
+                                             {result.measures.area, 2},
+                                             {result.measures.mean_edge_length, 1},
+                                             {result.measures.inertia.trace(), 5},
+                                             {result.optimization.energy, 1},
+                                             {result.optimization.alignment, 0},
+                                             {result.optimization.unevenness, 0},
+                                             {result.optimization.rough, 0},
+                                             {result.attempts[0].energy, 1},
+                                             {result.smoothing.max_displacement, 1},
+                                             {result.smoothing.mean_displacement, 1},
+                                             {result.smoothing.rms_displacement, 1},
+                                             {result.smoothing.volume_before, 3},
+                                             {result.smoothing.volume_after, 3},
+                                             {result.edges_outside_graph, 0}};
+  for (const OptimizationPhase& phase : result.optimization.phases) {
+    all.emplace_back(phase.energy_before, 1);
+    all.emplace_back(phase.energy, 1);
+  }
+  for (const Lid& lid : result.diagnosis.lids) {
+    all.emplace_back(lid.area, 2);
+    all.emplace_back(lid.boundary_length, 1);
+    all.emplace_back(lid.diameter, 1);
+    all.emplace_back(lid.spacing, 1);
+    all.emplace_back(lid.center.norm(), 1);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    all.emplace_back(result.measures.box_min[axis], 1);
+    all.emplace_back(result.measures.box_max[axis], 1);
+    all.emplace_back(result.measures.centroid[axis], 1);
+  }
+  if (result.smoothed.cols() > 0)
+    all.emplace_back(result.smoothed.norm(), 1);
+  return all;
+}
+
+void expectScaled(const Result& result, const Result& scaled, double scale, double tolerance) {
+  const auto one = quantitiesOf(result);
+  const auto other = quantitiesOf(scaled);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    const double expected = one[i].first * std::pow(scale, one[i].second);
+    EXPECT_NEAR(other[i].first, expected,
+                tolerance * std::max(std::abs(expected), std::pow(scale, one[i].second)))
+        << i;
+  }
+}
+
+TEST(Reconstruct, WhateverHasAUnitScalesWithIt) {
+  // Open at one end, so that there is a lid to measure.
+  const Positions sphere = test::withNoise(spiralSphere(500), 0.003, 8);
+  const Positions points = sphere.rightCols(400);
+  Options options;
+  options.smoothing_steps = 2;
+  const Result result = mesh(points, options);
+  ASSERT_FALSE(result.diagnosis.lids.empty());
+  const Result twice = mesh(4.0 * points, options);
+  EXPECT_EQ(twice.triangles, result.triangles);
+  EXPECT_EQ(twice.smoothed, 4.0 * result.smoothed);
+  expectScaled(result, twice, 4.0, 1e-15);
+  // 1000 is no power of two: coordinates round anew, but no decision is so close.
+  const Result thousand = mesh(1000.0 * points, options);
+  ASSERT_EQ(test::canonical(thousand.triangles), test::canonical(result.triangles));
+  expectScaled(result, thousand, 1000.0, 1e-9);
+  EXPECT_NEAR(thousand.volume, 1e9 * result.volume, 1e-3 * thousand.volume);
+  EXPECT_NE(thousand.diagnosis.summary, result.diagnosis.summary);
+}
+
+TEST(Reconstruct, FarLargerUnitsAreMeasuredAllTheSame) {
+  Options options;
+  options.smoothing_steps = 1;
+  const Positions points = test::withNoise(ellipsoid(300, 1.0, 0.7, 0.5), 0.002, 9);
+  const Result result = mesh(points, options);
+  for (const double scale : {1e50, 1e-50}) {
+    const Result scaled = mesh(scale * points, options);
+    expectGuarantees(scale * points, scaled);
+    EXPECT_EQ(test::canonical(scaled.triangles), test::canonical(result.triangles));
+    expectScaled(result, scaled, scale, 1e-9);
+    EXPECT_EQ(scaled.self_intersections.size(), 0U);
+  }
+}
+
+TEST(Reconstruct, SameBitsForAnyNumberOfThreads) {
+  const Positions points = test::withNoise(ellipsoid(2600, 1.0, 0.7, 0.5), 0.012, 10);
+  const NeighborLists lists = bruteForceNeighbors(points, 24);
+  Options options;
+  options.threads = 1;
+  options.smoothing_steps = 2;
+  const Result one = reconstruct(points, lists, options);
+  for (const int threads : {2, 4}) {
+    options.threads = threads;
+    const Result other = reconstruct(points, lists, options);
+    EXPECT_EQ(one.triangles, other.triangles);
+    EXPECT_EQ(one.sphere, other.sphere);
+    EXPECT_EQ(one.smoothed, other.smoothed);
+    EXPECT_EQ(one.self_intersections, other.self_intersections);
+    EXPECT_EQ(one.warnings, other.warnings);
+    EXPECT_EQ(one.diagnosis.summary, other.diagnosis.summary);
+    EXPECT_EQ(quantitiesOf(one), quantitiesOf(other));
+  }
+}
+
+TEST(Reconstruct, SmoothingIsAStageOfItsOwn) {
+  const Positions points = ellipsoid(200, 1.0, 0.7, 0.5);
+  Options options;
+  options.smoothing_steps = 1;
+  const Result result = mesh(points, options);
+  std::vector<std::string> names;
+  for (const StageTime& stage : result.stages)
+    names.push_back(stage.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"graph", "embedding", "triangulation", "optimization",
+                                             "smoothing", "check"}));
+}
+
 TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   const auto expect_reason = [](const Positions& points, const NeighborLists& lists,
                                 const Options& options, const std::string& reason) {
@@ -498,6 +886,12 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   options = Options();
   options.max_iterations = -1;
   expect_reason(good, lists, options, "max_iterations");
+  options = Options();
+  options.attempts = 0;
+  expect_reason(good, lists, options, "attempts = 0");
+  options = Options();
+  options.smoothing_steps = -1;
+  expect_reason(good, lists, options, "steps = -1");
 }
 
 TEST(Reconstruct, OptionsCanBeCheckedBeforehand) {
@@ -519,6 +913,10 @@ TEST(Reconstruct, OptionsCanBeCheckedBeforehand) {
     options.exponent = 4.0;
   });
   bad([](Options& options) { options.threads = 2000; });
+  bad([](Options& options) { options.attempts = 0; });
+  bad([](Options& options) { options.attempts = 101; });
+  bad([](Options& options) { options.smoothing_steps = -1; });
+  bad([](Options& options) { options.smoothing_steps = 10001; });
 }
 
 TEST(Reconstruct, ConcurrentCallsAgreeWithSingleOnes) {
