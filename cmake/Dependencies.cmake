@@ -9,7 +9,7 @@ endif()
 
 set(spherical_param_pcl_components common kdtree search)
 if(SPHERICAL_PARAM_BUILD_TOOLS)
-  list(APPEND spherical_param_pcl_components io)
+  list(APPEND spherical_param_pcl_components filters io)
 endif()
 if(SPHERICAL_PARAM_BUILD_TESTS)
   list(APPEND spherical_param_pcl_components octree)

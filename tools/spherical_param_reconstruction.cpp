@@ -7,6 +7,7 @@
 #include "common/file_formats.h"
 #include "common/mesh_writer.h"
 #include "common/numbers.h"
+#include "common/outlier_removal.h"
 #include "common/output_file.h"
 #include "common/point_data.h"
 #include "common/run_tool.h"
@@ -45,7 +46,10 @@ using spherical_param::EdgeWeights;
 using spherical_param::EmbeddingMethod;
 using spherical_param::GraphMethod;
 using spherical_param::Index;
+using spherical_param::OptimizationMethod;
+using spherical_param::SmoothingMethod;
 using spherical_param::StopReason;
+using spherical_param::SurfaceKind;
 using spherical_param::TriangulationMethod;
 using Reconstruction = pcl::SphericalParamReconstruction<pcl::PointXYZ>;
 using Json = nlohmann::ordered_json;
@@ -64,8 +68,13 @@ const std::vector<OptionInfo> option_table = {
     {"iterations", "N", "iterative: iterations at most (1600)"},
     {"stagnation", "N", "iterative: iterations over which stagnation is judged, 0: never (100)"},
     {"starts", "N", "multilevel: starts of the coarsest level, 1 to 100 (2)"},
-    {"seed", "N", "multilevel: seed of the order in which nodes are taken (1)"},
+    {"seed", "N", "seed of all that is random: multilevel, optimize full (1)"},
     {"hull", "NAME", "qhull (the paper's) or incremental (incremental)"},
+    {"optimize", "NAME", "of the mesh on the points: none, flips or full (full)"},
+    {"attempts", "N", "whole runs at most while the mesh intersects itself, 1 to 100 (4)"},
+    {"smooth", "N", "smooth the points that are written, steps, up to 10000; keeps normals (0)"},
+    {"outliers", "SIGMA", "leave out points so many deviations off the others, up to 1000 (off)"},
+    {"outlier-method", "NAME", "with outliers: paper or statistical (paper)"},
     {"threads", "N", "threads, 0: as many as there are processors (0)"},
     {"sphere", "FILE", "write the points on the sphere with the same triangles"},
     {"json", "FILE", "write a report, - for the standard output and nothing else there"},
@@ -93,6 +102,8 @@ struct Settings {
   std::string json;  ///< empty: not wanted
   Encoding encoding = Encoding::Binary;
   bool quiet = false;
+  std::optional<double> outlier_sigma;  ///< none: outliers are not looked for
+  OutlierMethod outlier_method = OutlierMethod::Paper;
   spherical_param::Options options;
 
   bool jsonToStandardOutput() const { return json == standard_output; }
@@ -121,6 +132,31 @@ const Names<EdgeWeights> weight_names = {
 const Names<TriangulationMethod> hull_names = {
     {"qhull", TriangulationMethod::Qhull},
     {"incremental", TriangulationMethod::Incremental},
+};
+
+const Names<OptimizationMethod> optimization_names = {
+    {"none", OptimizationMethod::None},
+    {"flips", OptimizationMethod::Flips},
+    {"full", OptimizationMethod::Full},
+};
+
+const Names<OutlierMethod> outlier_names = {
+    {"paper", OutlierMethod::Paper},
+    {"statistical", OutlierMethod::Statistical},
+};
+
+const Names<SmoothingMethod> smoothing_names = {
+    {"umbrella", SmoothingMethod::Umbrella},
+    {"taubin", SmoothingMethod::Taubin},
+    {"biharmonic", SmoothingMethod::Biharmonic},
+};
+
+const Names<SurfaceKind> surface_names = {
+    {"closed genus 0", SurfaceKind::ClosedGenus0},
+    {"open", SurfaceKind::Open},
+    {"handles", SurfaceKind::Handles},
+    {"several parts", SurfaceKind::SeveralParts},
+    {"unclear", SurfaceKind::Unclear},
 };
 
 template <typename Value>
@@ -171,6 +207,11 @@ bool hasExponent(const spherical_param::Options& options) {
   return !isIterative(options) && options.weights == EdgeWeights::Adaptive;
 }
 
+/// Tells whether the seed has a say.
+bool hasSeed(const spherical_param::Options& options) {
+  return !isIterative(options) || options.optimization == OptimizationMethod::Full;
+}
+
 /// The tolerance in force, none if convergence is not asked for.
 std::optional<double> toleranceOf(const spherical_param::Options& options) {
   if (!options.tolerance && isIterative(options)) {
@@ -190,8 +231,13 @@ void checkCombination(const CommandLine& command_line, const spherical_param::Op
     }
   };
   if (isIterative(options)) {
-    for (const char* option : {"exponent", "starts", "seed"}) {
+    for (const char* option : {"exponent", "starts"}) {
       refuse(option, "-solver iterative", "-solver multilevel");
+    }
+    if (!hasSeed(options)) {
+      refuse("seed",
+             "-solver iterative and -optimize " + nameOf(options.optimization, optimization_names),
+             "-optimize full");
     }
   } else {
     for (const char* option : {"iterations", "stagnation"}) {
@@ -200,6 +246,10 @@ void checkCombination(const CommandLine& command_line, const spherical_param::Op
   }
   if (options.weights != EdgeWeights::Adaptive) {
     refuse("exponent", "-weights " + nameOf(options.weights, weight_names), "-weights adaptive");
+  }
+  if (command_line.has("outlier-method") && !command_line.has("outliers")) {
+    throw UsageError("option -outlier-method does nothing without -outliers",
+                     "leave -outlier-method out, or give -outliers 4");
   }
 }
 
@@ -240,6 +290,9 @@ spherical_param::Options parseOptions(const CommandLine& command_line) {
         parseInteger(name, text, {0, std::numeric_limits<std::uint32_t>::max()}));
   });
   take("hull", options.hull, one_of(hull_names));
+  take("optimize", options.optimization, one_of(optimization_names));
+  take("attempts", options.attempts, integer({1, 100}));
+  take("smooth", options.smoothing_steps, integer({0, 10000}));
   take("threads", options.threads, integer({0, 1024}));
   if (options.stagnation_window == 1) {
     throw UsageError("option -stagnation: a window of 1 has nothing to compare",
@@ -291,6 +344,14 @@ Settings parseSettings(const CommandLine& command_line) {
   }
   settings.encoding = command_line.has("ascii") ? Encoding::Ascii : Encoding::Binary;
   settings.quiet = command_line.has("quiet");
+  if (command_line.has("outliers")) {
+    settings.outlier_sigma =
+        parseReal("outliers", command_line.value("outliers", ""), {0.0, 1000.0, true});
+  }
+  if (command_line.has("outlier-method")) {
+    settings.outlier_method =
+        parseName("outlier-method", command_line.value("outlier-method", ""), outlier_names);
+  }
   settings.options = parseOptions(command_line);
   return settings;
 }
@@ -352,9 +413,20 @@ void printParameters(const Settings& settings, Console& console) {
                                     : std::to_string(options.stagnation_window));
   } else {
     console.entry("starts", std::to_string(options.starts));
+  }
+  if (hasSeed(options)) {
     console.entry("seed", std::to_string(options.seed));
   }
   console.entry("hull", nameOf(options.hull, hull_names));
+  console.entry("optimize", nameOf(options.optimization, optimization_names));
+  console.entry("attempts", "up to " + std::to_string(options.attempts));
+  if (options.smoothing_steps > 0) {
+    console.entry("smooth", std::to_string(options.smoothing_steps));
+  }
+  if (settings.outlier_sigma) {
+    console.entry("outliers", formatted(*settings.outlier_sigma, 6) + " (" +
+                                  nameOf(settings.outlier_method, outlier_names) + ")");
+  }
   console.entry("threads", std::to_string(options.threads));
 }
 
@@ -370,8 +442,23 @@ void checkMemory(const Settings& settings, std::size_t points) {
   }
 }
 
-/// Runs the library, with its stages on the console.
-void reconstruct(const Settings& settings, const PointData& data, Reconstruction& reconstruction,
+/// Looks for outliers.
+OutlierRemoval removeOutliers(const Settings& settings, const PointData& data) {
+  OutlierRemoval removal = findOutlierPoints(data.points, settings.outlier_method,
+                                             *settings.outlier_sigma, settings.options.threads);
+  // Without outliers, the library itself says what the points lack.
+  if (removal.kept_positions < 4 && !removal.indices.empty()) {
+    throw Failure("option -outliers: " + std::to_string(removal.indices.size()) + " of " +
+                      std::to_string(data.points.size()) +
+                      " points are outliers, and the rest cannot be meshed",
+                  "give -outliers a larger number");
+  }
+  return removal;
+}
+
+/// Runs the library on the points that are no outliers, with its stages on the console.
+void reconstruct(const Settings& settings, const PointData& data,
+                 const std::optional<OutlierRemoval>& outliers, Reconstruction& reconstruction,
                  Console& console) {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   cloud->reserve(data.points.size());
@@ -395,6 +482,9 @@ void reconstruct(const Settings& settings, const PointData& data, Reconstruction
   reconstruction.setStarts(options.starts);
   reconstruction.setSeed(options.seed);
   reconstruction.setTriangulationMethod(options.hull);
+  reconstruction.setOptimization(options.optimization);
+  reconstruction.setAttempts(options.attempts);
+  reconstruction.setSmoothingSteps(options.smoothing_steps);
   reconstruction.setNumberOfThreads(static_cast<unsigned>(options.threads));
   std::string stage;
   std::string detail;
@@ -419,6 +509,10 @@ void reconstruct(const Settings& settings, const PointData& data, Reconstruction
   });
 
   reconstruction.setInputCloud(cloud);
+  if (outliers) {
+    // All indices are still those of the file.
+    reconstruction.setIndices(pcl::IndicesPtr(new pcl::Indices(outliers->kept)));
+  }
   std::vector<pcl::Vertices> polygons;
   reconstruction.reconstruct(polygons);
   const std::string& message = reconstruction.getErrorMessage();
@@ -445,15 +539,31 @@ std::vector<std::array<std::int32_t, 3>> trianglesOf(const spherical_param::Resu
   return triangles;
 }
 
+/// Gives each vertex a new place.
+void moveVertices(const spherical_param::Positions& places, TriangleMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.vertices.points.size(); ++v) {
+    const Eigen::Vector3f place = places.col(static_cast<Eigen::Index>(v)).cast<float>();
+    mesh.vertices.points[v] = {place.x(), place.y(), place.z()};
+  }
+}
+
+/// The mesh that is written. Only points that are vertices are, so that every vertex of the file is
+/// used.
+TriangleMesh meshOf(const PointData& data, const Reconstruction& reconstruction) {
+  const spherical_param::Result& result = reconstruction.getResult();
+  TriangleMesh mesh = {selectPoints(data, reconstruction.getVertexIndices()), trianglesOf(result)};
+  if (result.smoothed.cols() > 0) {
+    moveVertices(result.smoothed, mesh);
+  }
+  return mesh;
+}
+
 /// The vertices on the sphere. They keep their colours, but not the normals of the input, which
 /// mean nothing there.
 TriangleMesh sphereOf(const spherical_param::Result& result, const TriangleMesh& mesh) {
   TriangleMesh sphere = mesh;
   sphere.vertices.normals.clear();
-  for (std::size_t v = 0; v < sphere.vertices.points.size(); ++v) {
-    const Eigen::Vector3f direction = result.sphere.col(static_cast<Eigen::Index>(v)).cast<float>();
-    sphere.vertices.points[v] = {direction.x(), direction.y(), direction.z()};
-  }
+  moveVertices(result.sphere, sphere);
   return sphere;
 }
 
@@ -510,14 +620,35 @@ Json optionsToJson(const Settings& settings) {
   json["iterations"] = unless(!isIterative(options), options.max_iterations);
   json["stagnation"] = unless(!isIterative(options), options.stagnation_window);
   json["starts"] = unless(isIterative(options), options.starts);
-  json["seed"] = unless(isIterative(options), options.seed);
+  json["seed"] = unless(!hasSeed(options), options.seed);
   json["hull"] = nameOf(options.hull, hull_names);
+  json["optimize"] = nameOf(options.optimization, optimization_names);
+  json["attempts"] = options.attempts;
+  json["smooth"] = options.smoothing_steps;
+  json["outliers"] = settings.outlier_sigma ? Json(*settings.outlier_sigma) : Json(nullptr);
+  json["outlier_method"] =
+      unless(!settings.outlier_sigma, nameOf(settings.outlier_method, outlier_names));
   json["threads"] = options.threads;
   json["sphere"] = settings.sphere.empty() ? Json(nullptr) : Json(settings.sphere);
   json["json"] = settings.json;
   json["ascii"] = settings.encoding == Encoding::Ascii;
   json["quiet"] = settings.quiet;
   return json;
+}
+
+/// The indices of vertices in the input.
+std::vector<int> inputIndices(const Reconstruction& reconstruction,
+                              const std::vector<Index>& vertices) {
+  std::vector<int> indices;
+  indices.reserve(vertices.size());
+  for (const Index vertex : vertices) {
+    indices.push_back(reconstruction.getVertexIndices()[static_cast<std::size_t>(vertex)]);
+  }
+  return indices;
+}
+
+Json toJson(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
 }
 
 Json graphToJson(const Settings& settings, const Reconstruction& reconstruction) {
@@ -536,10 +667,7 @@ Json graphToJson(const Settings& settings, const Reconstruction& reconstruction)
         {{"from", index_of(bridge.from)}, {"to", index_of(bridge.to)}, {"length", bridge.length}});
   }
   json["without_tangent_plane_count"] = graph.without_tangent_plane.size();
-  json["without_tangent_plane"] = Json::array();
-  for (const Index vertex : graph.without_tangent_plane) {
-    json["without_tangent_plane"].push_back(index_of(vertex));
-  }
+  json["without_tangent_plane"] = inputIndices(reconstruction, graph.without_tangent_plane);
   json["searched_again"] = graph.searched_again;
   json["uncertified"] = graph.uncertified;
   json["weak"] = graph.weak;
@@ -604,7 +732,131 @@ Json embeddingToJson(const Settings& settings, const Reconstruction& reconstruct
   return json;
 }
 
+/// The first pairs of triangles that intersect.
+Json selfIntersectionsToJson(const Reconstruction& reconstruction) {
+  constexpr std::size_t most_pairs = 1000;
+  const auto& pairs = reconstruction.getSelfIntersections();
+  Json json = Json::array();
+  for (std::size_t i = 0; i < std::min(most_pairs, pairs.size()); ++i) {
+    json.push_back({pairs[i][0], pairs[i][1]});
+  }
+  return json;
+}
+
+Json optimizationToJson(const Settings& settings,
+                        const spherical_param::OptimizationReport& optimization) {
+  Json json;
+  json["method"] = nameOf(settings.options.optimization, optimization_names);
+  json["energy"] = optimization.energy;
+  json["rough"] = optimization.rough;
+  json["noisy"] = optimization.noise_steps > 0;
+  json["noise_steps"] = optimization.noise_steps;
+  json["alignment"] = optimization.alignment;
+  json["unevenness"] = optimization.unevenness;
+  json["phases"] = Json::array();
+  for (const spherical_param::OptimizationPhase& phase : optimization.phases) {
+    const auto& self_intersections = phase.self_intersections;
+    json["phases"].push_back(
+        {{"name", phase.name},
+         {"tried", phase.tried},
+         {"moves", phase.moves},
+         {"energy_before", phase.energy_before},
+         {"energy", phase.energy},
+         {"self_intersections", self_intersections ? Json(*self_intersections) : Json(nullptr)},
+         {"seconds", phase.seconds}});
+  }
+  return json;
+}
+
+Json attemptsToJson(const std::vector<spherical_param::AttemptReport>& attempts) {
+  Json json = Json::array();
+  for (const spherical_param::AttemptReport& attempt : attempts) {
+    json.push_back({{"description", attempt.description},
+                    {"self_intersections", attempt.self_intersections},
+                    {"energy", attempt.energy},
+                    {"seconds", attempt.seconds},
+                    {"chosen", attempt.chosen}});
+  }
+  return json;
+}
+
+Json smoothingToJson(const Settings& settings, const spherical_param::SmoothingReport& smoothing) {
+  if (settings.options.smoothing_steps == 0) {
+    return nullptr;
+  }
+  return {{"steps", settings.options.smoothing_steps},
+          {"method", nameOf(spherical_param::SmoothingOptions().method, smoothing_names)},
+          {"max_displacement", smoothing.max_displacement},
+          {"mean_displacement", smoothing.mean_displacement},
+          {"rms_displacement", smoothing.rms_displacement},
+          {"volume_before", smoothing.volume_before},
+          {"volume_after", smoothing.volume_after},
+          {"self_intersections", smoothing.self_intersections}};
+}
+
+Json diagnosisToJson(const Reconstruction& reconstruction) {
+  const spherical_param::SurfaceDiagnosis& diagnosis = reconstruction.getDiagnosis();
+  Json json;
+  json["kind"] = nameOf(diagnosis.kind, surface_names);
+  json["looks_closed_genus0"] = diagnosis.looksClosedGenus0();
+  json["summary"] = diagnosis.summary;
+  json["lids"] = Json::array();
+  for (const spherical_param::Lid& lid : diagnosis.lids) {
+    json["lids"].push_back({{"cause", nameOf(lid.cause, surface_names)},
+                            {"location", toJson(lid.center)},
+                            {"size", lid.diameter},
+                            {"spacing", lid.spacing},
+                            {"triangles", lid.triangles},
+                            {"area", lid.area},
+                            {"boundary_length", lid.boundary_length},
+                            {"vertices", inputIndices(reconstruction, lid.vertices)}});
+  }
+  json["handles"] = Json::array();
+  for (const spherical_param::CollapsedHandle& handle : diagnosis.handles) {
+    json["handles"].push_back({{"location", toJson(handle.center)},
+                               {"size", handle.size},
+                               {"edges", handle.edges},
+                               {"vertices", inputIndices(reconstruction, handle.vertices)}});
+  }
+  json["bridges"] = Json::array();
+  for (const spherical_param::PartBridge& bridge : diagnosis.bridges) {
+    json["bridges"].push_back({{"location", toJson(bridge.center)},
+                               {"size", bridge.gap},
+                               {"spacing", bridge.spacing},
+                               {"points", bridge.points},
+                               {"other_points", bridge.other_points},
+                               {"vertices", inputIndices(reconstruction, bridge.vertices)}});
+  }
+  return json;
+}
+
+Json measuresToJson(const spherical_param::MeshMeasures& measures) {
+  Json json;
+  json["volume"] = measures.volume;
+  json["area"] = measures.area;
+  json["mean_edge_length"] = measures.mean_edge_length;
+  json["bounding_box"] = {{"min", toJson(measures.box_min)}, {"max", toJson(measures.box_max)}};
+  json["centroid"] = toJson(measures.centroid);
+  json["inertia"] = Json::array();
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    json["inertia"].push_back(toJson(measures.inertia.row(row)));
+  }
+  return json;
+}
+
+Json outliersToJson(const Settings& settings, const std::optional<OutlierRemoval>& outliers) {
+  if (!outliers) {
+    return nullptr;
+  }
+  return {{"method", nameOf(settings.outlier_method, outlier_names)},
+          {"sigma", *settings.outlier_sigma},
+          {"threshold", outliers->threshold ? Json(*outliers->threshold) : Json(nullptr)},
+          {"count", outliers->indices.size()},
+          {"indices", outliers->indices}};
+}
+
 std::string report(const Settings& settings, const PointData& data,
+                   const std::optional<OutlierRemoval>& outliers,
                    const Reconstruction& reconstruction,
                    const std::vector<spherical_param::StageTime>& stages) {
   const spherical_param::Result& result = reconstruction.getResult();
@@ -615,6 +867,7 @@ std::string report(const Settings& settings, const PointData& data,
   json["options"] = optionsToJson(settings);
   json["points"] = data.points.size();
   json["ignored_points"] = reconstruction.getIgnoredPointCount();
+  json["outliers"] = outliersToJson(settings, outliers);
   json["duplicates"] = result.duplicates;
   json["vertices"] = result.vertexCount();
   json["triangles"] = result.triangles.cols();
@@ -625,6 +878,10 @@ std::string report(const Settings& settings, const PointData& data,
   json["genus"] = result.topology.genus ? Json(*result.topology.genus) : Json(nullptr);
   json["volume"] = result.volume;
   json["area"] = result.area;
+  json["self_intersections"] = reconstruction.getSelfIntersections().size();
+  json["self_intersecting_pairs"] = selfIntersectionsToJson(reconstruction);
+  json["measures"] = measuresToJson(result.measures);
+  json["diagnosis"] = diagnosisToJson(reconstruction);
   json["edges_outside_graph"] = result.edges_outside_graph;
   json["converged"] = reconstruction.hasConverged();
   json["stop_reason"] = nameOf(result.embedding.stop_reason);
@@ -639,6 +896,9 @@ std::string report(const Settings& settings, const PointData& data,
                            {"reinserted", result.triangulation.reinserted},
                            {"coincident", result.triangulation.coincident},
                            {"hull_rejected", result.triangulation.hull_rejected}};
+  json["optimization"] = optimizationToJson(settings, result.optimization);
+  json["attempts"] = attemptsToJson(result.attempts);
+  json["smoothing"] = smoothingToJson(settings, result.smoothing);
   json["stages"] = Json::array();
   for (const spherical_param::StageTime& stage : stages) {
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
@@ -699,6 +959,75 @@ void printHierarchy(const std::vector<spherical_param::LevelReport>& levels, Con
   console.heading("");
 }
 
+/// Prints the phases of the optimisation, in the style of the levels.
+void printPhases(const std::vector<spherical_param::OptimizationPhase>& phases, Console& console) {
+  if (phases.empty()) {
+    return;
+  }
+  const std::string head = "phase          tried      moves       energy  self-int.  seconds";
+  console.heading("  " + head);
+  console.heading("  " + std::string(head.size(), '-'));
+  for (const spherical_param::OptimizationPhase& phase : phases) {
+    const std::string self_intersections =
+        phase.self_intersections ? std::to_string(*phase.self_intersections) : "";
+    std::array<char, 128> line{};
+    std::snprintf(line.data(), line.size(), "  %-9s %10zu %10zu %12s %10s %8.3f",
+                  phase.name.c_str(), phase.tried, phase.moves, formatted(phase.energy, 6).c_str(),
+                  self_intersections.c_str(), phase.seconds);
+    console.heading(line.data());
+  }
+  console.heading("");
+}
+
+/// How the mesh was optimised.
+std::string optimized(const Settings& settings,
+                      const spherical_param::OptimizationReport& optimization) {
+  if (settings.options.optimization == OptimizationMethod::None) {
+    return "no (-optimize none)";
+  }
+  return nameOf(settings.options.optimization, optimization_names) + ", energy " +
+         formatted(optimization.energy, 6) +
+         (optimization.noise_steps > 0
+              ? ", noisy: on positions after " + std::to_string(optimization.noise_steps) +
+                    " steps of smoothing"
+              : "");
+}
+
+std::string listed(const Eigen::Vector3d& vector) {
+  return formatted(vector.x(), 6) + " " + formatted(vector.y(), 6) + " " + formatted(vector.z(), 6);
+}
+
+/// What the library says about the cloud, after the label "looks like".
+std::string appearance(const spherical_param::SurfaceDiagnosis& diagnosis) {
+  const std::string beginning = "Looks like ";
+  const bool begins = diagnosis.summary.compare(0, beginning.size(), beginning) == 0;
+  return oneLine(begins ? diagnosis.summary.substr(beginning.size()) : diagnosis.summary);
+}
+
+void printAttempts(const std::vector<spherical_param::AttemptReport>& attempts, Console& console) {
+  // Of one alone the other lines tell all.
+  for (std::size_t i = 0; attempts.size() > 1 && i < attempts.size(); ++i) {
+    console.entry("attempt " + std::to_string(i + 1),
+                  oneLine(attempts[i].description) + ": " +
+                      counted(attempts[i].self_intersections, "self-intersection") + ", energy " +
+                      formatted(attempts[i].energy, 6) + (attempts[i].chosen ? ", chosen" : ""));
+  }
+}
+
+void printSmoothing(const Settings& settings, const spherical_param::SmoothingReport& smoothing,
+                    Console& console) {
+  if (settings.options.smoothing_steps == 0) {
+    return;
+  }
+  console.entry("smoothed",
+                counted(static_cast<std::size_t>(settings.options.smoothing_steps), "step") +
+                    ", points moved by " + formatted(smoothing.mean_displacement, 3) + " (mean), " +
+                    formatted(smoothing.max_displacement, 3) + " (max)");
+  console.entry("", "volume " + formatted(smoothing.volume_before, 6) + " -> " +
+                        formatted(smoothing.volume_after, 6) + ", " +
+                        counted(smoothing.self_intersections, "self-intersection"));
+}
+
 /// Whether the embedding converged, and why it ended.
 std::string convergence(const Settings& settings, const Reconstruction& reconstruction) {
   const spherical_param::EmbeddingReport& embedding = reconstruction.getResult().embedding;
@@ -715,10 +1044,15 @@ std::string convergence(const Settings& settings, const Reconstruction& reconstr
 }
 
 void printVerdict(const Settings& settings, const PointData& data,
+                  const std::optional<OutlierRemoval>& outliers,
                   const Reconstruction& reconstruction, Console& console) {
   const spherical_param::Result& result = reconstruction.getResult();
   printHierarchy(result.embedding.levels, console);
+  printPhases(result.optimization.phases, console);
   console.entry("points", std::to_string(data.points.size()));
+  if (outliers) {
+    console.entry("outliers", std::to_string(outliers->indices.size()) + " left out");
+  }
   console.entry("used", std::to_string(result.vertexCount()) + " (" +
                             std::to_string(result.duplicates) + " duplicate, " +
                             std::to_string(reconstruction.getIgnoredPointCount()) + " not finite)");
@@ -742,6 +1076,16 @@ void printVerdict(const Settings& settings, const PointData& data,
   console.entry("oriented", yesOrNo(result.topology.oriented));
   console.entry("genus",
                 result.topology.genus ? std::to_string(*result.topology.genus) : "undefined");
+  printAttempts(result.attempts, console);
+  console.entry("optimised", optimized(settings, result.optimization));
+  console.entry("self-intersections", std::to_string(reconstruction.getSelfIntersections().size()));
+  printSmoothing(settings, result.smoothing, console);
+  console.entry("looks like", appearance(result.diagnosis));
+  console.entry("volume", formatted(result.measures.volume, 6));
+  console.entry("area", formatted(result.measures.area, 6));
+  console.entry("bounding box",
+                listed(result.measures.box_min) + " to " + listed(result.measures.box_max));
+  console.entry("centroid", listed(result.measures.centroid));
   for (const std::string& warning : warningsOf(data, reconstruction)) {
     console.entry("warning", oneLine(warning));
   }
@@ -763,15 +1107,20 @@ void run(const std::vector<std::string>& words) {
   stages.push_back({"read", console.end(std::to_string(data.points.size()) + " points")});
 
   checkMemory(settings, data.points.size());
+  std::optional<OutlierRemoval> outliers;
+  if (settings.outlier_sigma) {
+    console.begin("outliers");
+    outliers = removeOutliers(settings, data);
+    stages.push_back(
+        {"outliers", console.end(counted(outliers->indices.size(), "point") + " left out")});
+  }
   Reconstruction reconstruction;
-  reconstruct(settings, data, reconstruction, console);
+  reconstruct(settings, data, outliers, reconstruction, console);
   const spherical_param::Result& result = reconstruction.getResult();
   stages.insert(stages.end(), result.stages.begin(), result.stages.end());
 
   console.begin("write");
-  // Only points that are vertices are written, so that every vertex of the file is used.
-  const TriangleMesh mesh = {selectPoints(data, reconstruction.getVertexIndices()),
-                             trianglesOf(result)};
+  const TriangleMesh mesh = meshOf(data, reconstruction);
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), mesh, settings.output_format, settings.encoding);
@@ -786,7 +1135,7 @@ void run(const std::vector<std::string>& words) {
 
   // Nothing gets its name before everything is stored, the report included.
   if (!settings.json.empty()) {
-    const std::string text = report(settings, data, reconstruction, stages);
+    const std::string text = report(settings, data, outliers, reconstruction, stages);
     if (settings.jsonToStandardOutput()) {
       printAll(text);
     } else {
@@ -795,7 +1144,7 @@ void run(const std::vector<std::string>& words) {
       files.back()->finish();
     }
   }
-  printVerdict(settings, data, reconstruction, console);
+  printVerdict(settings, data, outliers, reconstruction, console);
   console.flush();
   for (const auto& file : files) {
     file->commit();

@@ -1,5 +1,7 @@
 #include "spherical_param/errors.h"
+#include "spherical_param/mesh_measures.h"
 #include "spherical_param/point_set.h"
+#include "spherical_param/self_intersection.h"
 
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
@@ -39,8 +41,10 @@ using pcl::PointXYZ;
 using spherical_param::EdgeWeights;
 using spherical_param::EmbeddingMethod;
 using spherical_param::GraphMethod;
+using spherical_param::OptimizationMethod;
 using spherical_param::Progress;
 using spherical_param::StopReason;
+using spherical_param::SurfaceKind;
 using spherical_param::TriangulationMethod;
 using Cloud = pcl::PointCloud<PointXYZ>;
 using Reconstruction = pcl::SphericalParamReconstruction<PointXYZ>;
@@ -197,8 +201,13 @@ void expectCleared(const Reconstruction& reconstruction) {
   EXPECT_TRUE(reconstruction.getUsedIndices().empty());
   EXPECT_TRUE(reconstruction.getVertexIndices().empty());
   EXPECT_EQ(reconstruction.getIgnoredPointCount(), 0U);
+  EXPECT_TRUE(reconstruction.getSelfIntersections().empty());
+  EXPECT_TRUE(reconstruction.getDiagnosis().summary.empty());
+  EXPECT_TRUE(result.attempts.empty());
   ASSERT_TRUE(reconstruction.getSphereCoordinates());
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
+  ASSERT_TRUE(reconstruction.getSmoothedPoints());
+  EXPECT_TRUE(reconstruction.getSmoothedPoints()->empty());
 }
 
 void expectEmpty(const pcl::PolygonMesh& mesh) {
@@ -246,6 +255,8 @@ void setPapersMethod(pcl::SphericalParamReconstruction<PointT>& reconstruction) 
   reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
   reconstruction.setSolver(EmbeddingMethod::Iterative);
   reconstruction.setTriangulationMethod(TriangulationMethod::Qhull);
+  reconstruction.setOptimization(OptimizationMethod::None);
+  reconstruction.setAttempts(1);
 }
 
 Polygons reconstructPolygons(Reconstruction& reconstruction) {
@@ -1166,6 +1177,156 @@ TEST_F(SphericalParamReconstruction, ResultNamesTheTrianglesOfThePolygons) {
                     result.triangles(corner, static_cast<Eigen::Index>(t)))]);
 }
 
+/// A mesh of polygons in the types of the core, with a point for each of a cloud.
+struct CoreMesh {
+  spherical_param::Positions points;
+  spherical_param::Triangles triangles;
+};
+
+CoreMesh toCore(const Polygons& polygons, const Cloud& cloud) {
+  CoreMesh mesh{spherical_param::Positions(3, static_cast<Eigen::Index>(cloud.size())),
+                spherical_param::Triangles(3, static_cast<Eigen::Index>(polygons.size()))};
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    mesh.points.col(static_cast<Eigen::Index>(i)) = cloud[i].getVector3fMap().cast<double>();
+  for (std::size_t t = 0; t < polygons.size(); ++t)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      mesh.triangles(static_cast<Eigen::Index>(corner), static_cast<Eigen::Index>(t)) =
+          polygons[t].vertices[corner];
+  return mesh;
+}
+
+/// Moves each point of a cloud at random, the same in each run.
+void addNoise(Cloud& cloud, float size) {
+  std::mt19937 generator(5);
+  const auto step = [&] {
+    return size * (static_cast<float>(generator() % 2001) / 1000.0F - 1.0F);
+  };
+  for (PointXYZ& point : cloud) {
+    point.x += step();
+    point.y += step();
+    point.z += step();
+  }
+}
+
+TEST_F(SphericalParamReconstruction, SelfIntersectionsAreThoseOfThePolygons) {
+  const Cloud::Ptr cloud = makeEllipsoid(1000);
+  addNoise(*cloud, 0.3F);  // three times the distance of neighbours
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setIndices(share(shuffledIndices(1000)));
+  reconstruction.setOptimization(OptimizationMethod::None);
+  reconstruction.setAttempts(1);
+  const CoreMesh mesh = toCore(reconstructPolygons(reconstruction), *cloud);
+  EXPECT_FALSE(reconstruction.getSelfIntersections().empty());
+  EXPECT_EQ(reconstruction.getSelfIntersections(),
+            spherical_param::findSelfIntersections(mesh.points, mesh.triangles));
+}
+
+TEST_F(SphericalParamReconstruction, MeshOfACleanScanDoesNotIntersectItselfAndLooksClosed) {
+  const Cloud::Ptr cloud = makeEllipsoid(2000);
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  const CoreMesh mesh = toCore(reconstructPolygons(reconstruction), *cloud);
+  EXPECT_TRUE(spherical_param::findSelfIntersections(mesh.points, mesh.triangles).empty());
+  EXPECT_TRUE(reconstruction.getSelfIntersections().empty());
+  EXPECT_TRUE(reconstruction.getDiagnosis().looksClosedGenus0());
+  ASSERT_EQ(reconstruction.getResult().attempts.size(), 1U);
+  EXPECT_TRUE(reconstruction.getResult().attempts[0].chosen);
+  const spherical_param::MeshMeasures expected =
+      spherical_param::measureMesh(mesh.points, mesh.triangles);
+  const spherical_param::MeshMeasures& measures = reconstruction.getResult().measures;
+  EXPECT_NEAR(measures.volume, expected.volume, 1e-12 * expected.volume);
+  EXPECT_NEAR(measures.area, expected.area, 1e-12 * expected.area);
+  EXPECT_LT((measures.centroid - expected.centroid).norm(), 1e-12);
+  EXPECT_EQ(measures.box_max, expected.box_max);
+}
+
+// The upper third is missing: the diagnosis tells, in terms of the vertices.
+TEST_F(SphericalParamReconstruction, VertexIndicesMapFindingsToTheCloud) {
+  const Cloud::Ptr cloud = makeEllipsoid(3000);
+  Indices indices;
+  for (const pcl::index_t i : shuffledIndices(3000))
+    if ((*cloud)[static_cast<std::size_t>(i)].z < 0.3F)
+      indices.push_back(i);
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setIndices(share(indices));
+  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+  const spherical_param::SurfaceDiagnosis& diagnosis = reconstruction.getDiagnosis();
+  EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
+  ASSERT_EQ(diagnosis.lids.size(), 1U);
+  // Neighbours are some 0.07 apart.
+  EXPECT_NEAR(diagnosis.lids[0].center.z(), 0.3, 0.1);
+  EXPECT_FALSE(diagnosis.lids[0].vertices.empty());
+  for (const spherical_param::Index vertex : diagnosis.lids[0].vertices) {
+    const pcl::index_t point = reconstruction.getVertexIndices()[static_cast<std::size_t>(vertex)];
+    EXPECT_NEAR((*cloud)[static_cast<std::size_t>(point)].z, 0.3F, 0.1F);
+  }
+}
+
+TEST_F(SphericalParamReconstruction, SmoothedPointsFitThePolygonsAndLeaveTheMeshAlone) {
+  const Cloud::Ptr cloud = makeEllipsoid(2000);
+  addNoise(*cloud, 0.04F);
+  (*cloud)[10].x = kNan;
+  (*cloud)[20] = (*cloud)[30];
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setIndices(share(shuffledIndices(1900)));
+  EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
+  EXPECT_TRUE(reconstruction.getSmoothedPoints()->empty());
+
+  reconstruction.setSmoothingSteps(5);
+  pcl::PolygonMesh mesh;
+  reconstruction.reconstruct(mesh);
+  EXPECT_EQ(reconstruction.getErrorMessage(), "");
+  pcl::PCLPointCloud2 input;
+  pcl::toPCLPointCloud2(*cloud, input);
+  EXPECT_EQ(mesh.cloud.data, input.data);
+
+  const Cloud::Ptr smoothed = reconstruction.getSmoothedPoints();
+  ASSERT_EQ(smoothed->size(), cloud->size());
+  EXPECT_FALSE(smoothed->is_dense);
+  const auto shift = [&](std::size_t i) {
+    return ((*smoothed)[i].getVector3fMap() - (*cloud)[i].getVector3fMap()).norm();
+  };
+  float largest = 0.0F;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (i == 10 || i >= 1900) {
+      EXPECT_TRUE((*smoothed)[i].getVector3fMap().array().isNaN().all()) << i;
+    } else {
+      largest = std::max(largest, shift(i));
+    }
+  }
+  EXPECT_EQ((*smoothed)[20].getVector3fMap(), (*smoothed)[30].getVector3fMap());
+  const spherical_param::SmoothingReport& report = reconstruction.getResult().smoothing;
+  // Coordinates around 1 in float.
+  EXPECT_NEAR(static_cast<double>(largest), report.max_displacement, 1e-6);
+  EXPECT_GT(largest, 0.01F);
+  EXPECT_EQ(report.self_intersections, 0U);
+  EXPECT_NEAR(sixfoldVolume(mesh.polygons, *smoothed) / 6.0, report.volume_after, 1e-5);
+  EXPECT_EQ(spherical_param::findSelfIntersections(reconstruction.getResult().smoothed,
+                                                   reconstruction.getResult().triangles)
+                .size(),
+            report.self_intersections);
+}
+
+TEST_F(SphericalParamReconstruction, MoreAttemptsAreMadeOnlyWhereTheMeshIntersectsItself) {
+  const Cloud::Ptr cloud = makeEllipsoid(800);
+  addNoise(*cloud, 0.1F);
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  for (const int attempts : {1, 2}) {
+    reconstruction.setAttempts(attempts);
+    expectSphere(reconstructPolygons(reconstruction), *cloud);
+    const auto& reports = reconstruction.getResult().attempts;
+    ASSERT_FALSE(reports.empty());
+    EXPECT_LE(reports.size(), static_cast<std::size_t>(attempts));
+    EXPECT_EQ(std::count_if(reports.begin(), reports.end(),
+                            [](const auto& report) { return report.chosen; }),
+              1);
+  }
+}
+
 TEST_F(SphericalParamReconstruction, FirstStageIsTheSearch) {
   Reconstruction reconstruction;
   reconstruction.setInputCloud(makeEllipsoid(300));
@@ -1295,6 +1456,9 @@ TEST_F(SphericalParamReconstruction, DefaultsAreThoseOfTheCore) {
   EXPECT_EQ(reconstruction.getLambda(), defaults.lambda);
   EXPECT_EQ(reconstruction.getStarts(), defaults.starts);
   EXPECT_EQ(reconstruction.getSeed(), defaults.seed);
+  EXPECT_EQ(reconstruction.getOptimization(), defaults.optimization);
+  EXPECT_EQ(reconstruction.getAttempts(), defaults.attempts);
+  EXPECT_EQ(reconstruction.getSmoothingSteps(), defaults.smoothing_steps);
   EXPECT_EQ(reconstruction.getMaximumIterations(), defaults.max_iterations);
   EXPECT_EQ(reconstruction.getTolerance(), defaults.tolerance);
   EXPECT_EQ(reconstruction.getStagnationWindow(), defaults.stagnation_window);
@@ -1308,6 +1472,9 @@ TEST_F(SphericalParamReconstruction, NewMethodIsTheDefault) {
   EXPECT_EQ(reconstruction.getGraphMethod(), GraphMethod::LocalDelaunay);
   EXPECT_EQ(reconstruction.getSolver(), EmbeddingMethod::Multilevel);
   EXPECT_EQ(reconstruction.getTriangulationMethod(), TriangulationMethod::Incremental);
+  EXPECT_EQ(reconstruction.getOptimization(), OptimizationMethod::Full);
+  EXPECT_EQ(reconstruction.getAttempts(), 4);
+  EXPECT_EQ(reconstruction.getSmoothingSteps(), 0);
 }
 
 TEST_F(SphericalParamReconstruction, DefaultsThatDependOnTheMethodAreThoseInForce) {
@@ -1340,6 +1507,10 @@ TEST_F(SphericalParamReconstruction, GettersGiveWhatSettersSet) {
   EXPECT_EQ(reconstruction.getGraphMethod(), GraphMethod::NearestNeighbors);
   EXPECT_EQ(reconstruction.getSolver(), EmbeddingMethod::Iterative);
   EXPECT_EQ(reconstruction.getTriangulationMethod(), TriangulationMethod::Qhull);
+  EXPECT_EQ(reconstruction.getOptimization(), OptimizationMethod::None);
+  EXPECT_EQ(reconstruction.getAttempts(), 1);
+  reconstruction.setSmoothingSteps(8);
+  EXPECT_EQ(reconstruction.getSmoothingSteps(), 8);
   reconstruction.setExponent(2.5);
   EXPECT_EQ(reconstruction.getExponent(), 2.5);
   reconstruction.setStarts(7);
@@ -1423,10 +1594,15 @@ protected:
     EXPECT_EQ(result.graph.searched_again, expected.graph.searched_again);
     EXPECT_EQ(result.triangles, expected.triangles);
     EXPECT_EQ(result.sphere, expected.sphere);
+    EXPECT_EQ(result.smoothed, expected.smoothed);
+    EXPECT_EQ(result.self_intersections, expected.self_intersections);
+    EXPECT_EQ(result.optimization.phases.size(), expected.optimization.phases.size());
     // Unless the option does something, the test above says nothing.
     const spherical_param::Result plain = runCore(*cloud, start);
     EXPECT_EQ(std::string(GetParam().name) != "None",
               !(result.sphere == plain.sphere && result.triangles == plain.triangles &&
+                result.smoothed.cols() == plain.smoothed.cols() &&
+                result.optimization.phases.size() == plain.optimization.phases.size() &&
                 result.embedding.starts == plain.embedding.starts &&
                 result.graph.searched_again == plain.graph.searched_again));
   }
@@ -1463,6 +1639,11 @@ INSTANTIATE_TEST_SUITE_P(
                      [](Reconstruction& r) { r.setStarts(3); }},
         OptionChange{"Seed", [](spherical_param::Options& o) { o.seed = 99; },
                      [](Reconstruction& r) { r.setSeed(99); }},
+        OptionChange{"NoOptimization",
+                     [](spherical_param::Options& o) { o.optimization = OptimizationMethod::None; },
+                     [](Reconstruction& r) { r.setOptimization(OptimizationMethod::None); }},
+        OptionChange{"Smoothing", [](spherical_param::Options& o) { o.smoothing_steps = 4; },
+                     [](Reconstruction& r) { r.setSmoothingSteps(4); }},
         OptionChange{"Tolerance", [](spherical_param::Options& o) { o.tolerance = 1e-10; },
                      [](Reconstruction& r) { r.setTolerance(1e-10); }}),
     [](const testing::TestParamInfo<OptionChange>& parameter) {
@@ -1512,6 +1693,8 @@ TEST_P(EveryOptionOfThePaper, ReachesTheCore) {
   options.graph = GraphMethod::NearestNeighbors;
   options.solver = EmbeddingMethod::Iterative;
   options.hull = TriangulationMethod::Qhull;
+  options.optimization = OptimizationMethod::None;
+  options.attempts = 1;
   Reconstruction reconstruction;
   setPapersMethod(reconstruction);
   expectToReachTheCore(options, reconstruction);
@@ -1559,6 +1742,10 @@ TEST_F(SphericalParamReconstruction, OptionsOutOfRangeFail) {
        }},
       {"starts", [](Reconstruction& r) { r.setStarts(0); }},
       {"starts", [](Reconstruction& r) { r.setStarts(101); }},
+      {"attempts", [](Reconstruction& r) { r.setAttempts(0); }},
+      {"attempts", [](Reconstruction& r) { r.setAttempts(101); }},
+      {"steps", [](Reconstruction& r) { r.setSmoothingSteps(-1); }},
+      {"steps", [](Reconstruction& r) { r.setSmoothingSteps(10001); }},
       {"stagnation", [](Reconstruction& r) { r.setStagnationWindow(1); }},
       {"stagnation", [](Reconstruction& r) { r.setStagnationWindow(-1); }},
       {"threads",
@@ -1586,6 +1773,7 @@ TEST_F(SphericalParamReconstruction, ProgressTellsOfTheSearchAndThenOfTheStagesO
   Reconstruction reconstruction;
   reconstruction.setInputCloud(makeEllipsoid(6000));  // enough to search in parallel
   reconstruction.setNumberOfThreads(4);
+  reconstruction.setSmoothingSteps(2);
   reconstruction.setProgressCallback([&](const Progress& progress) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
     reports.push_back({progress.stage, progress.fraction});
@@ -1606,7 +1794,7 @@ TEST_F(SphericalParamReconstruction, ProgressTellsOfTheSearchAndThenOfTheStagesO
     ends[reports[i].stage] += reports[i].fraction == 1.0 ? 1 : 0;
   }
   EXPECT_EQ(stages, (std::vector<std::string>{"neighbors", "graph", "embedding", "triangulation",
-                                              "check"}));
+                                              "optimization", "smoothing", "check"}));
   for (const auto& [stage, count] : ends)
     EXPECT_EQ(count, 1) << stage;
   const auto searches = std::count_if(reports.begin(), reports.end(), [](const ProgressReport& r) {
@@ -1625,11 +1813,13 @@ TEST_F(SphericalParamReconstruction, CallbackChangesNoResult) {
 }
 
 TEST_F(SphericalParamReconstruction, CancellationInAnyStageFails) {
-  for (const std::string stage : {"neighbors", "graph", "embedding", "triangulation", "check"})
+  for (const std::string stage :
+       {"neighbors", "graph", "embedding", "triangulation", "optimization", "smoothing", "check"})
     for (const double from : {0.0, 1.0}) {
       Reconstruction reconstruction;
       const Cloud::Ptr cloud = makeEllipsoid(200);
       reconstruction.setInputCloud(cloud);
+      reconstruction.setSmoothingSteps(2);
       reconstruction.setProgressCallback([&](const Progress& progress) {
         return progress.stage != stage || progress.fraction < from;
       });

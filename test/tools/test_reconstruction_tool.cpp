@@ -2,6 +2,8 @@
 
 #include "tool_runner.h"
 
+#include "spherical_param/self_intersection.h"
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +31,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <random>
 #include <set>
 #include <sstream>
 #include <string>
@@ -526,12 +529,14 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
     stages.push_back(stage["name"]);
     EXPECT_TRUE(stage["seconds"].is_number_float());
   }
-  const std::vector<std::string> expected = {"read",          "neighbors", "graph", "embedding",
-                                             "triangulation", "check",     "write"};
+  const std::vector<std::string> expected = {"read",          "neighbors",    "graph", "embedding",
+                                             "triangulation", "optimization", "check", "write"};
   EXPECT_EQ(stages, expected);
   for (const char* key :
-       {"graph", "k", "solver", "weights", "exponent", "tolerance", "lambda", "iterations",
-        "stagnation", "starts", "seed", "hull", "threads", "sphere", "json", "ascii", "quiet"}) {
+       {"graph",    "k",          "solver",     "weights",  "exponent",       "tolerance",
+        "lambda",   "iterations", "stagnation", "starts",   "seed",           "hull",
+        "optimize", "attempts",   "smooth",     "outliers", "outlier_method", "threads",
+        "sphere",   "json",       "ascii",      "quiet"}) {
     EXPECT_TRUE(report["options"].contains(key)) << key;
   }
   EXPECT_EQ(report["options"]["k"], 9);
@@ -559,6 +564,52 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
     EXPECT_TRUE(report["triangulation"][key].is_number_integer()) << key;
   }
   EXPECT_TRUE(report["triangulation"]["hull_rejected"].is_boolean());
+
+  EXPECT_TRUE(report["self_intersections"].is_number_integer());
+  EXPECT_TRUE(report["self_intersecting_pairs"].is_array());
+  EXPECT_TRUE(report["outliers"].is_null());
+  EXPECT_TRUE(report["smoothing"].is_null());
+  EXPECT_EQ(report["optimization"]["method"], "full");
+  for (const char* key : {"energy", "rough", "alignment", "unevenness"}) {
+    EXPECT_TRUE(report["optimization"][key].is_number_float()) << key;
+  }
+  EXPECT_EQ(report["optimization"]["noisy"], false);
+  EXPECT_EQ(report["optimization"]["noise_steps"], 0);
+  EXPECT_FALSE(report["optimization"]["phases"].empty());
+  for (const json& phase : report["optimization"]["phases"]) {
+    EXPECT_TRUE(phase["name"].is_string());
+    for (const char* key : {"tried", "moves"}) {
+      EXPECT_TRUE(phase[key].is_number_integer()) << key;
+    }
+    for (const char* key : {"energy_before", "energy", "seconds"}) {
+      EXPECT_TRUE(phase[key].is_number_float()) << key;
+    }
+    const json& self_intersections = phase["self_intersections"];
+    EXPECT_TRUE(self_intersections.is_null() || self_intersections.is_number_integer());
+  }
+  EXPECT_FALSE(report["attempts"].empty());
+  for (const json& attempt : report["attempts"]) {
+    EXPECT_TRUE(attempt["description"].is_string());
+    EXPECT_TRUE(attempt["self_intersections"].is_number_integer());
+    EXPECT_TRUE(attempt["energy"].is_number_float());
+    EXPECT_TRUE(attempt["seconds"].is_number_float());
+    EXPECT_TRUE(attempt["chosen"].is_boolean());
+  }
+  for (const char* key : {"kind", "summary"}) {
+    EXPECT_TRUE(report["diagnosis"][key].is_string()) << key;
+  }
+  EXPECT_TRUE(report["diagnosis"]["looks_closed_genus0"].is_boolean());
+  for (const char* key : {"lids", "handles", "bridges"}) {
+    EXPECT_TRUE(report["diagnosis"][key].is_array()) << key;
+  }
+  for (const char* key : {"volume", "area", "mean_edge_length"}) {
+    EXPECT_TRUE(report["measures"][key].is_number_float()) << key;
+  }
+  EXPECT_EQ(report["measures"]["bounding_box"]["min"].size(), 3U);
+  EXPECT_EQ(report["measures"]["bounding_box"]["max"].size(), 3U);
+  EXPECT_EQ(report["measures"]["centroid"].size(), 3U);
+  ASSERT_EQ(report["measures"]["inertia"].size(), 3U);
+  EXPECT_EQ(report["measures"]["inertia"][0].size(), 3U);
 }
 
 TEST_F(ReconstructionTool, ReportOfTheIterationHasAResidualBeforeEachStepAndAtItsEnd) {
@@ -579,11 +630,17 @@ TEST_F(ReconstructionTool, ReportTellsTheOptionsInForce) {
   EXPECT_EQ(standard["starts"], 2);
   EXPECT_EQ(standard["seed"], 1);
   EXPECT_EQ(standard["hull"], "incremental");
+  EXPECT_EQ(standard["optimize"], "full");
+  EXPECT_EQ(standard["attempts"], 4);
+  EXPECT_EQ(standard["smooth"], 0);
+  for (const char* key : {"outliers", "outlier_method"}) {
+    EXPECT_TRUE(standard[key].is_null()) << key;
+  }
   for (const char* key : {"tolerance", "iterations", "stagnation"}) {
     EXPECT_TRUE(standard[key].is_null()) << key;
   }
-  const json paper = reportOf(
-      {"in.ply", "out.ply", "-graph", "knn", "-solver", "iterative", "-hull", "qhull"})["options"];
+  const json paper = reportOf({"in.ply", "out.ply", "-graph", "knn", "-solver", "iterative",
+                               "-hull", "qhull", "-optimize", "none", "-attempts", "1"})["options"];
   EXPECT_EQ(paper["graph"], "knn");
   EXPECT_EQ(paper["k"], 25);
   EXPECT_EQ(paper["solver"], "iterative");
@@ -591,11 +648,24 @@ TEST_F(ReconstructionTool, ReportTellsTheOptionsInForce) {
   EXPECT_EQ(paper["iterations"], 1600);
   EXPECT_EQ(paper["stagnation"], 100);
   EXPECT_EQ(paper["hull"], "qhull");
+  EXPECT_EQ(paper["optimize"], "none");
+  EXPECT_EQ(paper["attempts"], 1);
   for (const char* key : {"exponent", "starts", "seed"}) {
     EXPECT_TRUE(paper[key].is_null()) << key;
   }
   EXPECT_TRUE(
       reportOf({"in.ply", "out.ply", "-weights", "uniform"})["options"]["exponent"].is_null());
+  // The optimisation is random even where the solver is not.
+  const json iterative =
+      reportOf({"in.ply", "out.ply", "-solver", "iterative", "-seed", "7"})["options"];
+  EXPECT_EQ(iterative["seed"], 7);
+  const json cleaned = reportOf({"in.ply", "out.ply", "-optimize", "flips", "-smooth", "3",
+                                 "-outliers", "2.5", "-attempts", "2"})["options"];
+  EXPECT_EQ(cleaned["optimize"], "flips");
+  EXPECT_EQ(cleaned["smooth"], 3);
+  EXPECT_EQ(cleaned["attempts"], 2);
+  EXPECT_EQ(cleaned["outliers"], 2.5);
+  EXPECT_EQ(cleaned["outlier_method"], "paper");
 }
 
 TEST_F(ReconstructionTool, EachMethodIsTheOneThatWasAskedFor) {
@@ -606,8 +676,9 @@ TEST_F(ReconstructionTool, EachMethodIsTheOneThatWasAskedFor) {
   EXPECT_GE(knn["graph"]["edges"], 200 * 25 / 2);
   EXPECT_LT(delaunay["graph"]["edges"], 200 * 4);
 
-  const json qhull = reportOf({"in.ply", "qhull.ply", "-hull", "qhull"});
-  const json incremental = reportOf({"in.ply", "incremental.ply", "-hull", "incremental"});
+  const json qhull = reportOf({"in.ply", "qhull.ply", "-hull", "qhull", "-optimize", "none"});
+  const json incremental =
+      reportOf({"in.ply", "incremental.ply", "-hull", "incremental", "-optimize", "none"});
   EXPECT_EQ(qhull["triangulation"]["method"], "qhull");
   EXPECT_EQ(incremental["triangulation"]["method"], "incremental");
   // The Delaunay triangulation of the same points, which is unique but for the order.
@@ -770,9 +841,9 @@ TEST_F(ReconstructionTool, NamesPointsOfTheInputWithoutATangentPlane) {
   }
   EXPECT_EQ(points.count(0), 0U);
   EXPECT_LT(*points.rbegin(), 301);
-  EXPECT_NE(
-      result.output.find("tangent plane  missing at " + std::to_string(points.size()) + " points"),
-      std::string::npos);
+  EXPECT_NE(result.output.find("tangent plane       missing at " + std::to_string(points.size()) +
+                               " points"),
+            std::string::npos);
   const json knn = reportOf({"needle.xyz", "out.ply", "-graph", "knn"});
   EXPECT_EQ(knn["graph"]["without_tangent_plane_count"], 0);
 }
@@ -913,9 +984,11 @@ TEST_F(ReconstructionTool, HelpAndVersionSucceed) {
   for (const char* option : {"-h", "--h", "-help", "--help"}) {
     const RunResult result = runTool(directory, {option});
     EXPECT_EQ(result.exit_code, 0);
-    for (const char* line : {"-graph NAME", "-k N", "-solver NAME", "-weights NAME", "-exponent X",
-                             "-tolerance X", "-lambda X", "-iterations N", "-stagnation N",
-                             "-starts N", "-seed N", "-hull NAME", "-threads N"}) {
+    for (const char* line :
+         {"-graph NAME", "-k N", "-solver NAME", "-weights NAME", "-exponent X", "-tolerance X",
+          "-lambda X", "-iterations N", "-stagnation N", "-starts N", "-seed N", "-hull NAME",
+          "-optimize NAME", "-attempts N", "-smooth N", "-outliers SIGMA", "-outlier-method NAME",
+          "-threads N"}) {
       EXPECT_NE(result.output.find(std::string("\n  ") + line), std::string::npos) << line;
     }
   }
@@ -934,27 +1007,565 @@ TEST_F(ReconstructionTool, PrintsStagesInPlainLinesAndTheVerdict) {
                            "graph",
                            "embedding",
                            "triangulation",
+                           "optimization",
                            "check",
                            "write",
-                           "points         200",
-                           "used           200",
-                           "graph edges    ",
+                           "points              200",
+                           "used                200",
+                           "graph edges         ",
 
-                           "local Delaunay ",
-                           "tangent plane  missing at 0 points",
-                           "starts tried   2 (0 collapsed)",
-                           "triangles      396",
-                           "closed         yes",
-                           "manifold       yes",
-                           "oriented       yes",
-                           "genus          0",
+                           "local Delaunay      ",
+                           "tangent plane       missing at 0 points",
+                           "starts tried        2 (0 collapsed)",
+                           "triangles           396",
+                           "closed              yes",
+                           "manifold            yes",
+                           "oriented            yes",
+                           "genus               0",
                            "residual",
-                           "hull vertices  200 (0 put back, 0 coincident)",
-                           "converged      not asked for"}) {
+                           "hull vertices       200 (0 put back, 0 coincident)",
+                           "converged           not asked for",
+                           "optimised           full, energy ",
+                           "self-intersections  0",
+                           "looks like          a closed genus-0 surface.",
+                           "volume              ",
+                           "area                ",
+                           "bounding box        ",
+                           "centroid            "}) {
     EXPECT_NE(result.output.find(std::string("\n  ") + word), std::string::npos) << word;
   }
   EXPECT_NE(result.output.find(" (1 component, 0 bridges)\n"), std::string::npos);
 }
+
+// --------------------------------------------------------------------------- quality of the mesh
+
+Eigen::Vector3d position(const Point& point) {
+  return Eigen::Vector3f(point.data()).cast<double>();
+}
+
+Eigen::Vector3d vectorOf(const json& values) {
+  return {values[0].get<double>(), values[1].get<double>(), values[2].get<double>()};
+}
+
+spherical_param::Positions positionsOf(const Mesh& mesh) {
+  spherical_param::Positions positions(3, static_cast<Eigen::Index>(mesh.points.size()));
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    positions.col(static_cast<Eigen::Index>(i)) = position(mesh.points[i]);
+  }
+  return positions;
+}
+
+/// Pairs of triangles of a written mesh that intersect.
+std::vector<std::array<int, 2>> selfIntersections(const Mesh& mesh) {
+  spherical_param::Triangles triangles(3, static_cast<Eigen::Index>(mesh.triangles.size()));
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    triangles.col(static_cast<Eigen::Index>(t)) = Eigen::Vector3i(mesh.triangles[t].data());
+  }
+  return spherical_param::findSelfIntersections(positionsOf(mesh), triangles);
+}
+
+/// The third corner of the triangle at the left of each directed edge.
+std::map<std::pair<int, int>, int> cornersOfEdges(const Mesh& mesh) {
+  std::map<std::pair<int, int>, int> corners;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[{triangle[c], triangle[(c + 1) % 3]}] = triangle[(c + 2) % 3];
+    }
+  }
+  return corners;
+}
+
+/// Edges of a triangulation of the unit sphere that are not those of the convex hull.
+int edgesOffTheHull(const Mesh& sphere) {
+  const spherical_param::Positions p = positionsOf(sphere);
+  const auto corners = cornersOfEdges(sphere);
+  int count = 0;
+  for (const auto& [edge, corner] : corners) {
+    const auto [a, b] = edge;
+    Eigen::Matrix3d sides;
+    sides << p.col(b) - p.col(a), p.col(corner) - p.col(a), p.col(corners.at({b, a})) - p.col(a);
+    // The rounding of floats, in the volume of a tetrahedron whose sides are below 1.
+    count += a < b && sides.determinant() > 1e-6 ? 1 : 0;
+  }
+  return count;
+}
+
+double volumeOf(const Mesh& mesh) {
+  const spherical_param::Positions p = positionsOf(mesh);
+  double volume = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    // About a point of the mesh, where the sum loses no digits.
+    volume += (p.col(a) - p.col(0)).dot((p.col(b) - p.col(0)).cross(p.col(c) - p.col(0))) / 6.0;
+  }
+  return volume;
+}
+
+/// A tool that has generated scans at hand.
+class QualityOfTheMesh : public ReconstructionTool {
+protected:
+  void scan(const std::vector<std::string>& arguments) {
+    RunOptions options;
+    options.directory = directory.path();
+    ASSERT_EQ(run(SCAN_TOOL, arguments, options).exit_code, 0);
+  }
+
+  Mesh meshFile(const std::string& name) const { return readPly(directory.file(name)); }
+};
+
+/// What the parts of a report say about each other.
+void expectConsistency(const json& report, const Mesh& mesh) {
+  const json& pairs = report["self_intersecting_pairs"];
+  const auto count = report["self_intersections"].get<std::size_t>();
+  EXPECT_EQ(pairs.size(), std::min<std::size_t>(count, 1000));
+  std::array<int, 2> last = {-1, -1};
+  for (const json& pair : pairs) {
+    const auto [low, high] = pair.get<std::array<int, 2>>();
+    EXPECT_LT(low, high);
+    EXPECT_LT(high, static_cast<int>(mesh.triangles.size()));
+    EXPECT_LT(last, (std::array<int, 2>{low, high}));
+    last = {low, high};
+  }
+  int chosen = 0;
+  for (const json& attempt : report["attempts"]) {
+    chosen += attempt["chosen"].get<bool>() ? 1 : 0;
+  }
+  EXPECT_EQ(chosen, 1);
+  EXPECT_LE(report["attempts"].size(), report["options"]["attempts"].get<std::size_t>());
+  EXPECT_EQ(report["measures"]["volume"], report["volume"]);
+  EXPECT_EQ(report["measures"]["area"], report["area"]);
+  const json& diagnosis = report["diagnosis"];
+  EXPECT_EQ(diagnosis["looks_closed_genus0"].get<bool>(), diagnosis["kind"] == "closed genus 0");
+  for (const char* kind : {"lids", "handles", "bridges"}) {
+    for (const json& finding : diagnosis[kind]) {
+      EXPECT_EQ(finding["location"].size(), 3U);
+      EXPECT_GT(finding["size"], 0.0);
+      EXPECT_FALSE(finding["vertices"].empty());
+      for (const json& vertex : finding["vertices"]) {
+        EXPECT_GE(vertex, 0);
+        EXPECT_LT(vertex, report["points"]);
+      }
+    }
+  }
+}
+
+TEST_F(QualityOfTheMesh, GeneratedObjectsAreMeshedWithoutSelfIntersections) {
+  for (const char* shape : {"head", "bird", "hand", "ellipsoid"}) {
+    scan({shape, "scan.ply", "-points", "3000"});
+    const json report = reportOf({"scan.ply", "out.ply"});
+    const Mesh mesh = meshFile("out.ply");
+    expectConsistency(report, mesh);
+    EXPECT_EQ(report["self_intersections"], 0) << shape;
+    EXPECT_TRUE(selfIntersections(mesh).empty()) << shape;
+    EXPECT_EQ(report["diagnosis"]["kind"], "closed genus 0") << shape;
+    for (const char* finding : {"lids", "handles", "bridges"}) {
+      EXPECT_TRUE(report["diagnosis"][finding].empty()) << shape << " " << finding;
+    }
+    EXPECT_EQ(report["attempts"].size(), 1U) << shape;
+  }
+}
+
+TEST_F(QualityOfTheMesh, AnOpeningIsFoundWhereItIs) {
+  scan({"bowl", "scan.ply", "-points", "3000"});
+  const json report = reportOf({"scan.ply", "out.ply"});
+  expectConsistency(report, meshFile("out.ply"));
+  const json& diagnosis = report["diagnosis"];
+  EXPECT_EQ(diagnosis["kind"], "open");
+  ASSERT_EQ(diagnosis["lids"].size(), 1U);
+  const json& lid = diagnosis["lids"][0];
+  EXPECT_EQ(lid["cause"], "open");
+  // A sphere of radius 0.5 cut at z = 0.15, sampled every 0.035.
+  EXPECT_LT((vectorOf(lid["location"]) - Eigen::Vector3d(0.0, 0.0, 0.15)).norm(), 0.07);
+  EXPECT_NEAR(lid["size"].get<double>(), 2.0 * std::sqrt(0.25 - 0.15 * 0.15), 0.1);
+  const Mesh input = meshFile("scan.ply");
+  for (const json& vertex : lid["vertices"]) {
+    EXPECT_NEAR(static_cast<double>(input.points[vertex.get<std::size_t>()][2]), 0.15, 0.07);
+  }
+}
+
+TEST_F(QualityOfTheMesh, TwoPartsAreFoundWithTheGapBetweenThem) {
+  scan({"pair", "scan.ply", "-points", "2000"});
+  const json report = reportOf({"scan.ply", "out.ply"});
+  expectConsistency(report, meshFile("out.ply"));
+  const json& diagnosis = report["diagnosis"];
+  EXPECT_EQ(diagnosis["kind"], "several parts");
+  ASSERT_EQ(diagnosis["bridges"].size(), 1U);
+  const json& bridge = diagnosis["bridges"][0];
+  EXPECT_EQ(bridge["points"].get<int>() + bridge["other_points"].get<int>(), 2000);
+  EXPECT_NEAR(bridge["points"].get<double>(), 1000.0, 50.0);
+  // Spheres of radius 0.2 at x = -0.3 and 0.3: a gap of 0.2 around the origin.
+  EXPECT_NEAR(bridge["size"].get<double>(), 0.2, 0.02);
+  EXPECT_LT(vectorOf(bridge["location"]).norm(), 0.05);
+}
+
+TEST_F(QualityOfTheMesh, AHandleIsFound) {
+  scan({"torus", "scan.ply", "-points", "3000"});
+  const json report = reportOf({"scan.ply", "out.ply"});
+  expectConsistency(report, meshFile("out.ply"));
+  const json& diagnosis = report["diagnosis"];
+  EXPECT_EQ(diagnosis["looks_closed_genus0"], false);
+  EXPECT_EQ(diagnosis["kind"], "handles");
+  ASSERT_FALSE(diagnosis["handles"].empty());
+  // A tube of radius 0.14 around a circle of radius 0.36: the cut goes through the tube, or fills
+  // the hole; a few edges beyond either.
+  const Eigen::Vector3d place = vectorOf(diagnosis["handles"][0]["location"]);
+  EXPECT_LT(place.head<2>().norm(), 0.5);
+  EXPECT_LT(std::abs(place.z()), 0.14);
+}
+
+TEST_F(QualityOfTheMesh, WithoutOptimizationTheMeshIsThatOfTheSphere) {
+  scan({"hand", "scan.ply", "-points", "3000"});
+  const std::vector<std::string> raw_run = {"scan.ply",  "raw.ply", "-sphere",   "sphere.ply",
+                                            "-optimize", "none",    "-attempts", "1"};
+  const json raw = reportOf(raw_run);
+  expectConsistency(raw, meshFile("raw.ply"));
+  EXPECT_EQ(raw["optimization"]["method"], "none");
+  EXPECT_TRUE(raw["optimization"]["phases"].empty());
+  EXPECT_EQ(raw["attempts"].size(), 1U);
+  EXPECT_EQ(edgesOffTheHull(meshFile("sphere.ply")), 0);
+  EXPECT_EQ(meshFile("sphere.ply").triangles, meshFile("raw.ply").triangles);
+
+  const json full = reportOf({"scan.ply", "full.ply", "-sphere", "sphere.ply"});
+  EXPECT_GT(edgesOffTheHull(meshFile("sphere.ply")), 0);
+  const json flips = reportOf({"scan.ply", "flips.ply", "-optimize", "flips"});
+  EXPECT_LE(full["self_intersections"], flips["self_intersections"]);
+  EXPECT_LT(flips["optimization"]["energy"], flips["optimization"]["phases"][0]["energy_before"]);
+  for (const json& phase : flips["optimization"]["phases"]) {
+    EXPECT_TRUE(phase["name"] == "flips" || phase["name"] == "polish") << phase["name"];
+  }
+  // The points stay where they are, whatever the mesh.
+  for (const char* name : {"raw.ply", "full.ply", "flips.ply"}) {
+    EXPECT_EQ(meshFile(name).points, meshFile("scan.ply").points) << name;
+    expectSphere(meshFile(name));
+  }
+}
+
+TEST_F(QualityOfTheMesh, SelfIntersectionsOfTheReportAreThoseOfTheMesh) {
+  scan({"hand", "scan.ply", "-points", "4000", "-noise", "1"});
+  const json report = reportOf({"scan.ply", "out.ply", "-optimize", "none", "-attempts", "1"});
+  const Mesh mesh = meshFile("out.ply");
+  expectConsistency(report, mesh);
+  const auto pairs = selfIntersections(mesh);
+  // More than are listed.
+  ASSERT_GT(pairs.size(), 1000U);
+  EXPECT_EQ(report["self_intersections"], pairs.size());
+  for (std::size_t i = 0; i < report["self_intersecting_pairs"].size(); ++i) {
+    EXPECT_EQ(report["self_intersecting_pairs"][i], json(pairs[i]));
+  }
+}
+
+// Clouds so coarse or noisy that the first mesh may intersect itself, and so few points that they
+// show no surface, some of which have no other mesh.
+TEST_F(QualityOfTheMesh, AttemptsAreABudgetThatIsSpentWhereTheMeshIntersectsItself) {
+  scan({"hand", "coarse.ply", "-points", "300"});
+  scan({"animal", "noisy.ply", "-points", "1000", "-noise", "0.6"});
+  std::vector<std::string> files{"coarse.ply", "noisy.ply"};
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::ostringstream text;
+    for (int i = 0; i < (seed % 2 == 0 ? 8 : 16); ++i) {
+      text << uniform(random) << ' ' << uniform(random) << ' ' << uniform(random) << '\n';
+    }
+    files.push_back("random" + std::to_string(seed) + ".xyz");
+    tool_test::writeFile(directory.file(files.back()), text.str());
+  }
+  std::size_t most = 0;
+  for (const std::string& file : files) {
+    for (const std::size_t budget : {1U, 3U}) {
+      const RunResult result = runTool(directory, {file, "out.ply", "-attempts",
+                                                   std::to_string(budget), "-json", "report.json"});
+      ASSERT_EQ(result.exit_code, 0) << result.errors;
+      const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+      expectConsistency(report, meshFile("out.ply"));
+      const json& attempts = report["attempts"];
+      ASSERT_FALSE(attempts.empty());
+      ASSERT_LE(attempts.size(), budget);
+      most = std::max(most, attempts.size());
+      for (std::size_t i = 0; i < attempts.size(); ++i) {
+        const json& attempt = attempts[i];
+        for (const json& other : attempts) {
+          EXPECT_TRUE(!attempt["chosen"].get<bool>() ||
+                      attempt["self_intersections"] <= other["self_intersections"]);
+        }
+        const std::string line = "\n  attempt " + std::to_string(i + 1) + "           ";
+        EXPECT_EQ(result.output.find(line) != std::string::npos, attempts.size() > 1);
+        // Nothing is tried after a mesh that does not intersect itself.
+        EXPECT_TRUE(attempt["self_intersections"] > 0 || i + 1 == attempts.size());
+      }
+    }
+  }
+  EXPECT_GT(most, 1U);
+}
+
+// Equation (1) of optimizeMesh(), by the book.
+TEST_F(QualityOfTheMesh, EnergyOfTheReportIsThatOfTheMesh) {
+  scan({"bird", "scan.ply", "-points", "2000"});
+  const json report = reportOf({"scan.ply", "out.ply"});
+  ASSERT_EQ(report["optimization"]["noisy"], false);
+  const Mesh mesh = meshFile("out.ply");
+  const spherical_param::Positions p = positionsOf(mesh);
+  double energy = 0.0;
+  const auto corners = cornersOfEdges(mesh);
+  for (const auto& [edge, corner] : corners) {
+    const auto [a, b] = edge;
+    if (a < b) {
+      const Eigen::Vector3d side = p.col(b) - p.col(a);
+      const Eigen::Vector3d n = side.cross(p.col(corner) - p.col(a));
+      const Eigen::Vector3d m = (p.col(corners.at({b, a})) - p.col(a)).cross(side);
+      energy += side.norm() * std::atan2(n.cross(m).norm(), n.dot(m));
+    }
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const double ab = (p.col(b) - p.col(a)).norm();
+    const double bc = (p.col(c) - p.col(b)).norm();
+    const double ca = (p.col(a) - p.col(c)).norm();
+    const double twice_area = (p.col(b) - p.col(a)).cross(p.col(c) - p.col(a)).norm();
+    energy += 0.3 * std::min(ab * bc * ca / (2.0 * twice_area), 4.0 * std::max({ab, bc, ca}));
+  }
+  // Sums of some 10,000 terms in another order.
+  EXPECT_NEAR(report["optimization"]["energy"].get<double>(), energy, 1e-9 * energy);
+}
+
+TEST_F(QualityOfTheMesh, PrintsThePhasesThatTheReportTells) {
+  scan({"hand", "scan.ply", "-points", "3000"});
+  const RunResult result = runTool(directory, {"scan.ply", "out.ply", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  const json& phases = report["optimization"]["phases"];
+  const std::string head = "phase          tried      moves       energy  self-int.  seconds\n";
+  const std::size_t table = result.output.find(head);
+  ASSERT_NE(table, std::string::npos);
+  std::istringstream lines(result.output.substr(table + head.size()));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line.find_first_not_of(" -"), std::string::npos);
+  for (const json& phase : phases) {
+    std::getline(lines, line);
+    std::istringstream words(line);
+    std::string name;
+    std::size_t tried = 0;
+    std::size_t moves = 0;
+    double energy = 0.0;
+    words >> name >> tried >> moves >> energy;
+    EXPECT_EQ(phase["name"], name);
+    EXPECT_EQ(phase["tried"], tried);
+    EXPECT_EQ(phase["moves"], moves);
+    // Six digits are printed.
+    EXPECT_NEAR(energy, phase["energy"].get<double>(), 1e-5 * energy);
+    if (!phase["self_intersections"].is_null()) {
+      std::size_t self_intersections = 0;
+      words >> self_intersections;
+      EXPECT_EQ(phase["self_intersections"], self_intersections);
+    }
+    double seconds = 0.0;
+    words >> seconds;
+    EXPECT_FALSE(words.fail()) << line;
+    std::string rest;
+    EXPECT_FALSE(words >> rest) << line;
+  }
+  EXPECT_EQ(phases.back()["energy"].is_number_float(), true);
+}
+
+TEST_F(QualityOfTheMesh, MeasuresAreThoseOfTheMesh) {
+  scan({"animal", "scan.ply", "-points", "2000"});
+  const json measures = reportOf({"scan.ply", "out.ply"})["measures"];
+  const Mesh mesh = meshFile("out.ply");
+  const spherical_param::Positions p = positionsOf(mesh);
+  double area = 0.0;
+  double length = 0.0;
+  double volume = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (const auto& [a, b, c] : mesh.triangles) {
+    area += (p.col(b) - p.col(a)).cross(p.col(c) - p.col(a)).norm() / 2.0;
+    length +=
+        (p.col(b) - p.col(a)).norm() + (p.col(c) - p.col(b)).norm() + (p.col(a) - p.col(c)).norm();
+    Eigen::Matrix3d corners;
+    corners << p.col(a), p.col(b), p.col(c);
+    // A tetrahedron with the origin: its moments about it.
+    const double part = corners.determinant() / 6.0;
+    const Eigen::Vector3d sum = corners.rowwise().sum();
+    volume += part;
+    moment += part / 4.0 * sum;
+    second += part / 20.0 * (sum * sum.transpose() + corners * corners.transpose());
+  }
+  const Eigen::Vector3d centroid = moment / volume;
+  second -= volume * centroid * centroid.transpose();
+  const Eigen::Matrix3d inertia = second.trace() * Eigen::Matrix3d::Identity() - second;
+  // Sums of 4,000 terms in another order, of a cloud of extent 1.
+  EXPECT_NEAR(measures["volume"].get<double>(), volume, 1e-12);
+  EXPECT_NEAR(measures["area"].get<double>(), area, 1e-12);
+  const double edges = 1.5 * static_cast<double>(mesh.triangles.size());
+  EXPECT_NEAR(measures["mean_edge_length"].get<double>(), length / 2.0 / edges, 1e-12);
+  EXPECT_LT((vectorOf(measures["centroid"]) - centroid).norm(), 1e-12);
+  EXPECT_EQ(vectorOf(measures["bounding_box"]["min"]), p.rowwise().minCoeff());
+  EXPECT_EQ(vectorOf(measures["bounding_box"]["max"]), p.rowwise().maxCoeff());
+  for (std::size_t row = 0; row < 3; ++row) {
+    const Eigen::Vector3d expected = inertia.row(static_cast<Eigen::Index>(row));
+    EXPECT_LT((vectorOf(measures["inertia"][row]) - expected).norm(), 1e-12);
+  }
+}
+
+TEST_F(QualityOfTheMesh, SmoothingMovesThePointsAloneAndTellsHowFar) {
+  // The scan tool writes no colours.
+  Mesh noisy = ellipsoid(2000);
+  for (std::size_t i = 0; i < noisy.points.size(); ++i) {
+    for (float& coordinate : noisy.points[i]) {
+      coordinate += i % 3 == 0 ? 0.001F : -0.001F;
+    }
+  }
+  writeCloud(directory.file("noisy.ply"), "in.ply", noisy);
+  const RunResult result =
+      runTool(directory, {"noisy.ply", "out.ply", "-smooth", "3", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  const Mesh mesh = meshFile("out.ply");
+  EXPECT_EQ(mesh.colors, noisy.colors);
+  EXPECT_EQ(mesh.normals, noisy.normals);
+  EXPECT_EQ(mesh.triangles.size(), 2 * noisy.points.size() - 4);
+  expectSphere(mesh);
+  ASSERT_EQ(mesh.points.size(), noisy.points.size());
+  const json& smoothing = report["smoothing"];
+  EXPECT_EQ(smoothing["steps"], 3);
+  EXPECT_EQ(smoothing["method"], "biharmonic");
+  double largest = 0.0;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const double distance = (position(mesh.points[i]) - position(noisy.points[i])).norm();
+    largest = std::max(largest, distance);
+    sum += distance;
+    squares += distance * distance;
+  }
+  const auto count = static_cast<double>(mesh.points.size());
+  EXPECT_GT(largest, 0.001);
+  // Coordinates near 10 are written in single precision.
+  constexpr double rounding = 2e-6;
+  EXPECT_NEAR(smoothing["max_displacement"].get<double>(), largest, rounding);
+  EXPECT_NEAR(smoothing["mean_displacement"].get<double>(), sum / count, rounding);
+  EXPECT_NEAR(smoothing["rms_displacement"].get<double>(), std::sqrt(squares / count), rounding);
+  EXPECT_NEAR(smoothing["volume_after"].get<double>(), volumeOf(mesh), 1e-6);
+  Mesh unsmoothed = mesh;
+  unsmoothed.points = noisy.points;
+  EXPECT_NEAR(smoothing["volume_before"].get<double>(), volumeOf(unsmoothed), 1e-9);
+  EXPECT_EQ(smoothing["self_intersections"], selfIntersections(mesh).size());
+  // All else of the report is about the points of the input.
+  EXPECT_EQ(report["self_intersections"], selfIntersections(unsmoothed).size());
+  EXPECT_NEAR(report["volume"].get<double>(), volumeOf(unsmoothed), 1e-9);
+  for (const char* line : {"\n  smooth              3\n", "\n  smoothed            3 steps, "}) {
+    EXPECT_NE(result.output.find(line), std::string::npos) << line;
+  }
+}
+
+TEST_F(QualityOfTheMesh, ANoisyScanThatIsSmoothedDoesNotIntersectItself) {
+  for (const char* shape : {"head", "ellipsoid", "bird"}) {
+    scan({shape, "scan.ply", "-points", "3000", "-noise", "0.5"});
+    const json report = reportOf({"scan.ply", "out.ply", "-smooth", "5"});
+    expectConsistency(report, meshFile("out.ply"));
+    EXPECT_EQ(report["optimization"]["noisy"], true) << shape;
+    EXPECT_EQ(report["smoothing"]["self_intersections"], 0) << shape;
+    EXPECT_TRUE(selfIntersections(meshFile("out.ply")).empty()) << shape;
+  }
+}
+
+// At noise as large as the distance of neighbours nothing is promised, but what is left is told.
+TEST_F(QualityOfTheMesh, StrongNoiseIsToldAndSmoothingLeavesFewSelfIntersections) {
+  scan({"head", "scan.ply", "-points", "3000", "-noise", "1"});
+  const RunResult result =
+      runTool(directory, {"scan.ply", "out.ply", "-smooth", "5", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  const Mesh mesh = meshFile("out.ply");
+  expectConsistency(report, mesh);
+  EXPECT_EQ(report["optimization"]["noisy"], true);
+  const int steps = report["optimization"]["noise_steps"];
+  EXPECT_NE(result.output.find("noisy: on positions after " + std::to_string(steps) + " steps"),
+            std::string::npos);
+  const std::size_t left = report["smoothing"]["self_intersections"];
+  EXPECT_LT(left, report["self_intersections"].get<std::size_t>());
+  // The points are rounded to single precision when they are written.
+  EXPECT_NEAR(static_cast<double>(selfIntersections(mesh).size()), static_cast<double>(left), 2.0);
+}
+
+/// Outliers among the points of an ellipsoid, with repeated ones and some that are not finite.
+TEST_F(QualityOfTheMesh, OutliersAreLeftOutAndListed) {
+  const Mesh surface = ellipsoid(1500);
+  std::string text = "nan 0 0\n";
+  int line = 1;
+  std::vector<int> expected;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    text += digits(surface.points[i]) + "\n";
+    ++line;
+    if (i % 300 == 17) {
+      // Three times the ellipsoid's size away, each at a place of its own, and twice there.
+      Point outlier = surface.points[i];
+      outlier[expected.size() % 3] += expected.size() % 4 == 0 ? 1.0F : -1.0F;
+      text += digits(outlier) + "\n" + digits(outlier) + "\n";
+      expected.insert(expected.end(), {line, line + 1});
+      line += 2;
+    }
+  }
+  tool_test::writeFile(directory.file("outliers.xyz"), text);
+  for (const char* method : {"paper", "statistical"}) {
+    const RunResult result =
+        runTool(directory, {"outliers.xyz", "out.ply", "-outliers", "5", "-outlier-method", method,
+                            "-json", "report.json"});
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+    const json& outliers = report["outliers"];
+    EXPECT_EQ(outliers["method"], method);
+    EXPECT_EQ(outliers["sigma"], 5.0);
+    EXPECT_EQ(outliers["count"], expected.size());
+    EXPECT_EQ(outliers["indices"], json(expected)) << method;
+    EXPECT_EQ(outliers["threshold"].is_number_float(), std::string(method) == "paper");
+    EXPECT_EQ(report["points"], line);
+    EXPECT_EQ(report["vertices"], surface.points.size());
+    EXPECT_EQ(report["ignored_points"], 1);
+    EXPECT_EQ(report["duplicates"], 0);
+    EXPECT_EQ(report["stages"][1]["name"], "outliers");
+    const Mesh mesh = meshFile("out.ply");
+    EXPECT_EQ(mesh.points, surface.points);
+    expectSphere(mesh);
+    EXPECT_NE(result.output.find("\n  outliers            10 left out\n"), std::string::npos);
+  }
+  // Without the option they are points like all others.
+  EXPECT_EQ(reportOf({"outliers.xyz", "out.ply"})["vertices"],
+            surface.points.size() + expected.size() / 2);
+}
+
+TEST_F(QualityOfTheMesh, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
+  // Outliers and points that are not finite before all others shift the vertices.
+  scan({"bowl", "scan.xyz", "-points", "2000"});
+  const std::string surface = tool_test::readFile(directory.file("scan.xyz"));
+  tool_test::writeFile(directory.file("plain.xyz"), surface);
+  tool_test::writeFile(directory.file("shifted.xyz"), "nan 0 0\n5 5 5\n5 5 5\n" + surface);
+  const json plain = reportOf({"plain.xyz", "out.ply", "-outliers", "6"});
+  const json shifted = reportOf({"shifted.xyz", "out.ply", "-outliers", "6"});
+  EXPECT_TRUE(plain["outliers"]["indices"].empty());
+  EXPECT_EQ(shifted["outliers"]["indices"], json({1, 2}));
+  ASSERT_EQ(plain["diagnosis"]["lids"].size(), 1U);
+  ASSERT_EQ(shifted["diagnosis"]["lids"].size(), 1U);
+  auto vertices = plain["diagnosis"]["lids"][0]["vertices"].get<std::vector<int>>();
+  for (int& vertex : vertices) {
+    vertex += 3;
+  }
+  EXPECT_EQ(shifted["diagnosis"]["lids"][0]["vertices"], json(vertices));
+}
+
+TEST_F(QualityOfTheMesh, SameBytesForAnyNumberOfThreadsWithAllThatIsOptional) {
+  scan({"hand", "scan.ply", "-points", "3000", "-noise", "0.5"});
+  std::set<std::string> meshes;
+  for (const char* threads : {"1", "2", "3"}) {
+    ASSERT_EQ(runTool(directory, {"scan.ply", "out.ply", "-smooth", "4", "-outliers", "3",
+                                  "-threads", threads})
+                  .exit_code,
+              0);
+    meshes.insert(tool_test::readFile(directory.file("out.ply")));
+  }
+  EXPECT_EQ(meshes.size(), 1U);
+}
+
+// ------------------------------------------------------------------------------ what is printed
 
 TEST_F(ReconstructionTool, PrintsTheParametersInForce) {
   const auto expect_lines = [&](std::vector<std::string> arguments,
@@ -971,22 +1582,32 @@ TEST_F(ReconstructionTool, PrintsTheParametersInForce) {
     }
   };
   expect_lines({},
-               {"graph          delaunay", "k              12", "solver         multilevel",
-                "weights        adaptive", "exponent       3", "tolerance      off",
-                "lambda         0.5", "starts         2", "seed           1",
-                "hull           incremental"},
-               {"iterations", "stagnation"});
+               {"graph               delaunay", "k                   12",
+                "solver              multilevel", "weights             adaptive",
+                "exponent            3", "tolerance           off", "lambda              0.5",
+                "starts              2", "seed                1", "hull                incremental",
+                "optimize            full", "attempts            up to 4"},
+               {"iterations", "stagnation", "smooth", "smoothed", "outliers", "attempt 1"});
   expect_lines({"-graph", "knn", "-solver", "iterative", "-hull", "qhull"},
-               {"graph          knn", "k              25", "solver         iterative",
-                "tolerance      1e-08", "iterations     1600", "stagnation     100",
-                "hull           qhull"},
-               {"exponent", "starts", "seed", "local Delaunay", "energy", "level"});
-  expect_lines(
-      {"-exponent", "2.5", "-starts", "7", "-seed", "42", "-tolerance", "1e-5"},
-      {"exponent       2.5", "starts         7", "seed           42", "tolerance      1e-05"}, {});
+               {"graph               knn", "k                   25",
+                "solver              iterative", "tolerance           1e-08",
+                "iterations          1600", "stagnation          100", "hull                qhull"},
+               {"exponent", "starts", "local Delaunay", "energy", "level"});
+  expect_lines({"-solver", "iterative", "-optimize", "none"},
+               {"optimize            none", "optimised           no (-optimize none)"}, {"seed"});
+  expect_lines({"-optimize", "flips", "-attempts", "7", "-smooth", "3", "-outliers", "3.5"},
+               {"optimize            flips", "attempts            up to 7", "smooth              3",
+                "outliers            3.5 (paper)"},
+               {});
+  expect_lines({"-outliers", "6", "-outlier-method", "statistical"},
+               {"outliers            6 (statistical)"}, {"smooth", "smoothed"});
+  expect_lines({"-exponent", "2.5", "-starts", "7", "-seed", "42", "-tolerance", "1e-5"},
+               {"exponent            2.5", "starts              7", "seed                42",
+                "tolerance           1e-05"},
+               {});
   expect_lines({"-solver", "iterative", "-stagnation", "0", "-iterations", "7"},
-               {"stagnation     never", "iterations     7"}, {});
-  expect_lines({"-weights", "uniform"}, {"weights        uniform"}, {"exponent"});
+               {"stagnation          never", "iterations          7"}, {});
+  expect_lines({"-weights", "uniform"}, {"weights             uniform"}, {"exponent"});
 }
 
 TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
@@ -995,7 +1616,7 @@ TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
   options.terminal = true;
   const RunResult result = run(RECONSTRUCTION_TOOL, {"in.ply", "out.ply"}, options);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("\r  embedding      ["), std::string::npos);
+  EXPECT_NE(result.output.find("\r  embedding           ["), std::string::npos);
 }
 
 // Enough points that all stages use their threads, and several levels.

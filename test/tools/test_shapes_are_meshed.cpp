@@ -48,6 +48,8 @@ std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& clo
     reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
     reconstruction.setSolver(EmbeddingMethod::Iterative);
     reconstruction.setTriangulationMethod(TriangulationMethod::Qhull);
+    reconstruction.setOptimization(OptimizationMethod::None);
+    reconstruction.setAttempts(1);
     reconstruction.setMaximumIterations(100);
   }
   reconstruction.setInputCloud(cloud);

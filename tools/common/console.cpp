@@ -13,7 +13,7 @@
 namespace spherical_param::tools {
 namespace {
 
-constexpr std::size_t label_width = 15;
+constexpr std::size_t label_width = 20;
 constexpr std::size_t bar_width = 24;
 constexpr std::chrono::milliseconds redraw_interval{50};
 

@@ -7,6 +7,8 @@
 
 #include "spherical_param/reconstruct.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -28,13 +30,18 @@ struct NeighborSource;
  *
  * A graph of local Delaunay neighbourhoods is embedded on the unit sphere from coarse to fine, so
  * that limbs are unfolded, towards a vanishing tangential Laplacian. The Delaunay triangulation of
- * the embedded points, which is their convex hull, gives the connectivity; its decisions are exact.
+ * the embedded points, which is their convex hull, gives a first connectivity; its decisions are
+ * exact. It is then optimised on the points themselves, by moves that keep a sphere a sphere, until
+ * no triangles intersect, if possible (getSelfIntersections()); the points are never moved. Where
+ * some are left although the cloud looks like a closed surface, other runs are tried
+ * (setAttempts()). getDiagnosis() tells what speaks against such a surface, and where.
  *
  * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
  * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
  * k nearest neighbours, a damped iteration from the projection from the centroid, and qhull, is
- * setGraphMethod(GraphMethod::NearestNeighbors), setSolver(EmbeddingMethod::Iterative) and
- * setTriangulationMethod(TriangulationMethod::Qhull).
+ * setGraphMethod(GraphMethod::NearestNeighbors), setSolver(EmbeddingMethod::Iterative),
+ * setTriangulationMethod(TriangulationMethod::Qhull), setOptimization(OptimizationMethod::None) and
+ * setAttempts(1).
  *
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
@@ -68,6 +75,7 @@ public:
   using EmbeddingMethod = spherical_param::EmbeddingMethod;
   using TriangulationMethod = spherical_param::TriangulationMethod;
   using EdgeWeights = spherical_param::EdgeWeights;
+  using OptimizationMethod = spherical_param::OptimizationMethod;
   using ProgressCallback = std::function<bool(const spherical_param::Progress&)>;
 
   SphericalParamReconstruction();
@@ -143,11 +151,12 @@ public:
   /** \brief Get how many starts the multilevel solver tries. */
   inline int getStarts() const { return options_.starts; }
 
-  /** \brief Set the seed of the order in which the multilevel solver coarsens the graph.
+  /** \brief Set the seed of all that is random: the order in which the multilevel solver coarsens
+   * the graph, and the parts of the mesh that OptimizationMethod::Full takes out.
    * \param[in] seed any number; default 1. The same seed gives the same result.
-   * \note Change it to see how much the result rests on that order. */
+   * \note Change it to see how much the result rests on it. */
   inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
-  /** \brief Get the seed of the multilevel solver. */
+  /** \brief Get the seed of all that is random. */
   inline std::uint32_t getSeed() const { return options_.seed; }
 
   /** \brief Set the number of iterations of the iterative solver at most.
@@ -182,6 +191,31 @@ public:
   /** \brief Get the number of iterations over which the iterative solver judges stagnation. */
   inline int getStagnationWindow() const { return options_.stagnation_window; }
 
+  /** \brief Set how far the mesh is optimised on the points.
+   * \param[in] method default OptimizationMethod::Full
+   * \note Set OptimizationMethod::None for the mesh that the sphere gives, and
+   * OptimizationMethod::Flips where time matters more than the last self-intersections. */
+  inline void setOptimization(OptimizationMethod method) { options_.optimization = method; }
+  /** \brief Get how far the mesh is optimised on the points. */
+  inline OptimizationMethod getOptimization() const { return options_.optimization; }
+
+  /** \brief Set how many whole runs are tried, at most, while the mesh intersects itself although
+   * the cloud looks like a closed surface.
+   * \param[in] attempts 1 to 100; default 4. The best counts (getResult().attempts).
+   * \note Set 1 where time matters; a run that needs no other takes no longer for a larger one. */
+  inline void setAttempts(int attempts) { options_.attempts = attempts; }
+  /** \brief Get how many whole runs are tried at most. */
+  inline int getAttempts() const { return options_.attempts; }
+
+  /** \brief Set the strength of the smoothing that takes noise off the points.
+   * \param[in] steps 0 (default) to 10000; 0: none. About that of so many steps of the paper's
+   * section 4.2.
+   * \note The mesh keeps the points of the input; the smoothed ones are those of
+   * getSmoothedPoints(), for which the same polygons hold. */
+  inline void setSmoothingSteps(int steps) { options_.smoothing_steps = steps; }
+  /** \brief Get the strength of the smoothing, 0: none. */
+  inline int getSmoothingSteps() const { return options_.smoothing_steps; }
+
   /** \brief Set the number of threads. The result does not depend on it.
    * \param[in] threads 0 (default): as many as OpenMP would use. */
   inline void setNumberOfThreads(unsigned int threads = 0) {
@@ -212,7 +246,8 @@ public:
 
   /** \brief Get the result of the last reconstruct(); a default-constructed one after a failure.
    * Its "inputs" are the points getUsedIndices() lists; its vertices are the points that
-   * getVertexIndices() lists. Its first stage is "neighbors", the search. */
+   * getVertexIndices() lists. Its first stage is "neighbors", the search. Volume, area, centroid
+   * and inertia of the mesh are in `measures`. */
   inline const spherical_param::Result& getResult() const { return result_; }
 
   /** \brief Get the indices into the input cloud of the points that were meshed: those of
@@ -227,8 +262,30 @@ public:
 
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
    * that the polygons fit it as well. Duplicates have the place of their vertex; points that were
-   * skipped or not in the indices are NaN. Empty after a failure. */
+   * skipped or not in the indices are NaN. Empty after a failure.
+   * \note Where the optimisation moved vertices, as it does on noise, some polygons are inverted on
+   * the sphere; with OptimizationMethod::None none are, but for rounding. */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
+
+  /** \brief Get the points after the steps of setSmoothingSteps(), one for each point of the input
+   * cloud, so that the polygons fit them as well. Duplicates have the place of their vertex; points
+   * that were skipped or not in the indices are NaN. Empty without smoothing and after a failure.
+   * \note In double precision, by vertex, they are getResult().smoothed; how far they moved is in
+   * getResult().smoothing. */
+  pcl::PointCloud<pcl::PointXYZ>::Ptr getSmoothedPoints() const;
+
+  /** \brief Get the pairs of triangles of the mesh that intersect, as indices of polygons of the
+   * last reconstruct(), {lower, higher}, ascending. Measured on the points of the input, in exact
+   * arithmetic.
+   * \note On noisy points some are often left; see setSmoothingSteps(). */
+  inline const std::vector<std::array<spherical_param::Index, 2>>& getSelfIntersections() const {
+    return result_.self_intersections;
+  }
+
+  /** \brief Get what speaks against a closed surface without handles, in one piece, and where. Its
+   * indices are vertices, which getVertexIndices() maps to the cloud.
+   * \note The mesh is a sphere whatever the cloud shows: this tells whether it should be. */
+  inline const spherical_param::SurfaceDiagnosis& getDiagnosis() const { return result_.diagnosis; }
 
   /** \brief Tell whether the embedding of the last reconstruct() reached the tolerance; false if
    * none was in force (getTolerance()).
@@ -258,6 +315,11 @@ protected:
   void performReconstruction(std::vector<pcl::Vertices>& polygons) override;
 
 private:
+  /** \brief Makes a cloud of the size of the input from places of the vertices, 3 x v; NaN where a
+   * point is no vertex. */
+  pcl::PointCloud<pcl::PointXYZ>::Ptr
+  cloudOfVertices(const spherical_param::Positions& vertices) const;
+
   /** \brief Clears output and results, calls performReconstruction() and, if that fails, clears
    * both again and says why. */
   template <typename Output>

@@ -235,15 +235,29 @@ void SphericalParamReconstruction<PointInT>::reconstruct(std::vector<pcl::Vertic
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
+  return cloudOfVertices(result_.sphere);
+}
+
+template <typename PointInT>
+pcl::PointCloud<pcl::PointXYZ>::Ptr
+SphericalParamReconstruction<PointInT>::getSmoothedPoints() const {
+  if (result_.smoothed.cols() == 0)
+    return pcl::PointCloud<pcl::PointXYZ>::Ptr(new pcl::PointCloud<pcl::PointXYZ>);
+  return cloudOfVertices(result_.smoothed);
+}
+
+template <typename PointInT>
+pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::cloudOfVertices(
+    const spherical_param::Positions& vertices) const {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  pcl::PointCloud<pcl::PointXYZ>::Ptr sphere(new pcl::PointCloud<pcl::PointXYZ>);
-  sphere->resize(input_size_);
-  std::fill(sphere->begin(), sphere->end(), pcl::PointXYZ(nan, nan, nan));
-  sphere->is_dense = used_indices_.size() == input_size_;
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  cloud->resize(input_size_);
+  std::fill(cloud->begin(), cloud->end(), pcl::PointXYZ(nan, nan, nan));
+  cloud->is_dense = used_indices_.size() == input_size_;
   for (std::size_t i = 0; i < used_indices_.size(); ++i)
-    (*sphere)[static_cast<std::size_t>(used_indices_[i])].getVector3fMap() =
-        result_.sphere.col(result_.vertex_of_input[i]).template cast<float>();
-  return sphere;
+    (*cloud)[static_cast<std::size_t>(used_indices_[i])].getVector3fMap() =
+        vertices.col(result_.vertex_of_input[i]).template cast<float>();
+  return cloud;
 }
 
 template <typename PointInT>
