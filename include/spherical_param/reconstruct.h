@@ -136,7 +136,7 @@ struct AttemptReport {
   /// Pairs of triangles; of a noisy cloud on smoothed positions, if these are fewer.
   std::size_t self_intersections = 0;
   double energy = 0.0;   ///< equation (1) of optimizeMesh() [unit of the input]
-  double seconds = 0.0;  ///< wall time [s]
+  double seconds = 0.0;  ///< wall time after the graph [s]
   bool chosen = false;   ///< the least (self_intersections, energy)
 };
 

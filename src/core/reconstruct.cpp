@@ -478,10 +478,11 @@ struct Attempt {
   }
 };
 
-std::size_t countIntersections(const Positions& points, const Triangles& triangles, int threads) {
+std::vector<std::array<Index, 2>> findIntersections(const Positions& points,
+                                                    const Triangles& triangles, int threads) {
   SelfIntersectionOptions options;
   options.threads = threads;
-  return findSelfIntersections(points, triangles, options).size();
+  return findSelfIntersections(points, triangles, options);
 }
 
 void optimize(const Positions& points, const Plan& plan, const Options& options, StageLog& log,
@@ -511,7 +512,7 @@ void smooth(const Positions& points, const Plan& plan, const Options& options, A
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (int round = 0; round < kSmoothingRounds && fewest > 0; ++round) {
     Smoothing smoothing = smoothSurface(points, triangles, smoothingOptions(options));
-    std::size_t count = countIntersections(smoothing.points, triangles, options.threads);
+    std::size_t count = findIntersections(smoothing.points, triangles, options.threads).size();
     if (count > 0 && options.optimization == OptimizationMethod::Full) {
       OptimizationOptions optimization;
       optimization.seed = plan.seed + static_cast<std::uint32_t>(round);
@@ -564,6 +565,94 @@ Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& point
       return true;
     });
   return attempt;
+}
+
+/// What came of all attempts.
+struct Attempts {
+  Attempt best;
+  /// The graph that was asked for, by which the cloud is judged, if the best attempt has another.
+  std::optional<NeighborGraph> first_graph;
+
+  const NeighborGraph& judge() const { return first_graph ? *first_graph : best.graph; }
+};
+
+/// Tells whether other attempts may come to a better mesh: not if the cloud is no closed surface,
+/// unless little is wrong.
+bool isWorthMore(const Attempt& first, const Positions& points) {
+  return static_cast<double>(first.intersections()) <=
+             kFewIntersections * static_cast<double>(first.triangles.cols()) ||
+         diagnoseSurface(points, first.triangles, first.graph.graph, first.graph.bridges)
+             .looksClosedGenus0();
+}
+
+/// More than one attempt only where the first mesh is bad although the cloud is as it should be.
+Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const NeighborLists& lists,
+                     const NeighborSearch& search, const Options& options, StageLog& log,
+                     Result& result) {
+  const auto quality = [](const Attempt& attempt) {
+    return std::pair(attempt.intersections(), attempt.optimization.energy);
+  };
+  Attempts attempts;
+  Attempt& best = attempts.best;
+  const auto run = [&](const Plan& plan, NeighborGraph of_plan) {
+    const auto begin = std::chrono::steady_clock::now();
+    Attempt attempt = runAttempt(plan, std::move(of_plan), nodes.points, options, log);
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    const bool is_first = result.attempts.empty();
+    result.attempts.push_back({plan.description, attempt.intersections(),
+                               attempt.optimization.energy, time.count(), false});
+    if (!is_first && quality(attempt) >= quality(best))
+      return;
+    if (!is_first && !attempts.first_graph)
+      attempts.first_graph = std::move(best.graph);
+    best = std::move(attempt);
+    for (AttemptReport& report : result.attempts)
+      report.chosen = &report == &result.attempts.back();
+  };
+  run(planOf(0, options), std::move(graph));
+  if (options.optimization != OptimizationMethod::Full || best.intersections() == 0 ||
+      options.attempts == 1 || !isWorthMore(best, nodes.points))
+    return attempts;
+  for (int i = 1; i < options.attempts && best.intersections() > 0; ++i) {
+    const Plan plan = planOf(i, options);
+    run(plan,
+        log.run("graph", [&] { return buildGraph(nodes.points, lists, plan, options, search); }));
+  }
+  return attempts;
+}
+
+/// Judges the mesh of the best attempt, and moves all there is into the result.
+void takeOver(Attempts& attempts, const Positions& points, const Options& options, Result& result) {
+  Attempt& best = attempts.best;
+  if (signedVolume(points, best.triangles) < 0.0) {
+    flipOrientation(best.triangles);
+    best.sphere = -best.sphere;
+  }
+  result.self_intersections = std::move(best.optimization.self_intersections);
+  if (best.smoothed.cols() > 0)
+    result.self_intersections = findIntersections(points, best.triangles, options.threads);
+  result.diagnosis =
+      diagnoseSurface(points, best.triangles, attempts.judge().graph, attempts.judge().bridges);
+  result.measures = measureMesh(points, best.triangles);
+  result.optimization = {std::move(best.optimization.phases),
+                         best.optimization.energy,
+                         best.optimization.rough,
+                         best.optimization.smoothing_steps,
+                         best.optimization.alignment,
+                         best.optimization.unevenness};
+  result.graph.edges = best.graph.graph.edgeCount();
+  result.graph.components = best.graph.components;
+  result.graph.bridges = std::move(best.graph.bridges);
+  result.graph.without_tangent_plane = std::move(best.graph.without_tangent_plane);
+  result.graph.searched_again = best.graph.searched_again;
+  result.graph.uncertified = best.graph.uncertified;
+  result.graph.weak = best.graph.weak;
+  result.triangles = std::move(best.triangles);
+  result.sphere = std::move(best.sphere);
+  result.smoothed = std::move(best.smoothed);
+  result.smoothing = best.smoothing;
+  result.embedding = std::move(best.embedding);
+  result.triangulation = best.triangulation;
 }
 
 }  // namespace
@@ -620,76 +709,12 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
     return buildGraph(nodes.points, node_lists, planOf(0, options), options, node_search);
   });
 
-  // More than one attempt only where the first result is bad although the cloud is as it should be.
-  Attempt best;
-  NeighborGraph first_graph;  // once `best` has another
-  for (int i = 0; i < options.attempts; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    const Plan plan = planOf(i, options);
-    if (i > 0)
-      graph = log.run("graph", [&] {
-        return buildGraph(nodes.points, node_lists, plan, options, node_search);
-      });
-    Attempt attempt = runAttempt(plan, std::move(graph), nodes.points, options, log);
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    result.attempts.push_back({plan.description, attempt.intersections(),
-                               std::ldexp(attempt.optimization.energy, exponent), time.count(),
-                               false});
-    const auto quality = [](const Attempt& of) {
-      return std::pair(of.intersections(), of.optimization.energy);
-    };
-    if (i == 0 || quality(attempt) < quality(best)) {
-      if (i > 0 && first_graph.graph.size() == 0)
-        first_graph = std::move(best.graph);
-      best = std::move(attempt);
-      for (AttemptReport& other : result.attempts)
-        other.chosen = &other == &result.attempts.back();
-    }
-    if (best.intersections() == 0 || options.optimization != OptimizationMethod::Full)
-      break;
-    const bool has_few = static_cast<double>(best.intersections()) <=
-                         kFewIntersections * static_cast<double>(best.triangles.cols());
-    if (i == 0 && !has_few &&
-        !diagnoseSurface(nodes.points, best.triangles, best.graph.graph, best.graph.bridges)
-             .looksClosedGenus0())
-      break;
-  }
-
+  Attempts attempts =
+      runAttempts(std::move(graph), nodes, node_lists, node_search, options, log, result);
+  for (AttemptReport& report : result.attempts)
+    report.energy = std::ldexp(report.energy, exponent);
   result.topology = log.run("check", [&] {
-    if (signedVolume(nodes.points, best.triangles) < 0.0) {
-      flipOrientation(best.triangles);
-      best.sphere = -best.sphere;
-    }
-    if (best.smoothed.cols() == 0) {
-      result.self_intersections = std::move(best.optimization.self_intersections);
-    } else {
-      SelfIntersectionOptions intersections;
-      intersections.threads = options.threads;
-      result.self_intersections =
-          findSelfIntersections(nodes.points, best.triangles, intersections);
-    }
-    const NeighborGraph& judge = first_graph.graph.size() > 0 ? first_graph : best.graph;
-    result.diagnosis = diagnoseSurface(nodes.points, best.triangles, judge.graph, judge.bridges);
-    result.measures = measureMesh(nodes.points, best.triangles);
-    result.optimization = {std::move(best.optimization.phases),
-                           best.optimization.energy,
-                           best.optimization.rough,
-                           best.optimization.smoothing_steps,
-                           best.optimization.alignment,
-                           best.optimization.unevenness};
-    result.graph.edges = best.graph.graph.edgeCount();
-    result.graph.components = best.graph.components;
-    result.graph.bridges = std::move(best.graph.bridges);
-    result.graph.without_tangent_plane = std::move(best.graph.without_tangent_plane);
-    result.graph.searched_again = best.graph.searched_again;
-    result.graph.uncertified = best.graph.uncertified;
-    result.graph.weak = best.graph.weak;
-    result.triangles = std::move(best.triangles);
-    result.sphere = std::move(best.sphere);
-    result.smoothed = std::move(best.smoothed);
-    result.smoothing = best.smoothing;
-    result.embedding = std::move(best.embedding);
-    result.triangulation = best.triangulation;
+    takeOver(attempts, nodes.points, options, result);
     scaleBack(exponent, result);
     renumber(nodes.vertex_of_node, result);
     return checkTopology(result.triangles, result.vertexCount());
