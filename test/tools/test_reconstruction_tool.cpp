@@ -1253,13 +1253,12 @@ TEST_F(QualityOfTheMesh, SelfIntersectionsOfTheReportAreThoseOfTheMesh) {
   }
 }
 
-// Clouds so coarse or noisy that the first mesh may intersect itself, and so few points that they
-// show no surface, some of which have no other mesh.
+// A cloud so coarse that the first mesh may intersect itself, and so few points that they show no
+// surface, some of which have no other mesh.
 TEST_F(QualityOfTheMesh, AttemptsAreABudgetThatIsSpentWhereTheMeshIntersectsItself) {
   scan({"hand", "coarse.ply", "-points", "300"});
-  scan({"animal", "noisy.ply", "-points", "1000", "-noise", "0.6"});
-  std::vector<std::string> files{"coarse.ply", "noisy.ply"};
-  for (unsigned seed = 0; seed < 12; ++seed) {
+  std::vector<std::string> files{"coarse.ply"};
+  for (unsigned seed = 0; seed < 6; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     std::ostringstream text;

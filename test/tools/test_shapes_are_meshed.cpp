@@ -44,6 +44,10 @@ std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& clo
   if (method == Method::Converged) {
     reconstruction.setTolerance(1e-8);
   }
+  // All of the optimisation once for each shape: it takes longest where it is in vain.
+  if (method != Method::Default || weights != EdgeWeights::Adaptive) {
+    reconstruction.setOptimization(OptimizationMethod::Flips);
+  }
   if (method == Method::Paper) {
     reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
     reconstruction.setSolver(EmbeddingMethod::Iterative);
