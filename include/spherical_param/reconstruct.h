@@ -132,12 +132,11 @@ struct OptimizationReport {
 
 /// One whole run, of Options::attempts.
 struct AttemptReport {
-  std::string description;  ///< what is different from the first
-  /// Pairs of triangles; of a noisy cloud on smoothed positions, if these are fewer.
-  std::size_t self_intersections = 0;
-  double energy = 0.0;   ///< equation (1) of optimizeMesh() [unit of the input]
-  double seconds = 0.0;  ///< wall time after the graph [s]
-  bool chosen = false;   ///< the least (self_intersections, energy)
+  std::string description;             ///< what is different from the first
+  std::size_t self_intersections = 0;  ///< pairs of triangles, on the points or the smoothed ones
+  double energy = 0.0;                 ///< equation (1) of optimizeMesh() [unit of the input]
+  double seconds = 0.0;                ///< wall time after the graph [s]
+  bool chosen = false;                 ///< the least (self_intersections, energy)
 };
 
 /// The smoothed surface. \see Smoothing

@@ -467,14 +467,15 @@ struct Attempt {
   Positions smoothed;  ///< with Options::smoothing_steps
   SmoothingReport smoothing;
 
-  /// What makes an attempt bad: intersections that noise does not excuse.
+  /// Pairs of triangles on the points that were asked for.
   std::size_t intersections() const {
-    if (smoothed.cols() > 0)
-      return smoothing.self_intersections;
-    const std::size_t count = optimization.self_intersections.size();
-    return optimization.smoothing_steps > 0
-               ? std::min(count, optimization.smoothed_self_intersections)
-               : count;
+    return smoothed.cols() > 0 ? smoothing.self_intersections
+                               : optimization.self_intersections.size();
+  }
+  /// Noise excuses them if there are none without it.
+  bool isGood() const {
+    return intersections() == 0 || (smoothed.cols() == 0 && optimization.smoothing_steps > 0 &&
+                                    optimization.smoothed_self_intersections == 0);
   }
 };
 
@@ -610,10 +611,10 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const NeighborList
       report.chosen = &report == &result.attempts.back();
   };
   run(planOf(0, options), std::move(graph));
-  if (options.optimization != OptimizationMethod::Full || best.intersections() == 0 ||
-      options.attempts == 1 || !isWorthMore(best, nodes.points))
+  if (options.optimization != OptimizationMethod::Full || best.isGood() || options.attempts == 1 ||
+      !isWorthMore(best, nodes.points))
     return attempts;
-  for (int i = 1; i < options.attempts && best.intersections() > 0; ++i) {
+  for (int i = 1; i < options.attempts && !best.isGood(); ++i) {
     const Plan plan = planOf(i, options);
     run(plan,
         log.run("graph", [&] { return buildGraph(nodes.points, lists, plan, options, search); }));
