@@ -198,7 +198,6 @@ private:
   /// Once more on the points as they are, where only few triangles intersect.
   void endOnNoise() {
     points_ = given_;
-    optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
     optimizer_.setPoints(*points_);
     if (!options_.finish_on_points)
       return;
@@ -293,11 +292,9 @@ private:
     auto fewest = pairs;
     Triangles best;
     for (int round = 0; round < kUntangleRounds && !pairs.empty() && budget_ > 0; ++round) {
-      if (round > 0 && pairs.size() <= fewest.size()) {
+      if (pairs.size() <= fewest.size()) {
         best = optimizer_.mesh().triangles();
         fewest = pairs;
-      } else if (round == 0) {
-        best = optimizer_.mesh().triangles();
       }
       OptimizationPhase& untangled = phase("untangle", [&] {
         Tally tally;

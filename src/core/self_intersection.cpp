@@ -2,6 +2,7 @@
 
 #include "core/exact_predicates.h"
 #include "core/parallel.h"
+#include "core/radix_sort.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
@@ -341,24 +342,6 @@ struct Place {
   }
 };
 
-/// Sorts places of ascending triangles by key: three passes of counting sort.
-void radixSort(std::vector<Place>& places) {
-  constexpr unsigned digit_bits = 11;
-  constexpr std::uint32_t mask = (1U << digit_bits) - 1U;
-  std::vector<Place> sorted(places.size());
-  for (unsigned shift = 0; shift < 32; shift += digit_bits) {
-    std::array<std::size_t, mask + 1> begin{};
-    for (const Place& place : places)
-      ++begin[place.key >> shift & mask];
-    std::size_t sum = 0;
-    for (std::size_t& count : begin)
-      count = std::exchange(sum, sum + count);
-    for (const Place& place : places)
-      sorted[begin[place.key >> shift & mask]++] = place;
-    places.swap(sorted);
-  }
-}
-
 /// A mesh as the tests want it.
 class Mesh {
 public:
@@ -459,7 +442,7 @@ std::vector<Place> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
                        subset[i]};
         }
       });
-  radixSort(places);
+  internal::radixSort(places);
   for (std::size_t begin = 0; begin < places.size();) {
     std::size_t end = begin + 1;
     while (end < places.size() && places[end].key == places[begin].key)

@@ -1,6 +1,7 @@
 #include "core/space_filling_curve.h"
 
 #include "core/bit_mixing.h"
+#include "core/radix_sort.h"
 
 #include <algorithm>
 #include <array>
@@ -83,24 +84,6 @@ std::uint32_t curveIndex(double x, double y, double z) {
                     (1U << kCurveBits) - 1U);
   };
   return hilbertIndex(cell(u), cell(v), kCurveBits);
-}
-
-/// Sorts by key, stably: three passes of counting sort.
-void radixSort(std::vector<Place>& places) {
-  constexpr unsigned digit_bits = 11;
-  constexpr std::uint32_t mask = (1U << digit_bits) - 1U;
-  std::vector<Place> sorted(places.size());
-  for (unsigned shift = 0; shift < 32; shift += digit_bits) {
-    std::array<std::size_t, mask + 1> begin{};
-    for (const Place& place : places)
-      ++begin[place.key >> shift & mask];
-    std::size_t sum = 0;
-    for (std::size_t& count : begin)
-      count = std::exchange(sum, sum + count);
-    for (const Place& place : places)
-      sorted[begin[place.key >> shift & mask]++] = place;
-    places.swap(sorted);
-  }
 }
 
 /// Sorts points of one cell along a Hilbert curve over their own bounding box, and so on. The sides
