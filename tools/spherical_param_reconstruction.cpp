@@ -9,6 +9,7 @@
 #include "common/numbers.h"
 #include "common/outlier_removal.h"
 #include "common/output_file.h"
+#include "common/peak_memory.h"
 #include "common/point_data.h"
 #include "common/run_tool.h"
 #include "common/text.h"
@@ -21,8 +22,6 @@
 #include <Eigen/Geometry>
 
 #include <nlohmann/json.hpp>
-
-#include <sys/resource.h>
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -598,12 +597,6 @@ std::vector<std::string> warningsOf(const PointData& data, const Reconstruction&
   return warnings;
 }
 
-std::uint64_t peakMemory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
-}
-
 Json optionsToJson(const Settings& settings) {
   const spherical_param::Options& options = settings.options;
   Json json;
@@ -903,7 +896,8 @@ std::string report(const Settings& settings, const PointData& data,
   for (const spherical_param::StageTime& stage : stages) {
     json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   }
-  json["peak_memory_bytes"] = peakMemory();
+  const std::optional<std::uint64_t> peak_memory = peakMemory();
+  json["peak_memory_bytes"] = peak_memory ? Json(*peak_memory) : Json(nullptr);
   json["warnings"] = warningsOf(data, reconstruction);
   // File names need not be UTF-8, JSON must be.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -949,6 +949,14 @@ TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
   EXPECT_EQ(directory.listing().count("out.ply"), 1U);
 }
 
+TEST_F(ReconstructionTool, ReportedMemoryIsThatOfTheToolAlone) {
+  // What the process that starts the tool has in use is no part of it.
+  const std::vector<char> large(400U << 20U, 'x');
+  ASSERT_EQ(large.back(), 'x');
+  writeCloud(directory.file("in.ply"), "in.ply", ellipsoid(200));
+  EXPECT_LT(reportOf({"in.ply", "out.ply"})["peak_memory_bytes"], 300 << 20);
+}
+
 // Besides what the process takes without any.
 TEST_F(ReconstructionTool, TakesLessThanTwoKilobytesAPointOrFourToConverge) {
   struct Case {
