@@ -81,8 +81,8 @@ struct MeshOptimization {
 ///           random order.
 /// Untangle: the same with up to 96 vertices around triangles that intersect, until none do.
 /// Polish:   flips (and relocation) again, in terms that suit the cloud. Where the sampling follows
-/// the curvature of
-///           the surface (simplified and designed models), or is random: angle^1.5 and mu = 0.8.
+///           the surface's curvature (simplified and designed models), or is random: angle^1.5 and
+///           mu = 0.8.
 ///           Elsewhere (scans, even samplings) angles count only beyond what is usual at a place,
 ///           and mu = 4: nearly the Delaunay triangulation on the surface, but for sharp edges.
 ///           Triangles that intersect thereafter are untangled, or else the polish is taken back.
@@ -92,10 +92,10 @@ struct MeshOptimization {
 /// closed, manifold, oriented and of genus 0, whatever the arithmetic.
 ///
 /// \param points    3 x n, finite, distinct; extent about 1, or such that areas are numbers.
-/// \param triangles 3 x (2n - 4), closed, manifold, consistently oriented, genus 0, over all
-/// points. \param graph     n nodes, the neighbours of each point. \return the mesh: the same, bit
-/// by bit, for any number of threads. \throw InvalidInput for sizes that disagree, an index out of
-/// range, a mesh that is not as said,
+/// \param triangles 3 x (2n - 4), over all points; closed, manifold, consistently oriented, genus 0.
+/// \param graph     n nodes, the neighbours of each point.
+/// \return the mesh: the same, bit by bit, for any number of threads.
+/// \throw InvalidInput for sizes that disagree, an index out of range, a mesh that is not as said,
 ///        or options out of range.
 ///
 /// Not guaranteed: that no triangles intersect; that the energy is the least.

@@ -16,10 +16,9 @@ enum class SmoothingMethod {
   /// shrinks, but removes little strong noise in few steps.
   Taubin,
   /// The biharmonic flow dx/dt = -L^2 x (the higher order of Desbrun et al. 1999, "Implicit fairing
-  /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2,
-  /// its
-  /// frequency of gain one half, c, that of so many steps of Umbrella with lambda = 1. As strong as
-  /// those on noise, and hardly shrinks.
+  /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2;
+  /// its frequency of gain one half, c, is that of so many steps of Umbrella with lambda = 1. As
+  /// strong as those on noise, and hardly shrinks.
   Biharmonic,
 };
 
@@ -49,13 +48,11 @@ struct Smoothing {
 
 /// Smooths the points of a closed mesh. The triangles stay as they are.
 ///
-/// \param points    3 x n, finite. Points of no triangle stay where they are. The largest
-/// coordinate
-///                  difference should be between 1e-90 and 1e90, so that the volume can be formed.
+/// \param points    3 x n, finite. Points of no triangle stay where they are. The largest difference
+///                  of coordinates should be from 1e-90 to 1e90, so that the volume can be formed.
 /// \param triangles 3 x m, closed, manifold, consistently oriented, any genus and number of pieces.
 /// \return the points, the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for coordinates that are not finite, indices out of range, a mesh that is
-/// not
+/// \throw InvalidInput for coordinates that are not finite, indices out of range, a mesh that is not
 ///        as said, or options out of range.
 /// Cost: O(n) per step of Umbrella, twice that of Taubin; Biharmonic O(n sqrt(steps)), five steps
 /// as much as some thirty of Umbrella.
