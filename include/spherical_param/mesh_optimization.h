@@ -92,11 +92,11 @@ struct MeshOptimization {
 /// closed, manifold, oriented and of genus 0, whatever the arithmetic.
 ///
 /// \param points    3 x n, finite, distinct; extent about 1, or such that areas are numbers.
-/// \param triangles 3 x (2n - 4), over all points; closed, manifold, consistently oriented, genus 0.
+/// \param triangles 3 x (2n - 4), over all points; closed, manifold, oriented, of genus 0.
 /// \param graph     n nodes, the neighbours of each point.
 /// \return the mesh: the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for sizes that disagree, an index out of range, a mesh that is not as said,
-///        or options out of range.
+/// \throw InvalidInput for sizes that disagree, an index or option out of range, or a mesh that is
+///        not as said.
 ///
 /// Not guaranteed: that no triangles intersect; that the energy is the least.
 /// Cost: O(n log n), typically; untangling is given up after a number of attempts that is

@@ -48,12 +48,12 @@ struct Smoothing {
 
 /// Smooths the points of a closed mesh. The triangles stay as they are.
 ///
-/// \param points    3 x n, finite. Points of no triangle stay where they are. The largest difference
-///                  of coordinates should be from 1e-90 to 1e90, so that the volume can be formed.
+/// \param points    3 x n, finite. Points of no triangle stay where they are. Coordinates should
+///                  differ by 1e-90 to 1e90 at most, so that the volume can be formed.
 /// \param triangles 3 x m, closed, manifold, consistently oriented, any genus and number of pieces.
 /// \return the points, the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for coordinates that are not finite, indices out of range, a mesh that is not
-///        as said, or options out of range.
+/// \throw InvalidInput for coordinates that are not finite, an index or option out of range, or a
+///        mesh that is not as said.
 /// Cost: O(n) per step of Umbrella, twice that of Taubin; Biharmonic O(n sqrt(steps)), five steps
 /// as much as some thirty of Umbrella.
 ///
