@@ -1,0 +1,107 @@
+// benchmark_peer_open3d: the surface reconstruction of Open3D.
+
+#include "peer.h"
+
+#include <open3d/Open3DConfig.h>
+#include <open3d/geometry/KDTreeSearchParam.h>
+#include <open3d/geometry/PointCloud.h>
+#include <open3d/geometry/TriangleMesh.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace spherical_param::benchmark;
+using open3d::geometry::PointCloud;
+
+constexpr int normal_neighbors = 30;  // default of Open3D
+
+const std::string normals_parameters =
+    "EstimateNormals " + std::to_string(normal_neighbors) +
+    " neighbours on all cores, OrientNormalsConsistentTangentPlane " +
+    std::to_string(orientation_neighbors) + " neighbours on 1 thread";
+
+PointCloud estimateNormals(const Points& points) {
+  PointCloud cloud;
+  cloud.points_.reserve(points.size());
+  for (const auto& point : points) {
+    cloud.points_.emplace_back(point[0], point[1], point[2]);
+  }
+  cloud.EstimateNormals(open3d::geometry::KDTreeSearchParamKNN(normal_neighbors));
+  cloud.OrientNormalsConsistentTangentPlane(orientation_neighbors);
+  return cloud;
+}
+
+spherical_param::tools::TriangleMesh toMesh(const open3d::geometry::TriangleMesh& surface) {
+  spherical_param::tools::TriangleMesh mesh;
+  mesh.vertices.points.reserve(surface.vertices_.size());
+  for (const Eigen::Vector3d& vertex : surface.vertices_) {
+    mesh.vertices.points.push_back(
+        spherical_param::tools::toPoint({vertex.x(), vertex.y(), vertex.z()}));
+  }
+  mesh.triangles.reserve(surface.triangles_.size());
+  for (const Eigen::Vector3i& triangle : surface.triangles_) {
+    mesh.triangles.push_back({triangle.x(), triangle.y(), triangle.z()});
+  }
+  return mesh;
+}
+
+/// Radii as in Open3D's tutorial on surface reconstruction.
+PeerResult ballPivoting(const Points& points) {
+  PeerResult result;
+  Stopwatch stopwatch;
+  const PointCloud cloud = estimateNormals(points);
+  result.normals_seconds = stopwatch.lap();
+
+  const std::vector<double> distances = cloud.ComputeNearestNeighborDistance();
+  const double mean_distance = std::accumulate(distances.begin(), distances.end(), 0.0) /
+                               static_cast<double>(distances.size());
+  const double radius = 1.5 * mean_distance;
+  const auto surface = open3d::geometry::TriangleMesh::CreateFromPointCloudBallPivoting(
+      cloud, {radius, 2.0 * radius});
+  result.mesh = toMesh(*surface);
+  result.parameters =
+      normals_parameters + "; radii 1.5 and 3 mean distances to the nearest neighbour; 1 thread";
+  return result;
+}
+
+PeerResult poisson(const Points& points) {
+  PeerResult result;
+  Stopwatch stopwatch;
+  const PointCloud cloud = estimateNormals(points);
+  result.normals_seconds = stopwatch.lap();
+
+  constexpr std::size_t depth = 8;
+  const auto [surface, densities] =
+      open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, depth);
+  result.mesh = toMesh(*surface);
+  result.parameters = normals_parameters + "; depth " + std::to_string(depth) +
+                      ", all else as Open3D sets it; all cores, waiting threads sleep";
+  return result;
+}
+
+/// Lets threads sleep while they wait. By default those of OpenMP spin, which makes Poisson up to
+/// 50 times slower as soon as another program runs. OpenMP reads this when a program starts, hence
+/// the second start.
+void letWaitingThreadsSleep(char** argv) {
+  constexpr const char* variable = "OMP_WAIT_POLICY";
+  if (std::getenv(variable) == nullptr && setenv(variable, "passive", 0) == 0) {
+    execv("/proc/self/exe", argv);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  letWaitingThreadsSleep(argv);
+  return runPeer(argc, argv,
+                 {"benchmark_peer_open3d",
+                  "Open3D " OPEN3D_VERSION,
+                  {{"ball_pivoting", "Open3D ball pivoting", true, ballPivoting},
+                   {"poisson", "Open3D Poisson", false, poisson}}});
+}
