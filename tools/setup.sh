@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Installs those packages of tools/packages.txt that are missing. Does nothing, and needs neither
 # network nor root, if there are none.
+#
+#   tools/setup.sh [NAME...]     those of tools/packages-NAME.txt, too
 set -euo pipefail
 
 fail() {
@@ -8,11 +10,17 @@ fail() {
   exit 1
 }
 
-list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
+folder="$(dirname "${BASH_SOURCE[0]}")"
+lists=("$folder/packages.txt")
+for name in "$@"; do
+  [ -f "$folder/packages-$name.txt" ] || fail "there is no list $folder/packages-$name.txt"
+  lists+=("$folder/packages-$name.txt")
+done
 command -v dpkg-query >/dev/null ||
-  fail "this is not Debian: install what $list names by other means"
+  fail "this is not Debian: install what ${lists[*]} name by other means"
 
-mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "$list")
+mapfile -t wanted < <(cat "${lists[@]}" |
+  sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' | sort -u)
 
 # dpkg-query fails for names that it never heard of; those are missing as well.
 installed="$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |

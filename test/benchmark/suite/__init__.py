@@ -1,0 +1,1 @@
+"""The benchmark suite: the paper's tables and figures, quality, scaling and peers in one report."""

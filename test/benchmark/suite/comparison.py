@@ -1,0 +1,227 @@
+"""Quality against the truth, ours and the peers', on the same clouds in the same run."""
+
+import json
+import statistics
+
+from .processes import in_turn, run
+from .report import Figure, Section
+from .tables import Column, Table
+
+OURS = "ours"
+PEERS = ("benchmark_peer_cgal", "benchmark_peer_pcl", "benchmark_peer_open3d")
+
+QUALITY = [
+    Column("model", "cloud"),
+    Column("method", "method"),
+    Column("points", "points", quoted=False),
+    Column("sphere", "closed, manifold, genus 0"),
+    Column("used", "points used [%]", 2),
+    Column("intersections", "self-intersections"),
+    Column("rms", "RMS [%]", 4),
+    Column("hausdorff", "Hausdorff [%]", 3),
+    Column("normals", "normals off by [deg]", 2),
+    Column("edges", "true edges [%]", 1),
+    Column("min_angle", "mean least angle [deg]", 1, quoted=False),
+    Column("needles", "triangles below 10 deg [%]", 1, quoted=False),
+    Column("seconds", "time [s]", 2, exact=False),
+    Column("reconstruction", "of it reconstruction [s]", 2, exact=False, quoted=False),
+    Column("megabytes", "memory [MB]", 0, exact=False),
+    Column("parameters", "parameters", quoted=False),
+    Column("failure", "remark", quoted=False),
+]
+
+MAP = [
+    Column("model", "cloud"),
+    Column("method", "map"),
+    Column("residual", "Laplacian left"),
+    Column("angle", "angle distortion, mean", 3),
+    Column("angle_95", "95 %", 2, quoted=False),
+    Column("area", "area distortion, rms log2", 2),
+    Column("inverted", "inverted triangles [%]", 3),
+    Column("collapsed", "collapsed in single precision", quoted=False),
+]
+
+
+def peers(programs):
+    """(label, program, method) of every peer that was built, and what is missing."""
+    found, missing = [], []
+    for name in PEERS:
+        program = programs.optional(name)
+        if program is None:
+            missing.append(name.rpartition("_")[2])
+            continue
+        listed = run([program, "-list"])
+        if not listed.good:
+            missing.append(name.rpartition("_")[2])
+            continue
+        found += [(one["label"], program, one["method"]) for one in json.loads(listed.output)]
+    return found, missing
+
+
+def quality_row(quality):
+    """The columns of QUALITY that come from the referee."""
+    return {
+        "points": quality["cloud_points"],
+        "sphere": quality["closed_manifold_genus0"],
+        "used": quality["points_used_percent"],
+        "intersections": quality["self_intersecting_pairs"],
+        "rms": quality.get("rms_percent"),
+        "hausdorff": quality.get("hausdorff_percent"),
+        "normals": quality.get("normal_deviation_degrees"),
+        "edges": quality.get("edges_reproduced_percent"),
+        "min_angle": quality["min_angle_mean_degrees"],
+        "needles": quality["min_angle_below_10_percent"],
+    }
+
+
+def _compare(context, cloud, with_peers, table, maps):
+    """All methods on one cloud."""
+    methods = [(OURS, None, None)] + (with_peers if with_peers else [])
+    meshes = [context.work / f"compare_{index}.ply" for index in range(len(methods))]
+    sphere = context.work / "compare_sphere.ply"
+    for mesh in meshes:
+        mesh.unlink(missing_ok=True)
+    commands = []
+    for (_, program, method), mesh in zip(methods, meshes):
+        if program is None:
+            commands.append([context.programs.reconstruction, cloud.points, mesh, "-quiet",
+                             "-json", "-"])  # fmt: skip
+        else:
+            commands.append([program, method, cloud.points, mesh])
+    runs = in_turn(commands, context.choose(1, 3), timeout=context.timeout)
+    for (label, program, _), mesh, done in zip(methods, meshes, runs):
+        row = {"model": cloud.name, "method": label}
+        table.rows.append(row)
+        last = done[-1]
+        if not last.good:
+            said = last.errors.strip().splitlines()
+            row["failure"] = (
+                f"not done after {context.timeout:.0f} s" if last.timed_out
+                else said[0] if said else f"exit code {last.exit_code}"
+            )  # fmt: skip
+            continue
+        row["seconds"] = statistics.median(one.seconds for one in done)
+        reports = [json.loads(one.output) for one in done]
+        row["megabytes"] = max(report["peak_memory_bytes"] for report in reports) / 1e6
+        if program is not None:
+            row["reconstruction"] = statistics.median(
+                report["seconds"]["reconstruction"] for report in reports
+            )
+            row["parameters"] = reports[0]["parameters"]
+        row.update(quality_row(context.programs.measure(mesh, cloud)))
+    if maps is not None:
+        for name, options in (
+            ("default", ()),
+            ("before the optimisation", ("-optimize", "none")),
+            ("the same, converged", ("-optimize", "none", "-tolerance", "1e-8")),
+        ):
+            _, report = context.programs.reconstruct(
+                cloud.points, meshes[0], "-attempts", "1", *options, sphere=sphere
+            )
+            quality = context.programs.measure(meshes[0], cloud, sphere)
+            maps.rows.append(
+                {
+                    "model": cloud.name,
+                    "method": name,
+                    "residual": f"{report['residual']:.0e}",
+                    **context.distortion(quality),
+                }
+            )
+    for path in (*meshes, sphere):
+        path.unlink(missing_ok=True)
+
+
+def _pictures(context, clouds, with_peers):
+    """What the methods make of one cloud, side by side."""
+    from .pictures import Panels
+
+    figures = []
+    for cloud in clouds:
+        panels = Panels(context.renderer, context.work)
+        titles = []
+        for label, program, method in [(OURS, None, None)] + with_peers:
+            mesh = context.work / f"picture_{len(titles)}.ply"
+            command = (
+                [program, method, cloud.points, mesh]
+                if program
+                else [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
+            )
+            if run(command, context.timeout).good:
+                titles.append(label)
+                panels.add(mesh, options=["-view", "25,15", "-edges", "off"])
+        file = panels.save(context.out / f"methods_{cloud.name}.png", titles)
+        figures.append(
+            Figure(
+                file,
+                f"{cloud.name}, by each method",
+                "Flat shaded. Holes show the inside.",
+                context.renderer.problem or "",
+            )
+        )
+    return figures
+
+
+def section(context):
+    found, missing = peers(context.programs)
+    parts = [
+        "Each method gets the points alone. Those that need normals estimate them by their own "
+        "library; that is part of the time. *Closed, manifold, genus 0* is judged by a referee of "
+        "the suite on the file that was written, not by the product; self-intersections are pairs "
+        "of triangles, in exact arithmetic. `true edges` are those of the mesh that the cloud's "
+        "points were taken from, where they were.\n"
+    ]
+    if missing:
+        parts.append(f"Not built here, hence not compared: {', '.join(missing)}.\n")
+    if context.models:
+        tables = Table("models", QUALITY, keys=2), Table("models_map", MAP, keys=2)
+        context.say(f"{len(context.models)} models, {len(found) + 1} methods")
+        for cloud in context.models:
+            context.say(f"  {cloud.name}")
+            _compare(context, cloud, found, *tables)
+        parts += ["### Models\n", tables[0], _summary(tables[0]), tables[1]]
+    tables = Table("generated", QUALITY, keys=2), Table("generated_map", MAP, keys=2)
+    names = context.choose(("hand_5000", "animal_5000"),
+                           ("hand_10000", "animal_10000", "star_10000", "plate_10000",
+                            "tweety", "max", "igea"))  # fmt: skip
+    contested = context.choose(("hand_5000",), ("hand_10000", "tweety", "igea"))
+    for name in names:
+        context.say(f"generated scan {name}: {len(found) + 1 if name in contested else 1} methods")
+        _compare(context, context.scan(name), found if name in contested else None, *tables)
+    parts += ["### Generated scans\n", tables[0], _summary(tables[0]), tables[1]]
+    context.say("pictures of the methods")
+    parts += _pictures(context, [context.scan(contested[0])], found)
+    return Section("Quality, and the peers", parts)
+
+
+def _summary(table):
+    """What each method did on all clouds where it and ours were run."""
+    summary = Table(
+        f"{table.name}_summary",
+        [
+            Column("method", "method"),
+            Column("clouds", "clouds"),
+            Column("spheres", "closed, manifold, genus 0, all points"),
+            Column("clean", "of these without self-intersections"),
+            Column("rms", "RMS, times ours (median)", 2),
+            Column("hausdorff", "Hausdorff, times ours (median)", 2),
+            Column("seconds", "time, times ours (median)", 2, exact=False),
+            Column("megabytes", "memory, times ours (median)", 2, exact=False),
+        ],
+    )
+    ours = {row["model"]: row for row in table.rows if row["method"] == OURS}
+    methods = dict.fromkeys(row["method"] for row in table.rows)
+    for method in methods:
+        rows = [row for row in table.rows if row["method"] == method]
+        good = [row for row in rows if row.get("sphere") and row["used"] == 100.0]
+        entry = {
+            "method": method,
+            "clouds": len(rows),
+            "spheres": len(good),
+            "clean": sum(row["intersections"] == 0 for row in good),
+        }
+        for key in ("rms", "hausdorff", "seconds", "megabytes"):
+            ratios = [row[key] / ours[row["model"]][key] for row in rows
+                      if row.get(key) and ours[row["model"]].get(key)]  # fmt: skip
+            entry[key] = statistics.median(ratios) if ratios else None
+        summary.rows.append(entry)
+    return summary

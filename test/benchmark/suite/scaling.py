@@ -1,0 +1,136 @@
+"""Time, memory and throughput over the number of points, and over the number of threads."""
+
+import math
+import os
+import statistics
+
+from .machine import available_memory
+from .product import stage_seconds
+from .report import Figure, Section
+from .tables import Column, Table
+
+STAGES = ("read", "neighbors", "graph", "embedding", "triangulation", "optimization", "check",
+          "write")  # fmt: skip
+BYTES_A_POINT = 1500  # more than the product takes: what does not fit is not tried
+
+
+def _stage_columns():
+    return [Column(stage, f"{stage} [s]", 3, exact=False, quoted=False) for stage in STAGES]
+
+
+def _measure(context, cloud, repeats, threads=None):
+    """Medians of the stages' seconds, of the whole process, and its peak memory."""
+    mesh = context.work / "scaling.ply"
+    runs = []
+    for _ in range(repeats):
+        process, report = context.programs.reconstruct(cloud.points, mesh, threads=threads)
+        runs.append((process, stage_seconds(report), report))
+        if process.seconds > 5.0:
+            break
+    row = {s: statistics.median(run[1].get(s, 0.0) for run in runs) for s in STAGES}
+    row["seconds"] = statistics.median(run[0].seconds for run in runs)
+    row["peak"] = max(run[2]["peak_memory_bytes"] for run in runs)
+    row["intersections"] = runs[-1][2]["self_intersections"]
+    mesh.unlink(missing_ok=True)
+    return row
+
+
+def growth(context):
+    from . import plots
+
+    table = Table(
+        "scaling",
+        [
+            Column("points", "points"),
+            Column("seconds", "time [s]", 2, exact=False),
+            Column("throughput", "points a second", 0, exact=False),
+            Column("unit", "time / (n log2 n) [ns]", 0, exact=False),
+            Column("bytes", "peak memory [bytes a point]", 0, exact=False),
+            Column("intersections", "self-intersections"),
+            *_stage_columns(),
+        ],
+    )
+    sizes = context.choose((1000, 10000, 100000), (1000, 10000, 100000, 1000000, 10000000))
+    skipped = []
+    for n in sizes:
+        if n * BYTES_A_POINT > available_memory():
+            skipped.append(f"{n:,}")
+            continue
+        context.say(f"scaling: {n:,} points")
+        cloud = context.scan(f"head_{n}", truth=False)
+        row = _measure(context, cloud, 3)
+        if n > 1000000:
+            cloud.points.unlink()
+        row.update(
+            points=n,
+            throughput=n / row["seconds"],
+            unit=1e9 * row["seconds"] / (n * math.log2(n)),
+            bytes=row["peak"] / n,
+        )
+        table.rows.append(row)
+    # From 10,000 on: below, the start of a process counts.
+    rows = [row for row in table.rows if row["points"] >= 10000]
+    x = [math.log(row["points"] * math.log(row["points"])) for row in rows]
+    slopes = {}
+    for stage in ("seconds", *STAGES):
+        y = [math.log(max(row[stage], 1e-9)) for row in rows]
+        mean_x, mean_y = statistics.mean(x), statistics.mean(y)
+        slopes[stage] = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum(
+            (a - mean_x) ** 2 for a in x
+        )
+    plot = plots.Lines(panels=2)
+    points = [row["points"] for row in table.rows]
+    for color, stage in enumerate(STAGES):
+        plot.curve(0, points, [row[stage] for row in table.rows], stage, color, "-", "o")
+    plot.curve(0, points, [row["seconds"] for row in table.rows], "whole process", 7, "--")
+    plot.label(0, "points", "seconds", "time of each stage")
+    plot.curve(1, points, [row["bytes"] for row in table.rows], "process, peak", 0, "-", "o")
+    plot.curve(1, points, [2000.0] * len(points), "bound: 2 KB a point", 1, "--")
+    plot.label(1, "points", "bytes a point", "memory")
+    left_out = f" Left out, as they do not fit the memory: {', '.join(skipped)}." if skipped else ""
+    return [
+        "### Over the number of points\n",
+        "Generated heads, default options, all threads. An exponent of 1 is a cost of n log n; "
+        f"fitted from 10,000 points up it is {slopes['seconds']:.2f} for the whole process, by "
+        "stage "
+        + ", ".join(f"{stage} {slopes[stage]:.2f}" for stage in STAGES)
+        + f". The memory of a process of 1,000 points is that of its libraries.{left_out}\n",
+        table,
+        Figure(context.save_plot(plot, "scaling"), "Time and memory over n", "Logarithmic axes."),
+    ]
+
+
+def threads(context):
+    from . import plots
+
+    cores = len(os.sched_getaffinity(0))
+    counts = sorted({1, cores} | {2**i for i in range(12) if 2**i < cores})
+    table = Table(
+        "threads",
+        [
+            Column("threads", "threads"),
+            Column("seconds", "time [s]", 2, exact=False),
+            Column("speedup", "times as fast as one", 2, exact=False),
+            *_stage_columns(),
+        ],
+    )
+    cloud = context.scan(context.choose("head_100000", "head_1000000"), truth=False)
+    for count in counts:
+        context.say(f"scaling: {count} threads")
+        row = _measure(context, cloud, context.choose(1, 2), threads=count)
+        row["threads"] = count
+        row["speedup"] = table.rows[0]["seconds"] / row["seconds"] if table.rows else 1.0
+        table.rows.append(row)
+    names = [f"{row['threads']} threads" for row in table.rows]
+    values = {n: [row[s] for s in STAGES] for n, row in zip(names, table.rows)}
+    plots.bars(context.out / "threads.svg", names, STAGES, values, cloud.name, "seconds")
+    return [
+        "### Over the number of threads\n",
+        f"{cloud.name}; the mesh is the same, byte by byte, for any number.\n",
+        table,
+        Figure("threads.svg", "Stages over threads", "Where the second thread helps."),
+    ]
+
+
+def section(context):
+    return Section("Scaling", growth(context) + threads(context))
