@@ -3,13 +3,14 @@
 # the number of points. Installs what is missing, builds, and leaves tables, plots, pictures and
 # report.md in a folder.
 #
-#   tools/benchmark.sh OUT [MODELS] [--quick] [--only paper|comparison|scaling|stages]
+#   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--only paper|comparison|scaling|stages]
 #                      [--keep] [--update-readme]
 #
 #   OUT              folder for the report
 #   MODELS           folder of real models: points/NAME.ply and, where known, the true meshes
 #                    truth/NAME.ply. Without it generated scans are all there is.
 #   --quick          a minute's worth
+#   --large          up to ten million points: 10 GB and some five minutes more
 #   --only           one section alone; may be repeated
 #   --keep           keep the clouds that were generated, in OUT/work
 #   --update-readme  write the numbers that README.md quotes
@@ -19,7 +20,7 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 build="$root/build/release"
 
 if [ "$#" -eq 0 ] || [ "$1" = "-h" ] || [ "$1" = "--help" ]; then
-  sed -n -e '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+  sed -n -e '2,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   [ "$#" -eq 1 ] && exit 0
   exit 2
 fi
@@ -49,6 +50,6 @@ fi
 # A virtual display is preferred: a real one may be remote, or without OpenGL.
 display=()
 if command -v xvfb-run >/dev/null; then
-  display=(xvfb-run -a)
+  display=(xvfb-run -a -s "-screen 0 1280x1024x24 -noreset")
 fi
 suite "${display[@]}" /usr/bin/python3 -m suite "$@"

@@ -164,7 +164,8 @@ check "set-up" tools/setup.sh || {
   echo "$passed passed, $failed failed"
   exit 1
 }
-if check "gcc: build" configure_and_build release "" -DSPHERICAL_PARAM_WERROR=ON; then
+if check "gcc: build" configure_and_build release "" -DSPHERICAL_PARAM_WERROR=ON \
+  -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON; then
   tests "gcc: tests" build/release
 fi
 check "clang-format" formatted || true
@@ -176,7 +177,7 @@ if [ "$quick" = no ]; then
   fi
   export UBSAN_OPTIONS=print_stacktrace=1
   if check "ASan and UBSan: build" configure_and_build asan ""; then
-    variant_tests "ASan and UBSan: tests" asan build/asan -E '^Layering'
+    variant_tests "ASan and UBSan: tests" asan build/asan -E '^(Layering|BenchmarkSuite)'
   fi
   if check "TSan: build" configure_and_build tsan test/core/all; then
     variant_tests "TSan: tests of concurrent use" tsan build/tsan/test/core -R Concurrent

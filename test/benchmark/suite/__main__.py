@@ -22,8 +22,9 @@ class Context:
         self.out = arguments.out
         self.work = work
         self.quick = arguments.quick
+        self.large = arguments.large
         self.timeout = 30.0 if arguments.quick else 120.0
-        self.programs = Programs(arguments.build / "bin")
+        self.programs = Programs(arguments.build / "bin", 20000 if self.quick else None)
         self.renderer = Renderer(self.programs.optional("pcl_spherical_param_render"))
         self.models = load_clouds(arguments.models) if arguments.models else []
         self.started = time.monotonic()
@@ -69,6 +70,7 @@ def parse(words):
     parser.add_argument("out", type=pathlib.Path, help="folder for the report")
     parser.add_argument("models", type=pathlib.Path, nargs="?", help="folder with real models")
     parser.add_argument("--quick", action="store_true", help="a minute's worth")
+    parser.add_argument("--large", action="store_true", help="up to ten million points")
     parser.add_argument("--only", choices=SECTIONS, action="append", help="some sections alone")
     parser.add_argument("--keep", action="store_true", help="keep clouds and meshes in OUT/work")
     parser.add_argument("--build", type=pathlib.Path, required=True, help="the build folder")

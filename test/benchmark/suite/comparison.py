@@ -3,11 +3,12 @@
 import json
 import statistics
 
+from .pictures import Panels
 from .processes import in_turn, run
+from .readme import OURS
 from .report import Figure, Section
 from .tables import Column, Table
 
-OURS = "ours"
 PEERS = ("benchmark_peer_cgal", "benchmark_peer_pcl", "benchmark_peer_open3d")
 
 QUALITY = [
@@ -20,13 +21,12 @@ QUALITY = [
     Column("rms", "RMS [%]", 4),
     Column("hausdorff", "Hausdorff [%]", 3),
     Column("normals", "normals off by [deg]", 2),
-    Column("edges", "true edges [%]", 1),
+    Column("edges", "true edges [%]", 1, quoted=False),
     Column("min_angle", "mean least angle [deg]", 1, quoted=False),
     Column("needles", "triangles below 10 deg [%]", 1, quoted=False),
     Column("seconds", "time [s]", 2, exact=False),
     Column("reconstruction", "of it reconstruction [s]", 2, exact=False, quoted=False),
     Column("megabytes", "memory [MB]", 0, exact=False),
-    Column("parameters", "parameters", quoted=False),
     Column("failure", "remark", quoted=False),
 ]
 
@@ -74,9 +74,13 @@ def quality_row(quality):
     }
 
 
-def _compare(context, cloud, with_peers, table, maps):
-    """All methods on one cloud."""
-    methods = [(OURS, None, None)] + (with_peers if with_peers else [])
+def _compare(context, cloud, with_peers, tables, parameters, panels=None):
+    """All methods on one cloud; `panels` for pictures of what they make.
+
+    Our own maps to the sphere as well, with and without the optimisation of the mesh.
+    """
+    table, maps = tables
+    methods = [(OURS, None, None), *with_peers]
     meshes = [context.work / f"compare_{index}.ply" for index in range(len(methods))]
     sphere = context.work / "compare_sphere.ply"
     for mesh in meshes:
@@ -107,58 +111,31 @@ def _compare(context, cloud, with_peers, table, maps):
             row["reconstruction"] = statistics.median(
                 report["seconds"]["reconstruction"] for report in reports
             )
-            row["parameters"] = reports[0]["parameters"]
+            parameters[label] = reports[0]["library"], reports[0]["parameters"]
         row.update(quality_row(context.programs.measure(mesh, cloud)))
-    if maps is not None:
-        for name, options in (
-            ("default", ()),
-            ("before the optimisation", ("-optimize", "none")),
-            ("the same, converged", ("-optimize", "none", "-tolerance", "1e-8")),
-        ):
-            _, report = context.programs.reconstruct(
-                cloud.points, meshes[0], "-attempts", "1", *options, sphere=sphere
-            )
-            quality = context.programs.measure(meshes[0], cloud, sphere)
-            maps.rows.append(
-                {
-                    "model": cloud.name,
-                    "method": name,
-                    "residual": f"{report['residual']:.0e}",
-                    **context.distortion(quality),
-                }
-            )
+        if panels:
+            # Ours stand on their z axis; most models that go round have y pointing up.
+            up = "z" if cloud.generated else "y"
+            panels.add(mesh, label, ["-up", up, "-view", "25,15", "-edges", "off"])
+    for name, options in (
+        ("default", ()),
+        ("before the optimisation", ("-optimize", "none")),
+        ("the same, converged", ("-optimize", "none", "-tolerance", "1e-8")),
+    ):
+        _, report = context.programs.reconstruct(
+            cloud.points, meshes[0], "-attempts", "1", *options, sphere=sphere
+        )
+        quality = context.programs.measure(meshes[0], cloud, sphere)
+        maps.rows.append(
+            {
+                "model": cloud.name,
+                "method": name,
+                "residual": f"{report['residual']:.0e}",
+                **context.distortion(quality),
+            }
+        )
     for path in (*meshes, sphere):
         path.unlink(missing_ok=True)
-
-
-def _pictures(context, clouds, with_peers):
-    """What the methods make of one cloud, side by side."""
-    from .pictures import Panels
-
-    figures = []
-    for cloud in clouds:
-        panels = Panels(context.renderer, context.work)
-        titles = []
-        for label, program, method in [(OURS, None, None)] + with_peers:
-            mesh = context.work / f"picture_{len(titles)}.ply"
-            command = (
-                [program, method, cloud.points, mesh]
-                if program
-                else [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
-            )
-            if run(command, context.timeout).good:
-                titles.append(label)
-                panels.add(mesh, options=["-view", "25,15", "-edges", "off"])
-        file = panels.save(context.out / f"methods_{cloud.name}.png", titles)
-        figures.append(
-            Figure(
-                file,
-                f"{cloud.name}, by each method",
-                "Flat shaded. Holes show the inside.",
-                context.renderer.problem or "",
-            )
-        )
-    return figures
 
 
 def section(context):
@@ -172,25 +149,50 @@ def section(context):
     ]
     if missing:
         parts.append(f"Not built here, hence not compared: {', '.join(missing)}.\n")
+    parameters = {}
     if context.models:
-        tables = Table("models", QUALITY, keys=2), Table("models_map", MAP, keys=2)
         context.say(f"{len(context.models)} models, {len(found) + 1} methods")
+        tables = Table("models", QUALITY, keys=2), Table("models_map", MAP, keys=2)
+        figures = []
         for cloud in context.models:
             context.say(f"  {cloud.name}")
-            _compare(context, cloud, found, *tables)
-        parts += ["### Models\n", tables[0], _summary(tables[0]), tables[1]]
+            panels = Panels(context.renderer, context.work)
+            _compare(context, cloud, found, tables, parameters, panels)
+            figures.append(_figure(context, cloud, panels))
+        parts += ["### Models\n", _summary(tables[0]), tables[0], tables[1], *figures]
     tables = Table("generated", QUALITY, keys=2), Table("generated_map", MAP, keys=2)
     names = context.choose(("hand_5000", "animal_5000"),
                            ("hand_10000", "animal_10000", "star_10000", "plate_10000",
                             "tweety", "max", "igea"))  # fmt: skip
-    contested = context.choose(("hand_5000",), ("hand_10000", "tweety", "igea"))
+    contested = context.choose(("animal_5000",), ("hand_10000", "tweety", "igea"))
+    figures = []
     for name in names:
-        context.say(f"generated scan {name}: {len(found) + 1 if name in contested else 1} methods")
-        _compare(context, context.scan(name), found if name in contested else None, *tables)
-    parts += ["### Generated scans\n", tables[0], _summary(tables[0]), tables[1]]
-    context.say("pictures of the methods")
-    parts += _pictures(context, [context.scan(contested[0])], found)
+        cloud = context.scan(name)
+        others = found if name in contested else []
+        context.say(f"generated scan {name}: {len(others) + 1} methods")
+        panels = Panels(context.renderer, context.work)
+        _compare(context, cloud, others, tables, parameters, panels if others else None)
+        if others:
+            figures.append(_figure(context, cloud, panels))
+    parts += ["### Generated scans\n", _summary(tables[0]), tables[0], tables[1], *figures]
+    used = Table("peers", [Column("method", "method"), Column("library", "library"),
+                           Column("parameters", "parameters")])  # fmt: skip
+    for label, (library, text) in parameters.items():
+        used.rows.append({"method": label, "library": library, "parameters": text})
+    parts += ["### Parameters of the peers\n", used]
     return Section("Quality, and the peers", parts)
+
+
+def _figure(context, cloud, panels):
+    file = panels.save(
+        context.out / f"methods_{cloud.name}.png", [label for _, label in panels.pictures]
+    )
+    return Figure(
+        file,
+        f"{cloud.name}, by each method",
+        "Flat shaded; where a surface is open or turned inside out, its inside is seen.",
+        context.renderer.problem or "",
+    )
 
 
 def _summary(table):
@@ -204,6 +206,7 @@ def _summary(table):
             Column("clean", "of these without self-intersections"),
             Column("rms", "RMS, times ours (median)", 2),
             Column("hausdorff", "Hausdorff, times ours (median)", 2),
+            Column("edges", "true edges (mean) [%]", 1),
             Column("seconds", "time, times ours (median)", 2, exact=False),
             Column("megabytes", "memory, times ours (median)", 2, exact=False),
         ],
@@ -223,5 +226,7 @@ def _summary(table):
             ratios = [row[key] / ours[row["model"]][key] for row in rows
                       if row.get(key) and ours[row["model"]].get(key)]  # fmt: skip
             entry[key] = statistics.median(ratios) if ratios else None
+        edges = [row["edges"] for row in rows if row.get("edges") is not None]
+        entry["edges"] = statistics.mean(edges) if edges else None
         summary.rows.append(entry)
     return summary

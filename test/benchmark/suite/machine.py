@@ -59,7 +59,7 @@ def available_memory():
 def describe(root, build):
     """The provenance of what is measured now, of a checkout and its build folder."""
     compiler = _first_match(build / "CMakeCache.txt", r"^CMAKE_CXX_COMPILER:\w+=(.+)$", "c++")
-    version = _output(compiler, "-dumpfullversion") or _output(compiler, "-dumpversion") or ""
+    version = _output(compiler, "--version") or pathlib.Path(compiler).name
     kib = _first_match("/proc/meminfo", r"^MemTotal:\s*(\d+) kB", "0")
     return Provenance(
         commit=_git(root, "rev-parse", "--short=10", "HEAD") or "unknown",
@@ -69,5 +69,5 @@ def describe(root, build):
         cores=len(os.sched_getaffinity(0)),
         memory_gib=int(kib) / 2**20,
         system=_first_match("/etc/os-release", r'^PRETTY_NAME="?([^"\n]+)', platform.system()),
-        compiler=f"{pathlib.Path(compiler).name} {version}".strip(),
+        compiler=version.splitlines()[0],
     )

@@ -57,8 +57,7 @@ class Panels:
         path = self.folder / f"panel_{len(self.pictures)}.png"
         size = f"{self.size}x{self.size}"
         # Options first: those of the camera are for the inputs that follow.
-        good = self.renderer.draw(path, [], "-size", size, *options, mesh)
-        if good:
+        if self.renderer.draw(path, "-size", size, *options, mesh):
             self.pictures.append((path, caption))
 
     def save(self, path, columns, rows=None):
@@ -67,7 +66,9 @@ class Panels:
             return None
         from . import plots
 
-        plots.panels(path, self.pictures, columns, rows)
+        # What is said above a column is not said again below its pictures.
+        pictures = [(file, "" if text in columns else text) for file, text in self.pictures]
+        plots.panels(path, pictures, columns, rows)
         for picture, _ in self.pictures:
             picture.unlink()
         return path.name

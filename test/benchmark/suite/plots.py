@@ -77,5 +77,5 @@ def panels(path, pictures, columns, rows=None):
     for index, title in enumerate(rows or []):
         grid[index][0].set_ylabel(title, fontsize=9)
     figure.tight_layout(pad=0.4)
-    figure.savefig(path, dpi=160, metadata={"Software": None})
+    figure.savefig(path, dpi=160, bbox_inches="tight", metadata={"Software": None})
     plt.close(figure)

@@ -79,9 +79,8 @@ def run(command, timeout=None, threads=None):
         )
 
 
-def require(command, timeout=None, threads=None):
-    """run() for what must not fail. Raises Failure with the program's last words."""
-    result = run(command, timeout, threads)
+def check(command, result):
+    """Raises Failure with the program's last words if it did not do what it should."""
     if not result.good:
         words = " ".join(str(word) for word in command)
         said = [line for line in result.errors.splitlines() if line.strip()]
@@ -93,7 +92,12 @@ def require(command, timeout=None, threads=None):
     return result
 
 
-def in_turn(commands, repeats, timeout=None, long_run=10.0):
+def require(command, timeout=None, threads=None):
+    """run() for what must not fail."""
+    return check(command, run(command, timeout, threads))
+
+
+def in_turn(commands, repeats, timeout=None, long_run=4.0):
     """Runs commands in turn, so that a busy machine is shared fairly: a list of runs for each.
 
     A command that took longer than `long_run` seconds, or failed, is not repeated.

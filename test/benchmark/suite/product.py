@@ -24,8 +24,9 @@ class Cloud:
 class Programs:
     """The programs in a build folder."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, samples=None):
         self.folder = pathlib.Path(folder)
+        self.samples = samples  # of the referee on each mesh; None: its default
         self.reconstruction = self._find("pcl_spherical_param_reconstruction")
         self.scan = self._find("pcl_spherical_param_scan")
         self.quality = self._find("benchmark_mesh_quality")
@@ -67,6 +68,7 @@ class Programs:
         command = [self.quality, mesh, "-cloud", cloud.points]
         if cloud.truth:
             command += ["-truth", cloud.truth]
+            command += ["-samples", self.samples] if self.samples else []
         if sphere:
             command += ["-sphere", sphere]
         return json.loads(require(command).output)
@@ -101,12 +103,15 @@ class Renderer:
         self.program = program
         self.problem = None if program else "the renderer is not built: VTK with OpenGL is missing"
 
-    def draw(self, picture, files, *options):
+    def draw(self, picture, *words):
         """True if the picture was made. After a failure no other is tried."""
         if self.problem:
             return False
-        result = run([self.program, picture, *files, *options], timeout=120)
-        if not result.good:
-            said = result.errors.strip().splitlines()
-            self.problem = said[0] if said else f"exit code {result.exit_code}"
-        return result.good
+        # A virtual display may refuse a program while it is cleaning up after the one before.
+        for _ in range(3):
+            result = run([self.program, picture, *words], timeout=120)
+            if result.good:
+                return True
+        said = result.errors.strip().splitlines()
+        self.problem = said[0] if said else f"the renderer ended with {result.exit_code}"
+        return False

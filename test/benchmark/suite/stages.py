@@ -19,7 +19,6 @@ def _stages(context, program):
             Column("name", "stage, points, threads"),
             Column("milliseconds", "time [ms]", 3, exact=False),
             Column("nanoseconds", "a point [ns]", 0, exact=False),
-            Column("iterations", "repetitions", exact=False),
         ],
     )
     for one in json.loads(output.read_text())["benchmarks"]:
@@ -29,7 +28,6 @@ def _stages(context, program):
                 "name": one["name"].removesuffix("/real_time"),
                 "milliseconds": one["real_time"],
                 "nanoseconds": 1e9 / rate if rate else None,
-                "iterations": one["iterations"],
             }
         )
     return [
