@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import json
 import pathlib
 import sys
 import tempfile
@@ -11,6 +12,7 @@ from . import __main__ as program
 from . import comparison, freshness, machine, readme
 from .processes import Failure, in_turn, median_seconds, require, run
 from .product import load_clouds
+from .report import Figure, Section, write_report
 from .tables import Column, Table, parse_markdown
 
 
@@ -157,6 +159,23 @@ class Readme(InFolder):
     def test_a_commit_that_did_not_lead_here_is_told(self):
         self.path.write_text(self.path.read_text().replace("0123456789", "none"))
         self.assertIn("does not say", freshness.commit_problem(self.path))
+
+
+class Report(InFolder):
+    def test_has_commit_and_machine_tables_and_figures(self):
+        provenance = machine.describe(self.folder, self.folder)
+        figure = Figure(None, "Figure 9", "A tail.", "no display")
+        section = Section("The paper", ["Words.\n", example(), figure])
+        write_report(self.folder, provenance, [section], 90.0)
+        text = (self.folder / "report.md").read_text()
+        for part in (provenance.sentence(), "1.5 minutes", "## The paper", "Words.",
+                     example().markdown(), "(not drawn: no display)", "A tail."):  # fmt: skip
+            self.assertIn(part, text)
+        self.assertEqual((self.folder / "generated.csv").read_text(), example().csv())
+        written = json.loads((self.folder / "results.json").read_text())
+        self.assertEqual(readme.tables_of(written)["generated"].cells(), example().cells())
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                         ["generated.csv", "report.md", "results.json"])  # fmt: skip
 
 
 class Comparison(unittest.TestCase):
