@@ -45,7 +45,8 @@ class Programs:
     def make_scan(self, shape, folder, points=None, noise=None, truth=True, name=None):
         """A generated scan, made once and then taken from the folder."""
         name = name or (f"{shape}_{points}" if points else shape)
-        cloud = Cloud(name, folder / f"{name}.ply", folder / f"{shape}_truth.ply" if truth else None)
+        truth_file = folder / f"{shape}_truth.ply" if truth else None
+        cloud = Cloud(name, folder / f"{name}.ply", truth_file)
         if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
             command = [self.scan, shape, cloud.points]
             command += ["-points", points] if points else []

@@ -18,8 +18,8 @@ QUOTED = {
     "table1": "The paper's Table 1, on generated scans of the same sizes:",
     "generated": "Our meshes of generated scans, beside the true surface (distances in percent of "
     "the diagonal of its bounding box):",
-    "models_summary": "Beside other methods through the points alone, on 14 real models of 2,930 "
-    "to 134,345 points:",
+    "models_summary": "Beside other methods, which get the points alone, too, on the real models "
+    "below:",
     "scaling": "Over the number of points:",
     "triangulation": "The two triangulations of the sphere, one thread:",
 }

@@ -37,7 +37,7 @@ def _markdown(part):
 
 
 def write_report(folder, provenance, sections, seconds):
-    """Writes tables as CSV, all of it as report.md, and results.json for the check of the README."""
+    """Writes tables as CSV, all of it as report.md, and results.json to check the README by."""
     tables = [table for section in sections for table in section.tables()]
     for table in tables:
         write_file(folder / f"{table.name}.csv", table.csv())

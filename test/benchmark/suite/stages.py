@@ -11,7 +11,7 @@ def _stages(context, program):
     output = context.work / "stages.json"
     command = [program, f"--benchmark_out={output}", "--benchmark_out_format=json"]
     # By the number of points, which follows the name.
-    command += context.choose(["--benchmark_filter=/10000(/|$)", "--benchmark_min_time=0.1"], [])
+    command += context.choose(["--benchmark_filter=/10000(/|$)", "--benchmark_min_time=0.02"], [])
     require(command)
     table = Table(
         "stages",
