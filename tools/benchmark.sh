@@ -29,8 +29,10 @@ suite() {
   PYTHONPATH="$root/test/benchmark" PYTHONDONTWRITEBYTECODE=1 "$@" \
     --build "$build" --readme "$root/README.md"
 }
-# A wrong command line is told before anything is installed or built.
-suite /usr/bin/python3 -m suite "$@" --check-only
+# A wrong command line is told before anything is installed or built, if Python is there already.
+if [ -x /usr/bin/python3 ]; then
+  suite /usr/bin/python3 -m suite "$@" --check-only
+fi
 
 "$root/tools/setup.sh" benchmark
 
@@ -38,11 +40,11 @@ log="$build/benchmark-build.log"
 mkdir -p "$build"
 echo "benchmark.sh: building in $build (minutes at first, seconds later)"
 if ! (
-  cd "$root"
   # tools/test.sh leaves the peers out that this wants.
-  cmake --preset release -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON \
-    -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=OFF -DCMAKE_DISABLE_FIND_PACKAGE_Open3D=OFF
-  cmake --build "$build" --target benchmark_suite
+  cd "$root" &&
+    cmake --preset release -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON \
+      -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=OFF -DCMAKE_DISABLE_FIND_PACKAGE_Open3D=OFF &&
+    cmake --build "$build" --target benchmark_suite
 ) >"$log" 2>&1; then
   tail -n 5 "$log" >&2
   echo "benchmark.sh: failed; the output of the build is in $log, remove $build to start afresh" >&2

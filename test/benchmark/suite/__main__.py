@@ -65,8 +65,15 @@ SECTIONS = {
 }
 
 
+class Parser(argparse.ArgumentParser):
+    """Tells a wrong command line in two lines."""
+
+    def error(self, message):
+        self.exit(2, f"benchmark: {message}\nrun '{self.prog} -h' for what it takes\n")
+
+
 def parse(words):
-    parser = argparse.ArgumentParser(prog="tools/benchmark.sh", description=__doc__)
+    parser = Parser(prog="tools/benchmark.sh", description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="folder for the report")
     parser.add_argument("models", type=pathlib.Path, nargs="?", help="folder with real models")
     parser.add_argument("--quick", action="store_true", help="a minute's worth")
@@ -77,7 +84,10 @@ def parse(words):
     parser.add_argument("--readme", type=pathlib.Path, required=True, help="README to compare with")
     parser.add_argument("--update-readme", action="store_true", help="write the numbers there")
     parser.add_argument("--check-only", action="store_true", help="look at this line, do nothing")
-    return parser.parse_args(words)
+    arguments = parser.parse_args(words)
+    if arguments.update_readme and (arguments.quick or arguments.only):
+        parser.error("the README quotes a whole report: --quick and --only do not go with it")
+    return arguments
 
 
 def prepare(out):
@@ -117,7 +127,8 @@ def main(words):
     context.say(f"report: {arguments.out / 'report.md'}")
     results = json.loads((arguments.out / "results.json").read_text())
     if arguments.update_readme:
-        readme.update(arguments.readme, results)
+        for name in readme.update(arguments.readme, results):
+            print(f"README: the table {name} is gone, for it was not measured")
         return 0
     differences, compared = readme.check(arguments.readme, results)
     for difference in differences:

@@ -72,8 +72,11 @@ def _split(text, path):
 
 
 def update(path, results):
+    """Writes the numbers of a report; returns the tables that were there and are not any more."""
     before, _, after = _split(path.read_text(), path)
+    old = quoted_tables(path)
     write_file(path, before + block(results) + after)
+    return sorted(old.keys() - quoted_tables(path).keys())
 
 
 def quoted_tables(path):

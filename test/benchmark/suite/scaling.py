@@ -123,7 +123,7 @@ def threads(context):
         row["threads"] = count
         row["speedup"] = table.rows[0]["seconds"] / row["seconds"] if table.rows else 1.0
         table.rows.append(row)
-    names = [f"{row['threads']} threads" for row in table.rows]
+    names = [f"{row['threads']} thread{'s' if row['threads'] > 1 else ''}" for row in table.rows]
     values = {n: [row[s] for s in STAGES] for n, row in zip(names, table.rows)}
     plots.bars(context.out / "threads.svg", names, STAGES, values, cloud.name, "seconds")
     return [

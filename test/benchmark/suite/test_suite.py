@@ -120,6 +120,11 @@ class Readme(InFolder):
         self.assertNotIn("old", text)
         self.assertEqual(readme.quoted_commit(self.path), "0123456789")
 
+    def test_tables_that_were_not_measured_again_are_told(self):
+        empty = {"sentence": "Measured at commit `0123456789` on a machine.", "tables": []}
+        self.assertEqual(readme.update(self.path, empty), ["generated"])
+        self.assertEqual(readme.quoted_tables(self.path), {})
+
     def test_a_number_that_was_changed_is_found(self):
         self.path.write_text(self.path.read_text().replace("0.0123", "0.0103"))
         differences, _ = readme.check(self.path, results(example()))
@@ -200,15 +205,16 @@ class Comparison(unittest.TestCase):
 class CommandLine(InFolder):
     def main(self, *words):
         readme_file = self.folder / "README.md"
-        with contextlib.redirect_stderr(io.StringIO()) as errors:
-            program.main([*words, "--build", str(self.folder), "--readme", str(readme_file)])
-        return errors.getvalue()
+        program.main([*words, "--build", str(self.folder), "--readme", str(readme_file)])
 
     def test_wrong_lines_are_refused_before_anything_is_done(self):
-        for words in ((), ("out", "models", "more"), ("out", "--unknown"), ("out", "--only", "x")):
-            with self.subTest(words=words), self.assertRaises(SystemExit) as caught:
-                self.main(*words)
-            self.assertEqual(caught.exception.code, 2)
+        for words in ((), ("out", "models", "more"), ("out", "--unknown"), ("out", "--only", "x"),
+                      ("out", "--quick", "--update-readme")):  # fmt: skip
+            with self.subTest(words=words), contextlib.redirect_stderr(io.StringIO()) as errors:
+                with self.assertRaises(SystemExit) as caught:
+                    self.main(*words)
+                self.assertEqual(caught.exception.code, 2)
+                self.assertEqual(len(errors.getvalue().splitlines()), 2)
 
     def test_a_folder_with_other_things_is_left_alone(self):
         (self.folder / "thesis.tex").write_text("x")
