@@ -190,7 +190,7 @@ struct OneWay {
   Count angles_over_30 = 0;
 };
 
-/// Positions of the vertices that triangles name.
+/// Positions of the vertices that triangles name, degenerate ones too.
 Positions verticesOf(const Mesh& mesh) {
   std::vector<char> used(static_cast<std::size_t>(mesh.points.cols()), 0);
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)

@@ -125,7 +125,7 @@ struct Distances {
     double mesh_to_truth = 0.0;
     double truth_to_mesh = 0.0;
   };
-  Directions hausdorff;           ///< largest of samples and used vertices: the true one at most
+  Directions hausdorff;           ///< largest of samples and corners: the true one at most
   Directions rms;                 ///< over the samples
   double both_rms = 0.0;          ///< over the samples of both directions
   double both_mean = 0.0;         ///< over the same

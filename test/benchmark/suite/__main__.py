@@ -18,7 +18,7 @@ from .report import write_report
 class Context:
     """What the sections share: where things are, and how much is wanted."""
 
-    def __init__(self, arguments, work):
+    def __init__(self, arguments, models, work):
         self.out = arguments.out
         self.work = work
         self.quick = arguments.quick
@@ -26,17 +26,15 @@ class Context:
         self.timeout = 30.0 if arguments.quick else 120.0
         self.programs = Programs(arguments.build / "bin", 20000 if self.quick else None)
         self.renderer = Renderer(self.programs.optional("pcl_spherical_param_render"))
-        self.models = load_clouds(arguments.models) if arguments.models else []
+        self.models = models
         self.started = time.monotonic()
 
     def choose(self, quick, full):
         return quick if self.quick else full
 
     def scan(self, name, noise=None, truth=True):
-        """A generated scan by its name: SHAPE_POINTS or a preset."""
-        shape, _, points = name.partition("_")
-        file = f"{name}_noise_{noise}" if noise else name
-        return self.programs.make_scan(shape, self.work, points or None, noise, truth, file)
+        """A generated scan. See Programs.make_scan()."""
+        return self.programs.make_scan(name, self.work, noise, truth)
 
     def save_plot(self, plot, name):
         plot.save(self.out / f"{name}.svg")
@@ -104,14 +102,13 @@ def prepare(out):
 
 def main(words):
     arguments = parse(words)
-    if arguments.models:
-        load_clouds(arguments.models)
+    models = load_clouds(arguments.models) if arguments.models else []
     prepare(arguments.out)
     if arguments.check_only:
         return 0
     root = pathlib.Path(__file__).resolve().parents[3]
     with tempfile.TemporaryDirectory(prefix="work_", dir=arguments.out) as work:
-        context = Context(arguments, pathlib.Path(work))
+        context = Context(arguments, models, pathlib.Path(work))
         provenance = machine.describe(root, arguments.build)
         sections = [
             make(context) for name, make in SECTIONS.items()

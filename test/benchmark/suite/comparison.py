@@ -47,14 +47,11 @@ def peers(programs):
     found, missing = [], []
     for name in PEERS:
         program = programs.optional(name)
-        if program is None:
+        listed = run([program, "-list"]) if program else None
+        if listed and listed.good:
+            found += [(one["label"], program, one["method"]) for one in json.loads(listed.output)]
+        else:
             missing.append(name.rpartition("_")[2])
-            continue
-        listed = run([program, "-list"])
-        if not listed.good:
-            missing.append(name.rpartition("_")[2])
-            continue
-        found += [(one["label"], program, one["method"]) for one in json.loads(listed.output)]
     return found, missing
 
 
@@ -125,7 +122,7 @@ def _compare(context, cloud, with_peers, tables, parameters, panels=None):
         _, report = context.programs.reconstruct(
             cloud.points, meshes[0], "-attempts", "1", *options, sphere=sphere
         )
-        quality = context.programs.measure(meshes[0], cloud, sphere)
+        quality = context.programs.measure_map(meshes[0], sphere)
         maps.rows.append(
             {
                 "model": cloud.name,

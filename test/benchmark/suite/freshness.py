@@ -48,8 +48,7 @@ def measure_again(programs, path, work):
         name, method = row[:2]
         if method != comparison.OURS:
             continue
-        shape, _, points = name.partition("_")
-        cloud = programs.make_scan(shape, work, points or None)
+        cloud = programs.make_scan(name, work)
         if cloud.points.stat().st_size > 12 * MAX_POINTS + 1000:
             continue
         mesh = work / "mesh.ply"

@@ -218,9 +218,7 @@ def figure8(context):
             Column("inverted", "inverted triangles of the map [%]", 2),
         ],
     )
-    methods = {
-        weights: (*ITERATIVE, "-hull", "qhull", "-weights", weights) for weights in WEIGHTS
-    }
+    methods = {weights: (*PAPER, "-weights", weights) for weights in WEIGHTS}
     methods["default, raw"] = ("-optimize", "none", "-attempts", "1")
     meshes = {}
     for name, options in methods.items():

@@ -42,9 +42,12 @@ class Programs:
         path = self.folder / name
         return path if path.is_file() else None
 
-    def make_scan(self, shape, folder, points=None, noise=None, truth=True, name=None):
-        """A generated scan, made once and then taken from the folder."""
-        name = name or (f"{shape}_{points}" if points else shape)
+    def make_scan(self, name, folder, noise=None, truth=True):
+        """A generated scan by its name, SHAPE_POINTS or a preset; made once, then taken from the
+        folder.
+        """
+        shape, _, points = name.partition("_")
+        name = f"{name}_noise_{noise}" if noise else name
         truth_file = folder / f"{shape}_truth.ply" if truth else None
         cloud = Cloud(name, folder / f"{name}.ply", truth_file)
         if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
@@ -73,6 +76,10 @@ class Programs:
         if sphere:
             command += ["-sphere", sphere]
         return json.loads(require(command).output)
+
+    def measure_map(self, mesh, sphere):
+        """The referee's measures of a mesh alone and of its map to the sphere."""
+        return json.loads(require([self.quality, mesh, "-sphere", sphere]).output)
 
 
 def load_clouds(folder):

@@ -76,10 +76,7 @@ def growth(context):
     slopes = {}
     for stage in ("seconds", *STAGES):
         y = [math.log(max(row[stage], 1e-9)) for row in rows]
-        mean_x, mean_y = statistics.mean(x), statistics.mean(y)
-        slopes[stage] = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum(
-            (a - mean_x) ** 2 for a in x
-        )
+        slopes[stage] = statistics.linear_regression(x, y).slope
     plot = plots.Lines(panels=2)
     points = [row["points"] for row in table.rows]
     for color, stage in enumerate(STAGES):

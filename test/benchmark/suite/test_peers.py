@@ -27,7 +27,7 @@ class Peers(unittest.TestCase):
         self.assertGreaterEqual(sum("PCL" in label for label in labels), 2, labels)
 
     def test_each_makes_a_surface_near_the_truth(self):
-        cloud = programs.make_scan("ellipsoid", self.folder, 1500)
+        cloud = programs.make_scan("ellipsoid_1500", self.folder)
         for label, program, method in self.found:
             with self.subTest(method=label):
                 mesh = self.folder / "mesh.ply"
