@@ -19,6 +19,7 @@ set(stages point_set outliers neighbor_graph graph_hierarchy sphere_embedding sp
            smoothing sphere_map resampling morphing)
 
 # Sources of a stage besides the one of its name: part, then stage.
+set(ordered_points_stage point_set)
 set(graph_building_stage neighbor_graph)
 set(local_delaunay_graph_stage neighbor_graph)
 set(mesh_optimizer_stage mesh_optimization)

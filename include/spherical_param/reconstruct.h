@@ -218,4 +218,22 @@ void checkOptions(const Options& options);
 Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options = {},
                    const NeighborSearch& search = {});
 
+/// Makes a search among the points that it is given: the distinct ones, in an order in which those
+/// that are near in space are mostly near in memory.
+///
+/// \param points 3 x v, scaled by a power of two to an extent of about 1; kept until the search is
+///               gone.
+/// \param input_of_point v entries: the first input point at each of them; kept as well.
+/// \return a search whose points and answers are numbers of these points, 0 ... v - 1.
+using NeighborSearchFactory = std::function<NeighborSearch(
+    const Positions& points, const std::vector<Index>& input_of_point)>;
+
+/// The same with a search instead of lists: faster, since the points are put in order before it.
+///
+/// \param make_search called at the beginning, and again for further attempts. The search is asked
+///                    for the neighborsToSearch() nearest of all points, then for more of some.
+///                    Both are called from the calling thread; what they throw is passed on.
+Result reconstruct(const Positions& points, const NeighborSearchFactory& make_search,
+                   const Options& options = {});
+
 }  // namespace spherical_param

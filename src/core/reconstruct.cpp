@@ -1,7 +1,7 @@
 #include "spherical_param/reconstruct.h"
 
 #include "core/neighbor_lists.h"
-#include "core/space_filling_curve.h"
+#include "core/ordered_points.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/point_set.h"
 #include "spherical_param/self_intersection.h"
@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -113,84 +114,83 @@ private:
   Result& result_;
 };
 
-/// The distinct points, scaled by a power of two to an extent of about 1: exact, so distinct points
-/// stay distinct, and no product in later stages overflows.
-Positions distinctScaled(const Positions& points, const std::vector<Index>& input_of_vertex,
-                         int& exponent) {
-  Positions result(3, static_cast<Eigen::Index>(input_of_vertex.size()));
-  for (Eigen::Index v = 0; v < result.cols(); ++v)
-    result.col(v) = points.col(input_of_vertex[static_cast<std::size_t>(v)]);
-  // Halves, so that the difference of two huge coordinates stays finite.
-  const Eigen::Vector3d half_extent =
-      result.rowwise().maxCoeff() / 2.0 - result.rowwise().minCoeff() / 2.0;
-  std::frexp(half_extent.maxCoeff(), &exponent);
-  result = result.unaryExpr([&](double x) { return std::ldexp(x, -exponent); });
+/// The stages work on the distinct points in the order of a space-filling curve, called nodes.
+using Nodes = internal::OrderedPoints;
+
+/// What the graph is made of, in terms of nodes.
+struct Neighbors {
+  NeighborLists lists;
+  NeighborSearch search;
+};
+
+/// The first neighbours are found once for each graph, and not kept: most clouds need one graph.
+using FindNeighbors = std::function<Neighbors(const Nodes&)>;
+
+std::vector<Index> nodesOfInput(const Nodes& nodes) {
+  std::vector<Index> node_of_vertex(nodes.vertex_of_node.size());
+  for (std::size_t node = 0; node < node_of_vertex.size(); ++node)
+    node_of_vertex[static_cast<std::size_t>(nodes.vertex_of_node[node])] = static_cast<Index>(node);
+  std::vector<Index> result(nodes.distinct.vertex_of_input.size());
+  std::transform(nodes.distinct.vertex_of_input.begin(), nodes.distinct.vertex_of_input.end(),
+                 result.begin(),
+                 [&](Index vertex) { return node_of_vertex[static_cast<std::size_t>(vertex)]; });
   return result;
 }
 
-/// The stages work on the vertices in the order of a space-filling curve, called nodes, so that
-/// neighbours are near in memory.
-struct Nodes {
-  Positions points;                   ///< 3 x v, column i = node i, scaled
-  std::vector<Index> vertex_of_node;  ///< v entries
-  std::vector<Index> input_of_node;   ///< v entries, first input point
-  std::vector<Index> node_of_input;   ///< n entries
-};
-
-Nodes orderedNodes(const Positions& vertices, const DistinctPoints& distinct) {
-  Nodes nodes;
-  nodes.vertex_of_node = internal::mortonOrder(vertices);
-  const std::size_t v = nodes.vertex_of_node.size();
-  nodes.points.resize(3, vertices.cols());
-  nodes.input_of_node.resize(v);
-  std::vector<Index> node_of_vertex(v);
-  for (std::size_t node = 0; node < v; ++node) {
-    const Index vertex = nodes.vertex_of_node[node];
-    nodes.points.col(static_cast<Eigen::Index>(node)) = vertices.col(vertex);
-    nodes.input_of_node[node] = distinct.input_of_vertex[static_cast<std::size_t>(vertex)];
-    node_of_vertex[static_cast<std::size_t>(vertex)] = static_cast<Index>(node);
-  }
-  nodes.node_of_input.reserve(distinct.vertex_of_input.size());
-  for (const Index vertex : distinct.vertex_of_input)
-    nodes.node_of_input.push_back(node_of_vertex[static_cast<std::size_t>(vertex)]);
-  return nodes;
-}
-
 /// Neighbour lists between nodes; a node has the entries of all its input points.
-NeighborLists listsOfNodes(const NeighborLists& lists, const Nodes& nodes) {
-  const std::size_t n = nodes.node_of_input.size();
-  const std::size_t v = nodes.vertex_of_node.size();
+NeighborLists listsOfNodes(const NeighborLists& lists, const std::vector<Index>& node_of_input,
+                           std::size_t node_count) {
+  const std::size_t n = node_of_input.size();
   NeighborLists result;
-  result.offsets.assign(v + 1, 0);
+  result.offsets.assign(node_count + 1, 0);
   result.indices.resize(lists.indices.size());
   const auto count = [&](std::size_t i) { return lists.offsets[i + 1] - lists.offsets[i]; };
   for (std::size_t i = 0; i < n; ++i)
-    result.offsets[static_cast<std::size_t>(nodes.node_of_input[i]) + 1] += count(i);
-  for (std::size_t i = 0; i < v; ++i)
+    result.offsets[static_cast<std::size_t>(node_of_input[i]) + 1] += count(i);
+  for (std::size_t i = 0; i < node_count; ++i)
     result.offsets[i + 1] += result.offsets[i];
   std::vector<std::size_t> next(result.offsets.begin(), result.offsets.end() - 1);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t e = lists.offsets[i]; e < lists.offsets[i + 1]; ++e)
-      result.indices[next[static_cast<std::size_t>(nodes.node_of_input[i])]++] =
-          nodes.node_of_input[static_cast<std::size_t>(lists.indices[e])];
+      result.indices[next[static_cast<std::size_t>(node_of_input[i])]++] =
+          node_of_input[static_cast<std::size_t>(lists.indices[e])];
   return result;
 }
 
-/// The search in terms of nodes instead of input points.
-NeighborSearch searchOfNodes(const NeighborSearch& search, const Nodes& nodes) {
-  if (!search)
-    return {};
-  return [&search, &nodes](const std::vector<Index>& queries, int count) {
-    std::vector<Index> inputs(queries.size());
-    for (std::size_t i = 0; i < queries.size(); ++i)
-      inputs[i] = nodes.input_of_node[static_cast<std::size_t>(queries[i])];
-    NeighborLists lists = search(inputs, count);
-    internal::checkIndices("reconstruct: the search's answer", lists, queries.size(),
-                           nodes.node_of_input.size());
-    for (Index& neighbor : lists.indices)
-      neighbor = nodes.node_of_input[static_cast<std::size_t>(neighbor)];
-    return lists;
-  };
+/// The neighbours from lists of, and a search among, input points.
+Neighbors neighborsFromLists(const NeighborLists& lists, const NeighborSearch& search,
+                             const Nodes& nodes) {
+  std::vector<Index> node_of_input = nodesOfInput(nodes);
+  Neighbors result;
+  result.lists = listsOfNodes(lists, node_of_input, nodes.input_of_node.size());
+  if (search)
+    result.search = [&search, &nodes, node_of_input = std::move(node_of_input)](
+                        const std::vector<Index>& queries, int count) {
+      std::vector<Index> inputs(queries.size());
+      for (std::size_t i = 0; i < queries.size(); ++i)
+        inputs[i] = nodes.input_of_node[static_cast<std::size_t>(queries[i])];
+      NeighborLists found = search(inputs, count);
+      internal::checkIndices("reconstruct: the search's answer", found, queries.size(),
+                             node_of_input.size());
+      for (Index& neighbor : found.indices)
+        neighbor = node_of_input[static_cast<std::size_t>(neighbor)];
+      return found;
+    };
+  return result;
+}
+
+/// The neighbours from a search that is made for the nodes.
+Neighbors neighborsFromSearch(const NeighborSearchFactory& make_search, const Options& options,
+                              const Nodes& nodes) {
+  Neighbors result;
+  result.search = make_search(nodes.points, nodes.input_of_node);
+  if (!result.search)
+    throw InvalidInput("reconstruct: the factory made an empty search; return one that can be "
+                       "called");
+  std::vector<Index> all(nodes.input_of_node.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  result.lists = result.search(all, neighborsToSearch(options));
+  return result;
 }
 
 /// Gives the result, computed on scaled points, the unit of the input.
@@ -318,14 +318,14 @@ Plan planOf(int attempt, const Options& options) {
   return plan;
 }
 
-NeighborGraph buildGraph(const Positions& points, const NeighborLists& lists, const Plan& plan,
-                         const Options& options, const NeighborSearch& search) {
+NeighborGraph buildGraph(const Positions& points, const Neighbors& neighbors, const Plan& plan,
+                         const Options& options) {
   if (plan.graph == GraphMethod::NearestNeighbors)
-    return buildNeighborGraph(points, lists, {plan.k});
+    return buildNeighborGraph(points, neighbors.lists, {plan.k});
   LocalDelaunayOptions graph = localDelaunayOptions(options);
   graph.agreement = plan.agreement;
-  graph.search = search;
-  return buildLocalDelaunayGraph(points, lists, graph);
+  graph.search = neighbors.search;
+  return buildLocalDelaunayGraph(points, neighbors.lists, graph);
 }
 
 Positions embedIteratively(const Graph& graph, const Positions& points, const Options& options,
@@ -587,9 +587,8 @@ bool isWorthMore(const Attempt& first, const Positions& points) {
 }
 
 /// More than one attempt only where the first mesh is bad although the cloud is as it should be.
-Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const NeighborLists& lists,
-                     const NeighborSearch& search, const Options& options, StageLog& log,
-                     Result& result) {
+Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const FindNeighbors& find_neighbors,
+                     const Options& options, StageLog& log, Result& result) {
   const auto quality = [](const Attempt& attempt) {
     return std::pair(attempt.intersections(), attempt.optimization.energy);
   };
@@ -616,8 +615,8 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const NeighborList
     return attempts;
   for (int i = 1; i < options.attempts && !best.isGood(); ++i) {
     const Plan plan = planOf(i, options);
-    run(plan,
-        log.run("graph", [&] { return buildGraph(nodes.points, lists, plan, options, search); }));
+    const Neighbors neighbors = log.run("neighbors", [&] { return find_neighbors(nodes); });
+    run(plan, log.run("graph", [&] { return buildGraph(nodes.points, neighbors, plan, options); }));
   }
   return attempts;
 }
@@ -656,6 +655,63 @@ void takeOver(Attempts& attempts, const Positions& points, const Options& option
   result.triangulation = best.triangulation;
 }
 
+/// Finds the nodes, of which there must be enough.
+Nodes checkedNodes(const Positions& points, const Options& options) {
+  constexpr Eigen::Index most_points = Eigen::Index{1} << 30;
+  if (points.cols() > most_points)
+    throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +
+                       " points are more than 2^30; split or downsample the cloud");
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!points.col(i).allFinite())
+      throw InvalidInput("reconstruct: point " + std::to_string(i) +
+                         " is not finite; remove such points first");
+    if (points.col(i).cwiseAbs().maxCoeff() > kLargestCoordinate)
+      throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
+  }
+  Nodes nodes = internal::orderPoints(points, options.threads);
+  const std::size_t count = nodes.input_of_node.size();
+  if (count < 4)
+    throw InvalidInput("reconstruct: at least 4 distinct finite points are needed, but there are " +
+                       std::to_string(count));
+  if (areCoplanar(nodes.points))
+    throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
+                       "outside of it");
+  return nodes;
+}
+
+Result run(const Positions& points, const Options& options, const FindNeighbors& find_neighbors) {
+  checkOptions(options);
+  Result result;
+  StageLog log(options, result);
+  Nodes nodes;
+  NeighborGraph graph;
+  {
+    const Neighbors neighbors = log.run("neighbors", [&] {
+      nodes = checkedNodes(points, options);
+      return find_neighbors(nodes);
+    });
+    graph = log.run(
+        "graph", [&] { return buildGraph(nodes.points, neighbors, planOf(0, options), options); });
+  }
+  Attempts attempts = runAttempts(std::move(graph), nodes, find_neighbors, options, log, result);
+  for (AttemptReport& report : result.attempts)
+    report.energy = std::ldexp(report.energy, nodes.exponent);
+  result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
+  result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
+  result.duplicates = result.vertex_of_input.size() - result.input_of_vertex.size();
+  result.topology = log.run("check", [&] {
+    takeOver(attempts, nodes.points, options, result);
+    scaleBack(nodes.exponent, result);
+    renumber(nodes.vertex_of_node, result);
+    return checkTopology(result.triangles, result.vertexCount());
+  });
+  if (!result.topology.isSphere())
+    throw ComputeError("reconstruct: the mesh is not a closed genus-0 manifold; please report "
+                       "this cloud as a defect of the library");
+  collectWarnings(options, result);
+  return result;
+}
+
 }  // namespace
 
 int neighborsToSearch(const Options& options) {
@@ -681,50 +737,16 @@ void checkOptions(const Options& options) {
 
 Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options,
                    const NeighborSearch& search) {
-  checkOptions(options);
-  Result result;
-  StageLog log(options, result);
-
-  int exponent = 0;
-  Nodes nodes;
-  NeighborLists node_lists;
-  const NeighborSearch node_search = searchOfNodes(search, nodes);
-  NeighborGraph graph = log.run("graph", [&] {
+  return run(points, options, [&](const Nodes& nodes) {
     internal::checkNeighborLists("reconstruct", lists, static_cast<std::size_t>(points.cols()));
-    DistinctPoints distinct = findDistinctPoints(points);
-    const std::size_t count = distinct.input_of_vertex.size();
-    if (points.cols() > 0 && points.cwiseAbs().maxCoeff() > kLargestCoordinate)
-      throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
-    if (count < 4)
-      throw InvalidInput("reconstruct: " + std::to_string(count) +
-                         " distinct points; a closed surface needs at least 4");
-    const Positions vertices = distinctScaled(points, distinct.input_of_vertex, exponent);
-    if (areCoplanar(vertices))
-      throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
-                         "outside of it");
-    nodes = orderedNodes(vertices, distinct);
-    result.vertex_of_input = std::move(distinct.vertex_of_input);
-    result.input_of_vertex = std::move(distinct.input_of_vertex);
-    result.duplicates = result.vertex_of_input.size() - count;
-    node_lists = listsOfNodes(lists, nodes);
-    return buildGraph(nodes.points, node_lists, planOf(0, options), options, node_search);
+    return neighborsFromLists(lists, search, nodes);
   });
+}
 
-  Attempts attempts =
-      runAttempts(std::move(graph), nodes, node_lists, node_search, options, log, result);
-  for (AttemptReport& report : result.attempts)
-    report.energy = std::ldexp(report.energy, exponent);
-  result.topology = log.run("check", [&] {
-    takeOver(attempts, nodes.points, options, result);
-    scaleBack(exponent, result);
-    renumber(nodes.vertex_of_node, result);
-    return checkTopology(result.triangles, result.vertexCount());
-  });
-  if (!result.topology.isSphere())
-    throw ComputeError("reconstruct: the mesh is not a closed genus-0 manifold; please report "
-                       "this cloud as a defect of the library");
-  collectWarnings(options, result);
-  return result;
+Result reconstruct(const Positions& points, const NeighborSearchFactory& make_search,
+                   const Options& options) {
+  return run(points, options,
+             [&](const Nodes& nodes) { return neighborsFromSearch(make_search, options, nodes); });
 }
 
 }  // namespace spherical_param

@@ -122,26 +122,34 @@ void refine(const Positions& directions, Place* begin, Place* end) {
 
 }  // namespace
 
+MortonCurve::MortonCurve(const Eigen::Vector3d& low, const Eigen::Vector3d& high) : low_(low) {
+  const double extent = (high - low).maxCoeff();
+  constexpr double cells = 2097151.0;  // 2^21 - 1
+  scale_ = extent > 0.0 ? cells / extent : 0.0;
+}
+
+std::uint64_t MortonCurve::key(const Eigen::Vector3d& point) const {
+  const Eigen::Vector3d cell = (point - low_) * scale_;
+  return spread(static_cast<std::uint64_t>(cell.x())) |
+         spread(static_cast<std::uint64_t>(cell.y())) << 1U |
+         spread(static_cast<std::uint64_t>(cell.z())) << 2U;
+}
+
 std::vector<Index> mortonOrder(const Positions& points) {
   const auto n = static_cast<std::size_t>(points.cols());
   std::vector<Index> order(n);
   if (n == 0)
     return order;
-  const Eigen::Vector3d low = points.rowwise().minCoeff();
-  const double extent = (points.rowwise().maxCoeff() - low).maxCoeff();
-  constexpr double cells = 2097151.0;  // 2^21 - 1
-  const double scale = extent > 0.0 ? cells / extent : 0.0;
-  std::vector<std::pair<std::uint64_t, Index>> keys(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d cell = (points.col(static_cast<Eigen::Index>(i)) - low) * scale;
-    const auto key = spread(static_cast<std::uint64_t>(cell.x())) |
-                     spread(static_cast<std::uint64_t>(cell.y())) << 1U |
-                     spread(static_cast<std::uint64_t>(cell.z())) << 2U;
-    keys[i] = {key, static_cast<Index>(i)};
-  }
-  std::sort(keys.begin(), keys.end());
-  std::transform(keys.begin(), keys.end(), order.begin(),
-                 [](const auto& key) { return key.second; });
+  const MortonCurve curve(points.rowwise().minCoeff(), points.rowwise().maxCoeff());
+  struct Key {
+    std::uint64_t key;
+    Index index;
+  };
+  std::vector<Key> keys(n);
+  for (std::size_t i = 0; i < n; ++i)
+    keys[i] = {curve.key(points.col(static_cast<Eigen::Index>(i))), static_cast<Index>(i)};
+  radixSort(keys);
+  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.index; });
   return order;
 }
 

@@ -2,12 +2,27 @@
 
 #include "spherical_param/types.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// Order of points along the Morton curve of their bounding cube (21 bits an axis; G. M. Morton,
-/// 1966): points that are near in space are mostly near in the order. Ties go by index.
+/// The Morton curve of a bounding cube (21 bits an axis; G. M. Morton, 1966).
+class MortonCurve {
+public:
+  /// The cube begins at `low` and reaches as far as `high` does at most along an axis.
+  MortonCurve(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+
+  /// Where a point in the cube lies along the curve.
+  std::uint64_t key(const Eigen::Vector3d& point) const;
+
+private:
+  Eigen::Vector3d low_;
+  double scale_;
+};
+
+/// Order of points along the Morton curve of their bounding cube: points that are near in space are
+/// mostly near in the order. Ties go by index.
 std::vector<Index> mortonOrder(const Positions& points);
 
 /// Order in which points on the sphere go into a triangulation fast: rounds of growing size, each

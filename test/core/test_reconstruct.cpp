@@ -225,6 +225,51 @@ TEST(Reconstruct, ListsOfRepeatedPointsMayBeEmpty) {
   expectGuarantees(points, again);
 }
 
+// The factory is given the distinct points, and its answers are numbers of these.
+TEST(Reconstruct, ListsAndASearchOfItsOwnGiveTheSame) {
+  const Positions base = 5.0 * ellipsoid(400, 1.0, 0.7, 0.5);
+  Positions points(3, 450);
+  points << base, base.leftCols(50);
+  const auto make_search = [&](const Positions& distinct,
+                               const std::vector<Index>& input_of_point) -> NeighborSearch {
+    EXPECT_EQ(distinct.cols(), 400);
+    // Scaled by a power of two, hence exactly.
+    const double scale = base.cwiseAbs().maxCoeff() / distinct.cwiseAbs().maxCoeff();
+    EXPECT_EQ(std::exp2(std::round(std::log2(scale))), scale);
+    for (std::size_t i = 0; i < input_of_point.size(); ++i)
+      EXPECT_EQ(scale * distinct.col(static_cast<Eigen::Index>(i)), points.col(input_of_point[i]));
+    return bruteForceSearch(distinct);
+  };
+  for (const GraphMethod graph : {GraphMethod::LocalDelaunay, GraphMethod::NearestNeighbors}) {
+    Options options;
+    options.graph = graph;
+    const Result result = reconstruct(points, make_search, options);
+    expectGuarantees(points, result);
+    EXPECT_EQ(result.duplicates, 50U);
+    EXPECT_EQ(result.triangles, mesh(base, options).triangles);
+    EXPECT_EQ(result.stages.front().name, "neighbors");
+  }
+}
+
+TEST(Reconstruct, WhatASearchDoesWrongIsSaidOrPassedOn) {
+  const Positions points = ellipsoid(100, 1.0, 0.7, 0.5);
+  const auto empty = [](const Positions&, const std::vector<Index>&) { return NeighborSearch(); };
+  EXPECT_THROW(reconstruct(points, empty), InvalidInput);
+  const auto answer_of = [&](const NeighborLists& answer) {
+    return [answer](const Positions&, const std::vector<Index>&) -> NeighborSearch {
+      return [answer](const std::vector<Index>&, int) { return answer; };
+    };
+  };
+  EXPECT_THROW(reconstruct(points, answer_of(NeighborLists())), InvalidInput);
+  NeighborLists beyond = bruteForceNeighbors(points, 12);
+  beyond.indices[7] = 100;
+  EXPECT_THROW(reconstruct(points, answer_of(beyond)), InvalidInput);
+  const auto failing = [](const Positions&, const std::vector<Index>&) -> NeighborSearch {
+    throw std::runtime_error("no search today");
+  };
+  EXPECT_THROW(reconstruct(points, failing), std::runtime_error);
+}
+
 TEST(Reconstruct, ThousandCopiesOfFourPointsAreATetrahedron) {
   const Positions points = randomSphere(4, 1).replicate(1, 1000);
   const Result result = reconstruct(points, bruteForceNeighbors(points, 5));
@@ -442,12 +487,13 @@ TEST(Reconstruct, StagesAreTimedAndTold) {
     return true;
   };
   const Result result = mesh(points, options);
-  ASSERT_EQ(result.stages.size(), 5U);
+  ASSERT_EQ(result.stages.size(), 6U);
   for (const StageTime& stage : result.stages) {
     EXPECT_GE(stage.seconds, 0.0);
     EXPECT_EQ(ends[stage.name], 1) << stage.name;
   }
-  for (const char* stage : {"graph", "embedding", "triangulation", "optimization", "check"}) {
+  for (const char* stage :
+       {"neighbors", "graph", "embedding", "triangulation", "optimization", "check"}) {
     options.progress = [&](const Progress& progress) {
       return std::string(progress.stage) != stage;
     };
@@ -844,8 +890,8 @@ TEST(Reconstruct, SmoothingIsAStageOfItsOwn) {
   std::vector<std::string> names;
   for (const StageTime& stage : result.stages)
     names.push_back(stage.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"graph", "embedding", "triangulation", "optimization",
-                                             "smoothing", "check"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"neighbors", "graph", "embedding", "triangulation",
+                                             "optimization", "smoothing", "check"}));
 }
 
 TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
@@ -863,7 +909,7 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   for (Index n = 0; n < 4; ++n)
     expect_reason(good.leftCols(n), bruteForceNeighbors(good.leftCols(n), 5), {}, "at least 4");
   const Positions three = randomSphere(3, 1).replicate(1, 5);
-  expect_reason(three, bruteForceNeighbors(three, 5), {}, "3 distinct points");
+  expect_reason(three, bruteForceNeighbors(three, 5), {}, "but there are 3");
   Positions plane = good;
   plane.row(1).setConstant(3.0);
   expect_reason(plane, bruteForceNeighbors(plane, 5), {}, "one plane");

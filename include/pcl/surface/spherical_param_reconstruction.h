@@ -15,10 +15,6 @@
 #include <string>
 #include <vector>
 
-namespace spherical_param {
-struct DistinctPoints;
-}
-
 namespace pcl {
 namespace detail {
 struct NeighborSource;
@@ -337,12 +333,13 @@ private:
   spherical_param::Result reconstructPoints(const spherical_param::Positions& points,
                                             const spherical_param::Options& options) const;
 
-  /** \brief Makes a tree of our own of the distinct points, which must outlive it. */
-  detail::NeighborSource makeKdTree(const spherical_param::Positions& points,
-                                    const spherical_param::DistinctPoints& distinct) const;
+  /** \brief Makes a tree of our own. */
+  static detail::NeighborSource makeKdTree(const spherical_param::Positions& points);
 
-  /** \brief Gives the distinct points to the search object of setSearchMethod(). */
-  detail::NeighborSource useSearchMethod(const spherical_param::DistinctPoints& distinct) const;
+  /** \brief Gives the distinct points to the search object of setSearchMethod().
+   * \param[in] point_of_distinct the first of the used points at each of them */
+  detail::NeighborSource
+  useSearchMethod(const std::vector<spherical_param::Index>& point_of_distinct) const;
 
   spherical_param::Options options_;
   spherical_param::Result result_;

@@ -79,13 +79,12 @@ NeighborFinder::NeighborFinder(const Positions& points) : tree_(std::make_unique
 NeighborFinder::~NeighborFinder() = default;
 
 NeighborLists NeighborFinder::allLists(int neighbors, int threads) const {
-  return pcl::detail::findNeighbors(tree_->source(threads), tree_->all, tree_->order, neighbors,
-                                    [](double) {});
+  return pcl::detail::findNeighbors(tree_->source(threads), tree_->all, neighbors, [](double) {});
 }
 
 NeighborSearch NeighborFinder::search(int threads) const {
   return [source = tree_->source(threads)](const std::vector<Index>& points, int neighbors) {
-    return pcl::detail::findNeighbors(source, points, {}, neighbors, [](double) {});
+    return pcl::detail::findNeighbors(source, points, neighbors, [](double) {});
   };
 }
 

@@ -7,13 +7,11 @@
 #include <pcl/surface/spherical_param_reconstruction.h>
 
 #include "spherical_param/errors.h"
-#include "spherical_param/point_set.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -107,13 +105,10 @@ struct NeighborSource {
       query;
 };
 
-/** \brief Finds the nearest neighbours of each point, besides itself.
- * \param[in] order the points are asked for in this order of their places in `points`, so that each
- * search finds what it needs in the cache; empty: as they are */
+/** \brief Finds the nearest neighbours of each point, besides itself. */
 template <typename Report>
 spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
                                              const std::vector<spherical_param::Index>& points,
-                                             const std::vector<spherical_param::Index>& order,
                                              int neighbors, const Report& report) {
   // One more, since a point is its own neighbour.
   const std::size_t list_size =
@@ -126,25 +121,11 @@ spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
   queryInBlocks(
       points.size(), source.concurrent ? searchThreads(source.threads, points.size()) : 1,
       [&](std::size_t i, pcl::Indices& indices, std::vector<float>& distances) {
-        const std::size_t place = order.empty() ? i : static_cast<std::size_t>(order[i]);
-        source.query(points[place], list_size, indices, distances,
-                     lists.indices.data() + lists.offsets[place]);
+        source.query(points[i], list_size, indices, distances,
+                     lists.indices.data() + lists.offsets[i]);
       },
       report);
   return lists;
-}
-
-/** \brief Turns lists of the distinct points into lists of all: those of points that repeat an
- * earlier one are empty. */
-inline void insertEmptyLists(const spherical_param::DistinctPoints& distinct,
-                             spherical_param::NeighborLists& lists) {
-  std::vector<std::size_t> offsets(distinct.vertex_of_input.size() + 1, 0);
-  for (std::size_t v = 0; v < distinct.input_of_vertex.size(); ++v)
-    offsets[static_cast<std::size_t>(distinct.input_of_vertex[v]) + 1] =
-        lists.offsets[v + 1] - lists.offsets[v];
-  for (std::size_t i = 1; i < offsets.size(); ++i)
-    offsets[i] += offsets[i - 1];
-  lists.offsets = std::move(offsets);
 }
 
 /** \brief Finds out which numbers `search` returns for a subset. Points are told apart by asking
@@ -414,76 +395,67 @@ spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints
 template <typename PointInT>
 spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoints(
     const spherical_param::Positions& points, const spherical_param::Options& options) const {
-  spherical_param::checkOptions(options);
-  const auto start = std::chrono::steady_clock::now();
   const auto report = [&options](double fraction) {
-    if (options.progress && !options.progress({"neighbors", fraction, 0, 0.0}))
+    // The end of the stage is told by the core.
+    if (fraction < 1.0 && options.progress && !options.progress({"neighbors", fraction, 0, 0.0}))
       throw spherical_param::Cancelled("cancelled by the progress callback");
   };
-  report(0.0);
-
-  // Duplicates would fill each other's lists, and cut their points off from all others.
-  const spherical_param::DistinctPoints distinct = spherical_param::findDistinctPoints(points);
-  const std::size_t count = distinct.input_of_vertex.size();
-  if (count < 4)
-    throw spherical_param::InvalidInput(
-        "at least 4 distinct finite points are needed, but there are " + std::to_string(count) +
-        " (" + std::to_string(ignored_points_) + " are not finite)");
-
-  detail::NeighborSource source = tree_ ? useSearchMethod(distinct) : makeKdTree(points, distinct);
-  source.threads = options.threads;
-  spherical_param::NeighborLists lists = detail::findNeighbors(
-      source, distinct.input_of_vertex,
-      spherical_param::spatialOrder(points(Eigen::all, distinct.input_of_vertex)),
-      spherical_param::neighborsToSearch(options), report);
-  detail::insertEmptyLists(distinct, lists);
-  const std::chrono::duration<double> search_time = std::chrono::steady_clock::now() - start;
-
-  spherical_param::Result result = spherical_param::reconstruct(
-      points, lists, options,
-      [&source](const std::vector<spherical_param::Index>& some_points, int neighbors) {
-        return detail::findNeighbors(source, some_points, {}, neighbors, [](double) {});
+  const auto make_search = [&](const spherical_param::Positions& distinct,
+                               const std::vector<spherical_param::Index>& point_of_distinct) {
+    detail::NeighborSource source =
+        tree_ ? useSearchMethod(point_of_distinct) : makeKdTree(distinct);
+    source.threads = options.threads;
+    return [source = std::move(source), &report, is_first = true](
+               const std::vector<spherical_param::Index>& some_points, int neighbors) mutable {
+      // The progress is that of the search for all points; others belong to the graph.
+      const bool reports = std::exchange(is_first, false);
+      return detail::findNeighbors(source, some_points, neighbors, [&](double fraction) {
+        if (reports)
+          report(fraction);
       });
-  result.stages.insert(result.stages.begin(), {"neighbors", search_time.count()});
-  return result;
+    };
+  };
+  try {
+    return spherical_param::reconstruct(points, make_search, options);
+  } catch (const spherical_param::InvalidInput& error) {
+    if (ignored_points_ == 0)
+      throw;
+    throw spherical_param::InvalidInput(std::string(error.what()) + " (of the cloud's points, " +
+                                        std::to_string(ignored_points_) + " are not finite)");
+  }
 }
 
 template <typename PointInT>
-detail::NeighborSource SphericalParamReconstruction<PointInT>::makeKdTree(
-    const spherical_param::Positions& points,
-    const spherical_param::DistinctPoints& distinct) const {
+detail::NeighborSource
+SphericalParamReconstruction<PointInT>::makeKdTree(const spherical_param::Positions& points) {
   // A cloud of its own, because PCL takes the first three floats of a custom point type for its
-  // coordinates, and scaled by a power of two (exactly), because squared distances in float
-  // underflow for small clouds and overflow for large ones.
-  const std::vector<spherical_param::Index>& point_of_vertex = distinct.input_of_vertex;
-  const int exponent = std::ilogb(points.cwiseAbs().maxCoeff());
+  // coordinates. The points are scaled: squared distances in float would underflow for small
+  // clouds and overflow for large ones.
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  cloud->resize(point_of_vertex.size());
-  for (std::size_t v = 0; v < point_of_vertex.size(); ++v)
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
-      (*cloud)[v].data[axis] =
-          static_cast<float>(std::ldexp(points(axis, point_of_vertex[v]), -exponent));
-  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>(false));
+  cloud->resize(static_cast<std::size_t>(points.cols()));
+  for (std::size_t i = 0; i < cloud->size(); ++i)
+    (*cloud)[i].getVector3fMap() = points.col(static_cast<Eigen::Index>(i)).cast<float>();
+  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
   tree->setInputCloud(cloud);
 
   detail::NeighborSource source;
-  source.size = point_of_vertex.size();
+  source.size = cloud->size();
   source.concurrent = true;
-  source.query = [cloud, tree, &distinct](spherical_param::Index point, std::size_t count,
-                                          pcl::Indices& indices, std::vector<float>& distances,
-                                          spherical_param::Index* neighbors) {
-    const auto v =
-        static_cast<std::size_t>(distinct.vertex_of_input[static_cast<std::size_t>(point)]);
-    tree->nearestKSearch((*cloud)[v], static_cast<int>(count), indices, distances);
-    for (std::size_t i = 0; i < count; ++i)
-      neighbors[i] = distinct.input_of_vertex[static_cast<std::size_t>(indices.at(i))];
+  source.query = [cloud, tree](spherical_param::Index point, std::size_t count,
+                               pcl::Indices& indices, std::vector<float>& distances,
+                               spherical_param::Index* neighbors) {
+    tree->nearestKSearch((*cloud)[static_cast<std::size_t>(point)], static_cast<int>(count),
+                         indices, distances);
+    if (indices.size() < count)
+      throw spherical_param::ComputeError("the k-d tree found fewer points than there are");
+    std::copy_n(indices.begin(), count, neighbors);
   };
   return source;
 }
 
 template <typename PointInT>
 detail::NeighborSource SphericalParamReconstruction<PointInT>::useSearchMethod(
-    const spherical_param::DistinctPoints& distinct) const {
+    const std::vector<spherical_param::Index>& point_of_distinct) const {
   const auto* organized =
       dynamic_cast<const pcl::search::OrganizedNeighbor<PointInT>*>(tree_.get());
   if (organized && (input_->height <= 1 || input_->width <= 1))
@@ -491,43 +463,55 @@ detail::NeighborSource SphericalParamReconstruction<PointInT>::useSearchMethod(
         "the search object is an OrganizedNeighbor, but the cloud is not organized; use a "
         "pcl::search::KdTree");
 
-  const std::vector<spherical_param::Index>& point_of_vertex = distinct.input_of_vertex;
-  pcl::IndicesPtr subset(new pcl::Indices(point_of_vertex.size()));
-  std::vector<spherical_param::Index> point_of_cloud(input_->size(), -1);
-  for (std::size_t v = 0; v < point_of_vertex.size(); ++v) {
-    (*subset)[v] = used_indices_[static_cast<std::size_t>(point_of_vertex[v])];
-    point_of_cloud[static_cast<std::size_t>((*subset)[v])] = point_of_vertex[v];
+  std::vector<pcl::index_t> cloud_of_distinct(point_of_distinct.size());
+  std::vector<spherical_param::Index> distinct_of_cloud(input_->size(), -1);
+  for (std::size_t i = 0; i < point_of_distinct.size(); ++i) {
+    cloud_of_distinct[i] = used_indices_[static_cast<std::size_t>(point_of_distinct[i])];
+    distinct_of_cloud[static_cast<std::size_t>(cloud_of_distinct[i])] =
+        static_cast<spherical_param::Index>(i);
   }
+  // The search is given the points in the order of the indices used.
+  std::vector<spherical_param::Index> points = point_of_distinct;
+  std::sort(points.begin(), points.end());
+  pcl::IndicesPtr subset(new pcl::Indices);
+  subset->reserve(points.size());
+  for (const spherical_param::Index point : points)
+    subset->push_back(used_indices_[static_cast<std::size_t>(point)]);
   tree_->setInputCloud(input_, subset);
   if (organized)
     detail::checkCameraModel(*organized, *input_, *subset);
   const bool whole_in_order =
       std::is_sorted(subset->begin(), subset->end()) && subset->size() == input_->size();
-  std::vector<spherical_param::Index> point_of_answer =
-      whole_in_order || detail::findSearchIndexSpace(*tree_, *input_, *subset) ==
-                            detail::SearchIndexSpace::Cloud
-          ? std::move(point_of_cloud)
-          : point_of_vertex;
+  std::vector<spherical_param::Index> distinct_of_answer;
+  if (whole_in_order ||
+      detail::findSearchIndexSpace(*tree_, *input_, *subset) == detail::SearchIndexSpace::Cloud) {
+    distinct_of_answer = std::move(distinct_of_cloud);
+  } else {
+    distinct_of_answer.reserve(subset->size());
+    for (const pcl::index_t index : *subset)
+      distinct_of_answer.push_back(distinct_of_cloud[static_cast<std::size_t>(index)]);
+  }
 
   detail::NeighborSource source;
-  source.size = point_of_vertex.size();
+  source.size = point_of_distinct.size();
   // A search object of the user need not be ready for concurrent queries.
   source.concurrent = false;
-  source.query = [this, point_of_answer = std::move(point_of_answer)](
+  source.query = [this, cloud_of_distinct = std::move(cloud_of_distinct),
+                  distinct_of_answer = std::move(distinct_of_answer)](
                      spherical_param::Index point, std::size_t count, pcl::Indices& indices,
                      std::vector<float>& distances, spherical_param::Index* neighbors) {
-    const pcl::index_t index = used_indices_[static_cast<std::size_t>(point)];
+    const pcl::index_t index = cloud_of_distinct[static_cast<std::size_t>(point)];
     const int answers = tree_->nearestKSearch((*input_)[static_cast<std::size_t>(index)],
                                               static_cast<int>(count), indices, distances);
     const std::size_t found =
         std::min({static_cast<std::size_t>(std::max(answers, 0)), indices.size(), count});
     for (std::size_t i = 0; i < found; ++i) {
       const auto answer = static_cast<std::size_t>(indices[i]);
-      if (answer >= point_of_answer.size() || point_of_answer[answer] < 0)
+      if (answer >= distinct_of_answer.size() || distinct_of_answer[answer] < 0)
         throw spherical_param::ComputeError(
             "the search object returned index " + std::to_string(indices[i]) +
             ", which is not among the points it was given; use a pcl::search::KdTree");
-      neighbors[i] = point_of_answer[answer];
+      neighbors[i] = distinct_of_answer[answer];
     }
     // A search that finds fewer is made up for by the point itself, which the core ignores.
     std::fill(neighbors + found, neighbors + count, point);

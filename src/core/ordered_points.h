@@ -1,0 +1,28 @@
+#pragma once
+
+#include "spherical_param/point_set.h"
+#include "spherical_param/types.h"
+
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// The distinct ones of some points, called nodes, along a space-filling curve: whoever visits them
+/// in their order walks memory forward, and finds the neighbours of each near by.
+struct OrderedPoints {
+  /// 3 x v, column i = node i, scaled by 2^-exponent to an extent of about 1: exact, so distinct
+  /// points stay distinct, and no product in later stages overflows.
+  Positions points;
+  int exponent = 0;
+  std::vector<Index> input_of_node;   ///< v entries, the first input point there
+  std::vector<Index> vertex_of_node;  ///< v entries, a permutation
+  DistinctPoints distinct;            ///< the same points, numbered by the first input point
+};
+
+/// Finds the distinct points and puts them in the order of mortonOrder(), at the cost of one sort.
+/// The same as findDistinctPoints() with mortonOrder() of what it finds.
+///
+/// \param points 3 x n, finite, n < 2^31.
+OrderedPoints orderPoints(const Positions& points, int threads);
+
+}  // namespace spherical_param::internal
