@@ -1,106 +1,191 @@
 #include "core/sphere_mesh.h"
 
+#include "core/parallel.h"
+#include "core/union_find.h"
+
 #include <algorithm>
 #include <cstdint>
 
 namespace spherical_param::internal {
 
-SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count)
+namespace {
+
+/// Finds the other triangle of each side. A side waits with the lower of its vertices for its other
+/// triangle, which comes soon in a mesh whose triangles are in the order of their places: all that
+/// wait are few, and stay in the processor's caches.
+class SidePairing {
+public:
+  struct Side {
+    Index from;
+    Index to;
+    Index triangle;
+    std::uint8_t corner;
+  };
+
+  explicit SidePairing(std::size_t vertex_count) : first_(vertex_count, kNone) {}
+
+  /// Calls pair(side, other) if the other one waits for this one, or lets this one wait.
+  template <typename Pair>
+  void add(const Side& side, const Pair& pair) {
+    std::uint32_t* place = &first_[static_cast<std::size_t>(std::min(side.from, side.to))];
+    std::uint32_t* const list = place;
+    while (*place != kNone) {
+      Waiting& waiting = waiting_[*place];
+      if (waiting.side.from == side.to && waiting.side.to == side.from) {
+        pair(side, waiting.side);
+        const std::uint32_t freed = *place;
+        *place = waiting.next;
+        waiting.next = free_;
+        free_ = freed;
+        return;
+      }
+      place = &waiting.next;
+    }
+    std::uint32_t own = free_;
+    if (own == kNone) {
+      own = static_cast<std::uint32_t>(waiting_.size());
+      // May move what the places point to, but not the lists' beginnings.
+      waiting_.push_back({});
+    } else {
+      free_ = waiting_[own].next;
+    }
+    waiting_[own] = {side, *list};
+    *list = own;
+  }
+
+  /// Calls visit(side) for all that wait.
+  template <typename Visit>
+  void forEachWaiting(const Visit& visit) const {
+    for (const std::uint32_t first : first_)
+      for (std::uint32_t i = first; i != kNone; i = waiting_[i].next)
+        visit(waiting_[i].side);
+  }
+
+private:
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  struct Waiting {
+    Side side;
+    std::uint32_t next;
+  };
+
+  std::vector<std::uint32_t> first_;
+  std::vector<Waiting> waiting_;
+  std::uint32_t free_ = kNone;
+};
+
+/// Parts of a mesh that are paired on their own at first: each takes memory.
+constexpr std::size_t kMostParts = 4;
+
+}  // namespace
+
+SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads)
     : triangle_at_(vertex_count, -1), degree_(vertex_count, 0),
       triangle_count_(static_cast<Index>(triangles.cols())) {
   const auto m = static_cast<std::size_t>(triangles.cols());
   // Room for all splits: entries must not move while changes are recorded.
   vertices_.reserve(std::max(m, 2 * vertex_count));
   neighbors_.reserve(std::max(m, 2 * vertex_count));
-  std::vector<std::size_t> offsets(vertex_count + 1, 0);
-  for (std::size_t t = 0; t < m; ++t) {
-    const auto column = static_cast<Eigen::Index>(t);
-    vertices_.push_back({triangles(0, column), triangles(1, column), triangles(2, column)});
-    for (const Index v : vertices_.back()) {
+  vertices_.resize(m);
+  neighbors_.assign(m, {-1, -1, -1});
+
+  const auto pair = [this](const SidePairing::Side& side, const SidePairing::Side& other) {
+    neighbors_[static_cast<std::size_t>(side.triangle)][side.corner] = other.triangle;
+    neighbors_[static_cast<std::size_t>(other.triangle)][other.corner] = side.triangle;
+  };
+  const std::size_t parts =
+      std::min(kMostParts, static_cast<std::size_t>(threadCount(threads, m, kShortPassThreshold)));
+  std::vector<std::vector<SidePairing::Side>> left(parts);
+  // A block of nothing but its number for each part.
+  forEachBlock(
+      parts * kBlockSize, static_cast<int>(parts), [&](std::size_t part, std::size_t, std::size_t) {
+        SidePairing pairing(vertex_count);
+        for (std::size_t t = part * m / parts; t < (part + 1) * m / parts; ++t) {
+          const auto column = static_cast<Eigen::Index>(t);
+          const std::array<Index, 3> v{triangles(0, column), triangles(1, column),
+                                       triangles(2, column)};
+          vertices_[t] = v;
+          for (std::size_t k = 0; k < 3; ++k)
+            pairing.add({v[(k + 1) % 3], v[(k + 2) % 3], static_cast<Index>(t),
+                         static_cast<std::uint8_t>(k)},
+                        pair);
+        }
+        pairing.forEachWaiting([&](const SidePairing::Side& side) { left[part].push_back(side); });
+      });
+  if (parts > 1) {
+    SidePairing pairing(vertex_count);
+    for (const auto& sides : left)
+      for (const SidePairing::Side& side : sides)
+        pairing.add(side, pair);
+    pairing.forEachWaiting([&](const SidePairing::Side&) { is_paired_ = false; });
+  } else {
+    is_paired_ = left.front().empty();
+  }
+  for (std::size_t t = 0; t < m; ++t)
+    for (const Index v : vertices_[t]) {
       ++degree_[static_cast<std::size_t>(v)];
       triangle_at_[static_cast<std::size_t>(v)] = static_cast<Index>(t);
-      ++offsets[static_cast<std::size_t>(v) + 1];
-    }
-  }
-  neighbors_.assign(m, {-1, -1, -1});
-  // Each vertex has one side that begins at it in each of its triangles; the other triangle at a
-  // side begins it at its end.
-  for (std::size_t v = 0; v < vertex_count; ++v)
-    offsets[v + 1] += offsets[v];
-  struct Side {
-    Index end;
-    Index triangle;
-    std::uint8_t corner;
-  };
-  std::vector<Side> sides(3 * m);
-  std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-  for (std::size_t t = 0; t < m; ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      sides[next[static_cast<std::size_t>(vertices_[t][(k + 1) % 3])]++] = {
-          vertices_[t][(k + 2) % 3], static_cast<Index>(t), static_cast<std::uint8_t>(k)};
-  for (std::size_t v = 0; v < vertex_count; ++v)
-    for (std::size_t s = offsets[v]; s < offsets[v + 1]; ++s) {
-      const Side& side = sides[s];
-      const auto end = static_cast<std::size_t>(side.end);
-      // From the vertex of more triangles, so that the search is among the fewer.
-      if (std::pair(degree_[v], v) < std::pair(degree_[end], end))
-        continue;
-      std::size_t twin = offsets[end];
-      while (twin < offsets[end + 1] && sides[twin].end != static_cast<Index>(v))
-        ++twin;
-      if (twin == offsets[end + 1])
-        continue;
-      neighbors_[static_cast<std::size_t>(side.triangle)][side.corner] = sides[twin].triangle;
-      neighbors_[static_cast<std::size_t>(sides[twin].triangle)][sides[twin].corner] =
-          side.triangle;
     }
 }
 
-bool SphereMesh::isSphere() const {
+bool SphereMesh::isFan(Index v) const {
+  std::array<Index, 16> few{};
+  std::vector<Index> many;
+  const auto count = static_cast<std::size_t>(degree(v));
+  if (count > few.size())
+    many.resize(count);
+  Index* const ring = count > few.size() ? many.data() : few.data();
+  std::size_t reached = 0;
+  const Index first = triangleAt(v);
+  Index t = first;
+  do {
+    if (reached == count)
+      return false;
+    const int corner = cornerOf(t, v);
+    ring[reached++] = vertex(t, (corner + 1) % 3);
+    t = neighbor(t, (corner + 1) % 3);
+  } while (t != first);
+  if (reached != count)
+    return false;
+  if (count > few.size()) {
+    std::sort(many.begin(), many.end());
+    return std::adjacent_find(many.begin(), many.end()) == many.end();
+  }
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (ring[i] == ring[j])
+        return false;
+  return true;
+}
+
+bool SphereMesh::isSphere(int threads) const {
   const auto m = vertices_.size();
   const auto n = triangle_at_.size();
-  if (n < 4 || m != 2 * n - 4)
+  if (n < 4 || m != 2 * n - 4 || !is_paired_)
     return false;
-  for (Index t = 0; t < size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Index other = neighbor(t, k);
-      if (other < 0 || other == t || vertex(t, k) == vertex(t, (k + 1) % 3))
-        return false;
-      // The other triangle has this one at the same side, the other way round.
-      const Index from = vertex(t, (k + 1) % 3);
-      const int l = (cornerOf(other, from) + 1) % 3;
-      if (neighbor(other, l) != t || vertex(other, (l + 2) % 3) != from ||
-          vertex(other, (l + 1) % 3) != vertex(t, (k + 2) % 3))
-        return false;
-    }
+  threads = threadCount(threads, m, kShortPassThreshold);
+  if (sumOfBlocks(m, threads, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+        std::size_t wrong = 0;
+        for (std::size_t t = begin; t < end; ++t) {
+          const auto& [a, b, c] = vertices_[t];
+          wrong += a == b || b == c || c == a ? 1 : 0;
+        }
+        return wrong;
+      }) > 0)
+    return false;
   // Now every walk around a vertex closes: is it through all of its triangles?
-  for (std::size_t v = 0; v < n; ++v) {
-    const auto i = static_cast<Index>(v);
-    if (triangleAt(i) < 0)
-      return false;
-    Index count = 0;
-    forEachAround(i, [&](Index, int) { ++count; });
-    if (count != degree(i))
-      return false;
-  }
+  if (sumOfBlocks(n, threads, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
+        std::size_t wrong = 0;
+        for (std::size_t v = begin; v < end; ++v)
+          wrong += triangle_at_[v] < 0 || !isFan(static_cast<Index>(v)) ? 1 : 0;
+        return wrong;
+      }) > 0)
+    return false;
   // One piece, so that 2n - 4 triangles make it a sphere.
-  std::vector<bool> seen(m, false);
-  std::vector<Index> pending{0};
-  seen[0] = true;
-  std::size_t reached = 0;
-  while (!pending.empty()) {
-    const Index t = pending.back();
-    pending.pop_back();
-    ++reached;
-    for (int k = 0; k < 3; ++k) {
-      const auto other = static_cast<std::size_t>(neighbor(t, k));
-      if (seen[other])
-        continue;
-      seen[other] = true;
-      pending.push_back(static_cast<Index>(other));
-    }
-  }
-  return reached == m;
+  UnionFind pieces(n);
+  std::size_t joined = 0;
+  for (const auto& [a, b, c] : vertices_)
+    joined += (pieces.unite(a, b) ? 1U : 0U) + (pieces.unite(b, c) ? 1U : 0U);
+  return joined == n - 1;
 }
 
 Index SphereMesh::takePlace() {
@@ -220,6 +305,9 @@ void SphereMesh::takeBack() {
 }
 
 Triangles SphereMesh::triangles() const {
+  static_assert(sizeof(std::array<Index, 3>) == 3 * sizeof(Index), "columns of a matrix");
+  if (triangle_count_ == size())
+    return Eigen::Map<const Triangles>(vertices_.data()->data(), 3, triangle_count_);
   Triangles result(3, triangle_count_);
   Eigen::Index column = 0;
   for (Index t = 0; t < size(); ++t) {

@@ -19,10 +19,10 @@ public:
   /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices,
   /// with
   ///                  indices in range; isSphere() tells whether they are.
-  SphereMesh(const Triangles& triangles, std::size_t vertex_count);
+  SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
 
   /// Tells whether the mesh is as it should be, right after it was made.
-  bool isSphere() const;
+  bool isSphere(int threads = 1) const;
 
   /// Places for triangles; those that merge() freed are no triangles.
   Index size() const { return static_cast<Index>(vertices_.size()); }
@@ -91,6 +91,9 @@ public:
   Triangles triangles() const;
 
 private:
+  /// Whether the triangles around a vertex are one fan, in which each vertex is but once.
+  bool isFan(Index v) const;
+
   void set(Index& entry, Index value) {
     if (is_recording_)
       changes_.emplace_back(&entry, entry);
@@ -121,6 +124,7 @@ private:
   std::vector<Index> degree_;
   Index free_ = -1;  ///< first free place
   Index triangle_count_ = 0;
+  bool is_paired_ = true;  ///< each side has another triangle, from the beginning
   bool is_recording_ = false;
   std::vector<std::pair<Index*, Index>> changes_;  ///< entries and what they were
 };
