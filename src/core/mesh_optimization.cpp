@@ -95,7 +95,7 @@ MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangl
                                const Graph& graph, int threads) {
   checkInput(points, triangles, graph);
   MeshOptimizer optimizer(points, triangles, graph, threads);
-  if (!optimizer.mesh().isSphere())
+  if (!optimizer.mesh().isSphere(threads))
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points");
   return optimizer;
@@ -120,9 +120,8 @@ public:
       if (result_.rough > kNoisy)
         rough = beginOnNoise();
       relocate(rough);
-      recreate();
       // Where nothing is folded, hardly anything intersects: once after the polish is enough.
-      if (!optimizer_.edgesBelow(kFolded).empty())
+      if (recreate())
         untangle();
       const Triangles unpolished = optimizer_.mesh().triangles();
       polish();
@@ -241,11 +240,12 @@ private:
     }
   }
 
-  void recreate() {
+  /// Returns whether folded edges are left.
+  bool recreate() {
     for (int round = 0; round < kRecreateRounds; ++round) {
       const auto folded = optimizer_.edgesBelow(kFolded);
       if (folded.empty() || budget_ == 0)
-        return;
+        return !folded.empty();
       phase("recreate", [&] {
         Tally tally;
         for (std::size_t i = 0; i < folded.size(); ++i) {
@@ -260,6 +260,7 @@ private:
         return tally;
       });
     }
+    return !optimizer_.edgesBelow(kFolded).empty();
   }
 
   /// Takes out and puts back a part around some vertices, while the budget lasts.
@@ -365,12 +366,7 @@ private:
       optimizer_.setEnergy(energyOf(Bend::Power, mu));
       return;
     }
-    usual_angles_ = optimizer_.medianAngles();
-    for (double& angle : usual_angles_)
-      angle = std::max(kUsual * angle, kLeastUsual);
-    SurfaceEnergy energy = energyOf(Bend::Excess, kEvenPolishMu);
-    energy.usual_angle = usual_angles_.data();
-    optimizer_.setEnergy(energy);
+    optimizer_.setExcessEnergy(kEvenPolishMu, kUsual, kLeastUsual);
   }
 
   void polish() {
@@ -400,7 +396,6 @@ private:
   const Positions* given_;
   const Positions* points_;  ///< given, or smoothed_
   Positions smoothed_;
-  std::vector<double> usual_angles_;
   std::uint64_t random_;
   std::size_t budget_;  ///< vertices that may still be taken out in parts
   MeshOptimizer optimizer_;
@@ -417,7 +412,9 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
                        std::to_string(internal::kMostThreads));
   if (options.method == OptimizationMethod::None) {
     MeshOptimization result;
-    result.energy = checkedOptimizer(points, triangles, graph, options.threads).energy();
+    MeshOptimizer optimizer = checkedOptimizer(points, triangles, graph, options.threads);
+    optimizer.setEnergy(energyOf(Bend::Angle, kMu));
+    result.energy = optimizer.energy();
     result.triangles = triangles;
     SelfIntersectionOptions intersections;
     intersections.threads = options.threads;

@@ -23,6 +23,13 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
+/// The upper one, if there are two. Changes their order.
+double medianOf(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
@@ -30,9 +37,9 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
     : points_(&points), graph_(graph),
       threads_(
           threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
-      mesh_(triangles, static_cast<std::size_t>(points.cols())),
-      facets_(static_cast<std::size_t>(triangles.cols())), stamps_(3 * facets_.size(), 0),
-      seen_triangles_(facets_.size(), 0),
+      mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
+      facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
+      stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
       seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
   double lengths = 0.0;
   for (const double length : graph_.lengths)
@@ -43,32 +50,31 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
 }
 
 void MeshOptimizer::recomputeFacets() {
+  are_flips_settled_ = false;
+  has_usual_angles_ = false;
   forEachBlock(facets_.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
       facets_[i] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
     }
   });
-  energy_ = recomputedEnergy();
 }
 
 void MeshOptimizer::reset(const Triangles& triangles) {
-  mesh_ = SphereMesh(triangles, seen_vertices_.size());
+  mesh_ = SphereMesh(triangles, seen_vertices_.size(), threads_);
   recomputeFacets();
+  energy_ = recomputedEnergy();
 }
 
 void MeshOptimizer::setEnergy(const SurfaceEnergy& energy) {
-  const bool has_same_facets = terms_.mu == energy.mu;
   terms_ = energy;
-  if (has_same_facets)
-    energy_ = recomputedEnergy();
-  else
-    recomputeFacets();
+  energy_ = recomputedEnergy();
 }
 
 void MeshOptimizer::setPoints(const Positions& points) {
   points_ = &points;
   recomputeFacets();
+  energy_ = recomputedEnergy();
 }
 
 double MeshOptimizer::recomputedEnergy() const {
@@ -76,7 +82,7 @@ double MeshOptimizer::recomputedEnergy() const {
     double sum = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<Index>(i);
-      sum += facets_[i].cost;
+      sum += cost(facets_[i]);
       for (int k = 0; k < 3; ++k) {
         const Index other = mesh_.neighbor(t, k);
         if (t < other)
@@ -91,10 +97,11 @@ double MeshOptimizer::recomputedEnergy() const {
 void MeshOptimizer::setFacet(Index t) {
   if (is_recording_)
     old_facets_.emplace_back(t, facetOf(t));
+  changes_[at(t)] = kChangedSinceFlips | kChangedSinceAngles;
   facets_[at(t)] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
 }
 
-double MeshOptimizer::flipGain(Index t, int k) const {
+double MeshOptimizer::flipGain(Index t, int k, double floor) const {
   // (c, a, b) and (d, b, a) would become (c, a, d) and (c, d, b).
   const Index o = mesh_.neighbor(t, k);
   const int l = mesh_.oppositeCorner(t, k);
@@ -103,25 +110,38 @@ double MeshOptimizer::flipGain(Index t, int k) const {
   const Index b = mesh_.vertex(t, (k + 2) % 3);
   const Index d = mesh_.vertex(o, l);
   if (c == d)
-    return 0.0;
+    return floor;
   const Facet& cab = facetOf(t);
   const Facet& dba = facetOf(o);
   const Facet& bc = facetOf(mesh_.neighbor(t, (k + 1) % 3));
   const Facet& ca = facetOf(mesh_.neighbor(t, (k + 2) % 3));
   const Facet& ad = facetOf(mesh_.neighbor(o, (l + 1) % 3));
   const Facet& db = facetOf(mesh_.neighbor(o, (l + 2) % 3));
-  const Facet cad = facet(c, a, d);
-  const Facet cdb = facet(c, d, b);
-  const double before = cab.cost + dba.cost + edge(a, b, cab, dba) + edge(b, c, cab, bc) +
+  const double before = cost(cab) + cost(dba) + edge(a, b, cab, dba) + edge(b, c, cab, bc) +
                         edge(c, a, cab, ca) + edge(a, d, dba, ad) + edge(d, b, dba, db);
-  const double after = cad.cost + cdb.cost + edge(c, d, cad, cdb) + edge(b, c, cdb, bc) +
-                       edge(c, a, cad, ca) + edge(a, d, cad, ad) + edge(d, b, cdb, db);
+  // No term is negative, and rounding is monotone: once some of them leave no more than the floor,
+  // all of them leave no more either, to the last bit.
+  const RawFacet raw_cad = rawFacet(c, a, d);
+  const RawFacet raw_cdb = rawFacet(c, d, b);
+  double after = terms_.cost(raw_cad.radius) + terms_.cost(raw_cdb.radius);
+  if (before - after <= floor)
+    return floor;
+  const Facet cad = raw_cad.facet();
+  const Facet cdb = raw_cdb.facet();
+  after += edge(c, d, cad, cdb);
+  if (before - after <= floor)
+    return floor;
+  after += edge(b, c, cdb, bc);
+  after += edge(c, a, cad, ca);
+  after += edge(a, d, cad, ad);
+  after += edge(d, b, cdb, db);
   return before - after;
 }
 
 void MeshOptimizer::queueFlip(Index t, int k) {
-  const double gain = flipGain(t, k);
-  if (gain <= kLeastGain * unit_)
+  const double floor = kLeastGain * unit_;
+  const double gain = flipGain(t, k, floor);
+  if (gain <= floor)
     return;
   queue_.push_back(
       {gain, t, stamps_[3 * at(t) + static_cast<std::size_t>(k)], static_cast<std::uint8_t>(k)});
@@ -154,6 +174,7 @@ bool MeshOptimizer::flip(Index t, int k, double gain) {
 }
 
 std::size_t MeshOptimizer::flipQueued() {
+  refused_.clear();
   std::size_t flips = 0;
   while (!queue_.empty()) {
     const Candidate best = queue_.front();
@@ -163,8 +184,10 @@ std::size_t MeshOptimizer::flipQueued() {
     if (stamps_[3 * at(t) + best.corner] != best.stamp)
       continue;
     const Index o = mesh_.neighbor(t, best.corner);
-    if (!flip(t, best.corner, best.gain))
+    if (!flip(t, best.corner, best.gain)) {
+      refused_.push_back(t);
       continue;
+    }
     ++flips;
     // All sides whose gain depends on one of the two triangles: theirs, and their neighbours'.
     std::array<Index, 6> affected{t,
@@ -197,30 +220,60 @@ void MeshOptimizer::flipAround(const std::vector<Index>& triangles) {
   flipQueued();
 }
 
+bool MeshOptimizer::isNearChange(Index t, std::uint8_t change) const {
+  return ((changes_[at(t)] | changes_[at(mesh_.neighbor(t, 0))] |
+           changes_[at(mesh_.neighbor(t, 1))] | changes_[at(mesh_.neighbor(t, 2))]) &
+          change) != 0;
+}
+
+void MeshOptimizer::unmark(std::uint8_t change) {
+  for (std::uint8_t& marks : changes_)
+    marks &= static_cast<std::uint8_t>(~change);
+}
+
 std::size_t MeshOptimizer::flipAll() {
+  // The gain of a side depends on its two triangles and their neighbours alone.
+  const bool are_most_settled = are_flips_settled_ && settled_terms_ == terms_;
+  const auto is_due = [&](Index t) {
+    return !are_most_settled || isNearChange(t, kChangedSinceFlips);
+  };
   std::vector<std::vector<Candidate>> found((facets_.size() + kBlockSize - 1) / kBlockSize);
-  forEachBlock(
-      facets_.size(), threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const auto t = static_cast<Index>(i);
-          for (int k = 0; k < 3; ++k) {
-            if (t > mesh_.neighbor(t, k))
-              continue;
-            const double gain = flipGain(t, k);
-            if (gain > kLeastGain * unit_)
-              found[block].push_back({gain, t, stamps_[3 * i + static_cast<std::size_t>(k)],
-                                      static_cast<std::uint8_t>(k)});
-          }
-        }
-      });
+  const double floor = kLeastGain * unit_;
+  forEachBlock(facets_.size(), threads_,
+               [&](std::size_t block, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i) {
+                   const auto t = static_cast<Index>(i);
+                   if (!is_due(t))
+                     continue;
+                   for (int k = 0; k < 3; ++k) {
+                     const Index o = mesh_.neighbor(t, k);
+                     if (t > o && is_due(o))
+                       continue;  // that triangle's turn
+                     const Index low = std::min(t, o);
+                     const int corner = t < o ? k : mesh_.oppositeCorner(t, k);
+                     const double gain = flipGain(low, corner, floor);
+                     if (gain > floor)
+                       found[block].push_back(
+                           {gain, low, stamps_[3 * at(low) + static_cast<std::size_t>(corner)],
+                            static_cast<std::uint8_t>(corner)});
+                   }
+                 }
+               });
   queue_.clear();
   for (const auto& part : found)
     queue_.insert(queue_.end(), part.begin(), part.end());
   std::make_heap(queue_.begin(), queue_.end());
-  return flipQueued();
+  const std::size_t flips = flipQueued();
+  unmark(kChangedSinceFlips);
+  // These would gain, and may not be refused again.
+  for (const Index t : refused_)
+    changes_[at(t)] |= kChangedSinceFlips;
+  are_flips_settled_ = true;
+  settled_terms_ = terms_;
+  return flips;
 }
 
-double MeshOptimizer::splitCost(Index t, Index v) const {
+double MeshOptimizer::splitCost(Index t, Index v, double ceiling) const {
   const Index a = mesh_.vertex(t, 0);
   const Index b = mesh_.vertex(t, 1);
   const Index c = mesh_.vertex(t, 2);
@@ -228,13 +281,26 @@ double MeshOptimizer::splitCost(Index t, Index v) const {
   const Facet& bc = facetOf(mesh_.neighbor(t, 0));
   const Facet& ca = facetOf(mesh_.neighbor(t, 1));
   const Facet& ab = facetOf(mesh_.neighbor(t, 2));
-  const Facet vbc = facet(v, b, c);
-  const Facet vca = facet(v, c, a);
-  const Facet vab = facet(v, a, b);
-  const double before = abc.cost + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
-  const double after = vbc.cost + vca.cost + vab.cost + edge(b, c, vbc, bc) + edge(c, a, vca, ca) +
-                       edge(a, b, vab, ab) + edge(v, a, vca, vab) + edge(v, b, vab, vbc) +
-                       edge(v, c, vbc, vca);
+  const double before = cost(abc) + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
+  // As in flipGain(): the rest only adds to it.
+  const RawFacet raw_vbc = rawFacet(v, b, c);
+  const RawFacet raw_vca = rawFacet(v, c, a);
+  const RawFacet raw_vab = rawFacet(v, a, b);
+  double after =
+      terms_.cost(raw_vbc.radius) + terms_.cost(raw_vca.radius) + terms_.cost(raw_vab.radius);
+  if (after - before >= ceiling)
+    return ceiling;
+  const Facet vbc = raw_vbc.facet();
+  const Facet vca = raw_vca.facet();
+  const Facet vab = raw_vab.facet();
+  after += edge(b, c, vbc, bc);
+  after += edge(c, a, vca, ca);
+  after += edge(a, b, vab, ab);
+  if (after - before >= ceiling)
+    return ceiling;
+  after += edge(v, a, vca, vab);
+  after += edge(v, b, vab, vbc);
+  after += edge(v, c, vbc, vca);
   return after - before;
 }
 
@@ -250,7 +316,7 @@ bool MeshOptimizer::remove(Index v) {
       const Index d = mesh_.vertex(mesh_.neighbor(t, k), mesh_.oppositeCorner(t, k));
       if (c == d || mesh_.areJoined(c, d))
         return;
-      const double gain = flipGain(t, k);
+      const double gain = flipGain(t, k, best);
       if (gain > best) {
         best = gain;
         triangle = t;
@@ -270,7 +336,7 @@ bool MeshOptimizer::remove(Index v) {
     if (is_recording_ && old != t)
       old_facets_.emplace_back(old, facetOf(old));
   setFacet(t);
-  energy_ -= splitCost(t, v);
+  energy_ -= splitCost(t, v, std::numeric_limits<double>::infinity());
   return true;
 }
 
@@ -285,9 +351,9 @@ bool MeshOptimizer::insert(Index v, const std::vector<Index>& neighbors) {
       if (seen_triangles_[at(t)] == pass_)
         return;
       seen_triangles_[at(t)] = pass_;
-      const double cost = splitCost(t, v);
-      if (cost < least) {
-        least = cost;
+      const double split_cost = splitCost(t, v, least);
+      if (split_cost < least) {
+        least = split_cost;
         best = t;
       }
     });
@@ -451,30 +517,43 @@ std::vector<std::pair<Index, Index>> MeshOptimizer::edgesBelow(double cosine) co
 
 bool MeshOptimizer::isRough(Index v, double cosine) const {
   bool is_sharp = false;
-  double lengths = 0.0;
   mesh_.forEachAround(v, [&](Index t, int corner) {
     const Index next = mesh_.neighbor(t, (corner + 1) % 3);
     is_sharp = is_sharp || facetOf(t).normal.dot(facetOf(next).normal) < cosine;
-    lengths += (points_->col(v) - points_->col(mesh_.vertex(t, (corner + 1) % 3))).norm();
   });
   if (is_sharp)
     return true;
+  // Nearly all neighbours in the graph are around the vertex: that is asked first, and quickly.
+  std::array<Index, 16> ring{};
+  std::size_t ring_size = 0;
+  const bool fits = at(mesh_.degree(v)) <= ring.size();
+  if (fits)
+    mesh_.forEachAround(
+        v, [&](Index t, int corner) { ring[ring_size++] = mesh_.vertex(t, (corner + 1) % 3); });
+  const auto is_around = [&](Index w) {
+    if (fits)
+      return std::find(ring.begin(), ring.begin() + ring_size, w) != ring.begin() + ring_size;
+    return mesh_.areJoined(v, w);
+  };
   // In a graph of many neighbours, most of them are far.
-  const double near = kNearNeighbor * lengths / mesh_.degree(v);
-  const auto is_around = [this](Index center, Index w) {
-    bool found = false;
-    mesh_.forEachAround(center, [&](Index t, int corner) {
-      found = found || mesh_.vertex(t, (corner + 1) % 3) == w;
-    });
-    return found;
+  double near = -1.0;
+  const auto is_far = [&](double length) {
+    if (near < 0.0) {
+      double lengths = 0.0;
+      mesh_.forEachAround(v, [&](Index t, int corner) {
+        lengths += (points_->col(v) - points_->col(mesh_.vertex(t, (corner + 1) % 3))).norm();
+      });
+      near = kNearNeighbor * lengths / mesh_.degree(v);
+    }
+    return length > near;
   };
   for (std::size_t e = graph_.offsets[at(v)]; e < graph_.offsets[at(v) + 1]; ++e) {
     const Index w = graph_.neighbors[e];
-    if (graph_.lengths[e] > near || is_around(v, w))
+    if (is_around(w) || is_far(graph_.lengths[e]))
       continue;
     bool is_near = false;
     mesh_.forEachAround(w, [&](Index t, int corner) {
-      is_near = is_near || is_around(v, mesh_.vertex(t, (corner + 1) % 3));
+      is_near = is_near || is_around(mesh_.vertex(t, (corner + 1) % 3));
     });
     if (!is_near)
       return true;
@@ -486,22 +565,75 @@ std::vector<Index> MeshOptimizer::roughVertices(double cosine) const {
   return filter(seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); });
 }
 
+void MeshOptimizer::gatherCosines(Index v, std::vector<double>& cosines) const {
+  cosines.clear();
+  mesh_.forEachAround(v, [&](Index t, int corner) {
+    for (const int k : {corner, (corner + 1) % 3})
+      cosines.push_back(facetOf(t).normal.dot(facetOf(mesh_.neighbor(t, k)).normal));
+  });
+}
+
 std::vector<double> MeshOptimizer::medianAngles() const {
   std::vector<double> medians(seen_vertices_.size());
   forEachBlock(medians.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::vector<double> cosines;
     for (std::size_t v = begin; v < end; ++v) {
-      cosines.clear();
-      mesh_.forEachAround(static_cast<Index>(v), [&](Index t, int corner) {
-        for (const int k : {corner, (corner + 1) % 3})
-          cosines.push_back(facetOf(t).normal.dot(facetOf(mesh_.neighbor(t, k)).normal));
-      });
-      const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
-      std::nth_element(cosines.begin(), middle, cosines.end());
-      medians[v] = fastAcos(*middle);
+      gatherCosines(static_cast<Index>(v), cosines);
+      medians[v] = fastAcos(medianOf(cosines));
     }
   });
   return medians;
+}
+
+void MeshOptimizer::updateUsualAngles(double factor, double least) {
+  const bool is_new = !has_usual_angles_ || factor != usual_factor_ || least != least_usual_;
+  usual_angles_.resize(seen_vertices_.size());
+  // A median depends on the triangles around the vertex and their neighbours alone.
+  std::vector<std::uint8_t> is_due(usual_angles_.size(), is_new ? 1 : 0);
+  if (!is_new)
+    for (const Index t :
+         filter(facets_.size(), [&](Index i) { return isNearChange(i, kChangedSinceAngles); }))
+      for (int k = 0; k < 3; ++k)
+        is_due[at(mesh_.vertex(t, k))] = 1;
+  const double flat = SurfaceEnergy::flatFrom(least / factor);
+  std::vector<std::vector<Index>> changed((is_due.size() + kBlockSize - 1) / kBlockSize);
+  forEachBlock(is_due.size(), threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::vector<double> cosines;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_due[i] == 0)
+        continue;
+      gatherCosines(static_cast<Index>(i), cosines);
+      // At flat places, which are most of them, it is enough to know that they are.
+      std::size_t bent = 0;
+      for (const double cosine : cosines)
+        bent += cosine >= flat ? 0 : 1;
+      const double angle = bent <= cosines.size() / 2
+                               ? least
+                               : std::max(factor * fastAcos(medianOf(cosines)), least);
+      if (!is_new && angle != usual_angles_[i])
+        changed[block].push_back(static_cast<Index>(i));
+      usual_angles_[i] = angle;
+    }
+  });
+  for (const std::vector<Index>& part : changed)
+    for (const Index v : part)
+      mesh_.forEachAround(v, [&](Index t, int) { changes_[at(t)] |= kChangedSinceFlips; });
+  unmark(kChangedSinceAngles);
+  if (is_new)
+    are_flips_settled_ = false;
+  has_usual_angles_ = true;
+  usual_factor_ = factor;
+  least_usual_ = least;
+}
+
+void MeshOptimizer::setExcessEnergy(double mu, double factor, double least) {
+  updateUsualAngles(factor, least);
+  SurfaceEnergy energy;
+  energy.bend = SurfaceEnergy::Bend::Excess;
+  energy.mu = mu;
+  energy.usual_angle = usual_angles_.data();
+  energy.flat_cosine = SurfaceEnergy::flatFrom(least);
+  setEnergy(energy);
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) const {

@@ -16,7 +16,7 @@ namespace spherical_param::internal {
 /// taken back, to the last index and bit. The running total of the energy is kept.
 class MeshOptimizer {
 public:
-  /// All but the triangles must outlive this.
+  /// All but the triangles must outlive this. Has no energy before it is told which.
   MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
                 int threads);
 
@@ -26,13 +26,21 @@ public:
   void reset(const Triangles& triangles);
 
   /// Begins to work with another energy, or with other positions of the points.
+  ///
+  /// \param energy its usual angles must not change; \see setExcessEnergy.
   void setEnergy(const SurfaceEnergy& energy);
+  /// The same for Bend::Excess, with angles that are usual on the mesh as it is now: `factor` times
+  /// the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks only at
+  /// what has changed.
+  void setExcessEnergy(double mu, double factor, double least);
+  const SurfaceEnergy& terms() const { return terms_; }
   void setPoints(const Positions& points);
 
   double energy() const { return energy_; }  ///< running total
   double recomputedEnergy() const;           ///< the same from the mesh
 
   /// Flips edges, the one that gains most first, until none gains. Returns the number of flips.
+  /// Asked again with the same energy, it looks only at what has changed.
   std::size_t flipAll();
 
   /// Takes a vertex out and puts it back where it costs least, among the triangles around its
@@ -83,10 +91,18 @@ private:
   };
 
   const Facet& facetOf(Index t) const { return facets_[static_cast<std::size_t>(t)]; }
-  Facet facet(Index a, Index b, Index c) const {
-    return terms_.facet(points_->col(a), points_->col(b), points_->col(c));
+  RawFacet rawFacet(Index a, Index b, Index c) const {
+    return RawFacet(points_->col(a), points_->col(b), points_->col(c));
   }
+  Facet facet(Index a, Index b, Index c) const { return rawFacet(a, b, c).facet(); }
+  double cost(const Facet& facet) const { return terms_.cost(facet.radius); }
   void setFacet(Index t);
+  /// Whether a triangle or one of its neighbours has a mark in changes_.
+  bool isNearChange(Index t, std::uint8_t change) const;
+  void unmark(std::uint8_t change);
+  /// Of the angles of medianAngles().
+  void gatherCosines(Index v, std::vector<double>& cosines) const;
+  void updateUsualAngles(double factor, double least);
   void recomputeFacets();
   /// The items of [0, count) that meet a condition, ascending.
   template <typename Condition>
@@ -95,7 +111,8 @@ private:
     return terms_.edge(v, w, points_->col(v), points_->col(w), f.normal, g.normal);
   }
 
-  double flipGain(Index t, int k) const;
+  /// What the energy falls by if a side is flipped, or no more than `floor` if that is so.
+  double flipGain(Index t, int k, double floor) const;
   bool flip(Index t, int k, double gain);
   /// Puts the flips of a triangle's sides in the queue, and declares void what was there of them.
   void queueSides(Index t);
@@ -104,7 +121,8 @@ private:
   void flipAround(const std::vector<Index>& triangles);
   std::size_t flipQueued();
 
-  double splitCost(Index t, Index v) const;
+  /// What the energy rises by if a triangle is split, or no less than `ceiling` if that is so.
+  double splitCost(Index t, Index v, double ceiling) const;
   bool remove(Index v);
   bool insert(Index v, const std::vector<Index>& neighbors);
   void appendNeighbors(Index v, std::vector<Index>& neighbors) const;
@@ -127,7 +145,20 @@ private:
   bool is_recording_ = false;
   std::vector<std::pair<Index, Facet>> old_facets_;
 
+  static constexpr std::uint8_t kChangedSinceFlips = 1;
+  static constexpr std::uint8_t kChangedSinceAngles = 2;
+  /// Marks of triangles that may have changed since flipAll(), in settled_terms_, left no flip that
+  /// gains, and since usual_angles_ were found.
+  std::vector<std::uint8_t> changes_;
+  bool are_flips_settled_ = false;
+  SurfaceEnergy settled_terms_;
+  bool has_usual_angles_ = false;
+  double usual_factor_ = 0.0;
+  double least_usual_ = 0.0;
+  std::vector<double> usual_angles_;
+
   std::vector<Candidate> queue_;       ///< a heap
+  std::vector<Index> refused_;         ///< triangles of flips that would have joined twice
   std::vector<std::uint32_t> stamps_;  ///< of each side of each triangle
   /// Marks of what a pass has seen: those equal to `pass_`.
   std::vector<std::uint32_t> seen_triangles_;

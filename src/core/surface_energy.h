@@ -10,10 +10,36 @@
 
 namespace spherical_param::internal {
 
-/// What a triangle adds to the energy, and what its sides need to know of it.
+/// What the energy needs to know of a triangle.
 struct Facet {
   Eigen::Vector3d normal;  ///< of unit length; 0 for a triangle without area
-  double cost;
+  double radius;           ///< min(R, 4 * longest side), with the circumradius R
+};
+
+/// A facet whose normal is not yet brought to unit length: often its radius is all that is asked.
+struct RawFacet {
+  Eigen::Vector3d normal;
+  double twice_area;
+  double radius;
+
+  RawFacet(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    const Eigen::Vector3d ab = b - a;
+    const Eigen::Vector3d ac = c - a;
+    normal = ab.cross(ac);
+    twice_area = normal.norm();
+    const double ab2 = ab.squaredNorm();
+    const double ac2 = ac.squaredNorm();
+    const double bc2 = (c - b).squaredNorm();
+    radius = 4.0 * std::sqrt(std::max({ab2, ac2, bc2}));
+    if (twice_area > 0.0)
+      radius = std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), radius);
+  }
+
+  Facet facet() const {
+    if (!(twice_area > 0.0))
+      return {Eigen::Vector3d::Zero(), radius};
+    return {normal / twice_area, radius};
+  }
 };
 
 /// acos(x) for x in [-1, 1] within 3e-8 (Abramowitz and Stegun 1964, equation 4.4.46): several
@@ -32,7 +58,7 @@ inline double fastAcos(double x) {
 }
 
 /// Energy of a triangle mesh on points: the sum over its edges of length * bend, and over its
-/// triangles of mu * min(R, 4 * longest side), with the circumradius R.
+/// triangles of mu * min(R, 4 * longest side), with the circumradius R. No term is negative.
 struct SurfaceEnergy {
   /// What an edge counts by the angle between the normals of its triangles [rad].
   enum class Bend {
@@ -46,26 +72,31 @@ struct SurfaceEnergy {
   /// Of Bend::Excess: n entries, the angle that is usual at each vertex; must outlive this.
   const double* usual_angle = nullptr;
 
-  Facet facet(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) const {
-    const Eigen::Vector3d ab = b - a;
-    const Eigen::Vector3d ac = c - a;
-    const Eigen::Vector3d normal = ab.cross(ac);
-    const double twice_area = normal.norm();
-    const double ab2 = ab.squaredNorm();
-    const double ac2 = ac.squaredNorm();
-    const double bc2 = (c - b).squaredNorm();
-    const double bound = 4.0 * std::sqrt(std::max({ab2, ac2, bc2}));
-    if (!(twice_area > 0.0))
-      return {Eigen::Vector3d::Zero(), mu * bound};
-    return {normal / twice_area,
-            mu * std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), bound)};
+  /// Of Bend::Excess: an edge whose normals have at least this cosine adds nothing for sure. From
+  /// flatFrom(), or above 1.
+  double flat_cosine = 2.0;
+
+  /// The flat_cosine for usual angles of at least `least` [rad].
+  static double flatFrom(double least) {
+    // acos falls at least as fast as its argument rises; the margin is that of fastAcos() and more.
+    return std::cos(least) + 1e-6;
   }
+
+  bool operator==(const SurfaceEnergy& other) const {
+    return bend == other.bend && mu == other.mu && usual_angle == other.usual_angle;
+  }
+
+  /// What a triangle adds.
+  double cost(double radius) const { return mu * radius; }
 
   /// What the edge from vertex v at p to vertex w at q adds, with the normals of its triangles.
   double edge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
               const Eigen::Vector3d& normal, const Eigen::Vector3d& other) const {
+    const double cosine = normal.dot(other);
+    if (cosine >= flat_cosine)
+      return 0.0;
     const double length = (p - q).norm();
-    const double angle = fastAcos(normal.dot(other));
+    const double angle = fastAcos(cosine);
     switch (bend) {
     case Bend::Angle:
       return length * angle;
