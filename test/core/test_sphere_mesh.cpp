@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace spherical_param {
@@ -209,6 +211,75 @@ TEST(SphereMesh, HoldsTheTrianglesThatItWasGiven) {
     const SphereMesh mesh(triangles, static_cast<std::size_t>(n));
     EXPECT_EQ(mesh.triangles(), triangles);
     expectSound(mesh, n);
+  }
+}
+
+/// Compares with the neighbours by a map of all sides.
+void expectTrueNeighbors(const SphereMesh& mesh) {
+  std::map<std::pair<Index, Index>, Index> triangle_of_side;
+  for (Index t = 0; t < mesh.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      triangle_of_side[{mesh.vertex(t, (k + 1) % 3), mesh.vertex(t, (k + 2) % 3)}] = t;
+  Index wrong = 0;
+  for (Index t = 0; t < mesh.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const auto twin =
+          triangle_of_side.find({mesh.vertex(t, (k + 2) % 3), mesh.vertex(t, (k + 1) % 3)});
+      wrong += twin == triangle_of_side.end() || twin->second != mesh.neighbor(t, k) ? 1 : 0;
+    }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(SphereMesh, NeighborsAreTrueForAnyOrderAndNumberOfThreads) {
+  const Index n = 30000;  // enough for several threads
+  Triangles triangles = triangulateSphere(test::spiralSphere(n)).triangles;
+  std::mt19937_64 random(1);
+  for (const bool is_shuffled : {false, true}) {
+    if (is_shuffled)
+      for (Eigen::Index t = triangles.cols() - 1; t > 0; --t)
+        triangles.col(t).swap(
+            triangles.col(static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(t + 1))));
+    for (const int threads : {1, 2, 3, 8}) {
+      const SphereMesh mesh(triangles, static_cast<std::size_t>(n), threads);
+      expectTrueNeighbors(mesh);
+      EXPECT_TRUE(mesh.isSphere(threads));
+      EXPECT_EQ(mesh.triangles(), triangles);
+    }
+  }
+}
+
+TEST(SphereMesh, WhatIsNoSphereIsToldSo) {
+  const auto is_sphere = [](const Triangles& triangles, std::size_t vertex_count) {
+    return SphereMesh(triangles, vertex_count).isSphere();
+  };
+  EXPECT_TRUE(is_sphere(tetrahedron(), 4));
+  EXPECT_TRUE(is_sphere(bipyramid(5), 7));
+  Triangles turned = bipyramid(5);
+  std::swap(turned(0, 3), turned(1, 3));
+  EXPECT_FALSE(is_sphere(turned, 7));
+  Triangles degenerate = bipyramid(5);
+  degenerate(0, 3) = degenerate(1, 3);
+  EXPECT_FALSE(is_sphere(degenerate, 7));
+
+  // A torus of seven vertices beside a tetrahedron: as many triangles as a sphere has.
+  Triangles two_pieces(3, 18);
+  for (Index i = 0; i < 7; ++i) {
+    two_pieces.col(2 * i) << i, (i + 1) % 7, (i + 3) % 7;
+    two_pieces.col(2 * i + 1) << i, (i + 3) % 7, (i + 2) % 7;
+  }
+  two_pieces.rightCols(4) = tetrahedron().array() + 7;
+  EXPECT_FALSE(is_sphere(two_pieces, 11));
+
+  // Two tetrahedra with a common edge, in whatever order their sides meet.
+  Triangles common_edge(3, 8);
+  common_edge.leftCols(4) = tetrahedron();
+  common_edge.rightCols(4) = tetrahedron().unaryExpr([](Index v) { return v < 2 ? v : v + 2; });
+  std::mt19937_64 random(1);
+  for (int order = 0; order < 200; ++order) {
+    for (Eigen::Index t = 7; t > 0; --t)
+      common_edge.col(t).swap(
+          common_edge.col(static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(t + 1))));
+    EXPECT_FALSE(is_sphere(common_edge, 6));
   }
 }
 
