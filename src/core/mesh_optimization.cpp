@@ -131,7 +131,7 @@ public:
       if (!result_.self_intersections.empty())
         takeBackPolish(unpolished);
     } else {
-      result_.self_intersections = intersections();
+      result_.self_intersections = optimizer_.intersections();
     }
     if (result_.smoothing_steps > 0)
       endOnNoise();
@@ -201,7 +201,7 @@ private:
     if (!options_.finish_on_points)
       return;
     result_.smoothed_self_intersections = result_.self_intersections.size();
-    result_.self_intersections = intersections();
+    result_.self_intersections = optimizer_.intersections();
     const auto count = static_cast<double>(result_.self_intersections.size());
     if (count <= std::max(kFewInAll, kFewIntersections * optimizer_.mesh().size()))
       result_.self_intersections = untangle();
@@ -274,12 +274,6 @@ private:
     tally.moves += optimizer_.recreate(part, accept, random_) ? 1 : 0;
   }
 
-  std::vector<std::array<Index, 2>> intersections() const {
-    SelfIntersectionOptions options;
-    options.threads = options_.threads;
-    return findSelfIntersections(*points_, optimizer_.mesh().triangles(), options);
-  }
-
   /// The three vertices of a triangle.
   std::array<Index, 3> cornersOf(Index t) const {
     return {optimizer_.mesh().vertex(t, 0), optimizer_.mesh().vertex(t, 1),
@@ -288,7 +282,7 @@ private:
 
   /// Ends with the mesh of fewest intersections on the way, and returns these.
   std::vector<std::array<Index, 2>> untangle() {
-    auto pairs = intersections();
+    auto pairs = optimizer_.intersections();
     result_.phases.back().self_intersections = pairs.size();
     auto fewest = pairs;
     Triangles best;
@@ -311,7 +305,7 @@ private:
         }
         return tally;
       });
-      pairs = intersections();
+      pairs = optimizer_.intersections();
       untangled.self_intersections = pairs.size();
     }
     if (pairs.size() <= fewest.size())
@@ -381,7 +375,7 @@ private:
     phase("unpolish", [&] {
       const Triangles polished = optimizer_.mesh().triangles();
       optimizer_.reset(unpolished);
-      auto pairs = intersections();
+      auto pairs = optimizer_.intersections();
       if (pairs.size() < result_.self_intersections.size()) {
         result_.self_intersections = std::move(pairs);
         return Tally{1, 1};

@@ -1,8 +1,9 @@
 #include "core/mesh_optimizer.h"
 
 #include "core/bit_mixing.h"
+#include "core/exact_predicates.h"
 #include "core/parallel.h"
-#include "spherical_param/self_intersection.h"
+#include "core/self_intersection_of_fans.h"
 
 #include <algorithm>
 #include <array>
@@ -636,6 +637,68 @@ void MeshOptimizer::setExcessEnergy(double mu, double factor, double least) {
   setEnergy(energy);
 }
 
+bool MeshOptimizer::isPlainFan(Index v) const {
+  Eigen::Index axis = 0;
+  facetOf(mesh_.triangleAt(v)).normal.cwiseAbs().maxCoeff(&axis);
+  const Eigen::Index x_axis = (axis + 1) % 3;
+  const Eigen::Index y_axis = (axis + 2) % 3;
+  struct Spoke {
+    double x;
+    double y;
+  };
+  const auto spoke = [&](Index t, int corner) {
+    const auto end = points_->col(mesh_.vertex(t, (corner + 1) % 3));
+    return Spoke{end[x_axis] - (*points_)(x_axis, v), end[y_axis] - (*points_)(y_axis, v)};
+  };
+  const Index first = mesh_.triangleAt(v);
+  const Spoke begin = spoke(first, mesh_.cornerOf(first, v));
+  Spoke last = begin;
+  // The angle between spokes that follow each other is below pi, and always to the same side for
+  // sure. The sign of a difference is that of the rounded one: so is the number of times that they
+  // pass to the left, which is how often they go around.
+  int left_turns = 0;
+  int right_turns = 0;
+  int passes = 0;
+  int sides = 0;
+  const auto pass = [&](const Spoke& from, const Spoke& to) {
+    const double first_product = from.x * to.y;
+    const double second_product = from.y * to.x;
+    const double turn = first_product - second_product;
+    // Each product is of two rounded differences, and rounded, and so is what is left; the last
+    // term is for products that underflow.
+    const double bound =
+        8.0 * kUnitRoundoff * (std::abs(first_product) + std::abs(second_product)) + 1e-290;
+    left_turns += turn > bound ? 1 : 0;
+    right_turns += turn < -bound ? 1 : 0;
+    passes += (from.x < 0.0) != (to.x < 0.0) ? 1 : 0;
+    ++sides;
+  };
+  mesh_.forEachAround(v, [&](Index t, int corner) {
+    if (t == first)
+      return;
+    const Spoke next = spoke(t, corner);
+    pass(last, next);
+    last = next;
+  });
+  pass(last, begin);
+  return (left_turns == sides || right_turns == sides) && passes == 2;
+}
+
+std::vector<std::uint8_t> MeshOptimizer::plainFans() const {
+  std::vector<std::uint8_t> fans(seen_vertices_.size());
+  forEachBlock(fans.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      fans[v] = isPlainFan(static_cast<Index>(v)) ? 1 : 0;
+  });
+  return fans;
+}
+
+std::vector<std::array<Index, 2>> MeshOptimizer::intersections() const {
+  SelfIntersectionOptions options;
+  options.threads = threads_;
+  return findSelfIntersections(*points_, mesh_.triangles(), plainFans(), options);
+}
+
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) const {
   const auto distinct = [](std::vector<Index>& values) {
     std::sort(values.begin(), values.end());
@@ -662,7 +725,7 @@ std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertice
     }
   SelfIntersectionOptions options;
   options.threads = 1;
-  return findSelfIntersections(points, part, options).size();
+  return findSelfIntersections(points, part, {}, options).size();
 }
 
 }  // namespace spherical_param::internal

@@ -4,6 +4,7 @@
 #include "core/surface_energy.h"
 #include "spherical_param/types.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -72,6 +73,11 @@ public:
   /// n entries: the median of the angles at a vertex's edges and those opposite to it [rad].
   std::vector<double> medianAngles() const;
 
+  /// All pairs of triangles that intersect, by their places in the mesh; none may be free.
+  std::vector<std::array<Index, 2>> intersections() const;
+  /// For each vertex, 1 if the triangles around it are evidently such that no two of them
+  /// intersect: seen along an axis, they go around it once.
+  std::vector<std::uint8_t> plainFans() const;
   /// Pairs that intersect among the triangles around some vertices.
   std::size_t intersectionsAround(const std::vector<Index>& vertices) const;
 
@@ -100,6 +106,7 @@ private:
   /// Whether a triangle or one of its neighbours has a mark in changes_.
   bool isNearChange(Index t, std::uint8_t change) const;
   void unmark(std::uint8_t change);
+  bool isPlainFan(Index v) const;
   /// Of the angles of medianAngles().
   void gatherCosines(Index v, std::vector<double>& cosines) const;
   void updateUsualAngles(double factor, double least);

@@ -3,6 +3,7 @@
 #include "core/exact_predicates.h"
 #include "core/parallel.h"
 #include "core/radix_sort.h"
+#include "core/self_intersection_of_fans.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
@@ -17,9 +18,14 @@
 #include <string>
 #include <utility>
 
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
 // Candidates come from a tree of bounding boxes over the triangles in the order of a space-filling
-// curve. Nearly all of them are neighbours that a plane separates, which few operations and a bound
-// of their error show. Exact arithmetic decides about the rest, straight from the definition.
+// curve: of one over all, or of one in each block of a mesh whose triangles are in good order.
+// Nearly all of them are neighbours that a plane separates, which few operations and a bound of
+// their error show. Exact arithmetic decides about the rest, straight from the definition.
 
 namespace spherical_param {
 namespace {
@@ -33,8 +39,8 @@ using Pairs = std::vector<std::array<Index, 2>>;
 
 /// A triangle with all that the tests need, in one place of the memory.
 struct Face {
-  std::array<Vector3d, 3> corners;  ///< scaled, see scaleOf()
-  double size;                      ///< longest side of the bounding box
+  std::array<Vector3d, 3> corners;  ///< scaled, see checkedScale()
+  double size;                      ///< at least the longest side of the bounding box
   std::array<Index, 3> vertices;
   Index triangle;
 };
@@ -273,56 +279,126 @@ bool clears(const Plane& plane, const Box& box) {
 
 constexpr std::size_t kWidth = 8;  ///< boxes of a group: as wide as several processors' registers
 constexpr unsigned kWidthBits = 3;
-using Lanes = Eigen::Array<double, static_cast<int>(kWidth), 1>;
+
+/// A box that contains one of doubles: half the memory, and twice as many in a register.
+struct WideBox {
+  std::array<float, 3> lower;
+  std::array<float, 3> upper;
+
+  explicit WideBox(const Box& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto low = static_cast<float>(box.lower[static_cast<Eigen::Index>(axis)]);
+      const auto high = static_cast<float>(box.upper[static_cast<Eigen::Index>(axis)]);
+      lower[axis] = low - margin(low);
+      upper[axis] = high + margin(high);
+    }
+  }
+  WideBox(const std::array<float, 3>& low, const std::array<float, 3>& high)
+      : lower(low), upper(high) {}
+
+  Box box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
+  float size() const {
+    return std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
+  }
+
+private:
+  /// More than what rounding to a float has taken, and that of adding the margin.
+  static float margin(float value) { return std::abs(value) * 3e-7F + 1e-37F; }
+};
 
 /// Boxes side by side, so that one is compared with all of them at once.
 struct BoxGroup {
-  std::array<Lanes, 3> lower;
-  std::array<Lanes, 3> upper;
+  std::array<std::array<float, kWidth>, 3> lower;
+  std::array<std::array<float, kWidth>, 3> upper;
 
   BoxGroup() {
-    lower.fill(Lanes::Constant(std::numeric_limits<double>::infinity()));
-    upper.fill(Lanes::Constant(-std::numeric_limits<double>::infinity()));
-  }
-  void set(std::size_t lane, const Box& box) {
-    const auto l = static_cast<Eigen::Index>(lane);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis][l] = box.lower[static_cast<Eigen::Index>(axis)];
-      upper[axis][l] = box.upper[static_cast<Eigen::Index>(axis)];
+      lower[axis].fill(std::numeric_limits<float>::infinity());
+      upper[axis].fill(-std::numeric_limits<float>::infinity());
     }
   }
-  Box at(std::size_t lane) const {
-    const auto l = static_cast<Eigen::Index>(lane);
-    return {{lower[0][l], lower[1][l], lower[2][l]}, {upper[0][l], upper[1][l], upper[2][l]}};
+  void set(std::size_t lane, const WideBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis][lane] = box.lower[axis];
+      upper[axis][lane] = box.upper[axis];
+    }
   }
-  Box all() const {
-    return {{lower[0].minCoeff(), lower[1].minCoeff(), lower[2].minCoeff()},
-            {upper[0].maxCoeff(), upper[1].maxCoeff(), upper[2].maxCoeff()}};
+  WideBox at(std::size_t lane) const {
+    return {{lower[0][lane], lower[1][lane], lower[2][lane]},
+            {upper[0][lane], upper[1][lane], upper[2][lane]}};
   }
-  /// Gaps along the axis on which each box is farthest from another; up to 0 where they overlap.
-  Lanes gaps(const Box& box) const {
-    const Lanes x = (lower[0] - box.upper.x()).max(box.lower.x() - upper[0]);
-    const Lanes y = (lower[1] - box.upper.y()).max(box.lower.y() - upper[1]);
-    const Lanes z = (lower[2] - box.upper.z()).max(box.lower.z() - upper[2]);
-    return x.max(y).max(z);
+  WideBox all() const {
+    WideBox box = at(0);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t lane = 1; lane < kWidth; ++lane) {
+        box.lower[axis] = std::min(box.lower[axis], lower[axis][lane]);
+        box.upper[axis] = std::max(box.upper[axis], upper[axis][lane]);
+      }
+    return box;
   }
 };
 
 /// Lanes of a group whose boxes overlap a box.
-struct Overlaps {
-  std::array<std::size_t, kWidth> lanes;
-  std::size_t count = 0;
-
-  Overlaps(const BoxGroup& group, const Box& box) {
-    const Lanes gaps = group.gaps(box);
+class Overlaps {
+public:
+  Overlaps(const BoxGroup& group, const WideBox& box) {
+    // Lanes of one width, and no branches: a few instructions for all of them.
+    std::array<float, kWidth> gaps;
     for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      lanes[count] = lane;
-      count += gaps[static_cast<Eigen::Index>(lane)] <= 0.0 ? 1 : 0;
+      const float x =
+          std::max(group.lower[0][lane] - box.upper[0], box.lower[0] - group.upper[0][lane]);
+      const float y =
+          std::max(group.lower[1][lane] - box.upper[1], box.lower[1] - group.upper[1][lane]);
+      const float z =
+          std::max(group.lower[2][lane] - box.upper[2], box.lower[2] - group.upper[2][lane]);
+      gaps[lane] = std::max(std::max(x, y), z);
     }
+    // Boxes are wider than what they contain: where it touches, gaps are below 0.
+#ifdef __SSE2__
+    // What compilers make of the loop takes longer than all the rest.
+    static_assert(kWidth == 8, "two registers");
+    bits_ = static_cast<std::uint32_t>(_mm_movemask_ps(_mm_loadu_ps(gaps.data())) |
+                                       _mm_movemask_ps(_mm_loadu_ps(gaps.data() + 4)) << 4);
+#else
+    for (std::uint32_t lane = 0; lane < kWidth; ++lane)
+      bits_ |= std::signbit(gaps[lane]) ? 1U << lane : 0U;
+#endif
   }
-  const std::size_t* begin() const { return lanes.data(); }
-  const std::size_t* end() const { return lanes.data() + count; }
+
+  class Iterator {
+  public:
+    explicit Iterator(std::uint32_t bits) : bits_(bits) {}
+    std::size_t operator*() const { return kLowestBits[bits_]; }
+    Iterator& operator++() {
+      bits_ &= bits_ - 1U;
+      return *this;
+    }
+    bool operator!=(const Iterator& other) const { return bits_ != other.bits_; }
+
+  private:
+    std::uint32_t bits_;
+  };
+  Iterator begin() const {
+    return Iterator(bits_);
+  }
+  Iterator end() const {
+    return Iterator(0);
+  }
+
+private:
+  static constexpr std::array<std::uint8_t, 1U << kWidth> lowestBits() {
+    std::array<std::uint8_t, 1U << kWidth> lowest{};
+    for (std::size_t bits = 1; bits < lowest.size(); ++bits)
+      lowest[bits] =
+          bits % 2 != 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(lowest[bits / 2] + 1);
+    return lowest;
+  }
+  static const std::array<std::uint8_t, 1U << kWidth> kLowestBits;
+
+  std::uint32_t bits_ = 0;
 };
+
+constexpr std::array<std::uint8_t, 1U << kWidth> Overlaps::kLowestBits = Overlaps::lowestBits();
 
 /// Moves the lowest 10 bits of x to every third bit.
 std::uint32_t spread(std::uint32_t x) {
@@ -346,17 +422,29 @@ struct Place {
 class Mesh {
 public:
   /// \param scale a power of two; coordinates times it are at most 1.
-  Mesh(const Positions& points, const Triangles& triangles, double scale)
-      : points_(points), triangles_(triangles), scale_(scale) {}
+  /// \param fans for each point, whether it is known that the triangles around it do not
+  /// intersect; none: nothing is known.
+  Mesh(const Positions& points, const Triangles& triangles, double scale,
+       const std::vector<std::uint8_t>& fans)
+      : points_(points), triangles_(triangles), scale_(scale), fans_(fans) {}
 
   std::size_t size() const { return static_cast<std::size_t>(triangles_.cols()); }
 
   Box box(Index triangle) const { return boxOf(corners(triangle)); }
+  std::array<Index, 3> vertices(Index triangle) const {
+    return {triangles_(0, triangle), triangles_(1, triangle), triangles_(2, triangle)};
+  }
+  /// \param size of Face.
   Face face(Index triangle, double size) const {
-    return {corners(triangle),
-            size,
-            {triangles_(0, triangle), triangles_(1, triangle), triangles_(2, triangle)},
-            triangle};
+    return {corners(triangle), size, vertices(triangle), triangle};
+  }
+  /// The triangle's vertices whose triangles are known not to intersect, and -1 for the others.
+  std::array<Index, 3> centersOfFans(Index triangle) const {
+    std::array<Index, 3> centers = vertices(triangle);
+    for (Index& v : centers)
+      if (fans_.empty() || fans_[static_cast<std::size_t>(v)] == 0)
+        v = -1;
+    return centers;
   }
 
 private:
@@ -369,6 +457,7 @@ private:
   const Positions& points_;
   const Triangles& triangles_;
   double scale_;
+  const std::vector<std::uint8_t>& fans_;
 };
 
 constexpr unsigned kCurveBits = 10;          ///< an axis
@@ -407,23 +496,33 @@ void refine(const Mesh& mesh, Place* begin, Place* end) {
   }
 }
 
-/// The triangles by size, then along a space-filling curve (G. M. Morton, 1966). Large ones have a
-/// part of the tree for themselves: among small ones they would make large boxes of all above them.
-///
-/// \param subset triangles, ascending.
-std::vector<Place> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads) {
-  std::vector<Place> places(subset.size());
-  if (subset.empty())
-    return places;
-  // The median of a sample tells what is usual.
+/// Triangles so many times as large as usual are large.
+constexpr double kLarge = 8.0;
+/// Blocks of triangles are together up to so many times the usual size of one; in the order of a
+/// space-filling curve, they are 20 to 40 times as large.
+constexpr double kLargeBlock = 64.0;
+/// Few large triangles do no harm anywhere.
+constexpr std::size_t kFewLarge = 16;
+constexpr std::size_t kOfWhichOneMayBeLarge = 10000;
+
+/// The median size of a sample of triangles tells what is usual.
+double usualSize(const Mesh& mesh, const std::vector<Index>& subset) {
   constexpr std::size_t sample = 1000;
   std::vector<double> sizes;
   for (std::size_t i = 0; i < subset.size(); i += 1 + subset.size() / sample)
     sizes.push_back(mesh.box(subset[i]).size());
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
-  const double usual = *middle;
+  return *middle;
+}
 
+/// The triangles by size, then along a space-filling curve (G. M. Morton, 1966). Large ones have a
+/// part of the tree for themselves: among small ones they would make large boxes of all above them.
+///
+/// \param usual size of a triangle.
+std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subset, double usual,
+                               int threads) {
+  std::vector<Place> places(subset.size());
   // Coordinates are in [-1, 1].
   constexpr double scale = ((1U << kCurveBits) - 1U) / 2.0;
   internal::forEachBlock(
@@ -431,8 +530,8 @@ std::vector<Place> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
         for (std::size_t i = begin; i < end; ++i) {
           const Box box = mesh.box(subset[i]);
           std::uint32_t size_class = 0;
-          for (double size = box.size() / 8.0; size > usual && size_class < kMostSizeClass;
-               size /= 8.0)
+          for (double size = box.size() / kLarge; size > usual && size_class < kMostSizeClass;
+               size /= kLarge)
             ++size_class;
           const Vector3d cell = (0.5 * (box.lower + box.upper) + Vector3d::Ones()) * scale;
           places[i] = {spread(static_cast<std::uint32_t>(cell.x())) |
@@ -451,7 +550,78 @@ std::vector<Place> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
       refine(mesh, places.data() + begin, places.data() + end);
     begin = end;
   }
-  return places;
+  std::vector<Index> order(places.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    order[i] = places[i].triangle;
+  return order;
+}
+
+/// Sorts triangles along a space-filling curve in the bounding box of their centres, but coarsely.
+void sortBlock(const std::array<Vector3d, internal::kBlockSize>& centers, const Index* block,
+               std::size_t count, Index* sorted) {
+  constexpr unsigned bits = 7;  // an axis; with the 9 of a place in the block, less than 32
+  static_assert(internal::kBlockSize <= 512, "a place in a block has 9 bits");
+  Vector3d low = centers[0];
+  Vector3d high = low;
+  for (std::size_t i = 1; i < count; ++i) {
+    low = low.cwiseMin(centers[i]);
+    high = high.cwiseMax(centers[i]);
+  }
+  const double extent = (high - low).maxCoeff();
+  const double scale = extent > 1e-290 ? ((1U << bits) - 1U) / extent : 0.0;
+  std::array<std::uint32_t, internal::kBlockSize> keys;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3d cell = (centers[i] - low) * scale;
+    keys[i] = (spread(static_cast<std::uint32_t>(cell.x())) |
+               spread(static_cast<std::uint32_t>(cell.y())) << 1U |
+               spread(static_cast<std::uint32_t>(cell.z())) << 2U)
+                  << 9U |
+              static_cast<std::uint32_t>(i);
+  }
+  std::sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(count));
+  for (std::size_t i = 0; i < count; ++i)
+    sorted[i] = block[keys[i] & 511U];
+}
+
+/// The triangles in an order in which neighbours are near.
+///
+/// \param subset triangles, ascending; at least one.
+std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads) {
+  const double usual = usualSize(mesh, subset);
+  // Most meshes come in blocks that are small, and of triangles of about one size: then it is
+  // enough to sort within these.
+  struct Blocks {
+    double size = 0.0;
+    std::size_t large = 0;
+    Blocks& operator+=(const Blocks& other) {
+      size += other.size;
+      large += other.large;
+      return *this;
+    }
+  };
+  std::vector<Index> order(subset.size());
+  const Blocks blocks = internal::sumOfBlocks(
+      subset.size(), threads, Blocks{}, [&](std::size_t begin, std::size_t end) {
+        std::array<Vector3d, internal::kBlockSize> centers;
+        Blocks block;
+        Box all = mesh.box(subset[begin]);
+        for (std::size_t i = begin; i < end; ++i) {
+          const Box box = mesh.box(subset[i]);
+          all.lower = all.lower.cwiseMin(box.lower);
+          all.upper = all.upper.cwiseMax(box.upper);
+          centers[i - begin] = 0.5 * (box.lower + box.upper);
+          block.large += box.size() > kLarge * usual ? 1 : 0;
+        }
+        block.size = all.size();
+        sortBlock(centers, subset.data() + begin, end - begin, order.data() + begin);
+        return block;
+      });
+  const auto count =
+      static_cast<double>((subset.size() + internal::kBlockSize - 1) / internal::kBlockSize);
+  if (blocks.size > kLargeBlock * usual * count ||
+      blocks.large > kFewLarge + subset.size() / kOfWhichOneMayBeLarge)
+    return orderedAnew(mesh, subset, usual, threads);
+  return order;
 }
 
 /// Triangles with a tree of their bounding boxes: group i of a level holds the boxes of the groups
@@ -459,99 +629,137 @@ std::vector<Place> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
 /// Faloutsos, "On packing R-trees", 1993).
 class Tree {
 public:
+  /// \param subset triangles, ascending; at least one. The mesh must outlive this.
   Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads);
 
-  std::size_t leafCount() const { return levels_.front().size(); }
-  /// Bounding box of all.
-  Box box() const { return levels_.back().front().all(); }
+  /// Triangles of a bunch: those of a group of leaves.
+  static constexpr std::size_t kBunch = kWidth * kWidth;
 
-  /// Appends the intersecting pairs of a triangle of this leaf and one of the same or a later leaf.
-  void findPairs(std::size_t leaf, Pairs& pairs) const;
+  std::size_t size() const { return order_.size(); }
+  /// Bounding box of all.
+  Box box() const { return levels_.back().front().all().box(); }
+
+  /// Appends the intersecting pairs of a triangle of this bunch and one of the same or a later one.
+  void findPairs(std::size_t bunch, Pairs& pairs) const;
   /// Appends the intersecting pairs of a triangle that is not in the tree and one that is.
   void findPairs(const Face& face, const Box& box, Pairs& pairs) const;
 
 private:
-  /// Calls visit(leaf, box) for the leaves from `first` on that overlap a box.
+  /// Calls visit(group) for the groups of a level, from the group `first` on, that overlap a box.
   template <typename Visit>
-  void visitLeaves(const Box& box, std::size_t first, const Visit& visit) const;
+  void visitGroups(std::size_t level, const WideBox& box, std::size_t first,
+                   const Visit& visit) const;
 
+  static bool haveCommon(const std::array<Index, 3>& a, const std::array<Index, 3>& b) {
+    // Without branches: it depends on chance how many are equal.
+    unsigned equal = 0;
+    for (const Index v : a)
+      for (const Index w : b)
+        equal |= static_cast<unsigned>(v == w);
+    return equal != 0;
+  }
   static void append(const Face& a, const Face& b, Pairs& pairs) {
     pairs.push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
   }
 
-  std::vector<Face> faces_;
+  const Mesh& mesh_;
+  std::vector<Index> order_;
   std::vector<std::vector<BoxGroup>> levels_;  ///< from the leaves to the root
 };
 
 Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads)
-    : faces_(subset.size()) {
-  const std::vector<Place> places = ordered(mesh, subset, threads);
-  levels_.emplace_back((subset.size() + kWidth - 1) / kWidth);
-  static_assert(internal::kBlockSize % kWidth == 0, "a leaf is in one block");
-  internal::forEachBlock(faces_.size(), threads,
-                         [&](std::size_t, std::size_t begin, std::size_t end) {
-                           for (std::size_t i = begin; i < end; ++i) {
-                             const Box box = mesh.box(places[i].triangle);
-                             faces_[i] = mesh.face(places[i].triangle, box.size());
-                             levels_.front()[i / kWidth].set(i % kWidth, box);
-                           }
-                         });
+    : mesh_(mesh), order_(ordered(mesh, subset, threads)) {
+  levels_.emplace_back((order_.size() + kWidth - 1) / kWidth);
+  static_assert(internal::kBlockSize % kWidth == 0, "a group is in one block");
+  internal::forEachBlock(
+      order_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          levels_.front()[i / kWidth].set(i % kWidth, WideBox(mesh.box(order_[i])));
+      });
   do {
     const std::vector<BoxGroup>& below = levels_.back();
     std::vector<BoxGroup> level((below.size() + kWidth - 1) / kWidth);
-    for (std::size_t i = 0; i < below.size(); ++i)
-      level[i / kWidth].set(i % kWidth, below[i].all());
+    internal::forEachBlock(below.size(), below.size() >= internal::kParallelThreshold ? threads : 1,
+                           [&](std::size_t, std::size_t begin, std::size_t end) {
+                             for (std::size_t i = begin; i < end; ++i)
+                               level[i / kWidth].set(i % kWidth, below[i].all());
+                           });
     levels_.push_back(std::move(level));
   } while (levels_.back().size() > 1);
 }
 
 template <typename Visit>
-void Tree::visitLeaves(const Box& box, std::size_t first, const Visit& visit) const {
+void Tree::visitGroups(std::size_t level, const WideBox& box, std::size_t first,
+                       const Visit& visit) const {
   struct Node {
     std::size_t level;
     std::size_t group;
   };
-  // At most 7 wait on each level but the last; there are at most 2^30 triangles.
-  std::array<Node, kWidth*(30 / kWidthBits + 2)> open;
+  // At most 7 wait on each level but the last; there are at most 2^31 triangles.
+  std::array<Node, kWidth*(31 / kWidthBits + 2)> open;
   std::size_t count = 0;
   open[count++] = {levels_.size() - 1, 0};
   while (count > 0) {
     const Node node = open[--count];
-    const BoxGroup& group = levels_[node.level][node.group];
-    for (const std::size_t lane : Overlaps(group, box)) {
+    if (node.level == level) {
+      visit(node.group);
+      continue;
+    }
+    const std::size_t least = first >> kWidthBits * (node.level - 1 - level);
+    for (const std::size_t lane : Overlaps(levels_[node.level][node.group], box)) {
       const std::size_t below = node.group * kWidth + lane;
-      if (node.level == 1) {
-        if (below >= first)
-          visit(below, group.at(lane));
-      } else if (below >= first >> kWidthBits * (node.level - 1)) {
+      if (below >= least)
         open[count++] = {node.level - 1, below};
-      }
     }
   }
 }
 
-void Tree::findPairs(std::size_t leaf, Pairs& pairs) const {
-  const BoxGroup& group = levels_.front()[leaf];
-  const std::size_t begin = leaf * kWidth;
-  const std::size_t end = std::min(faces_.size(), begin + kWidth);
-  std::vector<Plane> planes;
-  planes.reserve(kWidth);
-  for (std::size_t i = begin; i < end; ++i)
-    planes.emplace_back(faces_[i]);
-  visitLeaves(group.all(), leaf, [&](std::size_t other, const Box& box) {
-    for (const std::size_t lane : Overlaps(group, box)) {
-      const Face& a = faces_[begin + lane];
-      const Plane& plane = planes[lane];
-      const Box box_a = group.at(lane);
+void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
+  // What every test of one of the bunch's triangles needs.
+  struct Own {
+    Face face;
+    Plane plane;
+    std::array<Index, 3> fans;
+  };
+  std::vector<Own> own;
+  own.reserve(kBunch);
+  const BoxGroup& leaves = levels_[1][bunch];
+  const std::size_t begin = bunch * kBunch;
+  for (std::size_t i = begin; i < std::min(order_.size(), begin + kBunch); ++i) {
+    const Index triangle = order_[i];
+    const Face face = mesh_.face(triangle, levels_.front()[i / kWidth].at(i % kWidth).size());
+    own.push_back({face, Plane(face), mesh_.centersOfFans(triangle)});
+  }
+  const auto compare = [&](std::size_t leaf, std::size_t other, const WideBox& other_box) {
+    const BoxGroup& group = levels_.front()[leaf];
+    const BoxGroup& other_group = levels_.front()[other];
+    const double other_size = other_box.size();
+    for (const std::size_t lane : Overlaps(group, other_box)) {
+      const auto& [a, plane, fans] = own[leaf * kWidth + lane - begin];
       // A triangle that is large beside a leaf is likely to pass it by.
-      if (a.size > 2.0 * box.size() && clears(plane, box))
+      if (a.size > 2.0 * other_size && clears(plane, other_box.box()))
         continue;
-      for (const std::size_t lane_b : Overlaps(levels_.front()[other], box_a)) {
-        if (other == leaf && lane_b <= lane)
+      for (const std::size_t other_lane : Overlaps(other_group, group.at(lane))) {
+        if (other == leaf && other_lane <= lane)
           continue;
-        const Face& b = faces_[other * kWidth + lane_b];
+        const Index triangle = order_[other * kWidth + other_lane];
+        // Most are neighbours of which that is known.
+        if (haveCommon(fans, mesh_.vertices(triangle)))
+          continue;
+        const Face b = mesh_.face(triangle, other_size);
         if (!evidentlyApart(a, plane, b) && intersectCarefully(a, b))
           append(a, b, pairs);
+      }
+    }
+  };
+  visitGroups(1, leaves.all(), bunch, [&](std::size_t other_bunch) {
+    const BoxGroup& other_leaves = levels_[1][other_bunch];
+    for (const std::size_t lane : Overlaps(leaves, other_leaves.all())) {
+      const std::size_t leaf = bunch * kWidth + lane;
+      for (const std::size_t other_lane : Overlaps(other_leaves, leaves.at(lane))) {
+        const std::size_t other = other_bunch * kWidth + other_lane;
+        if (other >= leaf)
+          compare(leaf, other, other_leaves.at(other_lane));
       }
     }
   });
@@ -559,11 +767,13 @@ void Tree::findPairs(std::size_t leaf, Pairs& pairs) const {
 
 void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
   const Plane plane(face);
-  visitLeaves(box, 0, [&](std::size_t leaf, const Box& leaf_box) {
-    if (clears(plane, leaf_box))
+  const WideBox wide(box);
+  visitGroups(0, wide, 0, [&](std::size_t leaf) {
+    const BoxGroup& group = levels_.front()[leaf];
+    if (clears(plane, group.all().box()))
       return;
-    for (const std::size_t lane : Overlaps(levels_.front()[leaf], box)) {
-      const Face& other = faces_[leaf * kWidth + lane];
+    for (const std::size_t lane : Overlaps(group, wide)) {
+      const Face other = mesh_.face(order_[leaf * kWidth + lane], group.at(lane).size());
       if (!evidentlyApart(face, plane, other) && intersectCarefully(face, other))
         append(face, other, pairs);
     }
@@ -583,17 +793,18 @@ double checkedScale(const Positions& points, const Triangles& triangles,
   if (options.threads < 0 || options.threads > internal::kMostThreads)
     fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
          std::to_string(internal::kMostThreads));
-  double most = 0.0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    if (!points.col(i).allFinite())
-      fail("point " + std::to_string(i) + " is not finite; remove such points first");
-    most = std::max(most, largest(points.col(i)));
-  }
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      if (triangles(k, t) < 0 || triangles(k, t) >= points.cols())
-        fail("triangle " + std::to_string(t) + " names vertex " + std::to_string(triangles(k, t)) +
-             ", but there are " + std::to_string(points.cols()) + " points");
+  if (!points.allFinite())
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      if (!points.col(i).allFinite())
+        fail("point " + std::to_string(i) + " is not finite; remove such points first");
+  const double most = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
+  if (triangles.cols() > 0 && (triangles.minCoeff() < 0 || triangles.maxCoeff() >= points.cols()))
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+      for (int k = 0; k < 3; ++k)
+        if (triangles(k, t) < 0 || triangles(k, t) >= points.cols())
+          fail("triangle " + std::to_string(t) + " names vertex " +
+               std::to_string(triangles(k, t)) + ", but there are " +
+               std::to_string(points.cols()) + " points");
   int exponent = 0;
   std::frexp(most, &exponent);
   return std::ldexp(1.0, std::min(-exponent, 1000));
@@ -615,8 +826,10 @@ Pairs collect(std::size_t count, int threads, const Find& find) {
 }
 
 Pairs pairsWithin(const Tree& tree, int threads) {
-  return collect(tree.leafCount(), threads,
-                 [&](std::size_t leaf, Pairs& pairs) { tree.findPairs(leaf, pairs); });
+  return collect(tree.size(), threads, [&](std::size_t i, Pairs& pairs) {
+    if (i % Tree::kBunch == 0)
+      tree.findPairs(i / Tree::kBunch, pairs);
+  });
 }
 
 }  // namespace
@@ -624,7 +837,14 @@ Pairs pairsWithin(const Tree& tree, int threads) {
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const SelfIntersectionOptions& options) {
-  const Mesh mesh(points, triangles, checkedScale(points, triangles, options));
+  return internal::findSelfIntersections(points, triangles, {}, options);
+}
+
+std::vector<std::array<Index, 2>>
+internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
+                                const std::vector<std::uint8_t>& fans,
+                                const SelfIntersectionOptions& options) {
+  const Mesh mesh(points, triangles, checkedScale(points, triangles, options), fans);
   std::vector<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
   if (all.empty())
@@ -640,7 +860,8 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const Triangles& triangles,
                                                           const std::vector<Index>& of,
                                                           const SelfIntersectionOptions& options) {
-  const Mesh mesh(points, triangles, checkedScale(points, triangles, options));
+  const std::vector<std::uint8_t> no_fans;
+  const Mesh mesh(points, triangles, checkedScale(points, triangles, options), no_fans);
   std::vector<char> in_set(mesh.size(), 0);
   for (const Index t : of) {
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())

@@ -398,6 +398,104 @@ TEST(MeshOptimizer, IntersectionsAroundAllVerticesAreThoseOfTheMesh) {
   EXPECT_EQ(optimizer.intersectionsAround({}), 0U);
 }
 
+TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
+  std::vector<Case> cases = roughCases();
+  cases.push_back(ellipsoid(3000, 1.0, 0.7, 0.4));
+  cases.push_back(scrambledEllipsoid(3000, 0.3, 2000, 3));
+  cases.push_back(noisySphere(3000, 0.7, 4));
+  for (const Case& of : cases)
+    EXPECT_EQ(MeshOptimizer(of.points, of.triangles, of.graph, 1).intersections(),
+              findSelfIntersections(of.points, of.triangles));
+}
+
+TEST(MeshOptimizer, TrianglesOfAPlainFanDoNotIntersect) {
+  std::vector<Case> cases = roughCases();
+  cases.push_back(scrambledEllipsoid(1000, 0.3, 700, 3));
+  for (const Case& of : cases) {
+    const MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
+    const std::vector<std::uint8_t> fans = optimizer.plainFans();
+    int plain = 0;
+    for (Index v = 0; v < of.points.cols(); ++v) {
+      if (fans[static_cast<std::size_t>(v)] == 0)
+        continue;
+      ++plain;
+      std::vector<Index> around;
+      optimizer.mesh().forEachAround(v, [&](Index t, int) { around.push_back(t); });
+      Triangles fan(3, static_cast<Eigen::Index>(around.size()));
+      for (Eigen::Index i = 0; i < fan.cols(); ++i)
+        fan.col(i) = of.triangles.col(around[static_cast<std::size_t>(i)]);
+      EXPECT_EQ(intersectionsOf(of.points, fan), 0U);
+    }
+    EXPECT_GT(plain, 0);
+    EXPECT_LT(plain, of.points.cols());
+  }
+  // Where nothing is wrong, they are plain.
+  const Case smooth = ellipsoid(1000, 1.0, 0.9, 0.8);
+  const std::vector<std::uint8_t> fans =
+      MeshOptimizer(smooth.points, smooth.triangles, smooth.graph, 1).plainFans();
+  EXPECT_GT(std::count(fans.begin(), fans.end(), 1), 900);
+}
+
+TEST(MeshOptimizer, AFanThatGoesAroundTwiceIsNotPlain) {
+  // Seven spokes, each two sevenths of a turn after the last: always to the same side.
+  const Index ring = 7;
+  Case of;
+  of.points.resize(3, ring + 2);
+  of.points.col(0) << 0.0, 0.0, 0.1;
+  of.points.col(1) << 0.0, 0.0, -5.0;
+  of.triangles.resize(3, 2 * ring);
+  for (Index i = 0; i < ring; ++i) {
+    const double angle = 2.0 * 2.0 * test::kPi * i / ring;
+    of.points.col(2 + i) << std::cos(angle), std::sin(angle), 0.01 * i;
+    const Index next = 2 + (i + 1) % ring;
+    of.triangles.col(2 * i) << 0, 2 + i, next;
+    of.triangles.col(2 * i + 1) << 1, next, 2 + i;
+  }
+  of.graph = graphOfMesh(of.points, of.triangles);
+  const MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
+  EXPECT_EQ(optimizer.plainFans()[0], 0);
+  EXPECT_EQ(optimizer.intersections(), findSelfIntersections(of.points, of.triangles));
+  EXPECT_GT(optimizer.intersections().size(), 0U);
+}
+
+TEST(MeshOptimizer, ASecondPassComesToWhatAFirstOneWould) {
+  constexpr double factor = 3.0;
+  constexpr double least = 0.2;
+  std::vector<Case> cases = roughCases();
+  cases.push_back(noisySphere(3000, 0.2, 5));
+  for (const Case& of : cases) {
+    MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
+    optimizer.setExcessEnergy(4.0, factor, least);
+    optimizer.flipAll();
+    std::uint64_t random = 8;
+    for (int round = 0; round < 3; ++round) {
+      optimizer.setEnergy(SurfaceEnergy{});
+      for (Index v = round; v < of.points.cols(); v += 37) {
+        optimizer.relocate(v);
+        optimizer.recreate(
+            optimizer.spread({v}, 5, random), [](double) { return true; }, random);
+      }
+      MeshOptimizer fresh(of.points, optimizer.mesh().triangles(), of.graph, 1);
+      std::vector<double> usual = fresh.medianAngles();
+      for (double& angle : usual)
+        angle = std::max(factor * angle, least);
+      SurfaceEnergy energy;
+      energy.bend = Bend::Excess;
+      energy.mu = 4.0;
+      energy.usual_angle = usual.data();
+      fresh.setEnergy(energy);
+
+      optimizer.setExcessEnergy(4.0, factor, least);
+      EXPECT_EQ(optimizer.energy(), fresh.energy());
+      const std::size_t flips = optimizer.flipAll();
+      EXPECT_GT(flips, 0U);
+      EXPECT_EQ(flips, fresh.flipAll());
+      EXPECT_EQ(optimizer.energy(), fresh.energy());
+      EXPECT_EQ(optimizer.mesh().triangles(), fresh.mesh().triangles());
+    }
+  }
+}
+
 TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
   Case of = ellipsoid(400, 1.0, 0.9, 0.8);
   const MeshOptimizer clean(of.points, of.triangles, of.graph, 1);
