@@ -694,9 +694,7 @@ std::vector<std::uint8_t> MeshOptimizer::plainFans() const {
 }
 
 std::vector<std::array<Index, 2>> MeshOptimizer::intersections() const {
-  SelfIntersectionOptions options;
-  options.threads = threads_;
-  return findSelfIntersections(*points_, mesh_.triangles(), plainFans(), options);
+  return findSelfIntersections(*points_, mesh_.triangles(), plainFans(), threads_);
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) const {
@@ -723,9 +721,7 @@ std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertice
       part(k, i) =
           static_cast<Index>(std::lower_bound(corners.begin(), corners.end(), v) - corners.begin());
     }
-  SelfIntersectionOptions options;
-  options.threads = 1;
-  return findSelfIntersections(points, part, {}, options).size();
+  return findSelfIntersections(points, part, {}, 1).size();
 }
 
 }  // namespace spherical_param::internal

@@ -13,14 +13,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
-
-#ifdef __SSE2__
-#include <xmmintrin.h>
-#endif
 
 // Candidates come from a tree of bounding boxes over the triangles in the order of a space-filling
 // curve: of one over all, or of one in each block of a mesh whose triangles are in good order.
@@ -353,16 +350,16 @@ public:
           std::max(group.lower[2][lane] - box.upper[2], box.lower[2] - group.upper[2][lane]);
       gaps[lane] = std::max(std::max(x, y), z);
     }
-    // Boxes are wider than what they contain: where it touches, gaps are below 0.
-#ifdef __SSE2__
-    // What compilers make of the loop takes longer than all the rest.
-    static_assert(kWidth == 8, "two registers");
-    bits_ = static_cast<std::uint32_t>(_mm_movemask_ps(_mm_loadu_ps(gaps.data())) |
-                                       _mm_movemask_ps(_mm_loadu_ps(gaps.data() + 4)) << 4);
-#else
-    for (std::uint32_t lane = 0; lane < kWidth; ++lane)
-      bits_ |= std::signbit(gaps[lane]) ? 1U << lane : 0U;
-#endif
+    // Boxes are wider than what they contain: where it touches, gaps are below 0. Their signs to
+    // places of their own, and these together, half by half.
+    std::array<std::int32_t, kWidth> signs;
+    static_assert(sizeof(signs) == sizeof(gaps), "a sign for each gap");
+    std::memcpy(signs.data(), gaps.data(), sizeof(gaps));
+    std::array<std::int32_t, kWidth / 2> halves;
+    for (std::size_t lane = 0; lane < kWidth / 2; ++lane)
+      halves[lane] = (signs[lane] < 0 ? kBits[lane] : 0) |
+                     (signs[lane + kWidth / 2] < 0 ? kBits[lane + kWidth / 2] : 0);
+    bits_ = static_cast<std::uint32_t>((halves[0] | halves[1]) | (halves[2] | halves[3]));
   }
 
   class Iterator {
@@ -378,12 +375,8 @@ public:
   private:
     std::uint32_t bits_;
   };
-  Iterator begin() const {
-    return Iterator(bits_);
-  }
-  Iterator end() const {
-    return Iterator(0);
-  }
+  Iterator begin() const { return Iterator(bits_); }
+  Iterator end() const { return Iterator(0); }
 
 private:
   static constexpr std::array<std::uint8_t, 1U << kWidth> lowestBits() {
@@ -394,6 +387,7 @@ private:
     return lowest;
   }
   static const std::array<std::uint8_t, 1U << kWidth> kLowestBits;
+  static constexpr std::array<std::int32_t, kWidth> kBits{1, 2, 4, 8, 16, 32, 64, 128};
 
   std::uint32_t bits_ = 0;
 };
@@ -788,10 +782,9 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
 
 /// A power of two that brings the largest coordinate to 1/2 ... 1: the predicates multiply three
 /// differences. Throws InvalidInput.
-double checkedScale(const Positions& points, const Triangles& triangles,
-                    const SelfIntersectionOptions& options) {
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
+double checkedScale(const Positions& points, const Triangles& triangles, int threads) {
+  if (threads < 0 || threads > internal::kMostThreads)
+    fail("threads = " + std::to_string(threads) + " is out of range; use 0 (all) to " +
          std::to_string(internal::kMostThreads));
   if (!points.allFinite())
     for (Eigen::Index i = 0; i < points.cols(); ++i)
@@ -837,20 +830,19 @@ Pairs pairsWithin(const Tree& tree, int threads) {
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const SelfIntersectionOptions& options) {
-  return internal::findSelfIntersections(points, triangles, {}, options);
+  return internal::findSelfIntersections(points, triangles, {}, options.threads);
 }
 
 std::vector<std::array<Index, 2>>
 internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
-                                const std::vector<std::uint8_t>& fans,
-                                const SelfIntersectionOptions& options) {
-  const Mesh mesh(points, triangles, checkedScale(points, triangles, options), fans);
+                                const std::vector<std::uint8_t>& fans, int requested_threads) {
+  const Mesh mesh(points, triangles, checkedScale(points, triangles, requested_threads), fans);
   std::vector<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
   if (all.empty())
     return {};
   const int threads =
-      internal::threadCount(options.threads, all.size(), internal::kParallelThreshold);
+      internal::threadCount(requested_threads, all.size(), internal::kParallelThreshold);
   Pairs pairs = pairsWithin(Tree(mesh, all, threads), threads);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -861,7 +853,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const std::vector<Index>& of,
                                                           const SelfIntersectionOptions& options) {
   const std::vector<std::uint8_t> no_fans;
-  const Mesh mesh(points, triangles, checkedScale(points, triangles, options), no_fans);
+  const Mesh mesh(points, triangles, checkedScale(points, triangles, options.threads), no_fans);
   std::vector<char> in_set(mesh.size(), 0);
   for (const Index t : of) {
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "spherical_param/self_intersection.h"
 #include "spherical_param/types.h"
 
 #include <array>
@@ -14,9 +13,10 @@ namespace spherical_param::internal {
 ///
 /// \param fans for each point, 1 if no two triangles around it intersect, 0 if that is not known;
 /// empty: nothing is known.
+/// \param threads as there.
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const std::vector<std::uint8_t>& fans,
-                                                        const SelfIntersectionOptions& options);
+                                                        int threads);
 
 }  // namespace spherical_param::internal
