@@ -20,7 +20,7 @@
 #include <utility>
 
 // Candidates come from a tree of bounding boxes over the triangles in the order of a space-filling
-// curve: of one over all, or of one in each block of a mesh whose triangles are in good order.
+// curve: one for all, or one for each block of a mesh whose triangles are in good order already.
 // Nearly all of them are neighbours that a plane separates, which few operations and a bound of
 // their error show. Exact arithmetic decides about the rest, straight from the definition.
 
@@ -550,31 +550,72 @@ std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subse
   return order;
 }
 
-/// Sorts triangles along a space-filling curve in the bounding box of their centres, but coarsely.
-void sortBlock(const std::array<Vector3d, internal::kBlockSize>& centers, const Index* block,
-               std::size_t count, Index* sorted) {
-  constexpr unsigned bits = 7;  // an axis; with the 9 of a place in the block, less than 32
-  static_assert(internal::kBlockSize <= 512, "a place in a block has 9 bits");
-  Vector3d low = centers[0];
-  Vector3d high = low;
-  for (std::size_t i = 1; i < count; ++i) {
-    low = low.cwiseMin(centers[i]);
-    high = high.cwiseMax(centers[i]);
+constexpr unsigned kCellBits = 5;  ///< an axis, of a block: some two cells a triangle
+constexpr std::size_t kCells = std::size_t{1} << kCellBits;
+
+/// The places of 32 x 32 cells along a Hilbert curve (D. Hilbert, 1891).
+constexpr std::array<std::uint16_t, kCells * kCells> hilbertPlaces() {
+  std::array<std::uint16_t, kCells * kCells> places{};
+  for (std::size_t cell = 0; cell < places.size(); ++cell) {
+    std::size_t x = cell / kCells;
+    std::size_t y = cell % kCells;
+    std::size_t place = 0;
+    for (std::size_t half = kCells / 2; half > 0; half /= 2) {
+      const std::size_t right = (x & half) != 0 ? 1 : 0;
+      const std::size_t upper = (y & half) != 0 ? 1 : 0;
+      place += half * half * ((3 * right) ^ upper);
+      // The attitude of the curve in this quarter.
+      if (upper == 0) {
+        if (right == 1) {
+          x = kCells - 1 - x;
+          y = kCells - 1 - y;
+        }
+        const std::size_t swapped = x;
+        x = y;
+        y = swapped;
+      }
+    }
+    places[cell] = static_cast<std::uint16_t>(place);
   }
-  const double extent = (high - low).maxCoeff();
-  const double scale = extent > 1e-290 ? ((1U << bits) - 1U) / extent : 0.0;
-  std::array<std::uint32_t, internal::kBlockSize> keys;
+  return places;
+}
+constexpr std::array<std::uint16_t, kCells* kCells> kHilbertPlaces = hilbertPlaces();
+
+using BlockCenters = std::array<std::array<float, 3>, internal::kBlockSize>;
+
+/// Sorts a block of triangles along a Hilbert curve, as seen along the shortest axis of the box of
+/// their centres: a part of a surface is mostly flat.
+void sortBlock(const BlockCenters& centers, const Index* block, std::size_t count, Index* sorted) {
+  std::array<float, 3> low = centers[0];
+  std::array<float, 3> high = low;
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], centers[i][axis]);
+      high[axis] = std::max(high[axis], centers[i][axis]);
+    }
+  std::size_t shortest = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis)
+    if (high[axis] - low[axis] < high[shortest] - low[shortest])
+      shortest = axis;
+  const std::size_t x = (shortest + 1) % 3;
+  const std::size_t y = (shortest + 2) % 3;
+  const float extent = std::max(high[x] - low[x], high[y] - low[y]);
+  if (!(extent > 1e-30F)) {  // below that, the scale overflows
+    std::copy(block, block + count, sorted);
+    return;
+  }
+  const float scale = (static_cast<float>(kCells) - 0.5F) / extent;
+  std::array<std::uint16_t, internal::kBlockSize> places;
+  std::array<std::uint16_t, kCells * kCells + 1> begins{};
   for (std::size_t i = 0; i < count; ++i) {
-    const Vector3d cell = (centers[i] - low) * scale;
-    keys[i] = (spread(static_cast<std::uint32_t>(cell.x())) |
-               spread(static_cast<std::uint32_t>(cell.y())) << 1U |
-               spread(static_cast<std::uint32_t>(cell.z())) << 2U)
-                  << 9U |
-              static_cast<std::uint32_t>(i);
+    const auto column = static_cast<std::size_t>((centers[i][x] - low[x]) * scale);
+    const auto row = static_cast<std::size_t>((centers[i][y] - low[y]) * scale);
+    places[i] = kHilbertPlaces[column * kCells + row];
+    ++begins[places[i] + 1U];
   }
-  std::sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(count));
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
   for (std::size_t i = 0; i < count; ++i)
-    sorted[i] = block[keys[i] & 511U];
+    sorted[begins[places[i]]++] = block[i];
 }
 
 /// The triangles in an order in which neighbours are near.
@@ -596,14 +637,15 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
   std::vector<Index> order(subset.size());
   const Blocks blocks = internal::sumOfBlocks(
       subset.size(), threads, Blocks{}, [&](std::size_t begin, std::size_t end) {
-        std::array<Vector3d, internal::kBlockSize> centers;
+        BlockCenters centers;
         Blocks block;
         Box all = mesh.box(subset[begin]);
         for (std::size_t i = begin; i < end; ++i) {
           const Box box = mesh.box(subset[i]);
           all.lower = all.lower.cwiseMin(box.lower);
           all.upper = all.upper.cwiseMax(box.upper);
-          centers[i - begin] = 0.5 * (box.lower + box.upper);
+          const Eigen::Vector3f center = (0.5 * (box.lower + box.upper)).cast<float>();
+          centers[i - begin] = {center.x(), center.y(), center.z()};
           block.large += box.size() > kLarge * usual ? 1 : 0;
         }
         block.size = all.size();
@@ -724,6 +766,10 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
     const Face face = mesh_.face(triangle, levels_.front()[i / kWidth].at(i % kWidth).size());
     own.push_back({face, Plane(face), mesh_.centersOfFans(triangle)});
   }
+  const auto test = [&](const Face& a, const Plane& plane, const Face& b) {
+    if (!evidentlyApart(a, plane, b) && intersectCarefully(a, b))
+      append(a, b, pairs);
+  };
   const auto compare = [&](std::size_t leaf, std::size_t other, const WideBox& other_box) {
     const BoxGroup& group = levels_.front()[leaf];
     const BoxGroup& other_group = levels_.front()[other];
@@ -740,9 +786,11 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
         // Most are neighbours of which that is known.
         if (haveCommon(fans, mesh_.vertices(triangle)))
           continue;
-        const Face b = mesh_.face(triangle, other_size);
-        if (!evidentlyApart(a, plane, b) && intersectCarefully(a, b))
-          append(a, b, pairs);
+        const std::size_t place = other * kWidth + other_lane - begin;
+        if (place < own.size())
+          test(a, plane, own[place].face);
+        else
+          test(a, plane, mesh_.face(triangle, other_size));
       }
     }
   };
