@@ -130,8 +130,6 @@ double MeshOptimizer::flipGain(Index t, int k, double floor) const {
   const Facet cad = raw_cad.facet();
   const Facet cdb = raw_cdb.facet();
   after += edge(c, d, cad, cdb);
-  if (before - after <= floor)
-    return floor;
   after += edge(b, c, cdb, bc);
   after += edge(c, a, cad, ca);
   after += edge(a, d, cad, ad);
@@ -297,8 +295,6 @@ double MeshOptimizer::splitCost(Index t, Index v, double ceiling) const {
   after += edge(b, c, vbc, bc);
   after += edge(c, a, vca, ca);
   after += edge(a, b, vab, ab);
-  if (after - before >= ceiling)
-    return ceiling;
   after += edge(v, a, vca, vab);
   after += edge(v, b, vab, vbc);
   after += edge(v, c, vbc, vca);
@@ -721,7 +717,10 @@ std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertice
       part(k, i) =
           static_cast<Index>(std::lower_bound(corners.begin(), corners.end(), v) - corners.begin());
     }
-  return findSelfIntersections(points, part, {}, 1).size();
+  std::vector<std::uint8_t> fans(corners.size());
+  for (std::size_t i = 0; i < fans.size(); ++i)
+    fans[i] = isPlainFan(corners[i]) ? 1 : 0;
+  return findSelfIntersections(points, part, fans, 1).size();
 }
 
 }  // namespace spherical_param::internal

@@ -681,7 +681,8 @@ public:
   void findPairs(const Face& face, const Box& box, Pairs& pairs) const;
 
 private:
-  /// Calls visit(group) for the groups of a level, from the group `first` on, that overlap a box.
+  /// Calls visit(group, its box) for the groups of a level, from the group `first` on, that overlap
+  /// a box.
   template <typename Visit>
   void visitGroups(std::size_t level, const WideBox& box, std::size_t first,
                    const Visit& visit) const;
@@ -734,17 +735,22 @@ void Tree::visitGroups(std::size_t level, const WideBox& box, std::size_t first,
   // At most 7 wait on each level but the last; there are at most 2^31 triangles.
   std::array<Node, kWidth*(31 / kWidthBits + 2)> open;
   std::size_t count = 0;
+  if (levels_.size() - 1 == level) {
+    visit(std::size_t{0}, levels_.back().front().all());
+    return;
+  }
   open[count++] = {levels_.size() - 1, 0};
   while (count > 0) {
     const Node node = open[--count];
-    if (node.level == level) {
-      visit(node.group);
-      continue;
-    }
+    const BoxGroup& group = levels_[node.level][node.group];
     const std::size_t least = first >> kWidthBits * (node.level - 1 - level);
-    for (const std::size_t lane : Overlaps(levels_[node.level][node.group], box)) {
+    for (const std::size_t lane : Overlaps(group, box)) {
       const std::size_t below = node.group * kWidth + lane;
-      if (below >= least)
+      if (below < least)
+        continue;
+      if (node.level - 1 == level)
+        visit(below, group.at(lane));
+      else
         open[count++] = {node.level - 1, below};
     }
   }
@@ -794,9 +800,9 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
       }
     }
   };
-  visitGroups(1, leaves.all(), bunch, [&](std::size_t other_bunch) {
+  visitGroups(1, leaves.all(), bunch, [&](std::size_t other_bunch, const WideBox& other_bunch_box) {
     const BoxGroup& other_leaves = levels_[1][other_bunch];
-    for (const std::size_t lane : Overlaps(leaves, other_leaves.all())) {
+    for (const std::size_t lane : Overlaps(leaves, other_bunch_box)) {
       const std::size_t leaf = bunch * kWidth + lane;
       for (const std::size_t other_lane : Overlaps(other_leaves, leaves.at(lane))) {
         const std::size_t other = other_bunch * kWidth + other_lane;
@@ -810,9 +816,9 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
 void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
   const Plane plane(face);
   const WideBox wide(box);
-  visitGroups(0, wide, 0, [&](std::size_t leaf) {
+  visitGroups(0, wide, 0, [&](std::size_t leaf, const WideBox& leaf_box) {
     const BoxGroup& group = levels_.front()[leaf];
-    if (clears(plane, group.all().box()))
+    if (clears(plane, leaf_box.box()))
       return;
     for (const std::size_t lane : Overlaps(group, wide)) {
       const Face other = mesh_.face(order_[leaf * kWidth + lane], group.at(lane).size());
