@@ -693,30 +693,33 @@ std::vector<std::array<Index, 2>> MeshOptimizer::intersections() const {
   return findSelfIntersections(*points_, mesh_.triangles(), plainFans(), threads_);
 }
 
-std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) const {
-  const auto distinct = [](std::vector<Index>& values) {
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-  };
+std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {
+  ++pass_;
+  numbers_.resize(seen_vertices_.size());
   std::vector<Index> triangles;
-  for (const Index v : vertices)
-    mesh_.forEachAround(v, [&](Index t, int) { triangles.push_back(t); });
-  distinct(triangles);
   std::vector<Index> corners;
-  for (const Index t : triangles)
-    for (int k = 0; k < 3; ++k)
-      corners.push_back(mesh_.vertex(t, k));
-  distinct(corners);
+  for (const Index v : vertices)
+    mesh_.forEachAround(v, [&](Index t, int) {
+      if (seen_triangles_[at(t)] == pass_)
+        return;
+      seen_triangles_[at(t)] = pass_;
+      triangles.push_back(t);
+      for (int k = 0; k < 3; ++k) {
+        const Index corner = mesh_.vertex(t, k);
+        if (seen_vertices_[at(corner)] == pass_)
+          continue;
+        seen_vertices_[at(corner)] = pass_;
+        numbers_[at(corner)] = static_cast<Index>(corners.size());
+        corners.push_back(corner);
+      }
+    });
   Positions points(3, static_cast<Eigen::Index>(corners.size()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     points.col(i) = points_->col(corners[static_cast<std::size_t>(i)]);
   Triangles part(3, static_cast<Eigen::Index>(triangles.size()));
   for (Eigen::Index i = 0; i < part.cols(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const Index v = mesh_.vertex(triangles[static_cast<std::size_t>(i)], k);
-      part(k, i) =
-          static_cast<Index>(std::lower_bound(corners.begin(), corners.end(), v) - corners.begin());
-    }
+    for (int k = 0; k < 3; ++k)
+      part(k, i) = numbers_[at(mesh_.vertex(triangles[static_cast<std::size_t>(i)], k))];
   std::vector<std::uint8_t> fans(corners.size());
   for (std::size_t i = 0; i < fans.size(); ++i)
     fans[i] = isPlainFan(corners[i]) ? 1 : 0;

@@ -79,7 +79,7 @@ public:
   /// intersect: seen along an axis, they go around it once.
   std::vector<std::uint8_t> plainFans() const;
   /// Pairs that intersect among the triangles around some vertices.
-  std::size_t intersectionsAround(const std::vector<Index>& vertices) const;
+  std::size_t intersectionsAround(const std::vector<Index>& vertices);
 
 private:
   /// A flip that gains. Void if its side has another stamp by now.
@@ -171,7 +171,8 @@ private:
   std::vector<std::uint32_t> seen_triangles_;
   std::vector<std::uint32_t> seen_vertices_;
   std::uint32_t pass_ = 0;
-  std::vector<Index> around_;  ///< working memory of insert() and relocate()
+  std::vector<Index> numbers_;  ///< of vertices in a part, working memory of intersectionsAround()
+  std::vector<Index> around_;   ///< working memory of insert() and relocate()
   std::vector<Index> changed_;
 };
 

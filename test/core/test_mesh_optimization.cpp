@@ -389,7 +389,7 @@ TEST(MeshOptimizer, SpreadStaysTogetherAndHasTheSeedsFirst) {
 
 TEST(MeshOptimizer, IntersectionsAroundAllVerticesAreThoseOfTheMesh) {
   const Case of = roughCases()[0];
-  const MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
+  MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
   std::vector<Index> all(static_cast<std::size_t>(of.points.cols()));
   std::iota(all.begin(), all.end(), Index{0});
   const std::size_t expected = intersectionsOf(of.points, of.triangles);
