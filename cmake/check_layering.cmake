@@ -23,7 +23,7 @@ set(ordered_points_stage point_set)
 set(graph_building_stage neighbor_graph)
 set(local_delaunay_graph_stage neighbor_graph)
 set(mesh_optimizer_stage mesh_optimization)
-foreach(part embedding_energy embedding_newton multigrid multilevel_embedding planar_start)
+foreach(part block_cholesky embedding_energy embedding_newton multigrid multilevel_embedding planar_start)
   set(${part}_stage sphere_embedding)
 endforeach()
 

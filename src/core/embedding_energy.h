@@ -36,6 +36,8 @@ public:
   /// folded by a pull that is the same for all nodes.
   void addBarrier(const Positions& u);
 
+  bool hasBarrier() const { return masses_.size() > 0; }
+
   double value(const Positions& u) const;
 
   /// How far an embedding is from a critical point: means over the nodes.
@@ -67,7 +69,6 @@ public:
 
 private:
   void buildPattern(BlockMatrix& matrix) const;
-  double factor(std::size_t entry) const;
   double weight(double length, std::size_t entry) const;
 
   const Graph& graph_;

@@ -58,7 +58,8 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
       options.progress(report.iterations, residual.absolute);
     const bool converged =
         residual.absolute <= options.tolerance && residual.relative <= options.relative_tolerance;
-    if (converged || report.iterations >= options.max_iterations)
+    const bool collapses = directions.rowwise().mean().norm() > options.longest_mean;
+    if (converged || collapses || report.iterations >= options.max_iterations)
       return report;
 
     const std::vector<TangentBasis> bases = tangentBases(directions);

@@ -1,11 +1,10 @@
 #pragma once
 
+#include "core/block_cholesky.h"
 #include "core/block_matrix.h"
 #include "core/embedding_energy.h"
 #include "spherical_param/sphere_embedding.h"
 #include "spherical_param/types.h"
-
-#include <Eigen/SparseCholesky>
 
 #include <cstddef>
 #include <vector>
@@ -27,6 +26,8 @@ public:
 
   int threads() const { return threads_; }
 
+  /// All patterns are found for the first matrix and kept: the others must have its pattern.
+  ///
   /// \param matrix must outlive the next calls of apply().
   /// \param bases  tangent bases of the nodes of the finest level.
   void compute(const BlockMatrix& matrix, const std::vector<TangentBasis>& bases);
@@ -37,22 +38,34 @@ public:
 private:
   struct Level {
     const BlockMatrix* matrix = nullptr;
-    BlockMatrix galerkin;  ///< storage of *matrix below the finest level
+    BlockMatrix galerkin;               ///< storage of *matrix below the finest level
+    std::vector<std::size_t> diagonal;  ///< places of the diagonal blocks
     std::vector<Eigen::Matrix2d> inverse_diagonal;
     BlockMatrix prolongation;  ///< this level's nodes x those of the next; not square
+    BlockMatrix product;       ///< pattern of *matrix * prolongation, without blocks; rows unsorted
+    /// The transpose of the prolongation: for each node of the next level the rows and the places
+    /// of its blocks.
+    std::vector<std::size_t> restriction_offsets;
+    std::vector<Index> restriction_rows;
+    std::vector<std::size_t> restriction_places;
+    std::vector<TangentBasis> coarse_bases;  ///< of the next level
     TangentVector right_side;
     TangentVector solution;
     TangentVector residual;
   };
 
+  void findPatterns(std::size_t l);
+  void multiplyGalerkin(std::size_t l);
   void cycle(std::size_t l, const TangentVector& b, TangentVector& x);
 
   const GraphHierarchy& hierarchy_;
   std::size_t first_;
   int threads_;
   std::vector<Level> levels_;  ///< all but the coarsest have smoothers
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;
-  bool analyzed_ = false;
+  BlockCholesky coarsest_;
+  std::vector<Eigen::Matrix2d> product_;    ///< blocks of the product of the level at hand
+  std::vector<std::vector<Index>> places_;  ///< for each thread, of columns in the row at hand
+  bool has_patterns_ = false;
 };
 
 /// When conjugateGradients() end.

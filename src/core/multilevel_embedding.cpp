@@ -34,6 +34,9 @@ constexpr std::size_t kDirectSize = 2000;
 constexpr int kStartSweeps = 3;
 /// An embedding with a longer mean of its directions has collapsed.
 constexpr double kCollapsedCentroid = 0.95;
+/// Beyond this mean it collapses further, by the same factor in each step, unless there is a
+/// barrier.
+constexpr double kHopelessCentroid = 0.99;
 /// Finer levels than the coarsest are tried up to this size, where all starts collapse: the fewer
 /// nodes are around a limb, the weaker is the barrier that keeps the sphere from slipping off it.
 constexpr std::size_t kLargestStart = 100000;
@@ -263,11 +266,16 @@ private:
                      Positions& u) {
     // Small systems are solved directly: no slower, and exact at all scales.
     const bool direct = graphOf(l).size() <= kDirectSize;
-    MultigridPreconditioner preconditioner(hierarchy_, direct ? hierarchy_.levels.size() : l,
-                                           options_.threads);
+    const std::size_t first = direct ? hierarchy_.levels.size() : l;
+    if (!preconditioner_ || preconditioner_level_ != l) {
+      preconditioner_.emplace(hierarchy_, first, options_.threads);
+      preconditioner_level_ = l;
+    }
     internal::NewtonOptions options;
     options.relative_tolerance = kSolvedTolerance;
     options.tolerance = tolerance.value_or(1.0);
+    if (!energy.hasBarrier())
+      options.longest_mean = kHopelessCentroid;
     if (l == 0 && tolerance)
       options.progress = [this, first = 0.0](int, double residual) mutable {
         first = std::max(first, residual);
@@ -278,7 +286,7 @@ private:
       };
     else
       options.progress = [this](int, double residual) { report(share_, residual); };
-    NewtonReport newton = internal::minimizeByNewton(energy, preconditioner, options, u);
+    NewtonReport newton = internal::minimizeByNewton(energy, *preconditioner_, options, u);
     result_.levels[l].newton_iterations += newton.iterations;
     result_.levels[l].linear_iterations += newton.linear_iterations;
     result_.levels[l].residual = newton.residuals.back();
@@ -322,6 +330,9 @@ private:
   const MultilevelOptions& options_;
   MultilevelEmbedding result_;
   double share_ = 0.0;  ///< of the work that is done
+  /// That of the level that was solved last: its patterns serve all starts.
+  std::optional<MultigridPreconditioner> preconditioner_;
+  std::size_t preconditioner_level_ = 0;
 };
 
 }  // namespace
