@@ -199,7 +199,7 @@ void MultigridPreconditioner::multiplyGalerkin(std::size_t l) {
   const BlockMatrix& product = level.product;
   BlockMatrix& galerkin = levels_[l + 1].galerkin;
   const std::size_t n = matrix.size();
-  const int threads = threadCount(threads_, n, kParallelThreshold);
+  const int threads = threadCount(threads_, n, kShortPassThreshold);
   if (product_.size() < product.columns.size())
     product_.resize(product.columns.size());
   places_.resize(std::max(places_.size(), static_cast<std::size_t>(threads)));
