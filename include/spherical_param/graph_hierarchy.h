@@ -29,6 +29,7 @@ struct GraphHierarchy {
 struct HierarchyOptions {
   Index coarsest_size = 1000;  ///< levels are added until one has at most so many nodes; >= 4
   std::uint32_t seed = 1;      ///< of the order in which nodes are taken
+  int threads = 0;             ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
 };
 
 /// Coarsens a graph by geometric clustering: seeds are a maximal independent set in an order that
@@ -39,7 +40,8 @@ struct HierarchyOptions {
 ///
 /// \param graph connected, with positive edge lengths.
 /// \return the levels, each of some 4 to 5 times fewer nodes than the one before; none for a graph
-///         of at most `coarsest_size` nodes. The same for the same seed on every platform, and, up
+///         of at most `coarsest_size` nodes. The same for the same seed on every platform and for
+///         any number of threads, and, up
 ///         to ties and rounding, for a moved, turned, scaled or renumbered cloud. A graph of many
 ///         neighbours a node, far from planar, is coarsened whatever its size.
 /// \throw InvalidInput for options out of range or a graph whose arrays do not fit.

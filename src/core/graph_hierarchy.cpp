@@ -1,9 +1,11 @@
 #include "spherical_param/graph_hierarchy.h"
 
 #include "core/members.h"
+#include "core/parallel.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +17,8 @@
 namespace spherical_param {
 namespace {
 
+using internal::forEachBlock;
+
 /// A level that keeps more than this share of the nodes is not worth having.
 constexpr double kLeastCoarsening = 0.9;
 
@@ -22,53 +26,84 @@ constexpr double kLeastCoarsening = 0.9;
 /// start for an embedding: its aggregates touch only where the surface does.
 constexpr int kPlanarDegree = 12;
 
-/// All nodes in an order that looks random, but comes from the lengths of their edges alone:
-/// moving, turning, scaling or renumbering the points changes it only where rounding decides.
-std::vector<Index> scrambled(const Graph& graph, std::uint32_t seed) {
+/// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
+/// turning, scaling or renumbering the points changes them only where rounding decides.
+std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
   const std::size_t n = graph.size();
-  std::vector<std::pair<double, Index>> keys(n);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      keys[i].first += graph.lengths[e];
-    keys[i].second = static_cast<Index>(i);
-    sum += keys[i].first;
-  }
+  std::vector<double> keys(n);
+  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+        keys[i] += graph.lengths[e];
+  });
+  const double sum = std::accumulate(keys.begin(), keys.end(), 0.0);
   // About one turn over the spread of the lengths, which is a part of their mean; each seed begins
   // it elsewhere. More turns would look more random, but let the rounding of the points decide more
   // often.
   constexpr double turns = 2.0;
   constexpr double golden_ratio = 0.6180339887498949;
   const double factor = turns * static_cast<double>(n) / sum;
-  for (auto& [key, node] : keys) {
-    const double turn = factor * key + golden_ratio * seed;
-    key = turn - std::floor(turn);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<Index> order(n);
-  for (std::size_t i = 0; i < n; ++i)
-    order[i] = keys[i].second;
-  return order;
+  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double turn = factor * keys[i] + golden_ratio * seed;
+      // Only lengths that are no numbers lead to keys that are none, which have no order.
+      keys[i] = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
+    }
+  });
+  return keys;
 }
 
-/// A maximal independent set, in ascending order.
-std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed) {
+/// A maximal independent set, in ascending order: the one that takes each node in turn, by
+/// ascending key, unless a neighbour was taken before it. A node can be judged as soon as its
+/// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
+/// the same set whatever the order and the threads.
+std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads) {
   const std::size_t n = graph.size();
-  std::vector<bool> is_covered(n, false);
-  std::vector<bool> is_chosen(n, false);
-  for (const Index node : scrambled(graph, seed)) {
-    const auto i = static_cast<std::size_t>(node);
-    if (is_covered[i])
-      continue;
-    is_chosen[i] = true;
+  const std::vector<double> keys = scrambledKeys(graph, seed, threads);
+  enum State : unsigned char { Open, Out, Taken };
+  std::vector<std::atomic<unsigned char>> states(n);
+  const auto judge = [&](std::size_t i) {
+    if (states[i].load(std::memory_order_relaxed) != Open)
+      return true;
+    bool waits = false;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+      if (keys[j] > keys[i] || (keys[j] == keys[i] && j > i))
+        continue;
+      const unsigned char state = states[j].load(std::memory_order_relaxed);
+      if (state == Taken) {
+        states[i].store(Out, std::memory_order_relaxed);
+        return true;
+      }
+      waits = waits || state == Open;
+    }
+    if (waits)
+      return false;
+    states[i].store(Taken, std::memory_order_relaxed);
     for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      is_covered[static_cast<std::size_t>(graph.neighbors[e])] = true;
+      states[static_cast<std::size_t>(graph.neighbors[e])].store(Out, std::memory_order_relaxed);
+    return true;
+  };
+  std::vector<std::vector<Index>> waiting((n + internal::kBlockSize - 1) / internal::kBlockSize);
+  forEachBlock(n, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (!judge(i))
+        waiting[block].push_back(static_cast<Index>(i));
+  });
+  for (bool waits = true; waits;) {
+    waits = false;
+    for (std::vector<Index>& nodes : waiting) {
+      nodes.erase(std::remove_if(nodes.begin(), nodes.end(),
+                                 [&](Index i) { return judge(static_cast<std::size_t>(i)); }),
+                  nodes.end());
+      waits = waits || !nodes.empty();
+    }
   }
-  std::vector<Index> chosen;
+  std::vector<Index> taken;
   for (std::size_t i = 0; i < n; ++i)
-    if (is_chosen[i])
-      chosen.push_back(static_cast<Index>(i));
-  return chosen;
+    if (states[i].load(std::memory_order_relaxed) == Taken)
+      taken.push_back(static_cast<Index>(i));
+  return taken;
 }
 
 /// Geodesic Voronoi cells of seeds.
@@ -77,45 +112,95 @@ struct Aggregates {
   std::vector<double> distances;  ///< n entries, length of the path to the own seed
 };
 
-/// Shortest paths from all seeds at once, by relaxation in sweeps over the nodes: no node is far
-/// from a seed, so that a few sweeps reach what Dijkstra's algorithm would.
-Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds) {
+/// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
+/// and then all nodes have been looked at, only few change, and those next to them.
+Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads) {
   const std::size_t n = graph.size();
-  Aggregates cells{std::vector<Index>(n, -1),
-                   std::vector<double>(n, std::numeric_limits<double>::infinity())};
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Aggregates near{std::vector<Index>(n, -1), std::vector<double>(n, infinity)};
+  // Ties go to the lower seed: the first one here.
   for (std::size_t s = 0; s < seeds.size(); ++s) {
-    cells.of_node[static_cast<std::size_t>(seeds[s])] = static_cast<Index>(s);
-    cells.distances[static_cast<std::size_t>(seeds[s])] = 0.0;
+    const auto i = static_cast<std::size_t>(seeds[s]);
+    near.of_node[i] = static_cast<Index>(s);
+    near.distances[i] = 0.0;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+      if (graph.lengths[e] < near.distances[j]) {
+        near.distances[j] = graph.lengths[e];
+        near.of_node[j] = static_cast<Index>(s);
+      }
+    }
   }
-  // First the nodes next to a seed, from the seeds alone; then all, until nothing changes.
-  bool changed = true;
-  while (changed) {
-    changed = false;
-    for (std::size_t i = 0; i < n; ++i)
+  const auto is_nearer = [](double distance, Index seed, double than, Index other) {
+    return distance < than || (distance == than && seed < other);
+  };
+  Aggregates cells{std::vector<Index>(n), std::vector<double>(n)};
+  std::vector<std::vector<Index>> changed((n + internal::kBlockSize - 1) / internal::kBlockSize);
+  forEachBlock(n, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double nearest = near.distances[i];
+      Index seed = near.of_node[i];
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
         const auto j = static_cast<std::size_t>(graph.neighbors[e]);
-        const double distance = cells.distances[j] + graph.lengths[e];
-        // Ties go to the lower seed, whatever the order of the visits.
-        if (cells.of_node[j] >= 0 &&
-            (distance < cells.distances[i] ||
-             (distance == cells.distances[i] && cells.of_node[j] < cells.of_node[i]))) {
-          cells.distances[i] = distance;
-          cells.of_node[i] = cells.of_node[j];
-          changed = true;
+        const double distance = near.distances[j] + graph.lengths[e];
+        if (is_nearer(distance, near.of_node[j], nearest, seed)) {
+          nearest = distance;
+          seed = near.of_node[j];
         }
       }
+      cells.distances[i] = nearest;
+      cells.of_node[i] = seed;
+      if (nearest != near.distances[i] || seed != near.of_node[i])
+        changed[block].push_back(static_cast<Index>(i));
+    }
+  });
+  std::vector<Index> queue;
+  for (const std::vector<Index>& nodes : changed)
+    queue.insert(queue.end(), nodes.begin(), nodes.end());
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const auto j = static_cast<std::size_t>(queue[head]);
+    for (std::size_t e = graph.offsets[j]; e < graph.offsets[j + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(graph.neighbors[e]);
+      const double distance = cells.distances[j] + graph.lengths[e];
+      if (is_nearer(distance, cells.of_node[j], cells.distances[i], cells.of_node[i])) {
+        cells.distances[i] = distance;
+        cells.of_node[i] = cells.of_node[j];
+        queue.push_back(static_cast<Index>(i));
+      }
+    }
   }
   return cells;
 }
 
+/// Rows of entries that were found block by block.
+struct EntryBlock {
+  std::vector<std::size_t> ends;  ///< of the rows, from the first entry of the block
+  std::vector<Index> columns;
+  std::vector<double> values;
+};
+
+/// The number of entries of the blocks before each one, and of all.
+std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
+  std::vector<std::size_t> first{0};
+  for (const EntryBlock& block : blocks)
+    first.push_back(first.back() + block.columns.size());
+  return first;
+}
+
 /// The graph of the aggregates that touch.
-Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count) {
+Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads) {
   const internal::Members members(cells.of_node, count);
-  Graph coarse;
-  coarse.offsets.reserve(count + 1);
-  std::vector<double> shortest(count, std::numeric_limits<double>::infinity());
-  std::vector<Index> touched;
-  for (std::size_t c = 0; c < count; ++c) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  struct Scratch {
+    std::vector<double> shortest;
+    std::vector<Index> touched;
+  };
+  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
+  std::vector<EntryBlock> blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
+  internal::forEachItem(count, threads, [&](std::size_t thread, std::size_t c) {
+    std::vector<double>& shortest = scratch[thread].shortest;
+    std::vector<Index>& touched = scratch[thread].touched;
+    shortest.resize(count, infinity);
     touched.clear();
     members.forEach(static_cast<Index>(c), [&](Index member) {
       const auto i = static_cast<std::size_t>(member);
@@ -124,7 +209,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
         const auto other = static_cast<std::size_t>(cells.of_node[j]);
         if (other == c)
           continue;
-        if (shortest[other] == std::numeric_limits<double>::infinity())
+        if (shortest[other] == infinity)
           touched.push_back(static_cast<Index>(other));
         // The sum of the distances first: the same bits from both sides of the edge.
         const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
@@ -132,55 +217,90 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
       }
     });
     std::sort(touched.begin(), touched.end());
+    EntryBlock& block = blocks[c / internal::kBlockSize];
     for (const Index other : touched) {
-      coarse.neighbors.push_back(other);
-      coarse.lengths.push_back(shortest[static_cast<std::size_t>(other)]);
-      shortest[static_cast<std::size_t>(other)] = std::numeric_limits<double>::infinity();
+      block.columns.push_back(other);
+      block.values.push_back(shortest[static_cast<std::size_t>(other)]);
+      shortest[static_cast<std::size_t>(other)] = infinity;
     }
-    coarse.offsets.push_back(coarse.neighbors.size());
+    block.ends.push_back(block.columns.size());
+  });
+  const std::vector<std::size_t> first = firstEntries(blocks);
+  Graph coarse;
+  coarse.offsets.reserve(count + 1);
+  coarse.neighbors.reserve(first.back());
+  coarse.lengths.reserve(first.back());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (const std::size_t end : blocks[b].ends)
+      coarse.offsets.push_back(first[b] + end);
+    coarse.neighbors.insert(coarse.neighbors.end(), blocks[b].columns.begin(),
+                            blocks[b].columns.end());
+    coarse.lengths.insert(coarse.lengths.end(), blocks[b].values.begin(), blocks[b].values.end());
   }
   return coarse;
 }
 
+/// Adds an entry to a row that is sorted by seed; of two with the same seed the shorter path stays.
+void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double length) {
+  auto place = row.end();
+  while (place != row.begin() && (place - 1)->first > seed)
+    --place;
+  if (place != row.begin() && (place - 1)->first == seed)
+    (place - 1)->second = std::min((place - 1)->second, length);
+  else
+    row.emplace(place, seed, length);
+}
+
 Eigen::SparseMatrix<double, Eigen::RowMajor, Index>
-interpolation(const Graph& graph, const std::vector<Index>& seeds, const Aggregates& cells) {
+interpolation(const Graph& graph, const Aggregates& cells, std::size_t count, int threads) {
   const std::size_t n = graph.size();
-  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> result(
-      static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(seeds.size()));
-  result.reserve(static_cast<Eigen::Index>(3 * n));
-  std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
-  for (std::size_t i = 0; i < n; ++i) {
-    row.clear();
-    row.emplace_back(cells.of_node[i], cells.distances[i]);
-    if (cells.distances[i] > 0.0)
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        const auto j = static_cast<std::size_t>(graph.neighbors[e]);
-        row.emplace_back(cells.of_node[j], cells.distances[j] + graph.lengths[e]);
+  std::vector<EntryBlock> blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
+  forEachBlock(n, threads, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    EntryBlock& block = blocks[b];
+    std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
+    for (std::size_t i = begin; i < end; ++i) {
+      row.clear();
+      row.emplace_back(cells.of_node[i], cells.distances[i]);
+      const double own = cells.distances[i];
+      if (own > 0.0)
+        for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+          const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+          addPath(row, cells.of_node[j], cells.distances[j] + graph.lengths[e]);
+        }
+      double sum = 0.0;
+      for (auto& [seed, weight] : row) {
+        weight = own > 0.0 ? own / weight : 1.0;
+        sum += weight;
       }
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end(),
-                          [](const auto& a, const auto& b) { return a.first == b.first; }),
-              row.end());
-    const double own = cells.distances[i];
-    double sum = 0.0;
-    for (auto& [seed, weight] : row) {
-      weight = own > 0.0 ? own / weight : 1.0;
-      sum += weight;
+      for (const auto& [seed, weight] : row) {
+        block.columns.push_back(seed);
+        block.values.push_back(weight / sum);
+      }
+      block.ends.push_back(block.columns.size());
     }
-    result.startVec(static_cast<Eigen::Index>(i));
-    for (const auto& [seed, weight] : row)
-      result.insertBackByOuterInner(static_cast<Eigen::Index>(i), seed) = weight / sum;
-  }
-  result.finalize();
+  });
+  const std::vector<std::size_t> first = firstEntries(blocks);
+  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> result(static_cast<Eigen::Index>(n),
+                                                             static_cast<Eigen::Index>(count));
+  result.resizeNonZeros(static_cast<Eigen::Index>(first.back()));
+  forEachBlock(n, threads, [&](std::size_t b, std::size_t begin, std::size_t) {
+    const EntryBlock& block = blocks[b];
+    for (std::size_t r = 0; r < block.ends.size(); ++r)
+      result.outerIndexPtr()[begin + r + 1] = static_cast<Index>(first[b] + block.ends[r]);
+    std::copy(block.columns.begin(), block.columns.end(), result.innerIndexPtr() + first[b]);
+    std::copy(block.values.begin(), block.values.end(), result.valuePtr() + first[b]);
+  });
   return result;
 }
 
-HierarchyLevel coarsened(const Graph& graph, std::uint32_t seed) {
+HierarchyLevel coarsened(const Graph& graph, const HierarchyOptions& options) {
+  const int threads =
+      internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold);
   HierarchyLevel level;
-  level.seeds = independentSet(graph, seed);
-  Aggregates cells = geodesicCells(graph, level.seeds);
-  level.graph = coarseGraph(graph, cells, level.seeds.size());
-  level.prolongation = interpolation(graph, level.seeds, cells);
+  level.seeds = independentSet(graph, options.seed, threads);
+  Aggregates cells = geodesicCells(graph, level.seeds, threads);
+  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads);
+  level.prolongation = interpolation(graph, cells, level.seeds.size(), threads);
   level.aggregate_of = std::move(cells.of_node);
   return level;
 }
@@ -191,6 +311,10 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& o
   if (options.coarsest_size < 4)
     throw InvalidInput("buildGraphHierarchy: coarsest_size = " +
                        std::to_string(options.coarsest_size) + "; use 4 or more");
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    throw InvalidInput("buildGraphHierarchy: threads = " + std::to_string(options.threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
   if (graph.neighbors.size() != graph.offsets.back() ||
       graph.lengths.size() != graph.neighbors.size())
     throw InvalidInput("buildGraphHierarchy: the graph's arrays differ in length; use a graph from "
@@ -201,7 +325,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& o
     return level.neighbors.size() > static_cast<std::size_t>(kPlanarDegree) * level.size();
   };
   while (finest->size() > static_cast<std::size_t>(options.coarsest_size) || is_dense(*finest)) {
-    HierarchyLevel level = coarsened(*finest, options.seed);
+    HierarchyLevel level = coarsened(*finest, options);
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
                                       kLeastCoarsening * static_cast<double>(finest->size()))

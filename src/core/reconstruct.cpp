@@ -358,6 +358,7 @@ Positions embedByLevels(const Graph& graph, const Options& options, std::uint32_
     };
   HierarchyOptions hierarchy;
   hierarchy.seed = seed;
+  hierarchy.threads = options.threads;
   MultilevelEmbedding outcome =
       embedMultilevel(graph, buildGraphHierarchy(graph, hierarchy), embedding);
   report.stop_reason = outcome.stop_reason;

@@ -6,9 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -67,6 +71,28 @@ TEST_F(GraphHierarchyOneLevel, SeedsAreAMaximalIndependentSet) {
     else
       EXPECT_GT(around, 0) << "node " << i;
   }
+}
+
+TEST_F(GraphHierarchyOneLevel, SeedsAreThoseTakenOneAfterTheOther) {
+  const std::size_t n = fine_.size();
+  std::vector<std::pair<double, std::size_t>> order(n);
+  const double sum = std::accumulate(fine_.lengths.begin(), fine_.lengths.end(), 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    double own = 0.0;
+    for (std::size_t e = fine_.offsets[i]; e < fine_.offsets[i + 1]; ++e)
+      own += fine_.lengths[e];
+    const double turn = 2.0 * static_cast<double>(n) / sum * own + 0.6180339887498949;
+    order[i] = {turn - std::floor(turn), i};
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Index> taken;
+  for (const auto& [key, i] : order)
+    if (std::none_of(taken.begin(), taken.end(), [&, node = i](Index other) {
+          return areJoined(fine_, node, static_cast<std::size_t>(other));
+        }))
+      taken.push_back(static_cast<Index>(i));
+  std::sort(taken.begin(), taken.end());
+  EXPECT_EQ(level_.seeds, taken);
 }
 
 TEST_F(GraphHierarchyOneLevel, AggregatesAreGeodesicVoronoiCells) {
@@ -203,6 +229,33 @@ TEST(GraphHierarchy, SameSeedSameLevels) {
   EXPECT_NE(one.levels[0].seeds, other.levels[0].seeds);
 }
 
+TEST(GraphHierarchy, SameBitsForAnyNumberOfThreads) {
+  // Enough nodes for several threads.
+  const Graph graph = sphereGraph(randomSphere(60000, 3));
+  const GraphHierarchy one = buildGraphHierarchy(graph, {1000, 1, 1});
+  for (const int threads : {2, 3}) {
+    const GraphHierarchy several = buildGraphHierarchy(graph, {1000, 1, threads});
+    ASSERT_EQ(several.levels.size(), one.levels.size());
+    for (std::size_t l = 0; l < one.levels.size(); ++l) {
+      const HierarchyLevel& a = one.levels[l];
+      const HierarchyLevel& b = several.levels[l];
+      EXPECT_EQ(a.seeds, b.seeds);
+      EXPECT_EQ(a.aggregate_of, b.aggregate_of);
+      EXPECT_EQ(a.graph.offsets, b.graph.offsets);
+      EXPECT_EQ(a.graph.neighbors, b.graph.neighbors);
+      EXPECT_EQ(a.graph.lengths, b.graph.lengths);
+      ASSERT_EQ(a.prolongation.nonZeros(), b.prolongation.nonZeros());
+      EXPECT_EQ((a.prolongation - b.prolongation).norm(), 0.0);
+    }
+  }
+}
+
+TEST(GraphHierarchy, LengthsWhoseSumsOverflowDoNotHang) {
+  Graph graph = sphereGraph(randomSphere(100, 1));
+  std::fill(graph.lengths.begin(), graph.lengths.end(), 5e307);
+  EXPECT_EQ(buildGraphHierarchy(graph, {50, 1}).levels.size(), 1U);
+}
+
 TEST(GraphHierarchy, SmallGraphsHaveNoLevels) {
   EXPECT_TRUE(buildGraphHierarchy(Graph()).levels.empty());
   EXPECT_TRUE(buildGraphHierarchy(sphereGraph(randomSphere(1000, 1))).levels.empty());
@@ -225,6 +278,7 @@ TEST(GraphHierarchy, NeverFewerThanFourNodes) {
 
 TEST(GraphHierarchy, RefusesBadInput) {
   EXPECT_THROW(buildGraphHierarchy(Graph(), {3, 1}), InvalidInput);
+  EXPECT_THROW(buildGraphHierarchy(Graph(), {1000, 1, -1}), InvalidInput);
   Graph broken = sphereGraph(randomSphere(20, 1));
   broken.lengths.pop_back();
   EXPECT_THROW(buildGraphHierarchy(broken), InvalidInput);
