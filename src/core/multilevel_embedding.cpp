@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
@@ -96,8 +95,7 @@ public:
       return std::move(result_);
     }
     for (std::size_t l = level; l-- > 0;) {
-      u = (u * hierarchy_.levels[l].prolongation.transpose()).eval();
-      u.colwise().normalize();
+      u = interpolated(l, u);
       smooth(l, options_.weights, options_.sweeps, u);
       result_.levels[l].sweeps = options_.sweeps;
       if (isSolved(l) && !(l == 0 && options_.tolerance))  // which finish() solves further
@@ -220,17 +218,36 @@ private:
     return best;
   }
 
+  /// Unit vectors on a level between those of the next coarser one.
+  Positions interpolated(std::size_t l, const Positions& coarse) const {
+    const auto& weights = hierarchy_.levels[l].prolongation;
+    const auto n = static_cast<std::size_t>(weights.rows());
+    Positions u(3, weights.rows());
+    internal::forEachBlock(
+        n, internal::threadCount(options_.threads, n, internal::kShortPassThreshold),
+        [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+            for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
+              sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
+            u.col(static_cast<Eigen::Index>(i)) = sum.normalized();
+          }
+        });
+    return u;
+  }
+
   /// Damped Jacobi sweeps: lambda times the tangential Laplacian, all nodes at once.
   void smooth(std::size_t l, EdgeWeights weights, int sweeps, Positions& u) const {
     const Graph& graph = graphOf(l);
-    std::vector<Index> order(graph.size());
-    std::iota(order.begin(), order.end(), 0);
-    Rows rows = internal::makeRows(graph, std::move(order), weights == EdgeWeights::Uniform);
+    Rows rows = internal::makeRows(
+        graph, weights == EdgeWeights::Uniform,
+        internal::threadCount(options_.threads, graph.size(), internal::kShortPassThreshold));
     rows.power = options_.exponent - 2.0;
     PaddedPositions current(4, u.cols());
     current.topRows<3>() = u;
     current.row(3).setZero();
-    PaddedPositions next = current;
+    PaddedPositions next(4, u.cols());
+    next.row(3).setZero();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       if (weights != EdgeWeights::Adaptive)
         sweepOnce<WeightRule::Fixed>(rows, current, next);

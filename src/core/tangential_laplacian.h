@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parallel.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>
@@ -30,13 +31,13 @@ enum class WeightRule {
 /// The rows of a graph in an order of their own, so that neighbours are near in memory. Rows are
 /// padded to whole groups of kLanes entries with the node itself.
 struct Rows {
-  std::vector<Index> node_of_row;    ///< original node
+  std::vector<Index> node_of_row;    ///< original node; empty if that is the row itself
   std::vector<std::size_t> offsets;  ///< multiples of kLanes
   std::vector<Index> neighbors;      ///< as rows
   std::vector<double> factors;       ///< 1 for uniform weights, else 1 / |p_i - p_j|; padding has 0
   double power = 1.0;                ///< p - 2, of WeightRule::Power
 
-  Index size() const { return static_cast<Index>(node_of_row.size()); }
+  Index size() const { return static_cast<Index>(offsets.size()) - 1; }
 };
 
 /// \param node_of_row the nodes in the order of the rows.
@@ -69,6 +70,31 @@ inline Rows makeRows(const Graph& graph, std::vector<Index> node_of_row, bool un
     rows.neighbors.resize(rows.offsets[row + 1], static_cast<Index>(row));
     rows.factors.resize(rows.offsets[row + 1], 0.0);
   }
+  return rows;
+}
+
+/// Rows in the order of the nodes, made on several threads.
+inline Rows makeRows(const Graph& graph, bool uniform, int threads) {
+  Rows rows;
+  const std::size_t n = graph.size();
+  rows.offsets.resize(n + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t entries = graph.offsets[i + 1] - graph.offsets[i];
+    rows.offsets[i + 1] = rows.offsets[i] + (entries + kLanes - 1) / kLanes * kLanes;
+  }
+  rows.neighbors.resize(rows.offsets.back());
+  rows.factors.resize(rows.offsets.back());
+  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::size_t place = rows.offsets[i];
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e, ++place) {
+        rows.neighbors[place] = graph.neighbors[e];
+        rows.factors[place] = uniform ? 1.0 : 1.0 / std::max(graph.lengths[e], kShortestLength);
+      }
+      for (; place < rows.offsets[i + 1]; ++place)
+        rows.neighbors[place] = static_cast<Index>(i);
+    }
+  });
   return rows;
 }
 
