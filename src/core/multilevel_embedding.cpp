@@ -9,10 +9,14 @@
 #include "spherical_param/errors.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -39,6 +43,8 @@ constexpr double kHopelessCentroid = 0.99;
 /// Finer levels than the coarsest are tried up to this size, where all starts collapse: the fewer
 /// nodes are around a limb, the weaker is the barrier that keeps the sphere from slipping off it.
 constexpr std::size_t kLargestStart = 100000;
+/// A start is solved in about as much work as so many passes over the nodes.
+constexpr std::size_t kPassesOfStart = 200;
 /// Beyond this mean the embedding has slipped along a tube towards one of its ends.
 constexpr double kSlippedCentroid = 0.5;
 /// Share of the work that the coarsest level counts for in the progress, and the other levels
@@ -185,36 +191,78 @@ private:
     return !(u.rowwise().mean().norm() <= kCollapsedCentroid);
   }
 
-  /// The best of several starts on a level, solved fully; without columns if all collapse. With
-  /// adaptive weights, whatever was chosen: only they unfold a start without collapsing it.
+  /// One start of a level and what came of it.
+  struct Start {
+    Positions u;
+    LevelReport report;
+    double value = 0.0;
+    std::exception_ptr error;
+  };
+
+  /// Unfolds a start and solves it, with adaptive weights, whatever was chosen: only they do not
+  /// collapse it. Several threads may do so at once.
+  void solveStart(std::size_t l, Index center, MultigridPreconditioner& preconditioner,
+                  const std::function<void(int, double)>& progress, Start& start) const {
+    start.u = internal::planarStart(graphOf(l), center);
+    start.report.sweeps = kStartSweeps;
+    EmbeddingEnergy energy = adaptiveEnergy(l);
+    if (result_.added_barrier)
+      energy.addBarrier(start.u);
+    smooth(l, EdgeWeights::Adaptive, kStartSweeps, start.u);
+    minimize(energy, std::nullopt, preconditioner, progress, start.u, start.report);
+    start.value = energy.value(start.u);
+  }
+
+  /// The best of several starts on a level, solved fully; without columns if all collapse. Each
+  /// thread has starts of its own: only the calling one tells of its progress.
   Positions solveStarts(std::size_t l) {
     const std::vector<Index> centers = internal::centralNodes(graphOf(l));
-    const LevelReport untouched = result_.levels[l];
-    LevelReport best_report = untouched;
+    const std::size_t count = std::min(centers.size(), static_cast<std::size_t>(options_.starts));
+    const auto most = static_cast<std::size_t>(internal::threadCount(
+        options_.threads, kPassesOfStart * graphOf(l).size(), internal::kShortPassThreshold));
+    const std::size_t threads = std::min(most, count);
+    std::vector<MultigridPreconditioner> preconditioners(threads, preconditionerOf(l));
+    LevelReport best_report;
     Positions best;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t start = 0;
-         start < std::min(centers.size(), static_cast<std::size_t>(options_.starts)); ++start) {
-      report(kStartShare * static_cast<double>(start) / options_.starts, 0.0);
-      Positions u = internal::planarStart(graphOf(l), centers[start]);
-      result_.levels[l] = untouched;
-      result_.levels[l].sweeps = kStartSweeps;
-      EmbeddingEnergy energy = adaptiveEnergy(l);
-      if (result_.added_barrier)
-        energy.addBarrier(u);
-      smooth(l, EdgeWeights::Adaptive, kStartSweeps, u);
-      solve(l, energy, std::nullopt, u);
-      ++result_.starts;
-      const double value = energy.value(u);
-      if (isCollapsed(u) || !std::isfinite(value)) {
-        ++result_.collapsed_starts;
-      } else if (value < least) {
-        least = value;
-        best = std::move(u);
-        best_report = result_.levels[l];
+    for (std::size_t first = 0; first < count; first += threads) {
+      std::vector<Start> starts(std::min(threads, count - first));
+      for (Start& start : starts)
+        start.report = result_.levels[l];
+      report(kStartShare * static_cast<double>(first) / options_.starts, 0.0);
+      std::atomic<bool> has_failed{false};
+      internal::forEachTask(
+          starts.size(), static_cast<int>(threads), [&](std::size_t thread, std::size_t i) {
+            const auto progress = [&](int, double residual) {
+              if (thread == 0)
+                report(share_, residual);
+              else if (has_failed.load(std::memory_order_relaxed))
+                throw Cancelled("embedMultilevel: another start failed");
+            };
+            try {
+              solveStart(l, centers[first + i], preconditioners[thread], progress, starts[i]);
+            } catch (...) {
+              starts[i].error = std::current_exception();
+              has_failed.store(true, std::memory_order_relaxed);
+            }
+          });
+      // That of the calling thread comes first.
+      for (const Start& start : starts)
+        if (start.error)
+          std::rethrow_exception(start.error);
+      for (Start& start : starts) {
+        ++result_.starts;
+        if (isCollapsed(start.u) || !std::isfinite(start.value)) {
+          ++result_.collapsed_starts;
+        } else if (start.value < least) {
+          least = start.value;
+          best = std::move(start.u);
+          best_report = start.report;
+        }
       }
     }
-    result_.levels[l] = best_report;
+    if (best.cols() > 0)
+      result_.levels[l] = best_report;
     return best;
   }
 
@@ -278,36 +326,44 @@ private:
         });
   }
 
-  /// Newton's method on a level, until it is solved fully and to the tolerance, if there is one.
-  NewtonReport solve(std::size_t l, const EmbeddingEnergy& energy, std::optional<double> tolerance,
-                     Positions& u) {
-    // Small systems are solved directly: no slower, and exact at all scales.
+  /// Small systems are solved directly: no slower, and exact at all scales.
+  MultigridPreconditioner preconditionerOf(std::size_t l) const {
     const bool direct = graphOf(l).size() <= kDirectSize;
-    const std::size_t first = direct ? hierarchy_.levels.size() : l;
-    if (!preconditioner_ || preconditioner_level_ != l) {
-      preconditioner_.emplace(hierarchy_, first, options_.threads);
-      preconditioner_level_ = l;
-    }
+    return {hierarchy_, direct ? hierarchy_.levels.size() : l, options_.threads};
+  }
+
+  /// Newton's method on a level, until it is solved fully and to the tolerance, if there is one.
+  static NewtonReport minimize(const EmbeddingEnergy& energy, std::optional<double> tolerance,
+                               MultigridPreconditioner& preconditioner,
+                               const std::function<void(int, double)>& progress, Positions& u,
+                               LevelReport& report) {
     internal::NewtonOptions options;
     options.relative_tolerance = kSolvedTolerance;
     options.tolerance = tolerance.value_or(1.0);
     if (!energy.hasBarrier())
       options.longest_mean = kHopelessCentroid;
-    if (l == 0 && tolerance)
-      options.progress = [this, first = 0.0](int, double residual) mutable {
-        first = std::max(first, residual);
-        // The residual falls from step to step by more and more orders of magnitude.
-        const double goal = std::max(*options_.tolerance, 1e-16);
-        const double done = std::log(first / residual) / std::log(std::max(first / goal, 2.0));
-        report(kCascadeShare + (1.0 - kCascadeShare) * std::clamp(done, 0.0, 1.0), residual);
-      };
-    else
-      options.progress = [this](int, double residual) { report(share_, residual); };
-    NewtonReport newton = internal::minimizeByNewton(energy, *preconditioner_, options, u);
-    result_.levels[l].newton_iterations += newton.iterations;
-    result_.levels[l].linear_iterations += newton.linear_iterations;
-    result_.levels[l].residual = newton.residuals.back();
+    options.progress = progress;
+    NewtonReport newton = internal::minimizeByNewton(energy, preconditioner, options, u);
+    report.newton_iterations += newton.iterations;
+    report.linear_iterations += newton.linear_iterations;
+    report.residual = newton.residuals.back();
     return newton;
+  }
+
+  /// minimize() with a level's own report.
+  NewtonReport solve(std::size_t l, const EmbeddingEnergy& energy, std::optional<double> tolerance,
+                     Positions& u) {
+    const auto progress = [&, first = 0.0](int, double residual) mutable {
+      if (l > 0 || !tolerance)
+        return report(share_, residual);
+      first = std::max(first, residual);
+      // The residual falls from step to step by more and more orders of magnitude.
+      const double goal = std::max(*options_.tolerance, 1e-16);
+      const double done = std::log(first / residual) / std::log(std::max(first / goal, 2.0));
+      report(kCascadeShare + (1.0 - kCascadeShare) * std::clamp(done, 0.0, 1.0), residual);
+    };
+    MultigridPreconditioner preconditioner = preconditionerOf(l);
+    return minimize(energy, tolerance, preconditioner, progress, u, result_.levels[l]);
   }
 
   /// Solves a level from an embedding that is not collapsed; adds a barrier if it becomes so.
@@ -347,9 +403,6 @@ private:
   const MultilevelOptions& options_;
   MultilevelEmbedding result_;
   double share_ = 0.0;  ///< of the work that is done
-  /// That of the level that was solved last: its patterns serve all starts.
-  std::optional<MultigridPreconditioner> preconditioner_;
-  std::size_t preconditioner_level_ = 0;
 };
 
 }  // namespace

@@ -66,6 +66,23 @@ void forEachItem(std::size_t count, int threads, const Work& work) {
   });
 }
 
+/// Calls work(thread, i) for each i in [0, count), where thread < threads, each a long task of its
+/// own. The calling thread is number 0 and has the first task. The work must not throw.
+template <typename Work>
+void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
+#endif
+  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(count); ++i) {
+#ifdef _OPENMP
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+#else
+    const std::size_t thread = 0;
+#endif
+    work(thread, static_cast<std::size_t>(i));
+  }
+}
+
 /// The sum of term(begin, end) over the blocks of [0, count), in their order.
 template <typename Value, typename Term>
 Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term& term) {

@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <thread>
 
 namespace spherical_param {
 namespace {
@@ -524,6 +525,31 @@ TEST(MultilevelEmbedding, ProgressRisesAndCancels) {
     options.progress = [&](double, double) { return ++count < stop; };
     EXPECT_THROW(embed(cloud.graph, options), Cancelled);
     EXPECT_EQ(count, stop);
+  }
+}
+
+TEST(MultilevelEmbedding, StartsOfSeveralThreadsTellTheCallingOneAlone) {
+  const Cloud cloud = dentedCloud(1200);
+  MultilevelOptions options;
+  options.starts = 5;
+  options.threads = 1;
+  const MultilevelEmbedding one = embed(cloud.graph, options, {1000, 1});
+  const std::thread::id caller = std::this_thread::get_id();
+  int calls = 0;
+  options.threads = 3;
+  options.progress = [&](double, double) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    ++calls;
+    return true;
+  };
+  const MultilevelEmbedding several = embed(cloud.graph, options, {1000, 1});
+  EXPECT_EQ(several.starts, 5);
+  EXPECT_EQ(several.directions, one.directions);
+  EXPECT_EQ(several.levels.back().newton_iterations, one.levels.back().newton_iterations);
+  for (int last = 0; last < calls; last += 3) {
+    int left = last;
+    options.progress = [&](double, double) { return left-- > 0; };
+    EXPECT_THROW(embed(cloud.graph, options, {1000, 1}), Cancelled);
   }
 }
 
