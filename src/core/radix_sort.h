@@ -2,25 +2,29 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// Sorts items by their unsigned `key`, stably: a pass of counting sort for each 11 bits of it,
-/// without those in which all keys are the same.
+/// Sorts items by their `key`, an unsigned integer, stably: a pass of counting sort for each digit
+/// of 11 bits in which the keys differ.
 template <typename Item>
 void radixSort(std::vector<Item>& items) {
+  using Key = decltype(Item::key);
+  static_assert(std::is_unsigned_v<Key>);
   constexpr unsigned digit_bits = 11;
-  constexpr std::uint32_t mask = (1U << digit_bits) - 1U;
-  constexpr unsigned key_bits = 8 * sizeof(Item::key);
+  constexpr Key mask = (Key{1} << digit_bits) - Key{1};
+  if (items.empty())
+    return;
   std::vector<Item> sorted(items.size());
-  for (unsigned shift = 0; shift < key_bits; shift += digit_bits) {
+  for (unsigned shift = 0; shift < std::numeric_limits<Key>::digits; shift += digit_bits) {
     std::array<std::size_t, mask + 1> begin{};
     for (const Item& item : items)
       ++begin[item.key >> shift & mask];
-    if (!items.empty() && begin[items.front().key >> shift & mask] == items.size())
+    if (begin[items.front().key >> shift & mask] == items.size())
       continue;
     std::size_t sum = 0;
     for (std::size_t& count : begin)

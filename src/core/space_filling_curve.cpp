@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -25,13 +24,26 @@ std::uint64_t spread(std::uint64_t x) {
 }
 
 /// A point's place on a curve; sorted by key, then by index.
-struct Place {
-  std::uint32_t key;
+template <typename Key>
+struct PlaceOf {
+  Key key;
   Index index;
-  bool operator<(const Place& other) const {
+  bool operator<(const PlaceOf& other) const {
     return key != other.key ? key < other.key : index < other.index;
   }
 };
+using Place = PlaceOf<std::uint32_t>;
+using CubePlace = PlaceOf<std::uint64_t>;
+
+/// Sorts places whose indices ascend.
+template <typename Key>
+void sortPlaces(std::vector<PlaceOf<Key>>& places) {
+  constexpr std::size_t few = 1000;
+  if (places.size() < few)
+    std::sort(places.begin(), places.end());
+  else
+    radixSort(places);
+}
 
 /// One step of the Hilbert curve (D. Hilbert, 1891) in the four attitudes that a square can have:
 /// for quadrant 2 x + y, its number along the curve and the attitude within it.
@@ -141,15 +153,12 @@ std::vector<Index> mortonOrder(const Positions& points) {
   if (n == 0)
     return order;
   const MortonCurve curve(points.rowwise().minCoeff(), points.rowwise().maxCoeff());
-  struct Key {
-    std::uint64_t key;
-    Index index;
-  };
-  std::vector<Key> keys(n);
+  std::vector<CubePlace> places(n);
   for (std::size_t i = 0; i < n; ++i)
-    keys[i] = {curve.key(points.col(static_cast<Eigen::Index>(i))), static_cast<Index>(i)};
-  radixSort(keys);
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.index; });
+    places[i] = {curve.key(points.col(static_cast<Eigen::Index>(i))), static_cast<Index>(i)};
+  sortPlaces(places);
+  std::transform(places.begin(), places.end(), order.begin(),
+                 [](const CubePlace& place) { return place.index; });
   return order;
 }
 
@@ -172,10 +181,7 @@ std::vector<Index> insertionOrder(const Positions& directions) {
                                                        directions(2, column)),
                  static_cast<Index>(i)};
   }
-  if (n < 1000)
-    std::sort(places.begin(), places.end());
-  else
-    radixSort(places);
+  sortPlaces(places);
   for (std::size_t begin = 0; begin < n;) {
     std::size_t end = begin + 1;
     while (end < n && places[end].key == places[begin].key)

@@ -4,6 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
 namespace spherical_param::internal {
 namespace {
 
@@ -34,6 +40,30 @@ TEST(SpaceFillingCurve, OrdersArePermutations) {
 }
 
 // The last round has 7 of 8 points; on average, one is about a mean spacing from the one before.
+TEST(SpaceFillingCurve, MortonOrderIsThatOfSortedKeys) {
+  for (const Index n : {100, 5000}) {
+    Positions points = test::randomSphere(n, 4);
+    points.row(1) *= 0.25;
+    points.rightCols(n / 4) = points.leftCols(n / 4).eval();  // ties
+    const Eigen::Vector3d low = points.rowwise().minCoeff();
+    const double scale = 2097151.0 / (points.rowwise().maxCoeff() - low).maxCoeff();
+    std::vector<std::pair<std::uint64_t, Index>> keys;
+    for (Index i = 0; i < n; ++i) {
+      const Eigen::Vector3d cell = (points.col(i) - low) * scale;
+      std::uint64_t key = 0;
+      for (unsigned bit = 0; bit < 21; ++bit)
+        for (unsigned axis = 0; axis < 3; ++axis)
+          key |= (static_cast<std::uint64_t>(cell[axis]) >> bit & 1U) << (3 * bit + axis);
+      keys.emplace_back(key, i);
+    }
+    std::sort(keys.begin(), keys.end());
+    const std::vector<Index> order = mortonOrder(points);
+    ASSERT_EQ(order.size(), keys.size());
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      EXPECT_EQ(order[k], keys[k].second);
+  }
+}
+
 TEST(SpaceFillingCurve, LastRoundGoesFromPointToNearPoint) {
   for (const Index n : {2000, 100000}) {
     const Positions points = test::randomSphere(n, 2);
