@@ -257,6 +257,11 @@ interpolation(const Graph& graph, const Aggregates& cells, std::size_t count, in
   std::vector<EntryBlock> blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
   forEachBlock(n, threads, [&](std::size_t b, std::size_t begin, std::size_t end) {
     EntryBlock& block = blocks[b];
+    // About three entries a row.
+    constexpr std::size_t expected = 4 * internal::kBlockSize;
+    block.columns.reserve(expected);
+    block.values.reserve(expected);
+    block.ends.reserve(end - begin);
     std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
     for (std::size_t i = begin; i < end; ++i) {
       row.clear();
