@@ -2,146 +2,269 @@
 
 #include "spherical_param/errors.h"
 
+#include "core/corner_table.h"
+#include "core/parallel.h"
 #include "core/union_find.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace spherical_param {
 namespace {
 
-/// A triangle's side, stored with the lower of its two vertices.
-struct Side {
-  Index other;     ///< the higher vertex
-  Index triangle;  ///< the triangle
-  bool forward;    ///< the triangle runs from the lower to the higher vertex
-};
+using internal::CornerTable;
 
 bool isDegenerate(const Eigen::Matrix<Index, 3, 1>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// Position of vertex v in triangle t, as an index of corners 3 * t + {0, 1, 2}.
-Index cornerOf(const Triangles& triangles, Index t, Index v) {
-  Index corner = 0;
-  while (triangles(corner, t) != v)
-    ++corner;
-  return 3 * t + corner;
-}
+/// Disjoint sets that several threads may unite at once. The representative of a set is its lowest
+/// element, hence the sets do not depend on who came first.
+class ConcurrentSets {
+public:
+  explicit ConcurrentSets(std::size_t n) : parent_(new std::atomic<Index>[n]) {
+    for (std::size_t i = 0; i < n; ++i)
+      parent_[i].store(static_cast<Index>(i), std::memory_order_relaxed);
+  }
 
-/// All sides, grouped by lower vertex and sorted by higher vertex within a group.
-struct SideTable {
-  std::vector<std::size_t> offsets;
-  std::vector<Side> sides;
+  Index find(Index i) {
+    for (;;) {
+      const Index parent = load(i);
+      const Index grandparent = load(parent);
+      if (parent == grandparent)
+        return parent;
+      // What is no root never becomes one: an ancestor it is, though others may know a nearer one.
+      at(i).store(grandparent, std::memory_order_relaxed);
+      i = grandparent;
+    }
+  }
+
+  void unite(Index i, Index j) {
+    for (;;) {
+      i = find(i);
+      j = find(j);
+      if (i == j)
+        return;
+      if (j < i)
+        std::swap(i, j);
+      Index root = j;
+      if (at(j).compare_exchange_strong(root, i, std::memory_order_relaxed))
+        return;
+    }
+  }
+
+private:
+  std::atomic<Index>& at(Index i) { return parent_[static_cast<std::size_t>(i)]; }
+  Index load(Index i) { return at(i).load(std::memory_order_relaxed); }
+
+  std::unique_ptr<std::atomic<Index>[]> parent_;
 };
 
-SideTable collectSides(const Triangles& triangles, std::size_t vertex_count) {
-  SideTable table;
-  table.offsets.assign(vertex_count + 1, 0);
-  const auto for_each_side = [&](auto&& visit) {
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-      if (isDegenerate(triangles.col(t)))
-        continue;
-      for (int k = 0; k < 3; ++k)
-        visit(triangles(k, t), triangles((k + 1) % 3, t), static_cast<Index>(t));
+/// What is found at some of the vertices, or of the triangles.
+struct Findings {
+  std::size_t vertices = 0;
+  std::size_t edges = 0;
+  TopologyFaults faults;
+};
+
+/// One of the two sides that a triangle has at a vertex.
+struct Side {
+  Index other;           ///< the vertex at its other end
+  std::size_t triangle;  ///< position among the triangles of the vertex
+  bool outgoing;         ///< the triangle runs from the vertex to the other end
+};
+
+/// The other two corners of the triangles around a vertex, counter-clockwise. Places that are not
+/// used match no other.
+template <std::size_t Size>
+struct Fan {
+  std::array<Index, Size> next;
+  std::array<Index, Size> previous;
+};
+
+/// Whether `count` triangles are one cycle that names each neighbour once. Each is compared with
+/// each: that takes less time than branches that no processor can guess.
+template <std::size_t Size>
+bool isCycle(const Fan<Size>& fan, std::size_t count) {
+  // The triangle that ends where triangle j begins: the sum of all that do.
+  std::array<Index, Size> before{};
+  std::array<Index, Size> matches{};
+  for (std::size_t i = 0; i < Size; ++i) {
+    const Index end = fan.previous[i];
+    for (std::size_t j = 0; j < Size; ++j) {
+      const Index meet = -static_cast<Index>(fan.next[j] == end);  // all bits, or none
+      before[j] += meet & static_cast<Index>(i);
+      matches[j] -= meet;
     }
-  };
-  for_each_side([&](Index from, Index to, Index) {
-    ++table.offsets[static_cast<std::size_t>(std::min(from, to)) + 1];
+  }
+  Index one_each = 1;
+  std::uint32_t visited = 0;
+  std::size_t j = 0;
+  for (std::size_t step = 0; step < count; ++step) {
+    one_each &= matches[j];
+    j = static_cast<std::size_t>(before[j]) % Size;
+    visited |= std::uint32_t{1} << j;
+  }
+  // Where one is before two others, some other is before none, and not visited.
+  return one_each == 1 && j == 0 && visited == (std::uint32_t{1} << count) - 1;
+}
+
+/// Examines a vertex with any triangles: degenerate ones do not count.
+void examineSides(const Triangles& triangles, const CornerTable& corners, Index v,
+                  Findings& findings) {
+  std::vector<Side> sides;
+  std::size_t count = 0;
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    if (isDegenerate(triangles.col(t)))
+      return;
+    sides.push_back({triangles((k + 1) % 3, t), count, true});
+    sides.push_back({triangles((k + 2) % 3, t), count, false});
+    ++count;
   });
-  for (std::size_t v = 0; v < vertex_count; ++v)
-    table.offsets[v + 1] += table.offsets[v];
-  table.sides.resize(table.offsets[vertex_count]);
-  std::vector<std::size_t> next(table.offsets.begin(), table.offsets.end() - 1);
-  for_each_side([&](Index from, Index to, Index t) {
-    table.sides[next[static_cast<std::size_t>(std::min(from, to))]++] = {std::max(from, to), t,
-                                                                         from < to};
+  // Triangles with a common side belong to the same fan.
+  internal::UnionFind fans(count);
+  std::size_t fan_count = count;
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::pair(a.other, a.triangle) < std::pair(b.other, b.triangle);
   });
-  for (std::size_t v = 0; v < vertex_count; ++v)
-    std::sort(table.sides.begin() + static_cast<std::ptrdiff_t>(table.offsets[v]),
-              table.sides.begin() + static_cast<std::ptrdiff_t>(table.offsets[v + 1]),
-              [](const Side& a, const Side& b) {
-                return std::pair(a.other, a.triangle) < std::pair(b.other, b.triangle);
-              });
-  return table;
+  for (std::size_t begin = 0; begin < sides.size();) {
+    const Index other = sides[begin].other;
+    std::size_t end = begin + 1;
+    for (; end < sides.size() && sides[end].other == other; ++end)
+      fan_count -= fans.unite(static_cast<Index>(sides[begin].triangle),
+                              static_cast<Index>(sides[end].triangle))
+                       ? 1
+                       : 0;
+    // Each edge counts at the lower of its ends.
+    if (v < other) {
+      ++findings.edges;
+      if (end - begin == 1)
+        findings.faults.boundary_edges.push_back({v, other});
+      else if (end - begin > 2)
+        findings.faults.nonmanifold_edges.push_back({v, other});
+      else if (sides[begin].outgoing == sides[begin + 1].outgoing)
+        findings.faults.misoriented_edges.push_back({v, other});
+    }
+    begin = end;
+  }
+  if (fan_count > 1)
+    findings.faults.nonmanifold_vertices.push_back(v);
+}
+
+/// Examines a vertex whose triangles are one closed fan.
+///
+/// \return false: they are not, nothing was done.
+template <std::size_t Size>
+bool examineFan(const Triangles& triangles, const CornerTable& corners, Index v,
+                Findings& findings) {
+  Fan<Size> fan;
+  fan.next.fill(-1);
+  fan.previous.fill(-2);
+  std::size_t count = 0;
+  std::size_t edges = 0;
+  bool sound = true;
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    const Index a = triangles(internal::nextCorner(k), t);
+    const Index b = triangles(internal::previousCorner(k), t);
+    sound = sound & (a != b) & (a != v) & (b != v);
+    edges += v < a ? 1 : 0;
+    fan.next[count] = a;
+    fan.previous[count++] = b;
+  });
+  if (!sound || !isCycle(fan, count))
+    return false;
+  findings.edges += edges;
+  return true;
+}
+
+void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v,
+                   Findings& findings) {
+  const std::size_t count = corners.countAt(v);
+  if (count == 0) {
+    findings.faults.unused_vertices.push_back(v);
+    return;
+  }
+  ++findings.vertices;
+  // Most vertices have few triangles, which are compared each with each.
+  if ((count <= 8 && examineFan<8>(triangles, corners, v, findings)) ||
+      (count > 8 && count <= 16 && examineFan<16>(triangles, corners, v, findings)))
+    return;
+  examineSides(triangles, corners, v, findings);
+}
+
+void examineTriangle(const Triangles& triangles, Index t, ConcurrentSets& pieces,
+                     Findings& findings) {
+  if (isDegenerate(triangles.col(t)))
+    findings.faults.degenerate_triangles.push_back(t);
+  pieces.unite(triangles(0, t), triangles(1, t));
+  pieces.unite(triangles(1, t), triangles(2, t));
+}
+
+template <typename Fault>
+void append(std::vector<Fault>& all, const std::vector<Fault>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Adds up what examine(i, findings) finds for i in [0, count), in that order.
+template <typename Examine>
+void collect(std::size_t count, int threads, MeshTopology& result, const Examine& examine) {
+  std::vector<Findings> of_blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
+  internal::forEachBlock(count, threads,
+                         [&](std::size_t block, std::size_t begin, std::size_t end) {
+                           Findings findings;
+                           for (std::size_t i = begin; i < end; ++i)
+                             examine(i, findings);
+                           of_blocks[block] = std::move(findings);
+                         });
+  TopologyFaults& faults = result.faults;
+  for (const Findings& findings : of_blocks) {
+    result.vertices += findings.vertices;
+    result.edges += findings.edges;
+    append(faults.boundary_edges, findings.faults.boundary_edges);
+    append(faults.nonmanifold_edges, findings.faults.nonmanifold_edges);
+    append(faults.misoriented_edges, findings.faults.misoriented_edges);
+    append(faults.nonmanifold_vertices, findings.faults.nonmanifold_vertices);
+    append(faults.unused_vertices, findings.faults.unused_vertices);
+    append(faults.degenerate_triangles, findings.faults.degenerate_triangles);
+  }
 }
 
 }  // namespace
 
-MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count) {
+MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
+                           const TopologyOptions& options) {
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    throw InvalidInput("checkTopology: threads = " + std::to_string(options.threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+  internal::checkTriangles("checkTopology", triangles, static_cast<Eigen::Index>(vertex_count));
+  const int threads =
+      internal::threadCount(options.threads, vertex_count, internal::kShortPassThreshold);
   const auto m = static_cast<Index>(triangles.cols());
-  for (Index t = 0; t < m; ++t)
-    for (int k = 0; k < 3; ++k)
-      if (triangles(k, t) < 0 || static_cast<std::size_t>(triangles(k, t)) >= vertex_count)
-        throw InvalidInput("checkTopology: triangle " + std::to_string(t) + " names vertex " +
-                           std::to_string(triangles(k, t)) + " of " + std::to_string(vertex_count) +
-                           "; indices start at 0");
 
+  const CornerTable corners(triangles, vertex_count, threads);
+  ConcurrentSets pieces(vertex_count);
   MeshTopology result;
   result.triangles = static_cast<std::size_t>(m);
+  collect(static_cast<std::size_t>(m), threads, result, [&](std::size_t t, Findings& findings) {
+    examineTriangle(triangles, static_cast<Index>(t), pieces, findings);
+  });
+  collect(vertex_count, threads, result, [&](std::size_t v, Findings& findings) {
+    examineVertex(triangles, corners, static_cast<Index>(v), findings);
+  });
   TopologyFaults& faults = result.faults;
-  internal::UnionFind pieces(vertex_count);
-  std::vector<bool> used(vertex_count, false);
-  for (Index t = 0; t < m; ++t) {
-    if (isDegenerate(triangles.col(t)))
-      faults.degenerate_triangles.push_back(t);
-    for (int k = 0; k < 3; ++k) {
-      used[static_cast<std::size_t>(triangles(k, t))] = true;
-      pieces.unite(triangles(k, t), triangles((k + 1) % 3, t));
-    }
-  }
-
-  // Corners of two triangles at the ends of a common side belong to the same fan.
-  internal::UnionFind fans(3 * static_cast<std::size_t>(m));
-  const SideTable table = collectSides(triangles, vertex_count);
-  for (std::size_t v = 0; v < vertex_count; ++v) {
-    const auto low = static_cast<Index>(v);
-    for (std::size_t begin = table.offsets[v]; begin < table.offsets[v + 1];) {
-      const Index high = table.sides[begin].other;
-      std::size_t end = begin + 1;
-      while (end < table.offsets[v + 1] && table.sides[end].other == high)
-        ++end;
-      ++result.edges;
-      if (end - begin == 1)
-        faults.boundary_edges.push_back({low, high});
-      else if (end - begin > 2)
-        faults.nonmanifold_edges.push_back({low, high});
-      else if (table.sides[begin].forward == table.sides[begin + 1].forward)
-        faults.misoriented_edges.push_back({low, high});
-      for (std::size_t s = begin + 1; s < end; ++s)
-        for (const Index end_vertex : {low, high})
-          fans.unite(cornerOf(triangles, table.sides[begin].triangle, end_vertex),
-                     cornerOf(triangles, table.sides[s].triangle, end_vertex));
-      begin = end;
-    }
-  }
-
-  std::vector<Index> fan_of_vertex(vertex_count, -1);
-  std::vector<bool> several_fans(vertex_count, false);
-  for (Index t = 0; t < m; ++t) {
-    if (isDegenerate(triangles.col(t)))
-      continue;
-    for (Index k = 0; k < 3; ++k) {
-      const auto v = static_cast<std::size_t>(triangles(k, t));
-      const Index fan = fans.find(3 * t + k);
-      if (fan_of_vertex[v] < 0)
-        fan_of_vertex[v] = fan;
-      else if (fan_of_vertex[v] != fan)
-        several_fans[v] = true;
-    }
-  }
-  for (std::size_t v = 0; v < vertex_count; ++v) {
-    if (!used[v])
-      faults.unused_vertices.push_back(static_cast<Index>(v));
-    else if (pieces.find(static_cast<Index>(v)) == static_cast<Index>(v))
-      ++result.components;
-    if (several_fans[v])
-      faults.nonmanifold_vertices.push_back(static_cast<Index>(v));
-    result.vertices += used[v] ? 1 : 0;
-  }
+  // Unused vertices are pieces by themselves.
+  for (std::size_t v = 0; v < vertex_count; ++v)
+    result.components += pieces.find(static_cast<Index>(v)) == static_cast<Index>(v) ? 1 : 0;
+  result.components -= faults.unused_vertices.size();
 
   result.closed = m > 0 && faults.boundary_edges.empty();
   result.edge_manifold = faults.nonmanifold_edges.empty() && faults.degenerate_triangles.empty();

@@ -5,7 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <initializer_list>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -129,6 +136,149 @@ TEST(MeshTopology, EmptyMeshIsNotClosed) {
 TEST(MeshTopology, IndexOutOfRangeIsInvalidInput) {
   EXPECT_THROW(checkTopology(tetrahedron(), 3), InvalidInput);
   EXPECT_THROW(checkTopology(make({{0, 1, -1}}), 3), InvalidInput);
+}
+
+TEST(MeshTopology, ThreadsOutOfRangeAreInvalidInput) {
+  EXPECT_THROW(checkTopology(tetrahedron(), 4, {-1}), InvalidInput);
+  EXPECT_THROW(checkTopology(tetrahedron(), 4, {1025}), InvalidInput);
+}
+
+/// What checkTopology() is to find, from its definitions: maps of edges, and sets that are merged
+/// until nothing changes.
+MeshTopology expectedTopology(const Triangles& triangles, Index n) {
+  MeshTopology expected;
+  expected.triangles = static_cast<std::size_t>(triangles.cols());
+  std::map<std::array<Index, 2>, std::vector<bool>> edges;  // whether a side runs upwards
+  std::vector<std::vector<std::array<Index, 2>>> links(static_cast<std::size_t>(n));
+  std::vector<Index> piece(static_cast<std::size_t>(n));
+  std::iota(piece.begin(), piece.end(), Index{0});
+  std::vector<bool> used(static_cast<std::size_t>(n), false);
+  for (Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Matrix<Index, 3, 1> corners = triangles.col(t);
+    for (int k = 0; k < 3; ++k) {
+      used[static_cast<std::size_t>(corners[k])] = true;
+      const Index from = piece[static_cast<std::size_t>(corners[k])];
+      std::replace(piece.begin(), piece.end(), from, piece[static_cast<std::size_t>(corners[0])]);
+    }
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
+      expected.faults.degenerate_triangles.push_back(t);
+      continue;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const Index a = corners[k];
+      const Index b = corners[(k + 1) % 3];
+      edges[{std::min(a, b), std::max(a, b)}].push_back(a < b);
+      links[static_cast<std::size_t>(a)].push_back({b, corners[(k + 2) % 3]});
+    }
+  }
+  expected.edges = edges.size();
+  for (const auto& [edge, sides] : edges) {
+    if (sides.size() == 1)
+      expected.faults.boundary_edges.push_back(edge);
+    else if (sides.size() > 2)
+      expected.faults.nonmanifold_edges.push_back(edge);
+    else if (sides[0] == sides[1])
+      expected.faults.misoriented_edges.push_back(edge);
+  }
+  std::set<Index> pieces;
+  for (Index v = 0; v < n; ++v) {
+    const auto at = static_cast<std::size_t>(v);
+    if (!used[at]) {
+      expected.faults.unused_vertices.push_back(v);
+      continue;
+    }
+    ++expected.vertices;
+    pieces.insert(piece[at]);
+    std::vector<std::set<Index>> fans;
+    for (const auto& link : links[at]) {
+      std::set<Index> fan(link.begin(), link.end());
+      for (auto other = fans.begin(); other != fans.end();) {
+        if (other->count(link[0]) + other->count(link[1]) == 0) {
+          ++other;
+        } else {
+          fan.insert(other->begin(), other->end());
+          other = fans.erase(other);
+        }
+      }
+      fans.push_back(fan);
+    }
+    if (fans.size() > 1)
+      expected.faults.nonmanifold_vertices.push_back(v);
+  }
+  expected.components = pieces.size();
+  return expected;
+}
+
+void expectSameTopology(const MeshTopology& topology, const MeshTopology& expected) {
+  EXPECT_EQ(topology.vertices, expected.vertices);
+  EXPECT_EQ(topology.edges, expected.edges);
+  EXPECT_EQ(topology.triangles, expected.triangles);
+  EXPECT_EQ(topology.components, expected.components);
+  EXPECT_EQ(topology.faults.boundary_edges, expected.faults.boundary_edges);
+  EXPECT_EQ(topology.faults.nonmanifold_edges, expected.faults.nonmanifold_edges);
+  EXPECT_EQ(topology.faults.misoriented_edges, expected.faults.misoriented_edges);
+  EXPECT_EQ(topology.faults.nonmanifold_vertices, expected.faults.nonmanifold_vertices);
+  EXPECT_EQ(topology.faults.unused_vertices, expected.faults.unused_vertices);
+  EXPECT_EQ(topology.faults.degenerate_triangles, expected.faults.degenerate_triangles);
+}
+
+TEST(MeshTopology, FindsWhatItsDefinitionsSayInTrianglesAtRandom) {
+  std::mt19937 random(5);
+  for (int run = 0; run < 2000; ++run) {
+    // From a few triangles apart to many more than fit around so few vertices.
+    const Index n = 3 + static_cast<Index>(random() % 12);
+    Triangles triangles(3, static_cast<Eigen::Index>(random() % 60));
+    triangles =
+        triangles.unaryExpr([&](Index) { return static_cast<Index>(random() % unsigned(n)); });
+    SCOPED_TRACE(run);
+    expectSameTopology(checkTopology(triangles, static_cast<std::size_t>(n)),
+                       expectedTopology(triangles, n));
+  }
+}
+
+TEST(MeshTopology, FindsWhatItsDefinitionsSayInSpoiledSurfaces) {
+  std::mt19937 random(6);
+  for (int run = 0; run < 300; ++run) {
+    Triangles triangles = joined(torus(4), joined(tetrahedron(16), tetrahedron(20)));
+    for (int change = 0; change < run % 4; ++change)
+      triangles.data()[random() % static_cast<unsigned>(triangles.size())] =
+          static_cast<Index>(random() % 25);
+    SCOPED_TRACE(run);
+    expectSameTopology(checkTopology(triangles, 25), expectedTopology(triangles, 25));
+  }
+}
+
+TEST(MeshTopology, FindsAFanOfManyTrianglesAndItsPinch) {
+  const Index m = 50;
+  Triangles triangles(3, 2 * m);  // a double cone over a ring of m vertices
+  for (Index i = 0; i < m; ++i) {
+    triangles.col(2 * i) << i, (i + 1) % m, m;
+    triangles.col(2 * i + 1) << (i + 1) % m, i, m + 1;
+  }
+  EXPECT_TRUE(checkTopology(triangles, static_cast<std::size_t>(m) + 2).isSphere());
+  // Both tips in one place.
+  triangles = triangles.unaryExpr([&](Index v) { return std::min(v, m); });
+  const MeshTopology pinched = checkTopology(triangles, static_cast<std::size_t>(m) + 1);
+  EXPECT_EQ(pinched.faults.nonmanifold_edges.size(), static_cast<std::size_t>(m));
+}
+
+TEST(MeshTopology, SameForAnyNumberOfThreads) {
+  const Index m = 300;  // enough vertices for several threads
+  Triangles triangles = torus(m);
+  std::mt19937 random(7);
+  std::vector<Index> order(static_cast<std::size_t>(m * m));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::shuffle(order.begin(), order.end(), random);
+  triangles = triangles.unaryExpr([&](Index v) { return order[static_cast<std::size_t>(v)]; });
+  const MeshTopology sound = checkTopology(triangles, order.size(), {3});
+  EXPECT_EQ(sound.genus, 1);
+  for (int change = 0; change < 2000; ++change)
+    triangles.data()[random() % static_cast<unsigned>(triangles.size())] =
+        static_cast<Index>(random() % order.size());
+  const MeshTopology one = checkTopology(triangles, order.size(), {1});
+  EXPECT_GT(one.faults.boundary_edges.size(), 1000U);
+  for (const int threads : {2, 3, 8})
+    expectSameTopology(checkTopology(triangles, order.size(), {threads}), one);
 }
 
 TEST(MeshTopology, VolumeAndAreaOfATetrahedron) {
