@@ -1,14 +1,11 @@
 #include "spherical_param/mesh_measures.h"
 
-#include "spherical_param/errors.h"
-#include "spherical_param/mesh_topology.h"
+#include "core/corner_table.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 
 namespace spherical_param {
 namespace {
@@ -21,16 +18,9 @@ constexpr double kLeastVolume = 1e-12;
 
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles) {
   MeshMeasures measures;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      if (triangles(k, t) < 0 || triangles(k, t) >= points.cols())
-        throw InvalidInput("measureMesh: triangle " + std::to_string(t) + " names vertex " +
-                           std::to_string(triangles(k, t)) + " of " +
-                           std::to_string(points.cols()) + "; indices start at 0");
+  internal::checkTriangles("measureMesh", triangles, points.cols());
   if (triangles.cols() == 0)
     return measures;
-  measures.volume = signedVolume(points, triangles);
-  measures.area = surfaceArea(points, triangles);
 
   const Eigen::Vector3d origin = points.col(triangles(0, 0));
   measures.box_min = origin;
@@ -38,6 +28,9 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles) {
   Eigen::Vector3d first = Eigen::Vector3d::Zero();   // 24 times the integral of x over the solid
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  // 120 times the integral of x x^T
   Eigen::Vector3d of_surface = Eigen::Vector3d::Zero();  // 6 times the integral of x over the mesh
+  // Those of signedVolume() and surfaceArea(), in one go with the rest.
+  double volume = 0.0;
+  double area = 0.0;
   double length = 0.0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     Eigen::Matrix3d corners;
@@ -47,12 +40,17 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles) {
       measures.box_max = measures.box_max.cwiseMax(corner);
       corners.col(k) = corner - origin;
     }
+    const Eigen::Vector3d a = points.col(triangles(0, t));
+    const Eigen::Vector3d ab = points.col(triangles(1, t)) - a;
+    const Eigen::Vector3d ac = points.col(triangles(2, t)) - a;
+    area += ab.cross(ac).norm();
     const Eigen::Vector3d normal =
         (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
     // The tetrahedron of the triangle and the origin: its moments are those of its corners, over
     // which x integrates to det / 24 of their sum, and x x^T to det / 120 of the products of each
     // two of them, both with the origin as the fourth corner.
     const double determinant = corners.col(0).dot(corners.col(1).cross(corners.col(2)));
+    volume += determinant;
     const Eigen::Vector3d sum = corners.rowwise().sum();
     first += determinant * sum;
     second += determinant * (sum * sum.transpose() + corners * corners.transpose());
@@ -60,6 +58,8 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles) {
     for (int k = 0; k < 3; ++k)
       length += (corners.col((k + 1) % 3) - corners.col(k)).norm();
   }
+  measures.volume = volume / 6.0;
+  measures.area = area / 2.0;
   // Each edge is a side of two triangles: the mean over sides is the mean over edges.
   measures.mean_edge_length = length / (3.0 * static_cast<double>(triangles.cols()));
 
