@@ -28,6 +28,7 @@ struct DiagnosisOptions {
   double part_gap = 4.0;
   /// At most so many vertices are listed of each finding.
   std::size_t max_vertices = 64;
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
 };
 
 /// Connected triangles over a place without points that is wide against the distance of the points
@@ -88,6 +89,7 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// \param graph     n nodes, lengths in the unit of the points: local Delaunay neighbourhoods, on
 ///                  which all thresholds were measured.
 /// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
+/// \return what was found, the same for any number of threads.
 /// \throw InvalidInput for sizes that disagree, no triangles, an index or an option out of range.
 /// Cost: O(n) where nothing is wrong.
 ///

@@ -2,6 +2,8 @@
 
 #include "spherical_param/errors.h"
 
+#include "core/corner_table.h"
+#include "core/parallel.h"
 #include "core/union_find.h"
 
 #include <Eigen/Geometry>
@@ -11,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -70,29 +73,30 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
+using Edge = std::array<Index, 2>;
+
 /// One side of a triangle, from its corner `corner` to the next.
 struct Side {
   Index triangle;
   Index corner;
 };
 
+/// What the mesh has and the graph has not, and the other way round.
+struct Differences {
+  /// Edges of the mesh whose ends are more than two steps apart in the graph, each from one side,
+  /// by triangle and corner.
+  std::vector<Side> sides;
+  /// Edges {lower, higher} of the graph whose ends are more than two steps apart on the mesh,
+  /// ascending.
+  std::vector<Edge> edges;
+};
+
 /// The graph's rows, the mesh's triangles around each vertex, and what both say of an edge.
 class Surface {
 public:
-  Surface(const Positions& points, const Triangles& triangles, const Graph& graph)
-      : points_(points), triangles_(triangles), graph_(graph), in_mesh_(graph.neighbors.size(), 0),
-        corners_begin_(graph.size() + 1, 0),
-        corners_(3 * static_cast<std::size_t>(triangles.cols())) {
-    for (Index t = 0; t < triangles.cols(); ++t)
-      for (int k = 0; k < 3; ++k)
-        ++corners_begin_[at(triangles(k, t)) + 1];
-    for (std::size_t v = 0; v < graph.size(); ++v)
-      corners_begin_[v + 1] += corners_begin_[v];
-    std::vector<std::size_t> next(corners_begin_.begin(), corners_begin_.end() - 1);
-    for (Index t = 0; t < triangles.cols(); ++t)
-      for (Index k = 0; k < 3; ++k)
-        corners_[next[at(triangles(k, t))]++] = 3 * t + k;
-  }
+  Surface(const Positions& points, const Triangles& triangles, const Graph& graph, int threads)
+      : points_(points), triangles_(triangles), graph_(graph), threads_(threads),
+        corners_(triangles, graph.size(), threads) {}
 
   Index vertex(Index t, Index k) const { return triangles_(k % 3, t); }
   Eigen::Vector3d point(Index v) const { return points_.col(v); }
@@ -108,8 +112,7 @@ public:
   /// Calls visit(triangle, corner) for the triangles around v.
   template <typename Visit>
   void forEachCorner(Index v, const Visit& visit) const {
-    for (std::size_t c = corners_begin_[at(v)]; c < corners_begin_[at(v) + 1]; ++c)
-      visit(corners_[c] / 3, corners_[c] % 3);
+    corners_.forEachCorner(v, visit);
   }
 
   /// The triangle beyond side k, from corner k to the next, of triangle t; -1: none.
@@ -135,24 +138,26 @@ public:
                      distance(vertex(t, 2), vertex(t, 0))});
   }
 
-  /// The mesh's edges whose ends are more than two steps apart in the graph, each from one side.
-  /// Notes which edges of the graph the mesh has.
-  std::vector<Side> sidesOutsideGraph() {
-    std::vector<Side> outside;
-    for (Index t = 0; t < triangles_.cols(); ++t)
-      for (Index k = 0; k < 3; ++k)
-        if (vertex(t, k) < vertex(t, k + 1) && !nearInGraph(vertex(t, k), vertex(t, k + 1)))
-          outside.push_back({t, k});
-    return outside;
-  }
-
-  /// Calls visit(a, b), a < b, for the edges of the graph that sidesOutsideGraph() did not meet.
-  template <typename Visit>
-  void forEachEdgeOffMesh(const Visit& visit) const {
-    for (std::size_t a = 0; a < graph_.size(); ++a)
-      for (std::size_t e = graph_.offsets[a]; e < graph_.offsets[a + 1]; ++e)
-        if (in_mesh_[e] == 0 && static_cast<Index>(a) < graph_.neighbors[e])
-          visit(static_cast<Index>(a), graph_.neighbors[e]);
+  /// What mesh and graph disagree on.
+  Differences differences() const {
+    const std::size_t n = graph_.size();
+    std::vector<Differences> of_blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
+    internal::forEachBlock(n, threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      Differences found;
+      Ring ring;
+      for (std::size_t v = begin; v < end; ++v)
+        collectAt(static_cast<Index>(v), ring, found);
+      of_blocks[block] = std::move(found);
+    });
+    Differences all;
+    for (const Differences& found : of_blocks) {
+      all.sides.insert(all.sides.end(), found.sides.begin(), found.sides.end());
+      all.edges.insert(all.edges.end(), found.edges.begin(), found.edges.end());
+    }
+    std::sort(all.sides.begin(), all.sides.end(), [](const Side& a, const Side& b) {
+      return std::pair(a.triangle, a.corner) < std::pair(b.triangle, b.corner);
+    });
+    return all;
   }
 
   /// Distance of the points around v: the median of its edges in the graph, which a few long ones
@@ -169,18 +174,76 @@ public:
   }
 
 private:
-  /// Whether a and b are neighbours in the graph or have a common one.
-  bool nearInGraph(Index a, Index b) {
-    const auto row = [&](Index v) {
-      return std::pair(graph_.offsets[at(v)], graph_.offsets[at(v) + 1]);
-    };
-    auto [i, i_end] = row(a);
-    for (std::size_t e = i; e < i_end; ++e)
-      if (graph_.neighbors[e] == b) {
-        in_mesh_[e] = 1;
-        return true;
+  /// A set of vertices around one, for quick questions.
+  class Ring {
+  public:
+    void clear() { size_ = 0; }
+    void add(Index v) {
+      // Whole packs are searched: what is not used is no vertex.
+      if (size_ % kPack == 0)
+        vertices_.resize(std::max(vertices_.size(), size_ + kPack));
+      if (size_ % kPack == 0)
+        std::fill_n(vertices_.begin() + static_cast<std::ptrdiff_t>(size_), kPack, Index{-1});
+      vertices_[size_++] = v;
+    }
+    bool has(Index v) const {
+      for (std::size_t begin = 0; begin < size_; begin += kPack) {
+        Index hits = 0;
+        for (std::size_t i = begin; i < begin + kPack; ++i)
+          hits += vertices_[i] == v ? 1 : 0;
+        if (hits > 0)
+          return true;
       }
-    auto [j, j_end] = row(b);
+      return false;
+    }
+
+  private:
+    static constexpr std::size_t kPack = 8;
+    std::vector<Index> vertices_;
+    std::size_t size_ = 0;
+  };
+
+  /// Compares the edges from `a` to higher vertices.
+  void collectAt(Index a, Ring& ring, Differences& found) const {
+    ring.clear();
+    std::size_t edges_of_mesh = 0;
+    forEachCorner(a, [&](Index t, Index k) {
+      const Index b = triangles_(internal::nextCorner(k), t);
+      ring.add(b);
+      edges_of_mesh += a < b ? 1 : 0;
+    });
+    for (std::size_t e = graph_.offsets[at(a)]; e < graph_.offsets[at(a) + 1]; ++e) {
+      const Index b = graph_.neighbors[e];
+      if (b < a)
+        continue;
+      bool near = ring.has(b);
+      edges_of_mesh -= near ? 1 : 0;
+      // Nearly all others are the other diagonal of two triangles.
+      if (!near)
+        forEachCorner(b, [&](Index t, Index k) {
+          const Index c = triangles_(internal::nextCorner(k), t);
+          near = near || c == a || ring.has(c);
+        });
+      if (!near)
+        found.edges.push_back({a, b});
+    }
+    if (edges_of_mesh == 0)
+      return;  // the graph has them all
+    forEachCorner(a, [&](Index t, Index k) {
+      if (a < vertex(t, k + 1) && !nearInGraph(a, vertex(t, k + 1)))
+        found.sides.push_back({t, k});
+    });
+  }
+
+  /// Whether a and b are neighbours in the graph or have a common one.
+  bool nearInGraph(Index a, Index b) const {
+    auto i = graph_.offsets[at(a)];
+    auto j = graph_.offsets[at(b)];
+    const auto i_end = graph_.offsets[at(a) + 1];
+    const auto j_end = graph_.offsets[at(b) + 1];
+    for (std::size_t e = i; e < i_end; ++e)
+      if (graph_.neighbors[e] == b)
+        return true;
     while (i != i_end && j != j_end) {
       if (graph_.neighbors[i] == graph_.neighbors[j])
         return true;
@@ -192,9 +255,8 @@ private:
   const Positions& points_;
   const Triangles& triangles_;
   const Graph& graph_;
-  std::vector<char> in_mesh_;  // for each entry of the graph's rows, at the lower end
-  std::vector<std::size_t> corners_begin_;
-  std::vector<Index> corners_;  // 3 * triangle + corner, those of each vertex together
+  int threads_;
+  internal::CornerTable corners_;
 };
 
 double quantile(std::vector<double> values, double share) {
@@ -232,10 +294,14 @@ struct Region {
 class RegionSearch {
 public:
   RegionSearch(const Surface& surface, std::size_t triangle_count)
-      : surface_(surface), region_(triangle_count, -1), is_outside_(3 * triangle_count, 0) {}
+      : surface_(surface), triangle_count_(triangle_count) {}
 
   /// \param outside the edges of the mesh that leave the graph, from one of their sides.
   std::vector<Region> run(const std::vector<Side>& outside) {
+    if (outside.empty())
+      return {};
+    region_.assign(triangle_count_, -1);
+    is_outside_.assign(3 * triangle_count_, 0);
     for (const auto& [t, k] : outside) {
       is_outside_[at(3 * t + k)] = 1;
       const Index other = surface_.beyond(t, k);
@@ -341,6 +407,7 @@ private:
   }
 
   const Surface& surface_;
+  std::size_t triangle_count_;
   std::vector<Index> region_;     // of each triangle; -1: none
   std::vector<char> is_outside_;  // of each side
   std::map<Index, double> spacing_;
@@ -353,15 +420,21 @@ public:
 
   /// Whether a and b are more than `steps` edges apart: the discs of half as many do not meet.
   bool exceeds(Index a, Index b, int steps) {
-    const std::int64_t of_a = ++last_mark_;
-    const std::int64_t of_b = ++last_mark_;
+    if (last_mark_ > std::numeric_limits<Mark>::max() - 2) {
+      std::fill(mark_.begin(), mark_.end(), Mark{0});
+      last_mark_ = 0;
+    }
+    const Mark of_a = ++last_mark_;
+    const Mark of_b = ++last_mark_;
     markDisc(a, steps - steps / 2, of_a, of_b);
     return !markDisc(b, steps / 2, of_b, of_a);
   }
 
 private:
+  using Mark = std::uint32_t;
+
   /// Whether it met the mark `other`, where it ends.
-  bool markDisc(Index center, int steps, std::int64_t own, std::int64_t other) {
+  bool markDisc(Index center, int steps, Mark own, Mark other) {
     if (mark_[at(center)] == other)
       return true;
     mark_[at(center)] = own;
@@ -371,7 +444,7 @@ private:
     for (int step = 0; step < steps; ++step)
       for (const std::size_t end = disc_.size(); begin < end; ++begin) {
         surface_.forEachCorner(disc_[begin], [&](Index t, Index k) {
-          std::int64_t& mark = mark_[at(surface_.vertex(t, k + 1))];
+          Mark& mark = mark_[at(surface_.vertex(t, k + 1))];
           met = met || mark == other;
           if (mark != own)
             disc_.push_back(surface_.vertex(t, k + 1));
@@ -384,21 +457,23 @@ private:
   }
 
   const Surface& surface_;
-  std::vector<std::int64_t> mark_;
+  std::vector<Mark> mark_;
   std::vector<Index> disc_;
-  std::int64_t last_mark_ = 0;
+  Mark last_mark_ = 0;
 };
-
-using Edge = std::array<Index, 2>;
 
 /// The edges of the graph along the surface whose ends are far apart on the mesh: those between
 /// sheets that nearly touch are left out, unless the mesh has a lid there all the same.
 ///
+/// \param apart     those whose ends are more than two steps apart.
 /// \param regions   all that leaves the graph.
 /// \param lid_count the first so many are wide.
-std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Region>& regions,
-                            std::size_t lid_count, std::size_t triangle_count,
-                            const std::vector<Edge>& bridges, std::size_t n, int steps) {
+std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Edge>& apart,
+                            const std::vector<Region>& regions, std::size_t lid_count,
+                            std::size_t triangle_count, const std::vector<Edge>& bridges,
+                            std::size_t n, int steps) {
+  if (apart.empty())
+    return {};
   std::vector<char> in_region(triangle_count, 0);
   std::vector<char> at_cut(n, 0);
   for (std::size_t r = 0; r < regions.size(); ++r) {
@@ -420,14 +495,13 @@ std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Region>& r
   };
   MeshDistance distance(surface, n);
   std::vector<Edge> torn;
-  surface.forEachEdgeOffMesh([&](Index a, Index b) {
-    // Nearly all are the other diagonal of two triangles, which is found at once.
-    if (!distance.exceeds(a, b, 2) || !distance.exceeds(a, b, steps) ||
+  for (const auto& [a, b] : apart) {
+    if (!distance.exceeds(a, b, steps) ||
         std::binary_search(bridges.begin(), bridges.end(), Edge{a, b}))
-      return;
+      continue;
     if (at_cut[at(a)] != 0 || at_cut[at(b)] != 0) {
       torn.push_back({a, b});
-      return;
+      continue;
     }
     const Eigen::Vector3d at_a = normal(a);
     const Eigen::Vector3d at_b = normal(b);
@@ -435,7 +509,7 @@ std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Region>& r
     if (at_a.dot(at_b) >= kLeastNormalCosine && std::abs(along.dot(at_a)) <= kMostSlope &&
         std::abs(along.dot(at_b)) <= kMostSlope)
       torn.push_back({a, b});
-  });
+  }
   return torn;
 }
 
@@ -600,10 +674,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
                        " nodes for " + std::to_string(n) + " points; give the graph of the points");
   if (triangles.cols() == 0)
     throw InvalidInput("diagnoseSurface: no triangles; give a closed mesh");
-  for (const Index v : triangles.reshaped())
-    if (!in_range(v))
-      throw InvalidInput("diagnoseSurface: a triangle names vertex " + std::to_string(v) + " of " +
-                         std::to_string(n) + "; indices start at 0");
+  internal::checkTriangles("diagnoseSurface", triangles, points.cols());
   for (const Bridge& bridge : bridges)
     if (!in_range(bridge.from) || !in_range(bridge.to))
       throw InvalidInput("diagnoseSurface: a bridge from " + std::to_string(bridge.from) + " to " +
@@ -615,6 +686,10 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
   if (options.handle_steps < 3 || options.handle_steps > 100)
     throw InvalidInput("diagnoseSurface: handle_steps = " + std::to_string(options.handle_steps) +
                        "; it must be in [3, 100]");
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    throw InvalidInput("diagnoseSurface: threads = " + std::to_string(options.threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
 }
 
 }  // namespace
@@ -669,8 +744,11 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
     bridge_edges.push_back({std::min(bridge.from, bridge.to), std::max(bridge.from, bridge.to)});
   std::sort(bridge_edges.begin(), bridge_edges.end());
 
-  Surface surface(points, triangles, graph);
-  const std::vector<Side> outside = surface.sidesOutsideGraph();
+  const Surface surface(
+      points, triangles, graph,
+      internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold));
+  const Differences difference = surface.differences();
+  const std::vector<Side>& outside = difference.sides;
   result.edges_outside_graph =
       static_cast<double>(outside.size()) / (1.5 * static_cast<double>(triangle_count));
   std::vector<Region> regions = RegionSearch(surface, triangle_count).run(outside);
@@ -689,8 +767,8 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   // What is folded, or was squeezed through a bridge, is torn without handles as well.
   if (result.edges_outside_graph <= kFolded && result.bridges.empty())
     result.handles =
-        handlesOf(surface, tornEdges(surface, regions, lid_count, triangle_count, bridge_edges,
-                                     graph.size(), options.handle_steps));
+        handlesOf(surface, tornEdges(surface, difference.edges, regions, lid_count, triangle_count,
+                                     bridge_edges, graph.size(), options.handle_steps));
   for (std::size_t r = 0; r < lid_count; ++r) {
     const Region& region = regions[r];
     const std::optional<SurfaceKind> cause =

@@ -383,6 +383,52 @@ TEST(SurfaceDiagnosis, OptionsDecideWhatIsFoundAndListed) {
   EXPECT_TRUE(diagnose(scene, options).looksClosedGenus0());
 }
 
+TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
+  // Enough points for several threads, a lid, and vertices that changed places with others.
+  const Positions points =
+      filtered(spiralSphere(60000), [](const Eigen::Vector3d& p) { return p.x() < 0.99; });
+  Triangles triangles = triangulateSphere(points, TriangulationMethod::Incremental).triangles;
+  const double long_side = 2.0 * sphereSpacing(60000);
+  Triangles along(3, triangles.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(
+          longest, (points.col(triangles(k, t)) - points.col(triangles((k + 1) % 3, t))).norm());
+    if (longest < long_side)
+      along.col(count++) = triangles.col(t);
+  }
+  const Graph graph = graphOfMesh(points, along.leftCols(count));
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (Eigen::Index k = 0; k < 3; ++k)
+      if (triangles(k, t) % 1000 < 40)
+        triangles(k, t) += triangles(k, t) % 1000 < 20 ? 20 : -20;
+  const auto run = [&](int threads) {
+    DiagnosisOptions options;
+    options.threads = threads;
+    return diagnoseSurface(points, triangles, graph, {}, options);
+  };
+  const SurfaceDiagnosis one = run(1);
+  EXPECT_FALSE(one.lids.empty());
+  EXPECT_FALSE(one.handles.empty());
+  for (const int threads : {2, 3, 8}) {
+    const SurfaceDiagnosis several = run(threads);
+    EXPECT_EQ(several.summary, one.summary);
+    EXPECT_EQ(several.edges_outside_graph, one.edges_outside_graph);
+    ASSERT_EQ(several.lids.size(), one.lids.size());
+    for (std::size_t i = 0; i < one.lids.size(); ++i) {
+      EXPECT_EQ(several.lids[i].area, one.lids[i].area);
+      EXPECT_EQ(several.lids[i].vertices, one.lids[i].vertices);
+    }
+    ASSERT_EQ(several.handles.size(), one.handles.size());
+    for (std::size_t i = 0; i < one.handles.size(); ++i) {
+      EXPECT_EQ(several.handles[i].edges, one.handles[i].edges);
+      EXPECT_EQ(several.handles[i].vertices, one.handles[i].vertices);
+    }
+  }
+}
+
 TEST(SurfaceDiagnosis, BadInputIsRefused) {
   const Positions points = spiralSphere(50);
   const Scene good = starShaped(points, points);
@@ -403,6 +449,8 @@ TEST(SurfaceDiagnosis, BadInputIsRefused) {
   expect_refused([](Scene&, DiagnosisOptions& options) { options.part_gap = -1.0; });
   expect_refused([](Scene&, DiagnosisOptions& options) { options.handle_steps = 2; });
   expect_refused([](Scene&, DiagnosisOptions& options) { options.handle_steps = 101; });
+  expect_refused([](Scene&, DiagnosisOptions& options) { options.threads = -1; });
+  expect_refused([](Scene&, DiagnosisOptions& options) { options.threads = 1025; });
 }
 
 }  // namespace
