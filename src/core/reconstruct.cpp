@@ -76,6 +76,12 @@ LocalDelaunayOptions localDelaunayOptions(const Options& options) {
   return graph;
 }
 
+DiagnosisOptions diagnosisOptions(const Options& options) {
+  DiagnosisOptions diagnosis;
+  diagnosis.threads = options.threads;
+  return diagnosis;
+}
+
 SmoothingOptions smoothingOptions(const Options& options) {
   SmoothingOptions smoothing;
   smoothing.steps = options.smoothing_steps;
@@ -258,7 +264,7 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
       of_vertices.col(vertex(static_cast<Index>(node))) = of_nodes.col(node);
     of_nodes = std::move(of_vertices);
   };
-  result.triangles = result.triangles.unaryExpr(vertex).eval();
+  result.triangles = result.triangles.unaryExpr(vertex);
   permute(result.sphere);
   permute(result.smoothed);
   for (Bridge& bridge : result.graph.bridges) {
@@ -580,10 +586,11 @@ struct Attempts {
 
 /// Tells whether other attempts may come to a better mesh: not if the cloud is no closed surface,
 /// unless little is wrong.
-bool isWorthMore(const Attempt& first, const Positions& points) {
+bool isWorthMore(const Attempt& first, const Positions& points, const Options& options) {
   return static_cast<double>(first.intersections()) <=
              kFewIntersections * static_cast<double>(first.triangles.cols()) ||
-         diagnoseSurface(points, first.triangles, first.graph.graph, first.graph.bridges)
+         diagnoseSurface(points, first.triangles, first.graph.graph, first.graph.bridges,
+                         diagnosisOptions(options))
              .looksClosedGenus0();
 }
 
@@ -612,7 +619,7 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const FindNeighbor
   };
   run(planOf(0, options), std::move(graph));
   if (options.optimization != OptimizationMethod::Full || best.isGood() || options.attempts == 1 ||
-      !isWorthMore(best, nodes.points))
+      !isWorthMore(best, nodes.points, options))
     return attempts;
   for (int i = 1; i < options.attempts && !best.isGood(); ++i) {
     const Plan plan = planOf(i, options);
@@ -625,16 +632,17 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const FindNeighbor
 /// Judges the mesh of the best attempt, and moves all there is into the result.
 void takeOver(Attempts& attempts, const Positions& points, const Options& options, Result& result) {
   Attempt& best = attempts.best;
-  if (signedVolume(points, best.triangles) < 0.0) {
+  result.measures = measureMesh(points, best.triangles);
+  if (result.measures.volume < 0.0) {
     flipOrientation(best.triangles);
     best.sphere = -best.sphere;
+    result.measures = measureMesh(points, best.triangles);
   }
   result.self_intersections = std::move(best.optimization.self_intersections);
   if (best.smoothed.cols() > 0)
     result.self_intersections = findIntersections(points, best.triangles, options.threads);
-  result.diagnosis =
-      diagnoseSurface(points, best.triangles, attempts.judge().graph, attempts.judge().bridges);
-  result.measures = measureMesh(points, best.triangles);
+  result.diagnosis = diagnoseSurface(points, best.triangles, attempts.judge().graph,
+                                     attempts.judge().bridges, diagnosisOptions(options));
   result.optimization = {std::move(best.optimization.phases),
                          best.optimization.energy,
                          best.optimization.rough,
@@ -702,9 +710,13 @@ Result run(const Positions& points, const Options& options, const FindNeighbors&
   result.duplicates = result.vertex_of_input.size() - result.input_of_vertex.size();
   result.topology = log.run("check", [&] {
     takeOver(attempts, nodes.points, options, result);
+    // Before the nodes get other numbers, while neighbours are near in memory: a sound mesh, the
+    // only one that is handed out, has the same topology whatever the numbers.
+    MeshTopology topology =
+        checkTopology(result.triangles, result.vertexCount(), {options.threads});
     scaleBack(nodes.exponent, result);
     renumber(nodes.vertex_of_node, result);
-    return checkTopology(result.triangles, result.vertexCount());
+    return topology;
   });
   if (!result.topology.isSphere())
     throw ComputeError("reconstruct: the mesh is not a closed genus-0 manifold; please report "
