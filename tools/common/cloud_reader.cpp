@@ -4,6 +4,7 @@
 #include "common/header_checks.h"
 #include "common/input_file.h"
 #include "common/library_output.h"
+#include "common/record_reader.h"
 #include "common/text_clouds.h"
 
 #include <pcl/PCLPointCloud2.h>
@@ -230,24 +231,30 @@ PointData readVtk(const std::string& path, std::uint64_t declared_points) {
   return data;
 }
 
+/// What only PCL knows how to unpack is in memory as a whole: the file, its fields, the points.
+template <typename Reader>
+PointData readPoints(const std::string& path, const RecordLayout& layout,
+                     const FileProgress& progress) {
+  return layout.known ? readRecords(path, layout, progress) : readWithPcl<Reader>(path);
+}
+
 }  // namespace
 
-PointData readCloud(const std::string& path) {
+PointData readCloud(const std::string& path, const FileProgress& progress) {
   const FileFormat format = requireFormat(path, FileUse::ReadCloud);
   const std::uint64_t file_size = checkInputFile(path);
   switch (format) {
   case FileFormat::Pcd:
-    checkPcdHeader(path, file_size);
-    return readWithPcl<pcl::PCDReader>(path);
+    return readPoints<pcl::PCDReader>(path, checkPcdHeader(path, file_size), progress);
   case FileFormat::Ply:
-    checkPlyHeader(path, file_size);
-    return readWithPcl<pcl::PLYReader>(path);
+    return readPoints<pcl::PLYReader>(path, checkPlyHeader(path, file_size), progress);
   case FileFormat::Obj:
-    return readObj(path, file_size);
+    return readObj(path, progress);
   case FileFormat::Vtk:
+    // VTK has no way to read a part: its arrays and our points are in memory together.
     return readVtk(path, checkVtkHeader(path, file_size));
   default:
-    return readXyz(path, file_size);
+    return readXyz(path, progress);
   }
 }
 

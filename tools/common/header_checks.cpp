@@ -9,6 +9,7 @@
 #include <cstring>
 #include <map>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -65,6 +66,14 @@ void requireBytes(const std::string& path, double needed, std::uint64_t availabl
   }
 }
 
+void addField(RecordField field, RecordLayout& layout) {
+  field.offset = layout.record_size;
+  field.column = layout.columns;
+  layout.record_size += field.size * field.count;
+  layout.columns += field.count;
+  layout.fields.push_back(std::move(field));
+}
+
 /// Checks lines of numbers: PCL's readers take missing ones for 0, and words for NaN.
 /// \param body_begin where the first line begins; \param skipped lines before those to be checked.
 void checkNumberLines(const std::string& path, std::uint64_t file_size, std::size_t body_begin,
@@ -90,7 +99,7 @@ void checkNumberLines(const std::string& path, std::uint64_t file_size, std::siz
 
 }  // namespace
 
-void checkPcdHeader(const std::string& path, std::uint64_t file_size) {
+RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   const std::string beginning = readBeginning(path, header_limit);
   Lines lines(beginning);
   std::map<std::string, std::vector<std::string>> entries;
@@ -131,6 +140,7 @@ void checkPcdHeader(const std::string& path, std::uint64_t file_size) {
       counts.size() != fields.size()) {
     failContent(path, "FIELDS, SIZE, TYPE and COUNT of its header differ in length");
   }
+  RecordLayout layout;
   double bytes_per_point = 0.0;
   double stored_bytes_per_point = 0.0;
   double values_per_point = 0.0;
@@ -149,6 +159,12 @@ void checkPcdHeader(const std::string& path, std::uint64_t file_size) {
     if (count < 1 || (coordinate && (count != 1 || type != "F"))) {
       failContent(path, "field " + inQuotes(fields[f]) + " does not hold one number a point");
     }
+    RecordField field;
+    field.name = fields[f];
+    field.type = type[0];
+    field.size = static_cast<std::size_t>(size[0] - '0');
+    field.count = static_cast<std::size_t>(count);
+    addField(field, layout);
     const double bytes = static_cast<double>(count) * static_cast<double>(size[0] - '0');
     bytes_per_point += bytes;
     stored_bytes_per_point += fields[f] == "_" ? 0.0 : bytes;  // padding is left out of LZF data
@@ -171,10 +187,11 @@ void checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   if (storage == "ascii") {
     // A value needs a digit and a separator, the last one no separator.
     requireBytes(path, 2.0 * point_count * values_per_point - 1.0, body);
-    checkNumberLines(path, file_size, lines.position(), 0, points,
-                     static_cast<std::size_t>(values_per_point));
+    layout.known = true;
   } else if (storage == "binary") {
     requireBytes(path, point_count * bytes_per_point, body);
+    layout.known = true;
+    layout.storage = RecordStorage::LittleEndian;
   } else if (storage == "binary_compressed") {
     requireBytes(path, 8.0, body);
     std::array<std::uint32_t, 2> sizes{};  // compressed, uncompressed
@@ -189,12 +206,17 @@ void checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   } else {
     failContent(path, "its data is stored as " + inQuotes(storage));
   }
+  layout.body = lines.position();
+  layout.body_line = lines.number();
+  layout.points = static_cast<std::uint64_t>(points);
+  return layout;
 }
 
 namespace {
 
 struct PlyProperty {
   std::string type;
+  std::string length_type;  ///< of a list
   std::string name;
   bool list = false;
 };
@@ -228,6 +250,7 @@ PlyProperty parsePlyProperty(const std::string& path, const std::vector<std::str
     }
   }
   property.type = words[expected - 2];
+  property.length_type = property.list ? std::string(words[2]) : "";
   property.name = words[expected - 1];
   return property;
 }
@@ -293,7 +316,45 @@ void checkPlyVertex(const std::string& path, const PlyElement& vertex) {
 
 }  // namespace
 
-void checkPlyHeader(const std::string& path, std::uint64_t file_size) {
+namespace {
+
+SkippedElement toSkipped(const PlyElement& element) {
+  SkippedElement skipped;
+  skipped.count = static_cast<std::uint64_t>(element.count);
+  for (const PlyProperty& property : element.properties) {
+    skipped.properties.push_back(
+        {static_cast<std::size_t>(plyTypeSize(property.type)),
+         property.list ? static_cast<std::size_t>(plyTypeSize(property.length_type)) : 0});
+  }
+  return skipped;
+}
+
+RecordLayout toLayout(const std::vector<PlyElement>& elements) {
+  RecordLayout layout;
+  bool behind = false;
+  for (const PlyElement& element : elements) {
+    if (element.name != "vertex") {
+      (behind ? layout.after : layout.before).push_back(toSkipped(element));
+      continue;
+    }
+    behind = true;
+    layout.points = static_cast<std::uint64_t>(element.count);
+    for (const PlyProperty& property : element.properties) {
+      RecordField field;
+      field.name = property.name;
+      field.type = property.type[0] == 'f' || property.type[0] == 'd' ? 'F'
+                   : property.type[0] == 'u'                          ? 'U'
+                                                                      : 'I';
+      field.size = static_cast<std::size_t>(plyTypeSize(property.type));
+      addField(field, layout);
+    }
+  }
+  return layout;
+}
+
+}  // namespace
+
+RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   const std::string beginning = readBeginning(path, header_limit);
   Lines lines(beginning);
   if (!lines.next() || lines.words().size() != 1 || lines.words()[0] != "ply") {
@@ -301,6 +362,7 @@ void checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   }
   std::vector<PlyElement> elements;
   bool ascii = false;
+  bool big_endian = false;
   bool format_known = false;
   std::int64_t grid_size = 0;
   for (;;) {
@@ -322,6 +384,7 @@ void checkPlyHeader(const std::string& path, std::uint64_t file_size) {
       format_known = words[1] == "ascii" || words[1] == "binary_little_endian" ||
                      words[1] == "binary_big_endian";
       ascii = words[1] == "ascii";
+      big_endian = words[1] == "binary_big_endian";
     } else if (words[0] == "element" && words.size() == 3) {
       elements.push_back({std::string(words[1]), requireCount(path, words[2], "elements"), {}});
     } else if (words[0] == "property" && !elements.empty()) {
@@ -360,17 +423,22 @@ void checkPlyHeader(const std::string& path, std::uint64_t file_size) {
     failReading(path, "it is a range grid", "save its points as a plain cloud");
   }
   requireBytes(path, needed - (ascii ? 1.0 : 0.0), file_size - lines.position());
-  if (ascii) {
-    std::int64_t before = 0;
-    const auto vertex =
-        std::find_if(elements.begin(), elements.end(), [&before](const PlyElement& element) {
-          const bool found = element.name == "vertex";
-          before += found ? 0 : element.count;
-          return found;
-        });
-    checkNumberLines(path, file_size, lines.position(), before, vertex->count,
-                     vertex->properties.size());
+  RecordLayout layout = toLayout(elements);
+  layout.known = grid_size == 0;
+  layout.storage = ascii        ? RecordStorage::Text
+                   : big_endian ? RecordStorage::BigEndian
+                                : RecordStorage::LittleEndian;
+  layout.body = lines.position();
+  layout.body_line = lines.number();
+  if (ascii && !layout.known) {
+    std::uint64_t before = 0;
+    for (const SkippedElement& element : layout.before) {
+      before += element.count;
+    }
+    checkNumberLines(path, file_size, lines.position(), static_cast<std::int64_t>(before),
+                     vertex_count, layout.columns);
   }
+  return layout;
 }
 
 std::uint64_t checkVtkHeader(const std::string& path, std::uint64_t file_size) {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -18,18 +18,28 @@ namespace {
 using Words = std::vector<std::string_view>;
 
 /// Hands the words of each line to a function, with the number of the line.
-void forEachLine(std::string_view text, std::string_view separators,
-                 const std::function<void(std::size_t, const Words&)>& take) {
+template <typename Take>
+void forEachLine(const std::string& path, const FileProgress& progress, std::string_view separators,
+                 const Take& take) {
+  BlockReader reader(path, 0, progress);
+  std::string_view line;
   Words words;
-  std::size_t number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string_view line = text.substr(begin, end - begin);
-    line = line.substr(0, line.find('#'));
-    split(line, separators, words);
-    take(++number, words);
-    begin = end + 1;
+  for (std::size_t number = 1; reader.nextLine(line); ++number) {
+    split(line.substr(0, line.find('#')), separators, words);
+    take(number, words);
   }
+}
+
+/// The number of lines that begin with some text: so much memory is set aside for points, instead
+/// of twice or three times as much while it grows.
+std::size_t countLines(const std::string& path, std::string_view beginning) {
+  BlockReader reader(path, 0, {});
+  std::string_view line;
+  std::size_t count = 0;
+  while (reader.nextLine(line)) {
+    count += line.substr(0, beginning.size()) == beginning ? 1 : 0;
+  }
+  return count;
 }
 
 [[noreturn]] void failLine(const std::string& path, std::size_t line, const std::string& reason) {
@@ -85,28 +95,30 @@ public:
     const auto values = threeNumbers(words, first_column_);
     colors_possible_ = colors_possible_ && values && isByteColor(*values);
     normals_possible_ = normals_possible_ && values && isUnit(*values);
-    if (values) {
-      values_.push_back(*values);
+    if (!colors_possible_ && !normals_possible_) {
+      values_ = {};
+    } else {
+      values_.push_back(toPoint(*values));
     }
   }
 
-  void assignTo(PointData& data) const {
+  void assignTo(PointData& data) {
     if (normals_possible_ && data.normals.empty()) {
-      for (const auto& values : values_) {
-        data.normals.push_back(toPoint(values));
-      }
+      data.normals = std::move(values_);
     } else if (colors_possible_ && data.colors.empty()) {
-      for (const auto& values : values_) {
-        data.colors.push_back(toColor(values, 1.0));
+      data.colors.reserve(values_.size());
+      for (const Point& values : values_) {
+        data.colors.push_back(toColor({values[0], values[1], values[2]}, 1.0));
       }
     }
+    values_ = {};
   }
 
 private:
   std::size_t first_column_;
   bool colors_possible_ = true;
   bool normals_possible_ = true;
-  std::vector<std::array<double, 3>> values_;
+  std::vector<Point> values_;  ///< exact for colours
 };
 
 bool isColumnTitle(const Words& words) {
@@ -116,12 +128,12 @@ bool isColumnTitle(const Words& words) {
 
 }  // namespace
 
-PointData readXyz(const std::string& path, std::uint64_t file_size) {
-  const std::string content = readBeginning(path, file_size);
+PointData readXyz(const std::string& path, const FileProgress& progress) {
   PointData data;
+  data.points.reserve(countLines(path, ""));
   std::array<ColumnTriple, 2> further = {ColumnTriple(3), ColumnTriple(6)};
   bool first = true;
-  forEachLine(content, " \t\r,;", [&](std::size_t line, const Words& words) {
+  forEachLine(path, progress, " \t\r,;", [&](std::size_t line, const Words& words) {
     if (words.empty()) {
       return;
     }
@@ -143,7 +155,7 @@ PointData readXyz(const std::string& path, std::uint64_t file_size) {
   if (data.points.empty()) {
     failContent(path, "it has no points");
   }
-  for (const ColumnTriple& triple : further) {
+  for (ColumnTriple& triple : further) {
     triple.assignTo(data);
   }
   return data;
@@ -205,10 +217,10 @@ std::vector<Point> objNormals(const ObjContent& content) {
 
 }  // namespace
 
-PointData readObj(const std::string& path, std::uint64_t file_size) {
-  const std::string text = readBeginning(path, file_size);
+PointData readObj(const std::string& path, const FileProgress& progress) {
   ObjContent content;
-  forEachLine(text, " \t\r", [&](std::size_t line, const Words& words) {
+  content.data.points.reserve(countLines(path, "v "));
+  forEachLine(path, progress, " \t\r", [&](std::size_t line, const Words& words) {
     if (words.empty()) {
       return;
     }

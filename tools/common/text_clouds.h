@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/block_reader.h"
 #include "common/point_data.h"
 
 #include <cstdint>
@@ -12,13 +13,13 @@ namespace spherical_param::tools {
 /// 6 and 7 to 9 are colours if all of them are whole numbers in 0 ... 255, and normals if all of
 /// them have length 1; else they are ignored.
 /// \throw Failure with the number of the broken line.
-PointData readXyz(const std::string& path, std::uint64_t file_size);
+PointData readXyz(const std::string& path, const FileProgress& progress);
 
 /// Reads the vertices of a Wavefront OBJ file, with colours (v x y z r g b) and normals as the
 /// faces refer to them, or in the order of the vertices if no face does.
 ///
 /// PCL's reader is not used: it drops the colours and takes the normals in their order, whatever
 /// the faces say. \throw Failure with the number of the broken line.
-PointData readObj(const std::string& path, std::uint64_t file_size);
+PointData readObj(const std::string& path, const FileProgress& progress);
 
 }  // namespace spherical_param::tools

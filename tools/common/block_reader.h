@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace spherical_param::tools {
+
+/// Is told now and then which share of a file has been read or written, in [0, 1].
+using FileProgress = std::function<void(double)>;
+
+/// Reads a file from its beginning to its end, a block at a time.
+class BlockReader {
+public:
+  /// \param position bytes to leave out. \throw Failure.
+  BlockReader(const std::string& path, std::uint64_t position, const FileProgress& progress);
+
+  /// The next bytes, until the next call of anything; null if there are not so many.
+  /// \throw Failure, as everything below.
+  const char* take(std::size_t count);
+  /// Leaves out bytes. \return false if there are not so many.
+  bool skip(std::uint64_t count);
+  /// The next line without its end, until the next call of anything. \return false if there is
+  /// none.
+  bool nextLine(std::string_view& line);
+
+private:
+  /// Adds a block to what is not taken yet. \return false at the end of the file.
+  bool refill();
+
+  std::string path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  FileProgress progress_;
+  std::uint64_t file_size_ = 0;
+  std::uint64_t position_ = 0;  // of the end of the buffer in the file
+  std::string buffer_;
+  std::size_t begin_ = 0;  // of what is not taken yet
+};
+
+}  // namespace spherical_param::tools

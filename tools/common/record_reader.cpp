@@ -1,0 +1,325 @@
+#include "common/record_reader.h"
+
+#include "common/input_file.h"
+#include "common/numbers.h"
+#include "common/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+using Fields = std::vector<RecordField>;
+
+[[noreturn]] void failBroken(const std::string& path) {
+  failContent(path, "it is broken or not complete");
+}
+
+const RecordField* findField(const Fields& fields, const std::string& name) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const RecordField& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+/// Three fields of real numbers.
+using RealFields = std::array<const RecordField*, 3>;
+
+std::optional<RealFields> findReals(const Fields& fields, const std::array<const char*, 3>& names) {
+  RealFields reals{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    reals[d] = findField(fields, names[d]);
+    if (reals[d] == nullptr || reals[d]->type != 'F') {
+      return std::nullopt;
+    }
+  }
+  return reals;
+}
+
+/// A point as the file has it: bytes, or the numbers of a line.
+class Record {
+public:
+  explicit Record(RecordStorage storage) : storage_(storage) {}
+
+  void setBytes(const char* bytes) { bytes_ = bytes; }
+  std::vector<double>& numbers() { return numbers_; }
+
+  double real(const RecordField& field) const {
+    if (storage_ == RecordStorage::Text) {
+      const double value = numbers_[field.column];
+      return field.size == 4 ? static_cast<double>(static_cast<float>(value)) : value;
+    }
+    return field.size == 8 ? load<double>(field) : static_cast<double>(load<float>(field));
+  }
+  std::array<double, 3> reals(const RealFields& fields) const {
+    return {real(*fields[0]), real(*fields[1]), real(*fields[2])};
+  }
+  std::uint8_t byte(const RecordField& field) const {
+    return storage_ == RecordStorage::Text
+               ? static_cast<std::uint8_t>(toInteger(numbers_[field.column]))
+               : load<std::uint8_t>(field);
+  }
+  /// 32 bits, whatever their meaning.
+  std::uint32_t word(const RecordField& field) const {
+    if (storage_ != RecordStorage::Text) {
+      return load<std::uint32_t>(field);
+    }
+    if (field.type != 'F') {
+      return static_cast<std::uint32_t>(toInteger(numbers_[field.column]));
+    }
+    const auto value = static_cast<float>(numbers_[field.column]);
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+  }
+
+private:
+  static std::int64_t toInteger(double number) {
+    constexpr double largest = 4294967295.0;
+    // The comparison also sorts out what is not a number.
+    return number >= -largest && number <= largest ? static_cast<std::int64_t>(number) : 0;
+  }
+
+  template <typename Number>
+  Number load(const RecordField& field) const {
+    std::array<char, sizeof(Number)> bytes{};
+    std::memcpy(bytes.data(), bytes_ + field.offset, bytes.size());
+    if (storage_ == RecordStorage::BigEndian) {
+      std::reverse(bytes.begin(), bytes.end());
+    }
+    Number value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+
+  RecordStorage storage_;
+  const char* bytes_ = nullptr;
+  std::vector<double> numbers_;
+};
+
+/// The colours of points: PLY has a byte for each channel, PCD all in one number.
+class ColorFields {
+public:
+  explicit ColorFields(const RecordLayout& layout) {
+    const auto is_byte = [](const RecordField* field) {
+      return field != nullptr && field->type == 'U' && field->size == 1 && field->count == 1;
+    };
+    for (const std::string prefix : {"", "diffuse_"}) {
+      if (channels_[0] == nullptr && is_byte(findField(layout.fields, prefix + "red"))) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          static const std::array<const char*, 3> names = {"red", "green", "blue"};
+          channels_[c] = findField(layout.fields, prefix + names[c]);
+        }
+      }
+    }
+    if (channels_[0] != nullptr) {
+      const RecordField* const alpha = findField(layout.fields, "alpha");
+      channels_[3] = is_byte(alpha) ? alpha : nullptr;
+      has_alpha_ = channels_[3] != nullptr;
+      return;
+    }
+    packed_ = findField(layout.fields, "rgba");
+    has_alpha_ = packed_ != nullptr;
+    if (packed_ == nullptr) {
+      packed_ = findField(layout.fields, "rgb");
+    }
+    if (packed_ != nullptr && packed_->size != 4) {
+      packed_ = nullptr;
+      has_alpha_ = false;
+    }
+  }
+
+  bool any() const { return channels_[0] != nullptr || packed_ != nullptr; }
+  bool hasAlpha() const { return has_alpha_; }
+
+  Color of(const Record& record) const {
+    if (packed_ != nullptr) {
+      const std::uint32_t packed = record.word(*packed_);
+      return {static_cast<std::uint8_t>(packed >> 16U), static_cast<std::uint8_t>(packed >> 8U),
+              static_cast<std::uint8_t>(packed),
+              static_cast<std::uint8_t>(has_alpha_ ? packed >> 24U : 255U)};
+    }
+    return {record.byte(*channels_[0]), record.byte(*channels_[1]), record.byte(*channels_[2]),
+            has_alpha_ ? record.byte(*channels_[3]) : std::uint8_t{255}};
+  }
+
+private:
+  std::array<const RecordField*, 4> channels_{};
+  const RecordField* packed_ = nullptr;
+  bool has_alpha_ = false;
+};
+
+class RecordReader {
+public:
+  RecordReader(const std::string& path, const RecordLayout& layout, const FileProgress& progress)
+      : path_(path), layout_(layout), reader_(path, layout.body, progress),
+        line_number_(layout.body_line) {}
+
+  PointData read() {
+    for (const SkippedElement& element : layout_.before) {
+      isText() ? skipLines(element.count) : skipBytes(element);
+    }
+    PointData data = readPoints();
+    for (const SkippedElement& element : layout_.after) {
+      isText() ? skipWords(element) : skipBytes(element);
+    }
+    return data;
+  }
+
+private:
+  bool isText() const { return layout_.storage == RecordStorage::Text; }
+
+  PointData readPoints() {
+    const auto coordinates = findReals(layout_.fields, {"x", "y", "z"});
+    if (!coordinates) {
+      failContent(path_, "it has no points with x, y and z");
+    }
+    auto normals = findReals(layout_.fields, {"normal_x", "normal_y", "normal_z"});
+    if (!normals) {
+      normals = findReals(layout_.fields, {"nx", "ny", "nz"});
+    }
+    const ColorFields colors(layout_);
+    const auto count = static_cast<std::size_t>(layout_.points);
+    PointData data;
+    data.has_alpha = colors.hasAlpha();
+    data.points.reserve(count);
+    data.normals.reserve(normals ? count : 0);
+    data.colors.reserve(colors.any() ? count : 0);
+    Record record(layout_.storage);
+    for (std::size_t i = 0; i < count; ++i) {
+      isText() ? readNumbers(record) : readBytes(record);
+      data.addPoint(record.reals(*coordinates));
+      if (normals) {
+        data.normals.push_back(toPoint(record.reals(*normals)));
+      }
+      if (colors.any()) {
+        data.colors.push_back(colors.of(record));
+      }
+    }
+    return data;
+  }
+
+  void readBytes(Record& record) {
+    const char* const bytes = reader_.take(layout_.record_size);
+    if (bytes == nullptr) {
+      failBroken(path_);
+    }
+    record.setBytes(bytes);
+  }
+
+  /// The words of the next line that has any.
+  bool nextWords() {
+    std::string_view line;
+    while (reader_.nextLine(line)) {
+      ++line_number_;
+      split(line, " \t\r", words_);
+      if (!words_.empty()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void readNumbers(Record& record) {
+    if (!nextWords()) {
+      failContent(path_, "it has fewer points than its header says");
+    }
+    std::vector<double>& numbers = record.numbers();
+    numbers.clear();
+    for (std::size_t i = 0; i < std::min(words_.size(), layout_.columns); ++i) {
+      const std::optional<double> number = toReal(words_[i]);
+      if (!number) {
+        break;
+      }
+      numbers.push_back(*number);
+    }
+    if (numbers.size() < layout_.columns) {
+      failContent(path_, "line " + std::to_string(line_number_) + " has no " +
+                             std::to_string(layout_.columns) + " numbers");
+    }
+  }
+
+  void skipLines(std::uint64_t count) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (!nextWords()) {
+        failContent(path_, "it has fewer points than its header says");
+      }
+    }
+  }
+
+  /// Behind the points, nobody cares which line a word is on.
+  void skipWords(const SkippedElement& element) {
+    const auto next_word = [this] {
+      if (next_word_ >= words_.size()) {
+        next_word_ = 0;
+        if (!nextWords()) {
+          failBroken(path_);
+        }
+      }
+      return words_[next_word_++];
+    };
+    if (!behind_points_) {
+      words_.clear();
+      behind_points_ = true;
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const SkippedElement::Property& property : element.properties) {
+        const std::string_view word = next_word();
+        if (property.length_size == 0) {
+          continue;
+        }
+        const std::optional<std::int64_t> length = toInteger(word);
+        if (!length || *length < 0) {
+          failBroken(path_);
+        }
+        for (std::int64_t k = 0; k < *length; ++k) {
+          next_word();
+        }
+      }
+    }
+  }
+
+  void skipBytes(const SkippedElement& element) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const SkippedElement::Property& property : element.properties) {
+        std::uint64_t values = 1;
+        if (property.length_size > 0) {
+          const char* const bytes = reader_.take(property.length_size);
+          if (bytes == nullptr) {
+            failBroken(path_);
+          }
+          values = 0;
+          for (std::size_t b = 0; b < property.length_size; ++b) {
+            const std::size_t place =
+                layout_.storage == RecordStorage::BigEndian ? property.length_size - 1 - b : b;
+            values |= std::uint64_t{static_cast<std::uint8_t>(bytes[place])} << (8 * b);
+          }
+        }
+        if (!reader_.skip(values * property.size)) {
+          failBroken(path_);
+        }
+      }
+    }
+  }
+
+  const std::string& path_;
+  const RecordLayout& layout_;
+  BlockReader reader_;
+  std::size_t line_number_;
+  std::vector<std::string_view> words_;
+  std::size_t next_word_ = 0;
+  bool behind_points_ = false;
+};
+
+}  // namespace
+
+PointData readRecords(const std::string& path, const RecordLayout& layout,
+                      const FileProgress& progress) {
+  return RecordReader(path, layout, progress).read();
+}
+
+}  // namespace spherical_param::tools
