@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <utility>
 
 namespace spherical_param::tools {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 constexpr std::size_t label_width = 20;
 constexpr std::size_t bar_width = 24;
 constexpr std::chrono::milliseconds redraw_interval{50};
+/// A stage that tells nothing for so long is drawn anew, with the time that has passed.
+constexpr std::chrono::milliseconds longest_silence{1000};
 
 std::string padded(const std::string& label) {
   return label + std::string(label.size() < label_width ? label_width - label.size() : 1, ' ');
@@ -31,9 +34,18 @@ void flushStandardOutput() {
 
 }  // namespace
 
-Console::Console(bool enabled) : enabled_(enabled), terminal_(isatty(STDOUT_FILENO) == 1) {}
+Console::Console(bool enabled)
+    : enabled_(enabled), terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
 
 Console::~Console() {
+  if (drawer_.joinable()) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ended_ = true;
+    }
+    ending_.notify_all();
+    drawer_.join();
+  }
   if (bar_drawn_) {
     // An error message shall begin on a line of its own.
     print("\n");
@@ -55,37 +67,86 @@ void Console::entry(const std::string& label, const std::string& value) {
   print("  " + padded(label) + value + "\n");
 }
 
+void Console::plan(std::vector<std::pair<std::string, double>> stages) {
+  plan_ = std::move(stages);
+}
+
 void Console::begin(const std::string& stage) {
-  stage_ = stage;
-  begin_ = Clock::now();
-  drawn_ = begin_ - 2 * redraw_interval;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stage_ = stage;
+    in_stage_ = true;
+    fraction_ = 0.0;
+    begin_ = Clock::now();
+    drawn_ = begin_ - 2 * redraw_interval;
+  }
+  if (enabled_ && terminal_ && !drawer_.joinable()) {
+    drawer_ = std::thread([this] { keepDrawing(); });
+  }
   update(0.0, "");
 }
 
 void Console::update(double fraction, const std::string& detail) {
-  const Clock::time_point now = Clock::now();
-  if (!enabled_ || !terminal_ || now - drawn_ < redraw_interval) {
+  if (!enabled_ || !terminal_) {
     return;
   }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  fraction_ = std::max(fraction_, std::clamp(fraction, 0.0, 1.0));
+  detail_ = detail;
+  if (Clock::now() - drawn_ >= redraw_interval) {
+    draw();
+  }
+}
+
+void Console::draw() {
+  const Clock::time_point now = Clock::now();
   drawn_ = now;
   bar_drawn_ = true;
-  const double share = std::clamp(fraction, 0.0, 1.0);
-  const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_width));
-  const std::string percent = std::to_string(static_cast<int>(share * 100.0));
+  const auto percent = [](double share) {
+    const std::string text = std::to_string(static_cast<int>(share * 100.0));
+    return std::string(text.size() < 3 ? 3 - text.size() : 0, ' ') + text + " %";
+  };
+  double before = 0.0;
+  double all = 0.0;
+  for (const auto& stage : plan_) {
+    all += stage.second;
+  }
+  const auto planned = std::find_if(plan_.begin(), plan_.end(),
+                                    [this](const auto& stage) { return stage.first == stage_; });
+  for (auto stage = plan_.begin(); stage != planned; ++stage) {
+    before += stage->second;
+  }
+  if (planned != plan_.end()) {
+    overall_ = std::max(overall_, (before + fraction_ * planned->second) / all);
+  }
+  const auto filled = static_cast<std::size_t>(fraction_ * static_cast<double>(bar_width));
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start_).count();
   // \033[K clears the rest of the line, left over from a longer one.
   print("\r  " + padded(stage_) + "[" + std::string(filled, '#') +
-        std::string(bar_width - filled, '.') + "] " + std::string(3 - percent.size(), ' ') +
-        percent + " %  " + detail + "\033[K");
+        std::string(bar_width - filled, '.') + "] " + percent(fraction_) +
+        (plan_.empty() ? "" : "  all" + percent(overall_)) + "  " + std::to_string(seconds) +
+        " s  " + detail_ + "\033[K");
   std::fflush(stdout);
 }
 
+void Console::keepDrawing() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!ending_.wait_for(lock, longest_silence, [this] { return ended_; })) {
+    if (in_stage_ && Clock::now() - drawn_ >= longest_silence / 2) {
+      draw();
+    }
+  }
+}
+
 double Console::end(const std::string& detail) {
+  const std::lock_guard<std::mutex> lock(mutex_);
   const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   std::array<char, 32> time;
   std::snprintf(time.data(), time.size(), "%8.3f s", seconds);
   print((bar_drawn_ ? "\r  " : "  ") + padded(stage_) + time.data() +
         (detail.empty() ? "" : "  " + detail) + (bar_drawn_ ? "\033[K\n" : "\n"));
   bar_drawn_ = false;
+  in_stage_ = false;
   std::fflush(stdout);
   return seconds;
 }

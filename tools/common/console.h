@@ -1,12 +1,18 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
+#include <utility>
+#include <vector>
 
 namespace spherical_param::tools {
 
 /// What a tool says on the standard output: pairs of label and value, and stages of work with
-/// their time. A stage is a progress bar on a terminal, else one line at its end.
+/// their time. A stage is a progress bar on a terminal, which is drawn anew every second even if
+/// nothing is told of it, else one line at its end.
 class Console {
 public:
   /// \param enabled false: nothing is printed, times are measured nevertheless.
@@ -20,9 +26,14 @@ public:
   /// Prints a label and its value.
   void entry(const std::string& label, const std::string& value);
 
+  /// Tells which stages there will be, in their order, and how long each takes compared with the
+  /// others: bars then show the share of the whole as well. It never falls, though stages may be
+  /// repeated.
+  void plan(std::vector<std::pair<std::string, double>> stages);
+
   /// Begins a stage.
   void begin(const std::string& stage);
-  /// Draws the bar of the stage; fraction in [0, 1].
+  /// Draws the bar of the stage; fraction in [0, 1]. A lower one than before changes nothing.
   void update(double fraction, const std::string& detail);
   /// Ends the stage. \return its time [s].
   double end(const std::string& detail);
@@ -34,13 +45,28 @@ private:
   using Clock = std::chrono::steady_clock;
 
   void print(const std::string& text);
+  /// Draws the bar, with the mutex locked.
+  void draw();
+  /// Draws the bar now and then, until the end.
+  void keepDrawing();
 
   bool enabled_;
   bool terminal_;
+  std::vector<std::pair<std::string, double>> plan_;
+  double overall_ = 0.0;  ///< share of the plan that is done
+  Clock::time_point start_;
+
+  std::mutex mutex_;  ///< of all that follows
+  std::condition_variable ending_;
+  bool ended_ = false;
+  bool in_stage_ = false;
   bool bar_drawn_ = false;
   std::string stage_;
+  double fraction_ = 0.0;
+  std::string detail_;
   Clock::time_point begin_;
   Clock::time_point drawn_;
+  std::thread drawer_;
 };
 
 /// Prints text on the standard output and makes sure that it got there. \throw Failure.
