@@ -455,6 +455,24 @@ OutlierRemoval removeOutliers(const Settings& settings, const PointData& data) {
   return removal;
 }
 
+/// The stages and their shares of the time for a million points, in hundredths.
+std::vector<std::pair<std::string, double>> stagesOf(const Settings& settings) {
+  std::vector<std::pair<std::string, double>> stages = {{"read", 1.0}};
+  if (settings.outlier_sigma) {
+    stages.emplace_back("outliers", 20.0);
+  }
+  stages.insert(stages.end(), {{"neighbors", 19.0},
+                               {"graph", 18.0},
+                               {"embedding", 18.0},
+                               {"triangulation", 3.0},
+                               {"optimization", 36.0}});
+  if (settings.options.smoothing_steps > 0) {
+    stages.emplace_back("smoothing", 10.0);
+  }
+  stages.insert(stages.end(), {{"check", 3.0}, {"write", 2.0}});
+  return stages;
+}
+
 /// Runs the library on the points that are no outliers, with its stages on the console.
 void reconstruct(const Settings& settings, const PointData& data,
                  const std::optional<OutlierRemoval>& outliers, Reconstruction& reconstruction,
@@ -529,40 +547,24 @@ void reconstruct(const Settings& settings, const PointData& data,
   }
 }
 
-std::vector<std::array<std::int32_t, 3>> trianglesOf(const spherical_param::Result& result) {
-  std::vector<std::array<std::int32_t, 3>> triangles;
-  triangles.reserve(static_cast<std::size_t>(result.triangles.cols()));
-  for (Eigen::Index t = 0; t < result.triangles.cols(); ++t) {
-    triangles.push_back({result.triangles(0, t), result.triangles(1, t), result.triangles(2, t)});
-  }
-  return triangles;
-}
-
-/// Gives each vertex a new place.
-void moveVertices(const spherical_param::Positions& places, TriangleMesh& mesh) {
-  for (std::size_t v = 0; v < mesh.vertices.points.size(); ++v) {
-    const Eigen::Vector3f place = places.col(static_cast<Eigen::Index>(v)).cast<float>();
-    mesh.vertices.points[v] = {place.x(), place.y(), place.z()};
-  }
-}
-
 /// The mesh that is written. Only points that are vertices are, so that every vertex of the file is
 /// used.
-TriangleMesh meshOf(const PointData& data, const Reconstruction& reconstruction) {
+MeshView meshOf(const PointData& data, const Reconstruction& reconstruction) {
   const spherical_param::Result& result = reconstruction.getResult();
-  TriangleMesh mesh = {selectPoints(data, reconstruction.getVertexIndices()), trianglesOf(result)};
+  MeshView mesh(data, reconstruction.getVertexIndices(), result.triangles);
   if (result.smoothed.cols() > 0) {
-    moveVertices(result.smoothed, mesh);
+    mesh.moveTo(result.smoothed);
   }
   return mesh;
 }
 
 /// The vertices on the sphere. They keep their colours, but not the normals of the input, which
 /// mean nothing there.
-TriangleMesh sphereOf(const spherical_param::Result& result, const TriangleMesh& mesh) {
-  TriangleMesh sphere = mesh;
-  sphere.vertices.normals.clear();
-  moveVertices(result.sphere, sphere);
+MeshView sphereOf(const PointData& data, const Reconstruction& reconstruction) {
+  const spherical_param::Result& result = reconstruction.getResult();
+  MeshView sphere(data, reconstruction.getVertexIndices(), result.triangles);
+  sphere.leaveOutNormals();
+  sphere.moveTo(result.sphere);
   return sphere;
 }
 
@@ -1095,8 +1097,10 @@ void run(const std::vector<std::string>& words) {
 
   Console console(!settings.quiet && !settings.jsonToStandardOutput());
   printParameters(settings, console);
+  console.plan(stagesOf(settings));
   console.begin("read");
-  const PointData data = readCloud(settings.input);
+  const PointData data =
+      readCloud(settings.input, [&console](double share) { console.update(share, ""); });
   std::vector<spherical_param::StageTime> stages;
   stages.push_back({"read", console.end(std::to_string(data.points.size()) + " points")});
 
@@ -1114,13 +1118,16 @@ void run(const std::vector<std::string>& words) {
   stages.insert(stages.end(), result.stages.begin(), result.stages.end());
 
   console.begin("write");
-  const TriangleMesh mesh = meshOf(data, reconstruction);
+  // The mesh, and the sphere if it is wanted, are halves of one stage.
+  const double share_of_file = settings.sphere.empty() ? 1.0 : 0.5;
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), mesh, settings.output_format, settings.encoding);
+  writeMesh(*files.back(), meshOf(data, reconstruction), settings.output_format, settings.encoding,
+            [&](double share) { console.update(share_of_file * share, ""); });
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
-    writeMesh(*files.back(), sphereOf(result, mesh), settings.sphere_format, settings.encoding);
+    writeMesh(*files.back(), sphereOf(data, reconstruction), settings.sphere_format,
+              settings.encoding, [&](double share) { console.update(0.5 + 0.5 * share, ""); });
   }
   for (const auto& file : files) {
     file->finish();

@@ -5,6 +5,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -17,34 +18,47 @@ namespace {
 
 enum class ByteOrder { Little, Big };
 
-/// Puts numbers and text together and hands them to the file in larger pieces.
+/// Puts numbers and text together and hands them to the file in blocks.
 class Writer {
 public:
-  explicit Writer(OutputFile& file) : file_(file) {}
+  /// \param records lines, or vertices and triangles, that there will be.
+  Writer(OutputFile& file, std::size_t records, const FileProgress& progress)
+      : file_(file), records_(records), progress_(progress) {
+    block_.reserve(block_size + longest_part);
+  }
 
-  void text(std::string_view part) { line_ += part; }
+  void text(std::string_view part) {
+    block_ += part;
+    sendIfFull();
+  }
   /// 9 digits tell every two floats apart.
   void number(float value) {
     std::array<char, 32> digits;
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
                                    std::chars_format::general, 9);
-    line_.append(digits.data(), end.ptr);
+    block_.append(digits.data(), end.ptr);
   }
-  void number(std::int64_t value) { line_ += std::to_string(value); }
+  void number(std::int64_t value) {
+    std::array<char, 32> digits;
+    block_.append(digits.data(),
+                  std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  }
   void numbers(const Point& values) {
     number(values[0]);
-    text(" ");
+    block_ += ' ';
     number(values[1]);
-    text(" ");
+    block_ += ' ';
     number(values[2]);
   }
 
-  void byte(std::uint8_t value) { line_ += static_cast<char>(value); }
+  void byte(std::uint8_t value) { block_ += static_cast<char>(value); }
   void word(std::uint32_t value, ByteOrder order) {
+    std::array<char, 4> bytes{};
     for (unsigned i = 0; i < 4; ++i) {
       const unsigned shift = order == ByteOrder::Little ? 8 * i : 24 - 8 * i;
-      byte(static_cast<std::uint8_t>(value >> shift));
+      bytes[i] = static_cast<char>(static_cast<std::uint8_t>(value >> shift));
     }
+    block_.append(bytes.data(), bytes.size());
   }
   void word(float value, ByteOrder order) {
     std::uint32_t bits = 0;
@@ -56,99 +70,125 @@ public:
       word(value, order);
     }
   }
-
-  /// Ends a line or record.
-  void send() {
-    file_.write(line_);
-    line_.clear();
+  void words(const Triangle& triangle, ByteOrder order) {
+    for (const std::int32_t corner : triangle) {
+      word(static_cast<std::uint32_t>(corner), order);
+    }
   }
+
   void endLine() {
-    line_ += '\n';
-    send();
+    block_ += '\n';
+    endRecord();
   }
   void line(std::string_view whole) {
     text(whole);
     endLine();
   }
+  /// Ends what counts as a record: a line, or the bytes of a vertex or triangle.
+  void endRecord() {
+    ++written_;
+    sendIfFull();
+  }
+
+  /// Hands over what is left.
+  void finish() {
+    file_.write(block_);
+    block_.clear();
+  }
 
 private:
+  static constexpr std::size_t block_size = std::size_t{1} << 20;
+  /// Nothing longer is put together before the block is looked at again.
+  static constexpr std::size_t longest_part = 4096;
+
+  void sendIfFull() {
+    if (block_.size() < block_size) {
+      return;
+    }
+    finish();
+    if (progress_) {
+      progress_(std::min(1.0, static_cast<double>(written_) / static_cast<double>(records_)));
+    }
+  }
+
   OutputFile& file_;
-  std::string line_;
+  std::size_t records_;
+  std::size_t written_ = 0;
+  const FileProgress& progress_;
+  std::string block_;
 };
 
 std::string count(std::size_t number) {
   return std::to_string(number);
 }
 
-void writeCorners(Writer& writer, const std::array<std::int32_t, 3>& triangle) {
+void writeCorners(Writer& writer, const Triangle& triangle) {
   for (const std::int32_t corner : triangle) {
     writer.text(" ");
     writer.number(std::int64_t{corner});
   }
 }
 
-std::size_t channelCount(const PointData& data) {
-  return data.has_alpha ? 4 : 3;
+std::size_t channelCount(const MeshView& mesh) {
+  return mesh.hasAlpha() ? 4 : 3;
 }
 
-void writePly(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
-  const PointData& data = mesh.vertices;
+void writePly(Writer& writer, const MeshView& mesh, Encoding encoding) {
   writer.line("ply");
   writer.line(encoding == Encoding::Binary ? "format binary_little_endian 1.0"
                                            : "format ascii 1.0");
-  writer.line("element vertex " + count(data.points.size()));
+  writer.line("element vertex " + count(mesh.vertexCount()));
   for (const char* name : {"x", "y", "z"}) {
     writer.line(std::string("property float ") + name);
   }
-  if (!data.normals.empty()) {
+  if (mesh.hasNormals()) {
     for (const char* name : {"nx", "ny", "nz"}) {
       writer.line(std::string("property float ") + name);
     }
   }
-  if (!data.colors.empty()) {
+  if (mesh.hasColors()) {
     for (const char* name : {"red", "green", "blue"}) {
       writer.line(std::string("property uchar ") + name);
     }
-    if (data.has_alpha) {
+    if (mesh.hasAlpha()) {
       writer.line("property uchar alpha");
     }
   }
-  if (!mesh.triangles.empty()) {
-    writer.line("element face " + count(mesh.triangles.size()));
+  if (mesh.triangleCount() > 0) {
+    writer.line("element face " + count(mesh.triangleCount()));
     writer.line("property list uchar int vertex_indices");
   }
   writer.line("end_header");
 
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     if (encoding == Encoding::Binary) {
-      writer.words(data.points[i], ByteOrder::Little);
-      if (!data.normals.empty()) {
-        writer.words(data.normals[i], ByteOrder::Little);
+      writer.words(mesh.point(i), ByteOrder::Little);
+      if (mesh.hasNormals()) {
+        writer.words(mesh.normal(i), ByteOrder::Little);
       }
-      for (std::size_t c = 0; c < (data.colors.empty() ? 0 : channelCount(data)); ++c) {
-        writer.byte(data.colors[i][c]);
+      for (std::size_t c = 0; c < (!mesh.hasColors() ? 0 : channelCount(mesh)); ++c) {
+        writer.byte(mesh.color(i)[c]);
       }
-      writer.send();
+      writer.endRecord();
     } else {
-      writer.numbers(data.points[i]);
-      if (!data.normals.empty()) {
+      writer.numbers(mesh.point(i));
+      if (mesh.hasNormals()) {
         writer.text(" ");
-        writer.numbers(data.normals[i]);
+        writer.numbers(mesh.normal(i));
       }
-      for (std::size_t c = 0; c < (data.colors.empty() ? 0 : channelCount(data)); ++c) {
+      for (std::size_t c = 0; c < (!mesh.hasColors() ? 0 : channelCount(mesh)); ++c) {
         writer.text(" ");
-        writer.number(std::int64_t{data.colors[i][c]});
+        writer.number(std::int64_t{mesh.color(i)[c]});
       }
       writer.endLine();
     }
   }
-  for (const auto& triangle : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+    const Triangle triangle = mesh.triangle(t);
     if (encoding == Encoding::Binary) {
       writer.byte(3);
-      for (const std::int32_t corner : triangle) {
-        writer.word(static_cast<std::uint32_t>(corner), ByteOrder::Little);
-      }
-      writer.send();
+      writer.words(triangle, ByteOrder::Little);
+      writer.endRecord();
     } else {
       writer.text("3");
       writeCorners(writer, triangle);
@@ -157,29 +197,33 @@ void writePly(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
   }
 }
 
-void writeObj(Writer& writer, const TriangleMesh& mesh) {
-  const PointData& data = mesh.vertices;
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
+void writeObj(Writer& writer, const MeshView& mesh) {
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     writer.text("v ");
-    writer.numbers(data.points[i]);
-    if (!data.colors.empty()) {
-      const Color& color = data.colors[i];
+    writer.numbers(mesh.point(i));
+    if (mesh.hasColors()) {
+      const Color& color = mesh.color(i);
       writer.text(" ");
       writer.numbers({static_cast<float>(color[0]) / 255.0F, static_cast<float>(color[1]) / 255.0F,
                       static_cast<float>(color[2]) / 255.0F});
     }
     writer.endLine();
   }
-  for (const Point& normal : data.normals) {
+  for (std::size_t i = 0; mesh.hasNormals() && i < mesh.vertexCount(); ++i) {
     writer.text("vn ");
-    writer.numbers(normal);
+    writer.numbers(mesh.normal(i));
     writer.endLine();
   }
-  for (const auto& triangle : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+    const Triangle triangle = mesh.triangle(t);
     writer.text("f");
     for (const std::int32_t corner : triangle) {
-      const std::string number = std::to_string(corner + 1);
-      writer.text(" " + number + (data.normals.empty() ? "" : "//" + number));
+      writer.text(" ");
+      writer.number(std::int64_t{corner} + 1);
+      if (mesh.hasNormals()) {
+        writer.text("//");
+        writer.number(std::int64_t{corner} + 1);
+      }
     }
     writer.endLine();
   }
@@ -202,22 +246,22 @@ Point facetNormal(const Point& a, const Point& b, const Point& c) {
           static_cast<float>(cross[2] / length)};
 }
 
-void writeStl(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
-  const std::vector<Point>& points = mesh.vertices.points;
+void writeStl(Writer& writer, const MeshView& mesh, Encoding encoding) {
   if (encoding == Encoding::Binary) {
     // 80 bytes of free text, which must not begin with "solid", as files in text do.
     std::string header = "binary STL";
     header.resize(80, ' ');
     writer.text(header);
-    writer.word(static_cast<std::uint32_t>(mesh.triangles.size()), ByteOrder::Little);
-    writer.send();
+    writer.word(static_cast<std::uint32_t>(mesh.triangleCount()), ByteOrder::Little);
+    writer.endRecord();
   } else {
     writer.line("solid mesh");
   }
-  for (const auto& triangle : mesh.triangles) {
-    const std::array<Point, 3> corners = {points[static_cast<std::size_t>(triangle[0])],
-                                          points[static_cast<std::size_t>(triangle[1])],
-                                          points[static_cast<std::size_t>(triangle[2])]};
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+    const Triangle triangle = mesh.triangle(t);
+    const std::array<Point, 3> corners = {mesh.point(static_cast<std::size_t>(triangle[0])),
+                                          mesh.point(static_cast<std::size_t>(triangle[1])),
+                                          mesh.point(static_cast<std::size_t>(triangle[2]))};
     const Point normal = facetNormal(corners[0], corners[1], corners[2]);
     if (encoding == Encoding::Binary) {
       writer.words(normal, ByteOrder::Little);
@@ -226,7 +270,7 @@ void writeStl(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
       }
       writer.byte(0);
       writer.byte(0);
-      writer.send();
+      writer.endRecord();
     } else {
       writer.text("facet normal ");
       writer.numbers(normal);
@@ -247,13 +291,12 @@ void writeStl(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
 }
 
 /// Legacy format, version 3.0: every VTK can read that, and pcl_viewer with it.
-void writeVtk(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
-  const PointData& data = mesh.vertices;
+void writeVtk(Writer& writer, const MeshView& mesh, Encoding encoding) {
   const bool binary = encoding == Encoding::Binary;
   const auto write_point = [&](const Point& point) {
     if (binary) {
       writer.words(point, ByteOrder::Big);
-      writer.send();
+      writer.endRecord();
     } else {
       writer.numbers(point);
       writer.endLine();
@@ -261,35 +304,33 @@ void writeVtk(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
   };
 
   writer.line("# vtk DataFile Version 3.0");
-  writer.line(mesh.triangles.empty() ? "point cloud" : "triangle mesh");
+  writer.line(mesh.triangleCount() == 0 ? "point cloud" : "triangle mesh");
   writer.line(binary ? "BINARY" : "ASCII");
   writer.line("DATASET POLYDATA");
-  writer.line("POINTS " + count(data.points.size()) + " float");
-  for (const Point& point : data.points) {
-    write_point(point);
+  writer.line("POINTS " + count(mesh.vertexCount()) + " float");
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    write_point(mesh.point(i));
   }
-  if (mesh.triangles.empty()) {
+  if (mesh.triangleCount() == 0) {
     // Points that belong to no cell are not shown.
-    writer.line("VERTICES " + count(data.points.size()) + " " + count(2 * data.points.size()));
-    for (std::size_t i = 0; i < data.points.size(); ++i) {
+    writer.line("VERTICES " + count(mesh.vertexCount()) + " " + count(2 * mesh.vertexCount()));
+    for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
       if (binary) {
         writer.word(std::uint32_t{1}, ByteOrder::Big);
         writer.word(static_cast<std::uint32_t>(i), ByteOrder::Big);
-        writer.send();
+        writer.endRecord();
       } else {
         writer.line("1 " + count(i));
       }
     }
   } else {
-    writer.line("POLYGONS " + count(mesh.triangles.size()) + " " +
-                count(4 * mesh.triangles.size()));
-    for (const auto& triangle : mesh.triangles) {
+    writer.line("POLYGONS " + count(mesh.triangleCount()) + " " + count(4 * mesh.triangleCount()));
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+      const Triangle triangle = mesh.triangle(t);
       if (binary) {
         writer.word(std::uint32_t{3}, ByteOrder::Big);
-        for (const std::int32_t corner : triangle) {
-          writer.word(static_cast<std::uint32_t>(corner), ByteOrder::Big);
-        }
-        writer.send();
+        writer.words(triangle, ByteOrder::Big);
+        writer.endRecord();
       } else {
         writer.text("3");
         writeCorners(writer, triangle);
@@ -297,14 +338,15 @@ void writeVtk(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
       }
     }
   }
-  if (data.colors.empty() && data.normals.empty()) {
+  if (!mesh.hasColors() && !mesh.hasNormals()) {
     return;
   }
-  writer.line("POINT_DATA " + count(data.points.size()));
-  if (!data.colors.empty()) {
-    writer.line("COLOR_SCALARS Colors " + count(channelCount(data)));
-    for (const Color& color : data.colors) {
-      for (std::size_t c = 0; c < channelCount(data); ++c) {
+  writer.line("POINT_DATA " + count(mesh.vertexCount()));
+  if (mesh.hasColors()) {
+    writer.line("COLOR_SCALARS Colors " + count(channelCount(mesh)));
+    for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+      const Color color = mesh.color(i);
+      for (std::size_t c = 0; c < channelCount(mesh); ++c) {
         if (binary) {
           writer.byte(color[c]);
         } else {
@@ -313,69 +355,69 @@ void writeVtk(Writer& writer, const TriangleMesh& mesh, Encoding encoding) {
         }
       }
       if (binary) {
-        writer.send();
+        writer.endRecord();
       } else {
         writer.endLine();
       }
     }
   }
-  if (!data.normals.empty()) {
+  if (mesh.hasNormals()) {
     writer.line("NORMALS Normals float");
-    for (const Point& normal : data.normals) {
-      write_point(normal);
+    for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+      write_point(mesh.normal(i));
     }
   }
 }
 
 /// Colours are 0 ... 255 with alpha, as most programs read them.
-void writeOff(Writer& writer, const TriangleMesh& mesh) {
-  const PointData& data = mesh.vertices;
-  writer.text(data.colors.empty() ? "" : "C");
-  writer.text(data.normals.empty() ? "" : "N");
+void writeOff(Writer& writer, const MeshView& mesh) {
+  writer.text(!mesh.hasColors() ? "" : "C");
+  writer.text(!mesh.hasNormals() ? "" : "N");
   writer.line("OFF");
-  writer.line(count(data.points.size()) + " " + count(mesh.triangles.size()) + " 0");
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    writer.numbers(data.points[i]);
-    if (!data.normals.empty()) {
+  writer.line(count(mesh.vertexCount()) + " " + count(mesh.triangleCount()) + " 0");
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    writer.numbers(mesh.point(i));
+    if (mesh.hasNormals()) {
       writer.text(" ");
-      writer.numbers(data.normals[i]);
+      writer.numbers(mesh.normal(i));
     }
-    if (!data.colors.empty()) {
-      for (const std::uint8_t channel : data.colors[i]) {
+    if (mesh.hasColors()) {
+      for (const std::uint8_t channel : mesh.color(i)) {
         writer.text(" ");
         writer.number(std::int64_t{channel});
       }
     }
     writer.endLine();
   }
-  for (const auto& triangle : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+    const Triangle triangle = mesh.triangle(t);
     writer.text("3");
     writeCorners(writer, triangle);
     writer.endLine();
   }
 }
 
-void writeXyz(Writer& writer, const PointData& data) {
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    writer.numbers(data.points[i]);
-    if (!data.colors.empty()) {
+void writeXyz(Writer& writer, const MeshView& mesh) {
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    writer.numbers(mesh.point(i));
+    if (mesh.hasColors()) {
       for (std::size_t c = 0; c < 3; ++c) {
         writer.text(" ");
-        writer.number(std::int64_t{data.colors[i][c]});
+        writer.number(std::int64_t{mesh.color(i)[c]});
       }
     }
-    if (!data.normals.empty()) {
+    if (mesh.hasNormals()) {
       writer.text(" ");
-      writer.numbers(data.normals[i]);
+      writer.numbers(mesh.normal(i));
     }
     writer.endLine();
   }
 }
 
 /// The header is PCL's. It writes the body to named files only, hence the packing in here.
-void writePcd(Writer& writer, const PointData& data) {
+void writePcd(Writer& writer, const MeshView& mesh) {
   pcl::PCLPointCloud2 cloud;
-  cloud.width = static_cast<std::uint32_t>(data.points.size());
+  cloud.width = static_cast<std::uint32_t>(mesh.vertexCount());
   cloud.height = 1;
   const auto add_field = [&cloud](const char* name, std::uint8_t type) {
     pcl::PCLPointField field;
@@ -389,40 +431,48 @@ void writePcd(Writer& writer, const PointData& data) {
   for (const char* name : {"x", "y", "z"}) {
     add_field(name, pcl::PCLPointField::FLOAT32);
   }
-  if (!data.normals.empty()) {
+  if (mesh.hasNormals()) {
     for (const char* name : {"normal_x", "normal_y", "normal_z"}) {
       add_field(name, pcl::PCLPointField::FLOAT32);
     }
   }
-  if (!data.colors.empty()) {
-    add_field(data.has_alpha ? "rgba" : "rgb",
-              data.has_alpha ? pcl::PCLPointField::UINT32 : pcl::PCLPointField::FLOAT32);
+  if (mesh.hasColors()) {
+    add_field(mesh.hasAlpha() ? "rgba" : "rgb",
+              mesh.hasAlpha() ? pcl::PCLPointField::UINT32 : pcl::PCLPointField::FLOAT32);
   }
   cloud.row_step = cloud.point_step * cloud.width;
   writer.text(pcl::PCDWriter().generateHeaderBinary(cloud, Eigen::Vector4f::Zero(),
                                                     Eigen::Quaternionf::Identity()));
   writer.line("DATA binary");
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    writer.words(data.points[i], ByteOrder::Little);
-    if (!data.normals.empty()) {
-      writer.words(data.normals[i], ByteOrder::Little);
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    writer.words(mesh.point(i), ByteOrder::Little);
+    if (mesh.hasNormals()) {
+      writer.words(mesh.normal(i), ByteOrder::Little);
     }
-    if (!data.colors.empty()) {
+    if (mesh.hasColors()) {
       std::uint32_t packed = 0;
       for (const std::size_t channel : {3U, 0U, 1U, 2U}) {
-        const bool kept = channel != 3 || data.has_alpha;
-        packed = packed << 8U | (kept ? data.colors[i][channel] : 0U);
+        const bool kept = channel != 3 || mesh.hasAlpha();
+        packed = packed << 8U | (kept ? mesh.color(i)[channel] : 0U);
       }
       writer.word(packed, ByteOrder::Little);
     }
-    writer.send();
+    writer.endRecord();
   }
 }
 
 }  // namespace
 
-void writeMesh(OutputFile& file, const TriangleMesh& mesh, FileFormat format, Encoding encoding) {
-  Writer writer(file);
+void writeMesh(OutputFile& file, const MeshView& mesh, FileFormat format, Encoding encoding,
+               const FileProgress& progress) {
+  const bool stl = format == FileFormat::Stl;
+  const std::size_t of_vertex = stl ? 0
+                                : format == FileFormat::Obj || format == FileFormat::Vtk
+                                    ? 1 + (mesh.hasNormals() ? 1 : 0)
+                                    : 1;
+  const std::size_t of_triangle = stl && encoding == Encoding::Ascii ? 7 : 1;
+  Writer writer(file, of_vertex * mesh.vertexCount() + of_triangle * mesh.triangleCount(),
+                progress);
   switch (format) {
   case FileFormat::Ply:
     writePly(writer, mesh, encoding);
@@ -440,12 +490,13 @@ void writeMesh(OutputFile& file, const TriangleMesh& mesh, FileFormat format, En
     writeOff(writer, mesh);
     break;
   case FileFormat::Xyz:
-    writeXyz(writer, mesh.vertices);
+    writeXyz(writer, mesh);
     break;
   case FileFormat::Pcd:
-    writePcd(writer, mesh.vertices);
+    writePcd(writer, mesh);
     break;
   }
+  writer.finish();
 }
 
 }  // namespace spherical_param::tools

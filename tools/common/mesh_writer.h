@@ -1,6 +1,8 @@
 #pragma once
 
+#include "common/block_reader.h"
 #include "common/file_formats.h"
+#include "common/mesh_view.h"
 #include "common/output_file.h"
 #include "common/point_data.h"
 
@@ -18,7 +20,11 @@ enum class Encoding { Binary, Ascii };
 /// VTK's PLY has no normals, PCL's PLY no alpha, PCL's OBJ no colours, VTK's text 6 digits; and
 /// neither knows OFF.
 ///
+/// A block of the file is in memory, not more.
+///
+/// \param progress told of the share that is written; may be empty.
 /// \throw Failure if the file cannot be written.
-void writeMesh(OutputFile& file, const TriangleMesh& mesh, FileFormat format, Encoding encoding);
+void writeMesh(OutputFile& file, const MeshView& mesh, FileFormat format, Encoding encoding,
+               const FileProgress& progress = {});
 
 }  // namespace spherical_param::tools

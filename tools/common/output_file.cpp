@@ -129,6 +129,12 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view bytes) {
+  // Large blocks go straight on.
+  if (bytes.size() >= buffer_size) {
+    flush();
+    store(bytes);
+    return;
+  }
   buffer_.append(bytes);
   if (buffer_.size() >= buffer_size) {
     flush();
@@ -136,9 +142,14 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::flush() {
+  store(buffer_);
+  buffer_.clear();
+}
+
+void OutputFile::store(std::string_view bytes) {
   std::size_t done = 0;
-  while (done < buffer_.size()) {
-    const ssize_t count = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
+  while (done < bytes.size()) {
+    const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) {
       continue;
     }
@@ -148,7 +159,6 @@ void OutputFile::flush() {
     done += static_cast<std::size_t>(count);
   }
   written_ += done;
-  buffer_.clear();
 }
 
 void OutputFile::finish() {

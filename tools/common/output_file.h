@@ -37,6 +37,7 @@ public:
 
 private:
   void flush();
+  void store(std::string_view bytes);
   void discard();
   [[noreturn]] void fail(const std::string& action, int error_number) const;
 

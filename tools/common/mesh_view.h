@@ -1,0 +1,74 @@
+#pragma once
+
+#include "common/point_data.h"
+#include "spherical_param/types.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param::tools {
+
+using Triangle = std::array<std::int32_t, 3>;  ///< counter-clockwise from outside
+
+/// What is to be written, taken from where it is: a mesh of many points is not copied for that.
+/// All that it was made of must outlive it.
+class MeshView {
+public:
+  /// A mesh as it is.
+  MeshView(const TriangleMesh& mesh)
+      : data_(&mesh.vertices), vertex_count_(mesh.vertices.points.size()),
+        triangle_count_(mesh.triangles.size()),
+        corners_(mesh.triangles.empty() ? nullptr : mesh.triangles.front().data()),
+        has_normals_(!mesh.vertices.normals.empty()) {}
+
+  /// Triangles over some of the points.
+  ///
+  /// \param indices of the vertices in `data`; the triangles have their places in here.
+  MeshView(const PointData& data, const std::vector<int>& indices, const Triangles& triangles)
+      : data_(&data), indices_(&indices), vertex_count_(indices.size()),
+        triangle_count_(static_cast<std::size_t>(triangles.cols())), corners_(triangles.data()),
+        has_normals_(!data.normals.empty()) {}
+
+  /// Puts the vertices elsewhere.
+  ///
+  /// \param places 3 x vertices.
+  void moveTo(const Positions& places) { places_ = &places; }
+  void leaveOutNormals() { has_normals_ = false; }
+
+  std::size_t vertexCount() const { return vertex_count_; }
+  std::size_t triangleCount() const { return triangle_count_; }
+  bool hasNormals() const { return has_normals_; }
+  bool hasColors() const { return !data_->colors.empty(); }
+  bool hasAlpha() const { return data_->has_alpha; }
+
+  Point point(std::size_t vertex) const {
+    if (places_ == nullptr) {
+      return data_->points[index(vertex)];
+    }
+    const Eigen::Vector3f place = places_->col(static_cast<Eigen::Index>(vertex)).cast<float>();
+    return {place.x(), place.y(), place.z()};
+  }
+  const Point& normal(std::size_t vertex) const { return data_->normals[index(vertex)]; }
+  const Color& color(std::size_t vertex) const { return data_->colors[index(vertex)]; }
+  Triangle triangle(std::size_t t) const {
+    const std::int32_t* const corners = corners_ + 3 * t;
+    return {corners[0], corners[1], corners[2]};
+  }
+
+private:
+  std::size_t index(std::size_t vertex) const {
+    return indices_ == nullptr ? vertex : static_cast<std::size_t>((*indices_)[vertex]);
+  }
+
+  const PointData* data_;
+  const std::vector<int>* indices_ = nullptr;
+  const Positions* places_ = nullptr;
+  std::size_t vertex_count_;
+  std::size_t triangle_count_;
+  const std::int32_t* corners_;
+  bool has_normals_;
+};
+
+}  // namespace spherical_param::tools
