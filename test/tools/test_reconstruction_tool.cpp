@@ -1626,6 +1626,27 @@ TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
   EXPECT_NE(result.output.find("\r  embedding           ["), std::string::npos);
 }
 
+TEST_F(ReconstructionTool, TheShareOfTheWholeOnlyGrows) {
+  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(5000));
+  RunOptions options;
+  options.directory = directory.path();
+  options.terminal = true;
+  const RunResult result =
+      run(RECONSTRUCTION_TOOL, {"large.ply", "out.ply", "-smooth", "5"}, options);
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  std::vector<int> shares;
+  const std::string label = "  all";
+  for (std::size_t i = result.output.find(label); i != std::string::npos;
+       i = result.output.find(label, i + 1)) {
+    shares.push_back(std::stoi(result.output.substr(i + label.size())));
+  }
+  ASSERT_GE(shares.size(), 9U);  // each stage tells of its beginning
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << testing::PrintToString(shares);
+  EXPECT_EQ(shares.front(), 0);
+  EXPECT_GE(shares.back(), 90);
+  EXPECT_LE(shares.back(), 100);
+}
+
 // Enough points that all stages use their threads, and several levels.
 TEST_F(ReconstructionTool, SameBytesForAnyNumberOfThreads) {
   writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(20000));

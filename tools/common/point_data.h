@@ -44,22 +44,4 @@ struct TriangleMesh {
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< counter-clockwise from outside
 };
 
-/// The points of the given indices, in that order, with what belongs to them.
-template <typename IndexRange>
-PointData selectPoints(const PointData& data, const IndexRange& indices) {
-  PointData selected;
-  selected.has_alpha = data.has_alpha;
-  for (const auto index : indices) {
-    const auto i = static_cast<std::size_t>(index);
-    selected.points.push_back(data.points[i]);
-    if (!data.normals.empty()) {
-      selected.normals.push_back(data.normals[i]);
-    }
-    if (!data.colors.empty()) {
-      selected.colors.push_back(data.colors[i]);
-    }
-  }
-  return selected;
-}
-
 }  // namespace spherical_param::tools
