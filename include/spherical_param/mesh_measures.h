@@ -20,6 +20,10 @@ struct MeshMeasures {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 
+struct MeasureOptions {
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+};
+
 /// Measures a closed mesh: exact integrals over the polyhedron, by the divergence theorem (Mirtich
 /// 1996: Fast and accurate computation of polyhedral mass properties; in the closed form of Eberly
 /// 2002: Polyhedral mass properties (revisited)).
@@ -28,8 +32,9 @@ struct MeshMeasures {
 /// mesh intersects itself, regions count as often as it winds around them.
 ///
 /// \param points    3 x n; \param triangles 3 x m, consistently oriented, each edge twice.
-/// \return all zero for a mesh without triangles.
-/// \throw InvalidInput for an index out of range. Cost: O(m).
-MeshMeasures measureMesh(const Positions& points, const Triangles& triangles);
+/// \return all zero for a mesh without triangles; the same, bit by bit, for any number of threads.
+/// \throw InvalidInput for an index or threads out of range. Cost: O(m).
+MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
+                         const MeasureOptions& options = {});
 
 }  // namespace spherical_param

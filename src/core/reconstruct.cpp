@@ -632,11 +632,11 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const FindNeighbor
 /// Judges the mesh of the best attempt, and moves all there is into the result.
 void takeOver(Attempts& attempts, const Positions& points, const Options& options, Result& result) {
   Attempt& best = attempts.best;
-  result.measures = measureMesh(points, best.triangles);
+  result.measures = measureMesh(points, best.triangles, {options.threads});
   if (result.measures.volume < 0.0) {
     flipOrientation(best.triangles);
     best.sphere = -best.sphere;
-    result.measures = measureMesh(points, best.triangles);
+    result.measures = measureMesh(points, best.triangles, {options.threads});
   }
   result.self_intersections = std::move(best.optimization.self_intersections);
   if (best.smoothed.cols() > 0)

@@ -3,6 +3,7 @@
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -239,6 +240,27 @@ TEST(MeshMeasures, NothingHasNoMeasures) {
   EXPECT_EQ(measures.area, 0.0);
   EXPECT_EQ(measures.mean_edge_length, 0.0);
   EXPECT_EQ(measures.inertia, Eigen::Matrix3d::Zero());
+}
+
+TEST(MeshMeasures, SameForAnyNumberOfThreadsAndAsTheFunctionsForOneMeasure) {
+  const Positions points = test::spiralSphere(30000);  // enough triangles for several threads
+  const Triangles triangles = triangulateSphere(points, TriangulationMethod::Incremental).triangles;
+  const MeshMeasures one = measureMesh(points, triangles, {1});
+  EXPECT_EQ(one.volume, signedVolume(points, triangles));
+  EXPECT_EQ(one.area, surfaceArea(points, triangles));
+  for (const int threads : {2, 3}) {
+    const MeshMeasures several = measureMesh(points, triangles, {threads});
+    EXPECT_EQ(several.volume, one.volume);
+    EXPECT_EQ(several.area, one.area);
+    EXPECT_EQ(several.mean_edge_length, one.mean_edge_length);
+    EXPECT_EQ(several.centroid, one.centroid);
+    EXPECT_EQ(several.inertia, one.inertia);
+  }
+}
+
+TEST(MeshMeasures, ThreadsOutOfRangeAreRefused) {
+  EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), {-1}), InvalidInput);
+  EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), {1025}), InvalidInput);
 }
 
 TEST(MeshMeasures, IndexOutOfRangeIsRefused) {
