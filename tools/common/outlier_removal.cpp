@@ -4,6 +4,11 @@
 #include "spherical_param/point_set.h"
 #include "spherical_param/types.h"
 
+// Instantiated here: to load PCL's library of filters, with all of them for all types of points,
+// takes as long as to load everything else.
+#include <pcl/filters/impl/filter.hpp>
+#include <pcl/filters/impl/filter_indices.hpp>
+#include <pcl/filters/impl/statistical_outlier_removal.hpp>
 #include <pcl/filters/statistical_outlier_removal.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>

@@ -10,7 +10,7 @@ namespace spherical_param::tools {
 
 /// Reads the points of a PLY or PCD file, with no more memory than they and a block of the file
 /// take. PCL's readers have the file, its fields and the points in memory, all at a time, and take
-/// ten times as long for text.
+/// up to ten times as long for text.
 ///
 /// \param layout known, and compared with the size of the file.
 /// \throw Failure if the file is shorter than its header says, or has words for numbers.
