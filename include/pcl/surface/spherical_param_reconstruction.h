@@ -333,9 +333,6 @@ private:
   spherical_param::Result reconstructPoints(const spherical_param::Positions& points,
                                             const spherical_param::Options& options) const;
 
-  /** \brief Makes a tree of our own. */
-  static detail::NeighborSource makeKdTree(const spherical_param::Positions& points);
-
   /** \brief Gives the distinct points to the search object of setSearchMethod().
    * \param[in] point_of_distinct the first of the used points at each of them */
   detail::NeighborSource

@@ -2,7 +2,6 @@
 
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
-#include <pcl/search/kdtree.h>
 #include <pcl/search/organized.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
@@ -16,6 +15,7 @@
 #include <cstdint>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <utility>
@@ -105,28 +105,56 @@ struct NeighborSource {
       query;
 };
 
-/** \brief Finds the nearest neighbours of each point, besides itself. */
+/** \brief Room for the neighbours of `queries` points among `points`, each besides itself. */
+inline spherical_param::NeighborLists listsOfOneLength(std::size_t queries, int neighbors,
+                                                       std::size_t points) {
+  // One more, since a point is its own neighbour.
+  const std::size_t list_size =
+      std::min(static_cast<std::size_t>(std::max(neighbors, 0)), points - 1) + 1;
+  spherical_param::NeighborLists lists;
+  lists.offsets.resize(queries + 1);
+  for (std::size_t i = 0; i < lists.offsets.size(); ++i)
+    lists.offsets[i] = i * list_size;
+  lists.indices.resize(queries * list_size);
+  return lists;
+}
+
+/** \brief Finds the nearest neighbours of each point, besides itself, one point after the other. */
 template <typename Report>
 spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
                                              const std::vector<spherical_param::Index>& points,
                                              int neighbors, const Report& report) {
-  // One more, since a point is its own neighbour.
-  const std::size_t list_size =
-      std::min(static_cast<std::size_t>(std::max(neighbors, 0)), source.size - 1) + 1;
-  spherical_param::NeighborLists lists;
-  lists.offsets.resize(points.size() + 1);
-  for (std::size_t i = 0; i < lists.offsets.size(); ++i)
-    lists.offsets[i] = i * list_size;
-  lists.indices.resize(points.size() * list_size);
+  spherical_param::NeighborLists lists = listsOfOneLength(points.size(), neighbors, source.size);
   queryInBlocks(
       points.size(), source.concurrent ? searchThreads(source.threads, points.size()) : 1,
       [&](std::size_t i, pcl::Indices& indices, std::vector<float>& distances) {
-        source.query(points[i], list_size, indices, distances,
+        source.query(points[i], lists.offsets[i + 1] - lists.offsets[i], indices, distances,
                      lists.indices.data() + lists.offsets[i]);
       },
       report);
   return lists;
 }
+
+/** \brief FLANN's k-d tree of some points, which answers many queries at a time. That of
+ * pcl::search::KdTree is the same, but opens a parallel region for each query, which takes as long
+ * as the query. Copies share the tree. */
+class PCL_EXPORTS KdTreeSearch {
+public:
+  /** \param[in] points distinct, of an extent of about 1: squared distances in float underflow for
+   * small clouds and overflow for large ones. Those that are near should be near in memory. */
+  explicit KdTreeSearch(const spherical_param::Positions& points);
+
+  /** \brief Finds the nearest neighbours of each point, besides itself.
+   * \param[in] threads OpenMP threads; 0: as many as OpenMP would use
+   * \param[in] report called from this thread with the share that is done */
+  spherical_param::NeighborLists findNeighbors(const std::vector<spherical_param::Index>& points,
+                                               int neighbors, int threads,
+                                               const std::function<void(double)>& report) const;
+
+private:
+  struct Tree;
+  std::shared_ptr<const Tree> tree_;
+};
 
 /** \brief Finds out which numbers `search` returns for a subset. Points are told apart by asking
  * for the one neighbour of a point of the subset, which is the point itself. */
@@ -401,18 +429,27 @@ spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoint
       throw spherical_param::Cancelled("cancelled by the progress callback");
   };
   const auto make_search = [&](const spherical_param::Positions& distinct,
-                               const std::vector<spherical_param::Index>& point_of_distinct) {
-    detail::NeighborSource source =
-        tree_ ? useSearchMethod(point_of_distinct) : makeKdTree(distinct);
-    source.threads = options.threads;
-    return [source = std::move(source), &report, is_first = true](
-               const std::vector<spherical_param::Index>& some_points, int neighbors) mutable {
+                               const std::vector<spherical_param::Index>& point_of_distinct)
+      -> spherical_param::NeighborSearch {
+    std::function<spherical_param::NeighborLists(const std::vector<spherical_param::Index>&, int,
+                                                 const std::function<void(double)>&)>
+        find;
+    if (tree_)
+      find = [source = useSearchMethod(point_of_distinct)](const auto& some_points, int neighbors,
+                                                           const auto& report_share) {
+        return detail::findNeighbors(source, some_points, neighbors, report_share);
+      };
+    else
+      find = [tree = detail::KdTreeSearch(distinct),
+              &options](const auto& some_points, int neighbors, const auto& report_share) {
+        return tree.findNeighbors(some_points, neighbors, options.threads, report_share);
+      };
+    return [find, report, is_first = true](const std::vector<spherical_param::Index>& some_points,
+                                           int neighbors) mutable {
       // The progress is that of the search for all points; others belong to the graph.
-      const bool reports = std::exchange(is_first, false);
-      return detail::findNeighbors(source, some_points, neighbors, [&](double fraction) {
-        if (reports)
-          report(fraction);
-      });
+      if (std::exchange(is_first, false))
+        return find(some_points, neighbors, report);
+      return find(some_points, neighbors, [](double) {});
     };
   };
   try {
@@ -423,34 +460,6 @@ spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoint
     throw spherical_param::InvalidInput(std::string(error.what()) + " (of the cloud's points, " +
                                         std::to_string(ignored_points_) + " are not finite)");
   }
-}
-
-template <typename PointInT>
-detail::NeighborSource
-SphericalParamReconstruction<PointInT>::makeKdTree(const spherical_param::Positions& points) {
-  // A cloud of its own, because PCL takes the first three floats of a custom point type for its
-  // coordinates. The points are scaled: squared distances in float would underflow for small
-  // clouds and overflow for large ones.
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  cloud->resize(static_cast<std::size_t>(points.cols()));
-  for (std::size_t i = 0; i < cloud->size(); ++i)
-    (*cloud)[i].getVector3fMap() = points.col(static_cast<Eigen::Index>(i)).cast<float>();
-  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
-  tree->setInputCloud(cloud);
-
-  detail::NeighborSource source;
-  source.size = cloud->size();
-  source.concurrent = true;
-  source.query = [cloud, tree](spherical_param::Index point, std::size_t count,
-                               pcl::Indices& indices, std::vector<float>& distances,
-                               spherical_param::Index* neighbors) {
-    tree->nearestKSearch((*cloud)[static_cast<std::size_t>(point)], static_cast<int>(count),
-                         indices, distances);
-    if (indices.size() < count)
-      throw spherical_param::ComputeError("the k-d tree found fewer points than there are");
-    std::copy_n(indices.begin(), count, neighbors);
-  };
-  return source;
 }
 
 template <typename PointInT>
