@@ -530,8 +530,7 @@ void reconstruct(const Settings& settings, const PointData& data,
     // All indices are still those of the file.
     reconstruction.setIndices(pcl::IndicesPtr(new pcl::Indices(outliers->kept)));
   }
-  std::vector<pcl::Vertices> polygons;
-  reconstruction.reconstruct(polygons);
+  reconstruction.reconstruct();
   const std::string& message = reconstruction.getErrorMessage();
   if (!message.empty()) {
     // The messages of the library are "cause; remedy", the remedy optional.

@@ -1034,12 +1034,37 @@ TEST_F(SphericalParamReconstruction, StaleOutputIsReplaced) {
   expectSphere(polygons, *cloud);
 }
 
-TEST_F(SphericalParamReconstruction, BothOverloadsAgree) {
+TEST_F(SphericalParamReconstruction, AllOverloadsAgree) {
   Reconstruction reconstruction;
   reconstruction.setInputCloud(makeEllipsoid(500));
   pcl::PolygonMesh mesh;
   reconstruction.reconstruct(mesh);
   EXPECT_EQ(asLists(reconstructPolygons(reconstruction)), asLists(mesh.polygons));
+  const spherical_param::Triangles triangles = reconstruction.getResult().triangles;
+  reconstruction.reconstruct();
+  EXPECT_EQ(reconstruction.getErrorMessage(), "");
+  EXPECT_EQ(reconstruction.getResult().triangles, triangles);
+  EXPECT_EQ(reconstruction.getVertexIndices().size(), 500U);
+}
+
+TEST_F(SphericalParamReconstruction, ReconstructWithoutOutputSaysWhatIsWrong) {
+  Reconstruction reconstruction;
+  reconstruction.reconstruct();
+  EXPECT_TRUE(contains(reconstruction.getErrorMessage(), "no input cloud"));
+  expectCleared(reconstruction);
+}
+
+// The default search is over ordered points, many at a time; the user's one after the other. Away
+// from ties they find the same.
+TEST_F(SphericalParamReconstruction, DefaultSearchFindsWhatAKdTreeFinds) {
+  for (const int count : {5, 700, 6000}) {
+    Reconstruction reconstruction;
+    reconstruction.setInputCloud(makeEllipsoid(count));
+    const auto by_default = asLists(reconstructPolygons(reconstruction));
+    reconstruction.setSearchMethod(
+        pcl::search::KdTree<PointXYZ>::Ptr(new pcl::search::KdTree<PointXYZ>));
+    EXPECT_EQ(asLists(reconstructPolygons(reconstruction)), by_default) << count;
+  }
 }
 
 TEST_F(SphericalParamReconstruction, FailureAfterSuccessLeavesNothingStale) {

@@ -242,6 +242,12 @@ void SphericalParamReconstruction<PointInT>::reconstruct(std::vector<pcl::Vertic
 }
 
 template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::reconstruct() {
+  NoOutput none;
+  run(none);
+}
+
+template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
   return cloudOfVertices(result_.sphere);
@@ -278,6 +284,19 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonM
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(
     std::vector<pcl::Vertices>& polygons) {
+  NoOutput none;
+  performReconstruction(none);
+  polygons.resize(static_cast<std::size_t>(result_.triangles.cols()));
+  for (std::size_t t = 0; t < polygons.size(); ++t) {
+    const auto triangle = result_.triangles.col(static_cast<Eigen::Index>(t));
+    polygons[t].vertices = {vertex_indices_[static_cast<std::size_t>(triangle[0])],
+                            vertex_indices_[static_cast<std::size_t>(triangle[1])],
+                            vertex_indices_[static_cast<std::size_t>(triangle[2])]};
+  }
+}
+
+template <typename PointInT>
+void SphericalParamReconstruction<PointInT>::performReconstruction(NoOutput& /*none*/) {
   // A copy, so that the callback may call the setters.
   spherical_param::Options options = options_;
   std::exception_ptr callback_error;
@@ -305,13 +324,6 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(
   vertex_indices_.reserve(result_.input_of_vertex.size());
   for (const spherical_param::Index point : result_.input_of_vertex)
     vertex_indices_.push_back(used_indices_[static_cast<std::size_t>(point)]);
-  polygons.resize(static_cast<std::size_t>(result_.triangles.cols()));
-  for (std::size_t t = 0; t < polygons.size(); ++t) {
-    const auto triangle = result_.triangles.col(static_cast<Eigen::Index>(t));
-    polygons[t].vertices = {vertex_indices_[static_cast<std::size_t>(triangle[0])],
-                            vertex_indices_[static_cast<std::size_t>(triangle[1])],
-                            vertex_indices_[static_cast<std::size_t>(triangle[2])]};
-  }
   input_size_ = input_->size();
 }
 
