@@ -82,7 +82,7 @@ function(allowed_includes result file)
     set(allowed ${of_eigen_and_std} "omp\\.h" ${ours_any} "pcl/[A-Za-z0-9_]+\\.h"
                 "pcl/(common|console|impl|kdtree|search|surface)/(impl/)?[a-z_]+\\.(h|hpp)")
     if(file STREQUAL "src/pcl/spherical_param_kd_tree.cpp")
-      list(APPEND allowed "flann/[a-z_/]+\\.h")
+      list(APPEND allowed "flann/([a-z_]+/)?[a-z_]+\\.h")
     endif()
   elseif(file STREQUAL "tools/render_views.cpp")
     set(allowed ${of_eigen_and_std} "vtk[A-Za-z0-9]+\\.h" "X11/Xlib\\.h")
