@@ -95,9 +95,10 @@ function(allowed_includes result file)
       # Formats that pcl/io does not read, and the messages of those that it does.
       list(APPEND allowed "vtk[A-Za-z0-9]+\\.h")
     endif()
-  elseif(file MATCHES "^test/core/")
-    # The core's tests must build and run without PCL.
-    set(allowed "[^/]+" "core/.*" "Eigen/.*" "gtest/.*" "gmock/.*" "sys/.*" "spherical_param/.*")
+  elseif(file MATCHES "^test/(core|reference)/")
+    # The core's tests, and what they compare it with, must build and run without PCL.
+    set(allowed "[^/]+" "core/.*" "reference/.*" "Eigen/.*" "gtest/.*" "gmock/.*" "sys/.*"
+                "spherical_param/.*")
   elseif(file MATCHES "^test/")
     set(allowed ".*")
   endif()

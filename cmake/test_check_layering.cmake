@@ -42,3 +42,6 @@ expect(RIGHT tools/tool.cpp "#include <pcl/io/ply_io.h>" "#include <boost/progra
 expect(WRONG tools/tool.cpp "#include <libqhull_r/qhull_ra.h>")
 expect(WRONG tools/tool.cpp "#include <vtkActor.h>")
 expect(WRONG test/core/test_smoothing.cpp "#include <pcl/point_types.h>")
+expect(RIGHT test/core/test_mesh_topology.cpp "#include \"reference/mesh_topology.h\"")
+expect(WRONG test/reference/mesh_topology.cpp "#include <pcl/point_types.h>")
+expect(WRONG src/core/mesh_topology.cpp "#include \"reference/mesh_topology.h\"")

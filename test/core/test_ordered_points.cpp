@@ -3,6 +3,7 @@
 #include "core/radix_sort.h"
 #include "core/space_filling_curve.h"
 #include "helpers.h"
+#include "reference/distinct_points.h"
 
 #include <gtest/gtest.h>
 
@@ -13,16 +14,16 @@
 namespace spherical_param::internal {
 namespace {
 
-/// The same one after the other: distinct points by a hash table, then their order.
 void expectTheSameAsTwoSteps(const Positions& points, int threads) {
   const OrderedPoints ordered = orderPoints(points, threads);
-  const DistinctPoints distinct = findDistinctPoints(points);
+  const reference::OrderedPoints expected = reference::orderPoints(points, ordered.exponent);
+  const DistinctPoints& distinct = expected.distinct;
   EXPECT_EQ(ordered.distinct.vertex_of_input, distinct.vertex_of_input);
   EXPECT_EQ(ordered.distinct.input_of_vertex, distinct.input_of_vertex);
-  const double scale = std::ldexp(1.0, -ordered.exponent);
-  const Positions vertices = points(Eigen::all, distinct.input_of_vertex) * scale;
-  EXPECT_EQ(ordered.vertex_of_node, mortonOrder(vertices));
-  EXPECT_EQ(ordered.points, vertices(Eigen::all, ordered.vertex_of_node));
+  EXPECT_EQ(ordered.vertex_of_node, expected.vertex_of_node);
+  EXPECT_EQ(ordered.points, expected.points);
+  const Positions vertices = points(Eigen::all, distinct.input_of_vertex);
+  EXPECT_EQ(ordered.vertex_of_node, mortonOrder(vertices * std::ldexp(1.0, -ordered.exponent)));
   for (std::size_t node = 0; node < ordered.input_of_node.size(); ++node)
     EXPECT_EQ(ordered.input_of_node[node],
               distinct.input_of_vertex[static_cast<std::size_t>(ordered.vertex_of_node[node])]);
