@@ -1,31 +1,9 @@
 #include "bench_data.h"
 
-#include "scan_shapes.h"
-#include "spherical_param/mesh_optimization.h"
-#include "spherical_param/mesh_topology.h"
-#include "spherical_param/point_set.h"
-#include "spherical_param/smoothing.h"
-#include "spherical_param/sphere_embedding.h"
-#include "spherical_param/sphere_triangulation.h"
-
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/search/kdtree.h>
-#include <pcl/surface/impl/spherical_param_reconstruction.hpp>
-
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <map>
-#include <numeric>
 #include <sstream>
 #include <string>
-#include <utility>
-#include <vector>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace spherical_param::stages {
 namespace {
@@ -34,158 +12,10 @@ namespace {
 constexpr long kFewestPoints = 100;
 constexpr long kMostPoints = 10000000;
 
-/// The value, made first if there is none.
-template <typename T, typename Make>
-T& made(std::optional<T>& value, const Make& make) {
-  if (!value)
-    value.emplace(make());
-  return *value;
-}
-
 }  // namespace
-
-/// As the PCL class makes it, which would scale points of another extent first.
-struct NeighborFinder::Tree {
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud{new pcl::PointCloud<pcl::PointXYZ>};
-  pcl::search::KdTree<pcl::PointXYZ> search{false};
-  std::vector<Index> all;    ///< 0 ... n - 1
-  std::vector<Index> order;  ///< of the queries
-
-  pcl::detail::NeighborSource source(int threads) const {
-    pcl::detail::NeighborSource result;
-    result.size = cloud->size();
-    result.concurrent = true;
-    result.threads = threads;
-    result.query = [this](Index point, std::size_t count, pcl::Indices& indices,
-                          std::vector<float>& distances, Index* neighbors) {
-      search.nearestKSearch((*cloud)[static_cast<std::size_t>(point)], static_cast<int>(count),
-                            indices, distances);
-      std::copy_n(indices.begin(), count, neighbors);
-    };
-    return result;
-  }
-};
-
-NeighborFinder::NeighborFinder(const Positions& points) : tree_(std::make_unique<Tree>()) {
-  tree_->cloud->resize(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    (*tree_->cloud)[static_cast<std::size_t>(i)].getVector3fMap() = points.col(i).cast<float>();
-  tree_->search.setInputCloud(tree_->cloud);
-  tree_->all.resize(tree_->cloud->size());
-  std::iota(tree_->all.begin(), tree_->all.end(), Index{0});
-  tree_->order = spatialOrder(points);
-}
-
-NeighborFinder::~NeighborFinder() = default;
-
-NeighborLists NeighborFinder::allLists(int neighbors, int threads) const {
-  return pcl::detail::findNeighbors(tree_->source(threads), tree_->all, neighbors, [](double) {});
-}
-
-NeighborSearch NeighborFinder::search(int threads) const {
-  return [source = tree_->source(threads)](const std::vector<Index>& points, int neighbors) {
-    return pcl::detail::findNeighbors(source, points, neighbors, [](double) {});
-  };
-}
-
-Data& Data::of(Index points, double noise) {
-  static std::map<std::pair<Index, double>, Data> all;
-  return all.try_emplace({points, noise}, points, noise).first->second;
-}
-
-const Positions& Data::scan() {
-  return made(scan_, [&] {
-    tools::ScanOptions options;
-    options.shape = tools::Shape::Hand;
-    options.points = static_cast<std::size_t>(size_);
-    options.noise = noise_;
-    // Rounded as by a file or a cloud of PCL.
-    return tools::generateScan(options).points.cast<float>().cast<double>().eval();
-  });
-}
-
-const NeighborFinder& Data::scanFinder() {
-  if (!scan_finder_)
-    scan_finder_.emplace(scan());
-  return *scan_finder_;
-}
-
-const NeighborLists& Data::scanLists() {
-  return made(scan_lists_, [&] { return scanFinder().allLists(kLocalDelaunayNeighbors, 0); });
-}
-
-const Positions& Data::points() {
-  return made(points_, [&] { return scan()(Eigen::all, spatialOrder(scan())).eval(); });
-}
-
-const NeighborFinder& Data::finder() {
-  if (!finder_)
-    finder_.emplace(points());
-  return *finder_;
-}
-
-const NeighborLists& Data::lists() {
-  return made(lists_, [&] { return finder().allLists(kLocalDelaunayNeighbors, 0); });
-}
-
-const NeighborLists& Data::longLists() {
-  return made(long_lists_, [&] { return finder().allLists(kNearestNeighbors, 0); });
-}
-
-const NeighborGraph& Data::graph() {
-  return made(graph_, [&] {
-    LocalDelaunayOptions options;
-    options.search = finder().search(0);
-    return buildLocalDelaunayGraph(points(), lists(), options);
-  });
-}
-
-const GraphHierarchy& Data::hierarchy() {
-  return made(hierarchy_, [&] { return buildGraphHierarchy(graph().graph); });
-}
-
-const Positions& Data::sphere() {
-  return made(sphere_, [&] { return embedMultilevel(graph().graph, hierarchy()).directions; });
-}
-
-const Triangles& Data::sphereTriangles() {
-  return made(sphere_triangles_, [&] {
-    Triangles triangles = triangulateSphere(sphere()).triangles;
-    if (signedVolume(points(), triangles) < 0.0)
-      flipOrientation(triangles);
-    return triangles;
-  });
-}
-
-const Triangles& Data::triangles() {
-  return made(triangles_, [&] {
-    OptimizationOptions options;
-    options.smoother = smootherOf(points(), 0);
-    return optimizeMesh(points(), sphereTriangles(), graph().graph, options).triangles;
-  });
-}
-
-std::function<Positions(const Triangles&, int)> smootherOf(const Positions& points, int threads) {
-  return [&points, threads](const Triangles& triangles, int steps) {
-    SmoothingOptions smoothing;
-    smoothing.method = SmoothingMethod::Umbrella;
-    smoothing.steps = steps;
-    smoothing.restore_volume = false;
-    smoothing.threads = threads;
-    return smoothSurface(points, triangles, smoothing).points;
-  };
-}
 
 Data& dataOf(const benchmark::State& state, double noise) {
   return Data::of(static_cast<Index>(state.range(0)), noise);
-}
-
-int allThreads() {
-#ifdef _OPENMP
-  return omp_get_max_threads();
-#else
-  return 1;
-#endif
 }
 
 int threadsOf(const benchmark::State& state) {
