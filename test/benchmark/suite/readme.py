@@ -21,6 +21,8 @@ QUOTED = {
     "models_summary": "Beside other methods, which get the points alone, too, on the real models "
     "below:",
     "scaling": "Over the number of points:",
+    "references": "Every stage beside a plain reference, as one would write it first, on generated "
+    "scans of a hand:",
     "triangulation": "The two triangulations of the sphere, one thread:",
 }
 OURS = "ours"

@@ -1,4 +1,4 @@
-"""The stages one by one, and the two ways to triangulate the sphere."""
+"""The stages one by one, each beside a plain reference, and the two ways to triangulate the sphere."""
 
 import json
 
@@ -71,9 +71,60 @@ def _triangulation(context, program):
     ]
 
 
+def references_table(report):
+    """A report of benchmark_reference_paths as a table."""
+    threads = report["threads"]
+    table = Table(
+        "references",
+        [
+            Column("stage", "stage"),
+            Column("points", "points"),
+            Column("plain", "plain reference"),
+            Column("reference", "reference [ms]", 2, exact=False),
+            Column("one", "ours, 1 thread [ms]", 2, exact=False),
+            # Not by their number: the README may be checked on another machine.
+            Column("all", "ours, all threads [ms]", 2, exact=False),
+            Column("ratio", "reference / all threads", 1, exact=False),
+            Column("same", "the same output"),
+        ],
+        keys=2,
+    )
+    for one in report["stages"]:
+        table.rows.append(
+            {
+                "stage": one["stage"],
+                "points": one["points"],
+                "plain": one["reference"],
+                "reference": 1e3 * one["reference_seconds"],
+                "one": 1e3 * one["one_thread_seconds"],
+                "all": 1e3 * one["all_threads_seconds"],
+                "ratio": one["reference_over_all_threads"],
+                "same": one["same_output"],
+            }
+        )
+    return [
+        "### Plain references\n",
+        "Each stage as one would write it first, on one thread, beside ours on one and on "
+        f"{threads} threads: on {report['data']}, medians of {report['repetitions']}. `one thread` "
+        "is ours itself. The output is the same to the last bit, but for neighbours, which may be "
+        "others at the same distance.\n",
+        table,
+    ]
+
+
+def _references(context, program):
+    sizes = context.choose(("10000",), ("10000", "100000"))
+    # Fails, with the stage, if an output is not the same.
+    return references_table(json.loads(require([program, "-json", *sizes]).output))
+
+
 def section(context):
     parts = []
-    for name, make in (("stages", _stages), ("triangulation_methods", _triangulation)):
+    for name, make in (
+        ("stages", _stages),
+        ("reference_paths", _references),
+        ("triangulation_methods", _triangulation),
+    ):
         program = context.programs.optional(f"benchmark_{name}")
         if program is None:
             parts.append(f"benchmark_{name} is not built: Google Benchmark was not found.\n")

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 from . import __main__ as program
-from . import comparison, freshness, machine, readme
+from . import comparison, freshness, machine, readme, stages
 from .processes import Failure, in_turn, median_seconds, require, run
 from .product import load_clouds
 from .report import Figure, Section, write_report
@@ -200,6 +200,45 @@ class Comparison(unittest.TestCase):
         self.assertEqual((ours["clouds"], ours["spheres"], ours["clean"]), (2, 2, 1))
         self.assertEqual((peer["spheres"], peer["clean"], peer["rms"]), (0, 0, 4.0))
         self.assertEqual((late["clouds"], late["spheres"], late["rms"]), (1, 0, None))
+
+
+class References(InFolder):
+    def table(self, factor=1.0, same=True):
+        report = {
+            "data": "generated scans of a hand",
+            "threads": 2,
+            "repetitions": 3,
+            "stages": [
+                {"stage": "topology", "points": points, "reference": "map of edges",
+                 "reference_seconds": 0.3 * factor, "one_thread_seconds": 0.02 * factor,
+                 "all_threads_seconds": 0.01 * factor, "reference_over_all_threads": 30.0,
+                 "same_output": same}
+                for points in (10000, 100000)
+            ],
+        }  # fmt: skip
+        heading, words, table = stages.references_table(report)
+        self.assertIn("references", heading)
+        self.assertIn("2 threads", words)
+        return table
+
+    def test_both_paths_are_side_by_side_in_the_readme(self):
+        path = self.folder / "README.md"
+        path.write_text(f"{readme.BEGIN}\n{readme.END}\n")
+        readme.update(path, results(self.table()))
+        titles, rows = readme.quoted_tables(path)["references"]
+        self.assertEqual(len(titles), 8)
+        self.assertEqual(rows[1], ["topology", "100,000", "map of edges", "300.00", "20.00",
+                                   "10.00", "30.0", "yes"])  # fmt: skip
+        for table, wrong in (
+            (self.table(factor=1.5), 0),
+            (self.table(factor=3.0), 6),  # times that no longer hold
+            (self.table(same=False), 2),
+        ):
+            self.assertEqual(len(readme.check(path, results(table))[0]), wrong)
+        # Whatever the times, the output has to be the same.
+        differences, _ = readme.check(path, results(self.table(3.0, same=False)), times=False)
+        self.assertEqual(len(differences), 2)
+        self.assertIn("the README says yes, measured is no", differences[0])
 
 
 class CommandLine(InFolder):
