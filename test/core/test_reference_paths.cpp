@@ -1,0 +1,79 @@
+// The fast paths against the plain ones of test/reference, where no other test compares them.
+
+#include "core/mesh_optimizer.h"
+#include "helpers.h"
+#include "reference/edge_flips.h"
+#include "reference/graph_coarsening.h"
+#include "reference/self_intersection.h"
+#include "spherical_param/graph_hierarchy.h"
+#include "spherical_param/neighbor_graph.h"
+#include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+
+namespace spherical_param {
+namespace {
+
+Graph graphOf(const Positions& points) {
+  LocalDelaunayOptions options;
+  options.search = test::bruteForceSearch(points);
+  return buildLocalDelaunayGraph(points, test::bruteForceNeighbors(points, 12), options).graph;
+}
+
+void expectTheSameLevel(const Graph& graph, std::uint32_t seed) {
+  HierarchyOptions options;
+  options.coarsest_size = static_cast<Index>(graph.size()) - 1;
+  options.seed = seed;
+  const HierarchyLevel level = buildGraphHierarchy(graph, options).levels.at(0);
+  const HierarchyLevel expected = reference::coarsen(graph, seed);
+  EXPECT_EQ(level.seeds, expected.seeds);
+  EXPECT_EQ(level.aggregate_of, expected.aggregate_of);
+  EXPECT_EQ(level.graph.offsets, expected.graph.offsets);
+  EXPECT_EQ(level.graph.neighbors, expected.graph.neighbors);
+  EXPECT_EQ(level.graph.lengths, expected.graph.lengths);
+  ASSERT_EQ(level.prolongation.rows(), expected.prolongation.rows());
+  ASSERT_EQ(level.prolongation.cols(), expected.prolongation.cols());
+  EXPECT_EQ((level.prolongation - expected.prolongation).norm(), 0.0);
+}
+
+TEST(ReferencePaths, CoarseningIsThatOfDijkstrasAlgorithm) {
+  for (const std::uint32_t seed : {1U, 7U}) {
+    expectTheSameLevel(graphOf(test::randomSphere(1500, 1)), seed);
+    expectTheSameLevel(graphOf(test::cubeGrid(12)), seed);  // full of ties
+  }
+}
+
+TEST(ReferencePaths, FlipsAreThoseOfASortedSetOfGains) {
+  for (const double noise : {0.0, 0.02}) {
+    Positions points = test::withNoise(test::randomSphere(1500, 2), noise, 3);
+    points.row(0) *= 3.0;  // the triangulation of the sphere is not that of the surface
+    const Graph graph = graphOf(points);
+    const Triangles triangles = triangulateSphere(points.colwise().normalized()).triangles;
+    internal::MeshOptimizer optimizer(points, triangles, graph, 1);
+    optimizer.setEnergy({});
+    EXPECT_GT(optimizer.flipAll(), 100U);
+    EXPECT_EQ(optimizer.mesh().triangles(), reference::flipAll(points, triangles, graph));
+  }
+}
+
+TEST(ReferencePaths, SelfIntersectionsAreThoseOfASweep) {
+  const test::Tube tube = test::bentTube(20.0, 2.2 * test::kPi, 24);  // into itself
+  const auto expected = reference::findSelfIntersections(tube.points, tube.triangles);
+  EXPECT_GT(expected.size(), 100U);
+  EXPECT_EQ(findSelfIntersections(tube.points, tube.triangles), expected);
+  // Flat triangles, many of which share vertices, lie in one plane or touch.
+  const Positions grid = test::cubeGrid(4);
+  Triangles soup(3, 200);
+  std::mt19937_64 random(4);
+  soup = soup.unaryExpr([&](Index) {
+    return static_cast<Index>(random() % static_cast<std::uint64_t>(grid.cols()));
+  });
+  EXPECT_EQ(findSelfIntersections(grid, soup), reference::findSelfIntersections(grid, soup));
+}
+
+}  // namespace
+}  // namespace spherical_param
