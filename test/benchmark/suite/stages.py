@@ -1,4 +1,4 @@
-"""The stages one by one, each beside a plain reference, and the two ways to triangulate the sphere."""
+"""The stages one by one, also beside plain references, and the two ways to triangulate the sphere."""
 
 import json
 
