@@ -70,8 +70,10 @@ KdTreeSearch::findNeighbors(const std::vector<spherical_param::Index>& points, i
       points.size(), neighbors, static_cast<std::size_t>(tree_->coordinates.cols()));
   const std::size_t list_size = points.empty() ? 0 : lists.offsets[1];
   const std::size_t batches = (points.size() + queries_at_a_time - 1) / queries_at_a_time;
+  // Some tenths of a second each.
+  constexpr std::size_t batches_of_a_block = 512;
   queryInBlocks(
-      batches, searchThreads(threads, points.size()),
+      batches, batches / batches_of_a_block + 2, searchThreads(threads, points.size()),
       [&](std::size_t batch, pcl::Indices&, std::vector<float>&) {
         const std::size_t begin = batch * queries_at_a_time;
         tree_->find(points.data() + begin, std::min(queries_at_a_time, points.size() - begin),

@@ -4,7 +4,7 @@ import json
 import statistics
 
 from .pictures import Panels
-from .processes import in_turn, run
+from .processes import in_turn, median_seconds, run
 from .readme import OURS
 from .report import Figure, Section
 from .tables import Column, Table
@@ -172,6 +172,11 @@ def section(context):
         if others:
             figures.append(_figure(context, cloud, panels))
     parts += ["### Generated scans\n", _summary(tables[0]), tables[0], tables[1], *figures]
+    context.say("in turn with the fastest peer")
+    by_size = sorted(context.models, key=lambda cloud: cloud.points.stat().st_size)
+    names = context.choose(("animal_5000",), ("hand_10000", "head_134345", "head_1000000"))
+    scans = [context.scan(name, truth=False) for name in names]
+    parts += _race(context, by_size[-1:] + scans)
     used = Table("peers", [Column("method", "method"), Column("library", "library"),
                            Column("parameters", "parameters")])  # fmt: skip
     for label, (library, text) in parameters.items():
@@ -190,6 +195,49 @@ def _figure(context, cloud, panels):
         "Flat shaded; where a surface is open or turned inside out, its inside is seen.",
         context.renderer.problem or "",
     )
+
+
+def _race(context, clouds):
+    """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
+    peer = context.programs.optional("benchmark_peer_cgal")
+    table = Table(
+        "race",
+        [
+            Column("model", "cloud"),
+            Column("ours", "ours [s]", 2, exact=False),
+            Column("single", "ours, one thread [s]", 2, exact=False),
+            Column("gain", "one thread / all", 2, exact=False),
+            Column("peer", "CGAL advancing front [s]", 2, exact=False),
+            Column("ratio", "ours / advancing front", 2, exact=False),
+        ],
+    )
+    mesh = context.work / "race.ply"
+    for cloud in clouds:
+        ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
+        commands = [ours, ["env", "OMP_NUM_THREADS=1", *ours]]
+        if peer:
+            commands.append([peer, "advancing_front", cloud.points, mesh])
+        runs = in_turn(commands, context.choose(1, 5), timeout=context.timeout)
+        seconds = [median_seconds(done) for done in runs]
+        row = {
+            "model": cloud.name,
+            "ours": seconds[0],
+            "single": seconds[1],
+            "gain": statistics.median(b.seconds / a.seconds for a, b in zip(runs[0], runs[1])),
+        }
+        if peer:
+            row["peer"] = seconds[2]
+            row["ratio"] = statistics.median(
+                a.seconds / b.seconds for a, b in zip(runs[0], runs[2])
+            )
+        table.rows.append(row)
+    mesh.unlink(missing_ok=True)
+    return [
+        "### Against the fastest peer, in turn\n",
+        "Whole processes, one after the other; medians of 5 (one, where it takes longer than 4 s), "
+        "ratios those of the pairs.\n",
+        table,
+    ]
 
 
 def _summary(table):

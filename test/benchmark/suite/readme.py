@@ -20,7 +20,10 @@ QUOTED = {
     "the diagonal of its bounding box):",
     "models_summary": "Beside other methods, which get the points alone, too, on the real models "
     "below:",
+    "race": "In turn with the fastest peer, whole processes:",
     "scaling": "Over the number of points:",
+    "budget": "Where the time goes, beside the least that each stage could take (counted by hand, "
+    "for one core that copies as fast as this one):",
     "references": "Every stage beside a plain reference, as one would write it first, on generated "
     "scans of a hand:",
     "triangulation": "The two triangulations of the sphere, one thread:",

@@ -3,11 +3,32 @@
 import math
 import os
 import statistics
+import time
 
 from .machine import available_memory
 from .product import stage_seconds
 from .report import Figure, Section
 from .tables import Column, Table
+
+# What a stage cannot do without, for each point: bytes that it moves once it has everything at
+# hand, and steps, each some ten arithmetic operations with a comparison (a distance, an orientation,
+# the side of a bisector). By hand, for a mesh of 2 triangles and a graph of 6 neighbours a point.
+LEAST = {
+    "read": (12 + 16, 0, "12 bytes in, 16 out"),
+    "neighbors": (6 * 2 * 16 + 14 * 2 * 12, 70, "6 passes of a radix sort, 14 levels of a k-d tree, "
+                  "some 70 distances for 12 neighbours"),
+    "graph": (13 * 4 + 6 * 12, 110, "the plane through 10 points, 11 bisectors against 6 corners, "
+              "both ends of 6 edges"),
+    "embedding": (10 * (6 * 44 + 64) + 400, 60, "10 sweeps over 6 edges (44 bytes each) and the "
+                  "point; a hierarchy of a third more points"),
+    "triangulation": (2 * 24 + 32, 25, "one search, 3 flips with the circles that ask for them"),
+    "optimization": (6 * 24 + 2 * 64, 170, "3 flips tried, 2 normals, 18 angles for the usual one, "
+                     "the triangles near 2 others"),
+    "check": (6 * 12 + 2 * 24, 40, "the edges twice, the 2-ring of the graph for edges outside it, "
+              "2 volumes"),
+    "write": (12 + 2 * 13, 0, "12 bytes a point, 13 a triangle"),
+}  # fmt: skip
+STEP = 1.0  # [ns] of one core of some 3 GHz
 
 STAGES = ("read", "neighbors", "graph", "embedding", "triangulation", "optimization", "check",
           "write")  # fmt: skip
@@ -31,6 +52,7 @@ def _measure(context, cloud, repeats, threads=None):
     row["seconds"] = statistics.median(run[0].seconds for run in runs)
     row["peak"] = max(run[2]["peak_memory_bytes"] for run in runs)
     row["intersections"] = runs[-1][2]["self_intersections"]
+    row["count"] = runs[-1][2]["vertices"]
     mesh.unlink(missing_ok=True)
     return row
 
@@ -50,7 +72,7 @@ def growth(context):
             *_stage_columns(),
         ],
     )
-    sizes = [1000, 10000, 100000] + context.choose([], [1000000])
+    sizes = [1000, 10000, 100000] + context.choose([], [134345, 1000000])
     if context.large:
         sizes.append(10000000)
     skipped = []
@@ -113,10 +135,10 @@ def threads(context):
             *_stage_columns(),
         ],
     )
-    cloud = context.scan(context.choose("head_100000", "head_1000000"), truth=False)
+    cloud = context.scan(context.choose("head_100000", "igea"), truth=False)
     for count in counts:
         context.say(f"scaling: {count} threads")
-        row = _measure(context, cloud, context.choose(1, 2), threads=count)
+        row = _measure(context, cloud, context.choose(1, 5), threads=count)
         row["threads"] = count
         row["speedup"] = table.rows[0]["seconds"] / row["seconds"] if table.rows else 1.0
         table.rows.append(row)
@@ -128,6 +150,56 @@ def threads(context):
         f"{cloud.name}; the mesh is the same, byte by byte, for any number.\n",
         table,
         Figure("threads.svg", "Stages over threads", "Seconds of each stage, one after the other."),
+        *budget(cloud, table.rows),
+    ]
+
+
+def _bandwidth():
+    """Bytes that one core copies in a nanosecond, read and written: the best of some copies."""
+    source = bytearray(1 << 27)
+    best = math.inf
+    for _ in range(5):
+        begin = time.perf_counter()
+        copy = bytes(source)
+        best = min(best, time.perf_counter() - begin)
+        del copy
+    return 2e-9 * len(source) / best
+
+
+def budget(cloud, rows):
+    """What each stage takes, beside the least that it could take."""
+    bandwidth = _bandwidth()
+    table = Table(
+        "budget",
+        [
+            Column("stage", "stage"),
+            Column("one", "one thread [ns a point]", 0, exact=False),
+            Column("all", "all threads [ns a point]", 0, exact=False),
+            Column("least", "least, one thread [ns a point]", 0, exact=False),
+            Column("times", "one thread / least", 1, exact=False),
+            Column("what", "what it cannot do without, for each point"),
+        ],
+    )
+    for stage in STAGES:
+        moved, steps, what = LEAST[stage]
+        least = moved / bandwidth + STEP * steps
+        one, every = (1e9 * row[stage] / row["count"] for row in (rows[0], rows[-1]))
+        table.rows.append(
+            {
+                "stage": stage,
+                "one": one,
+                "all": every,
+                "least": least,
+                "times": one / least,
+                "what": what,
+            }
+        )
+    return [
+        "### Where the time goes\n",
+        f"{cloud.name}. The least is counted by hand, at {bandwidth:.0f} bytes a nanosecond that "
+        f"one core copies here, and {STEP:.0f} ns a step of some ten operations: what is many times "
+        "as long has something left to gain.\n",
+        table,
     ]
 
 

@@ -46,12 +46,14 @@ inline std::string withoutFunctionName(const std::string& message) {
 enum class SearchIndexSpace { Cloud, Subset };
 
 /** \brief Calls query(i, indices, distances) for i in [0, count), the last two being scratch memory
- * of the thread, and report(fraction) from the calling thread now and then, the last time with 1.
+ * of the thread, and report(fraction) from the calling thread after each of some blocks, the last
+ * time with 1.
+ * \param[in] blocks at least 1; with several threads each waits for the others at its end
  * \param[in] threads above 1, query is called concurrently. Its exceptions are passed on. */
 template <typename Query, typename Report>
-void queryInBlocks(std::size_t count, [[maybe_unused]] int threads, const Query& query,
-                   const Report& report) {
-  const std::size_t blocks = std::min<std::size_t>(count, 32);
+void queryInBlocks(std::size_t count, std::size_t blocks, [[maybe_unused]] int threads,
+                   const Query& query, const Report& report) {
+  blocks = std::min(count, blocks);
   std::exception_ptr error;
   std::mutex error_mutex;
   for (std::size_t block = 0; block < blocks; ++block) {
@@ -64,7 +66,7 @@ void queryInBlocks(std::size_t count, [[maybe_unused]] int threads, const Query&
       pcl::Indices indices;
       std::vector<float> distances;
 #ifdef _OPENMP
-#pragma omp for schedule(static)
+#pragma omp for schedule(guided)
 #endif
       for (std::int64_t i = begin; i < end; ++i) {
         try {
@@ -125,8 +127,9 @@ spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
                                              const std::vector<spherical_param::Index>& points,
                                              int neighbors, const Report& report) {
   spherical_param::NeighborLists lists = listsOfOneLength(points.size(), neighbors, source.size);
+  constexpr std::size_t reports = 32;
   queryInBlocks(
-      points.size(), source.concurrent ? searchThreads(source.threads, points.size()) : 1,
+      points.size(), reports, source.concurrent ? searchThreads(source.threads, points.size()) : 1,
       [&](std::size_t i, pcl::Indices& indices, std::vector<float>& distances) {
         source.query(points[i], lists.offsets[i + 1] - lists.offsets[i], indices, distances,
                      lists.indices.data() + lists.offsets[i]);
