@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>
@@ -22,6 +23,12 @@ inline constexpr std::size_t kParallelThreshold = 4096;
 /// The same for one short pass over the items: on a busy machine a region may have to wait for a
 /// thread that does not run, which takes as long as many such passes.
 inline constexpr std::size_t kShortPassThreshold = 50000;
+
+/// Between reports there are so many items at least: regions that follow each other wait for their
+/// slowest thread once more each.
+inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
+/// And reports of a loop at most, about.
+inline constexpr std::size_t kMostReports = 32;
 
 /// The threads that are worth having for so many items.
 ///
@@ -52,10 +59,27 @@ void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& w
   }
 }
 
-/// Calls work(thread, i) for each i in [0, count), where thread < threads.
+/// The same in a few dozen parallel regions, if there is someone to tell of the share that is done
+/// after each: the blocks and their numbers are those of one region.
 template <typename Work>
-void forEachItem(std::size_t count, int threads, const Work& work) {
-  forEachBlock(count, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+void forEachBlock(std::size_t count, int threads, const ShareReport& report, const Work& work) {
+  const std::size_t blocks = count / kMostReports / kBlockSize + 1;
+  const std::size_t most = report ? std::max(kReportedItems, blocks * kBlockSize) : count;
+  for (std::size_t first = 0; first < count; first += most) {
+    const std::size_t size = std::min(most, count - first);
+    forEachBlock(size, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      work(first / kBlockSize + block, first + begin, first + end);
+    });
+    tell(report, static_cast<double>(first + size) / static_cast<double>(count));
+  }
+}
+
+/// Calls work(thread, i) for each i in [0, count), where thread < threads.
+///
+/// \param report told of the share that is done, as by forEachBlock().
+template <typename Work>
+void forEachItem(std::size_t count, int threads, const ShareReport& report, const Work& work) {
+  forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
 #ifdef _OPENMP
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
 #else
@@ -64,6 +88,11 @@ void forEachItem(std::size_t count, int threads, const Work& work) {
     for (std::size_t i = begin; i < end; ++i)
       work(thread, i);
   });
+}
+
+template <typename Work>
+void forEachItem(std::size_t count, int threads, const Work& work) {
+  forEachItem(count, threads, {}, work);
 }
 
 /// Calls work(thread, i) for each i in [0, count), where thread < threads, each a long task of its
@@ -85,9 +114,10 @@ void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& wo
 
 /// The sum of term(begin, end) over the blocks of [0, count), in their order.
 template <typename Value, typename Term>
-Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term& term) {
+Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term& term,
+                  const ShareReport& report = {}) {
   std::vector<Value> sums((count + kBlockSize - 1) / kBlockSize, zero);
-  forEachBlock(count, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  forEachBlock(count, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     sums[block] = term(begin, end);
   });
   Value total = zero;

@@ -1,0 +1,81 @@
+#include "core/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+using Block = std::array<std::size_t, 3>;  ///< number, begin, end
+
+/// The blocks that the work is called for, by their numbers.
+std::vector<Block> blocksOf(std::size_t count, int threads, const ShareReport& report) {
+  std::vector<Block> blocks((count + kBlockSize - 1) / kBlockSize);
+  forEachBlock(count, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    blocks[block] = {block, begin, end};
+  });
+  return blocks;
+}
+
+TEST(Parallel, ReportsChangeNoBlock) {
+  for (const std::size_t count :
+       {std::size_t{0}, std::size_t{1}, kBlockSize, kReportedItems, kReportedItems + 1,
+        3 * kReportedItems - 1, 40 * kReportedItems + 7, 100 * kReportedItems})
+    for (const int threads : {1, 3}) {
+      std::vector<Block> expected;
+      for (std::size_t begin = 0; begin < count; begin += kBlockSize)
+        expected.push_back({expected.size(), begin, std::min(count, begin + kBlockSize)});
+      EXPECT_EQ(blocksOf(count, threads, {}), expected);
+      EXPECT_EQ(blocksOf(count, threads, [](double) {}), expected);
+    }
+}
+
+TEST(Parallel, ReportsAreFewAndRiseToOne) {
+  const std::thread::id caller = std::this_thread::get_id();
+  for (const std::size_t chunks : {std::size_t{1}, std::size_t{3}, std::size_t{30}, std::size_t{31},
+                                   std::size_t{100}, std::size_t{1000}}) {
+    std::vector<double> shares{0.0};
+    blocksOf(chunks * kReportedItems, 3, [&](double share) {
+      EXPECT_EQ(std::this_thread::get_id(), caller);
+      EXPECT_GT(share, shares.back());
+      shares.push_back(share);
+    });
+    EXPECT_EQ(shares.back(), 1.0);
+    const std::size_t reports = shares.size() - 1;
+    EXPECT_GE(reports, std::min<std::size_t>(chunks, 30));
+    EXPECT_LE(reports, std::min<std::size_t>(chunks, kMostReports));
+  }
+}
+
+TEST(Parallel, WhatAReportThrowsEndsTheWork) {
+  std::vector<char> done(5 * kReportedItems, 0);
+  const auto report = [](double share) {
+    if (share > 0.3)
+      throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(
+      forEachItem(done.size(), 3, report, [&](std::size_t, std::size_t i) { done[i] = 1; }),
+      std::runtime_error);
+  EXPECT_EQ(std::count(done.begin(), done.end(), 1),
+            static_cast<std::ptrdiff_t>(2 * kReportedItems));
+}
+
+TEST(Parallel, ReportsChangeNoSum) {
+  const auto term = [](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+      sum += 1.0 / (1.0 + static_cast<double>(i));
+    return sum;
+  };
+  const double sum = sumOfBlocks(3 * kReportedItems + 5, 1, 0.0, term);
+  EXPECT_EQ(sumOfBlocks(3 * kReportedItems + 5, 3, 0.0, term, [](double) {}), sum);
+}
+
+}  // namespace
+}  // namespace spherical_param::internal
