@@ -68,6 +68,9 @@ struct LocalDelaunayOptions {
   /// Asked for more neighbours of points whose cell is not certified by those it has. May be empty:
   /// the graph is then made of the lists alone.
   NeighborSearch search;
+  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
+  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
+  std::function<bool(double)> progress = {};
 };
 
 /// Builds the symmetric, connected neighbour graph of a point cloud.
@@ -103,7 +106,8 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
 /// \param lists  n neighbour lists, the nearest of each point; unsorted, with or without the point
 ///               itself. 12 nearest neighbours are mostly enough.
 /// \return the graph; the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for sizes that disagree, an index out of range, or options out of range.
+/// \throw InvalidInput for sizes that disagree, an index out of range, or options out of range;
+/// Cancelled.
 /// Cost: O(n c log c) for lists of c points, typically.
 ///
 /// Guaranteed: the graph is connected; of four points and more, each has at least three neighbours.

@@ -4,6 +4,7 @@
 #include "core/graph_building.h"
 #include "core/neighbor_lists.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Eigenvalues>
@@ -40,6 +41,13 @@ constexpr double kTie = 1e-9;
 constexpr double kLeastFlat = 0.9;
 /// Least ratio of the middle to the largest variance: below, the neighbourhood is a line.
 constexpr double kMostLinear = 0.01;
+
+/// Shares of the work that are done after its parts.
+constexpr double kMemoryShare = 0.02;
+constexpr double kStarsShare = 0.68;
+constexpr double kSearchShare = 0.76;
+constexpr double kEdgesShare = 0.93;
+constexpr double kPartsShare = 0.95;
 
 struct Candidate {
   double squared_distance;
@@ -318,7 +326,7 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
 /// are no longer than the one before change nothing.
 void findStars(const Positions& points, const std::vector<Index>& subset,
                const NeighborLists& lists, const LocalDelaunayOptions& options, int threads,
-               std::vector<Scratch>& scratch, Stars& stars) {
+               std::vector<Scratch>& scratch, const internal::ShareReport& report, Stars& stars) {
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
   std::size_t longest = 0;
@@ -329,26 +337,30 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
     memory.cell.reserve(longest);
   }
   const std::size_t others = stars.size() - 1;
-  internal::forEachItem(lists.size(), threads, [&](std::size_t thread, std::size_t q) {
-    const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
-    const auto i = static_cast<std::size_t>(node);
-    std::vector<Candidate>& candidates = scratch[thread].candidates;
-    collectCandidates(points, node, lists.indices.data() + lists.offsets[q],
-                      lists.indices.data() + lists.offsets[q + 1], options.max_candidates,
-                      candidates);
-    if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
-      return;
-    stars.begin[i] = base + lists.offsets[q];
-    stars.kind[i] = findStar(candidates, others, options, scratch[thread].cell,
-                             stars.nodes.data() + stars.begin[i], stars.count[i]);
-    for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
-      stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
-  });
+  internal::tell(report, kMemoryShare);
+  const auto found_report = internal::partOf(report, kMemoryShare, 1.0);
+  internal::forEachItem(
+      lists.size(), threads, found_report, [&](std::size_t thread, std::size_t q) {
+        const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
+        const auto i = static_cast<std::size_t>(node);
+        std::vector<Candidate>& candidates = scratch[thread].candidates;
+        collectCandidates(points, node, lists.indices.data() + lists.offsets[q],
+                          lists.indices.data() + lists.offsets[q + 1], options.max_candidates,
+                          candidates);
+        if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
+          return;
+        stars.begin[i] = base + lists.offsets[q];
+        stars.kind[i] = findStar(candidates, others, options, scratch[thread].cell,
+                                 stars.nodes.data() + stars.begin[i], stars.count[i]);
+        for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
+          stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
+      });
 }
 
 /// Asks for more neighbours of the points that want them. Returns how many points these were.
 Index searchForMore(const Positions& points, const LocalDelaunayOptions& options, int threads,
-                    std::vector<Scratch>& scratch, Stars& stars) {
+                    std::vector<Scratch>& scratch, const internal::ShareReport& report,
+                    Stars& stars) {
   const int most = static_cast<int>(
       std::min(static_cast<std::size_t>(options.max_candidates), stars.size() - 1));
   int count = 0;
@@ -357,6 +369,7 @@ Index searchForMore(const Positions& points, const LocalDelaunayOptions& options
   count = std::max(count, options.tangent_neighbors / 2);
   std::vector<Index> open;
   Index searched = 0;
+  double share = 0.0;
   while (count < most) {
     count = std::min(2 * count, most);
     open.clear();
@@ -369,18 +382,23 @@ Index searchForMore(const Positions& points, const LocalDelaunayOptions& options
     const NeighborLists lists = options.search(open, count);
     internal::checkIndices("buildLocalDelaunayGraph: the search's answer", lists, open.size(),
                            stars.size());
-    findStars(points, open, lists, options, threads, scratch, stars);
+    findStars(points, open, lists, options, threads, scratch, {}, stars);
+    // Mostly there are two or three rounds.
+    share += (1.0 - share) / 2.0;
+    internal::tell(report, share);
   }
   return searched;
 }
 
 /// The graph of the pairs whose stars agree.
-Graph agreedEdges(const Positions& points, const Stars& stars, int threads) {
+Graph agreedEdges(const Positions& points, const Stars& stars, int threads,
+                  const internal::ShareReport& report) {
   const std::size_t n = stars.size();
   Graph graph;
   graph.offsets.assign(n + 1, 0);
   std::vector<char> agreed(stars.nodes.size());  // not bool: written by several threads
-  internal::forEachItem(n, threads, [&](std::size_t, std::size_t i) {
+  const auto agree_report = internal::partOf(report, 0.0, 0.5);
+  internal::forEachItem(n, threads, agree_report, [&](std::size_t, std::size_t i) {
     for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e)
       if (stars.holds(stars.nodes[e], static_cast<Index>(i))) {
         agreed[e] = 1;
@@ -391,7 +409,8 @@ Graph agreedEdges(const Positions& points, const Stars& stars, int threads) {
     graph.offsets[i + 1] += graph.offsets[i];
   graph.neighbors.resize(graph.offsets[n]);
   graph.lengths.resize(graph.offsets[n]);
-  internal::forEachItem(n, threads, [&](std::size_t, std::size_t i) {
+  const auto write_report = internal::partOf(report, 0.5, 1.0);
+  internal::forEachItem(n, threads, write_report, [&](std::size_t, std::size_t i) {
     std::size_t entry = graph.offsets[i];
     for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e) {
       if (agreed[e] == 0)
@@ -534,11 +553,16 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   if (n == 0)
     return result;
 
+  const internal::ShareReport report =
+      internal::cancellable(options.progress, "buildLocalDelaunayGraph");
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
   Stars stars(n);
-  findStars(points, {}, lists, options, threads, scratch, stars);
+  findStars(points, {}, lists, options, threads, scratch,
+            internal::partOf(report, 0.0, kStarsShare), stars);
   if (options.search)
-    result.searched_again = searchForMore(points, options, threads, scratch, stars);
+    result.searched_again =
+        searchForMore(points, options, threads, scratch,
+                      internal::partOf(report, kStarsShare, kSearchShare), stars);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stars.kind[i].tangent_plane)
       result.without_tangent_plane.push_back(static_cast<Index>(i));
@@ -546,7 +570,8 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
       ++result.uncertified;
   }
 
-  result.graph = agreedEdges(points, stars, threads);
+  result.graph =
+      agreedEdges(points, stars, threads, internal::partOf(report, kSearchShare, kEdgesShare));
   if (options.agreement == StarAgreement::Either)
     joinAllOfStars(points, stars, result.graph);
   else
@@ -556,6 +581,7 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   internal::UnionFind parts = internal::connectedComponents(result.graph);
   const std::vector<Index> part = internal::representatives(parts, n);
   result.components = internal::countSets(part);
+  internal::tell(report, kPartsShare);
   if (result.components > 1) {
     result.bridges = joinParts(points, stars, part, parts);
     result.graph = internal::withEdges(result.graph, result.bridges);
@@ -563,11 +589,14 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   for (int round = 0; round < kDanglingRounds; ++round) {
     const std::vector<Bridge> bridges =
         internal::danglingBridges(points, result.graph, kBridgesPerJoint - 1);
+    // Mostly there is one round.
+    internal::tell(report, 1.0 - (1.0 - kPartsShare) / (round + 3));
     if (bridges.empty())
       break;
     result.graph = internal::withEdges(result.graph, bridges);
     result.bridges.insert(result.bridges.end(), bridges.begin(), bridges.end());
   }
+  internal::tell(report, 1.0);
   return result;
 }
 

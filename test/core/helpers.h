@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <random>
@@ -170,6 +171,47 @@ inline std::vector<std::array<Index, 3>> canonical(const Triangles& triangles) {
   }
   std::sort(result.begin(), result.end());
   return result;
+}
+
+/// The nearest other points of each point of spiralSphere(), without a search: they are a Fibonacci
+/// number of points away.
+inline NeighborLists spiralNeighbors(const Positions& points, int k) {
+  NeighborLists lists;
+  const auto n = static_cast<Index>(points.cols());
+  std::vector<std::pair<double, Index>> others;
+  for (Index i = 0; i < n; ++i) {
+    others.clear();
+    for (Index step = 1, next = 2; step < n && step < 100000; next += std::exchange(step, next))
+      for (const Index j : {i - step, i + step})
+        if (j >= 0 && j < n)
+          others.emplace_back((points.col(i) - points.col(j)).squaredNorm(), j);
+    const auto count = std::min<std::ptrdiff_t>(k, static_cast<std::ptrdiff_t>(others.size()));
+    std::partial_sort(others.begin(), others.begin() + count, others.end());
+    for (std::ptrdiff_t c = 0; c < count; ++c)
+      lists.indices.push_back(others[static_cast<std::size_t>(c)].second);
+    lists.offsets.push_back(lists.indices.size());
+  }
+  return lists;
+}
+
+/// The shares that run(progress) tells, none if one of them from another thread.
+template <typename Run>
+std::vector<double> sharesOf(const Run& run) {
+  std::vector<double> shares;
+  const std::thread::id caller = std::this_thread::get_id();
+  bool is_from_caller = true;
+  run([&](double share) {
+    is_from_caller = is_from_caller && std::this_thread::get_id() == caller;
+    shares.push_back(share);
+    return true;
+  });
+  return is_from_caller ? shares : std::vector<double>();
+}
+
+/// Whether some shares never fall, and are in [0, 1].
+inline bool areShares(const std::vector<double>& shares) {
+  return std::is_sorted(shares.begin(), shares.end()) && !shares.empty() && shares.front() >= 0.0 &&
+         shares.back() <= 1.0;
 }
 
 /// The results of run(0) ... run(count - 1), each computed in a thread of its own at the same time.

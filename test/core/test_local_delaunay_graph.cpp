@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -658,6 +659,26 @@ TEST(LocalDelaunayGraph, BadInputIsInvalidInput) {
   refused([](LocalDelaunayOptions& options) { options.max_slope = std::nan(""); });
   refused([](LocalDelaunayOptions& options) { options.threads = -1; });
   refused([](LocalDelaunayOptions& options) { options.threads = 1025; });
+}
+
+TEST(LocalDelaunayGraph, ProgressRisesAndCancels) {
+  const Positions points = test::spiralSphere(300000);
+  const NeighborLists lists = test::spiralNeighbors(points, 12);
+  const auto run = [&](const std::function<bool(double)>& progress) {
+    LocalDelaunayOptions options;
+    options.progress = progress;
+    return buildLocalDelaunayGraph(points, lists, options);
+  };
+  const std::vector<double> shares = test::sharesOf(run);
+  EXPECT_TRUE(test::areShares(shares));
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_GE(shares.size(), 10U);
+  EXPECT_EQ(run({}).graph.neighbors, run([](double) { return true; }).graph.neighbors);
+  for (const int last : {1, 4, static_cast<int>(shares.size())}) {
+    int count = 0;
+    EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
+    EXPECT_EQ(count, last);
+  }
 }
 
 }  // namespace
