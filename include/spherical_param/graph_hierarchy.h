@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace spherical_param {
@@ -30,6 +31,9 @@ struct HierarchyOptions {
   Index coarsest_size = 1000;  ///< levels are added until one has at most so many nodes; >= 4
   std::uint32_t seed = 1;      ///< of the order in which nodes are taken
   int threads = 0;             ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
+  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
+  std::function<bool(double)> progress = {};
 };
 
 /// Coarsens a graph by geometric clustering: seeds are a maximal independent set in an order that
@@ -44,7 +48,8 @@ struct HierarchyOptions {
 ///         any number of threads, and, up
 ///         to ties and rounding, for a moved, turned, scaled or renumbered cloud. A graph of many
 ///         neighbours a node, far from planar, is coarsened whatever its size.
-/// \throw InvalidInput for options out of range or a graph whose arrays do not fit.
+/// \throw InvalidInput for options out of range or a graph whose arrays do not fit;
+/// Cancelled.
 /// Cost: O(n log n).
 GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& options = {});
 

@@ -2,6 +2,7 @@
 
 #include "core/members.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
@@ -18,6 +19,8 @@ namespace spherical_param {
 namespace {
 
 using internal::forEachBlock;
+using internal::partOf;
+using internal::ShareReport;
 
 /// A level that keeps more than this share of the nodes is not worth having.
 constexpr double kLeastCoarsening = 0.9;
@@ -25,6 +28,19 @@ constexpr double kLeastCoarsening = 0.9;
 /// A graph of more neighbours a node is far from planar, as one of k nearest neighbours is, and no
 /// start for an embedding: its aggregates touch only where the surface does.
 constexpr int kPlanarDegree = 12;
+
+/// Shares of the work on a level that are done after its parts, and of these after theirs.
+constexpr double kSetShare = 0.30;
+constexpr double kCellsShare = 0.55;
+constexpr double kGraphShare = 0.75;
+constexpr double kKeysShare = 0.2;
+constexpr double kJudgedShare = 0.7;
+constexpr double kNearShare = 0.3;
+constexpr double kLookedShare = 0.9;
+constexpr double kMembersShare = 0.2;
+constexpr double kRowsShare = 0.7;
+/// Share of the nodes of a level that the next coarser one keeps, about.
+constexpr double kUsualCoarsening = 0.22;
 
 /// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
 /// turning, scaling or renumbering the points changes them only where rounding decides.
@@ -57,9 +73,11 @@ std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int th
 /// ascending key, unless a neighbour was taken before it. A node can be judged as soon as its
 /// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
 /// the same set whatever the order and the threads.
-std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads) {
+std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
+                                  const ShareReport& report) {
   const std::size_t n = graph.size();
   const std::vector<double> keys = scrambledKeys(graph, seed, threads);
+  internal::tell(report, kKeysShare);
   enum State : unsigned char { Open, Out, Taken };
   std::vector<std::atomic<unsigned char>> states(n);
   const auto judge = [&](std::size_t i) {
@@ -85,11 +103,13 @@ std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int th
     return true;
   };
   std::vector<std::vector<Index>> waiting((n + internal::kBlockSize - 1) / internal::kBlockSize);
-  forEachBlock(n, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  const ShareReport judged = partOf(report, kKeysShare, kJudgedShare);
+  forEachBlock(n, threads, judged, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (!judge(i))
         waiting[block].push_back(static_cast<Index>(i));
   });
+  double share = kJudgedShare;
   for (bool waits = true; waits;) {
     waits = false;
     for (std::vector<Index>& nodes : waiting) {
@@ -98,6 +118,8 @@ std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int th
                   nodes.end());
       waits = waits || !nodes.empty();
     }
+    share += (1.0 - share) / 2.0;
+    internal::tell(report, share);
   }
   std::vector<Index> taken;
   for (std::size_t i = 0; i < n; ++i)
@@ -114,7 +136,8 @@ struct Aggregates {
 
 /// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
 /// and then all nodes have been looked at, only few change, and those next to them.
-Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads) {
+Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads,
+                         const ShareReport& report) {
   const std::size_t n = graph.size();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Aggregates near{std::vector<Index>(n, -1), std::vector<double>(n, infinity)};
@@ -131,12 +154,14 @@ Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, in
       }
     }
   }
+  internal::tell(report, kNearShare);
   const auto is_nearer = [](double distance, Index seed, double than, Index other) {
     return distance < than || (distance == than && seed < other);
   };
   Aggregates cells{std::vector<Index>(n), std::vector<double>(n)};
   std::vector<std::vector<Index>> changed((n + internal::kBlockSize - 1) / internal::kBlockSize);
-  forEachBlock(n, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  const ShareReport looked = partOf(report, kNearShare, kLookedShare);
+  forEachBlock(n, threads, looked, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double nearest = near.distances[i];
       Index seed = near.of_node[i];
@@ -188,8 +213,10 @@ std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
 }
 
 /// The graph of the aggregates that touch.
-Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads) {
+Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
+                  const ShareReport& report) {
   const internal::Members members(cells.of_node, count);
+  internal::tell(report, kMembersShare);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Scratch {
     std::vector<double> shortest;
@@ -197,7 +224,8 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
   };
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
   std::vector<EntryBlock> blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachItem(count, threads, [&](std::size_t thread, std::size_t c) {
+  const ShareReport found = partOf(report, kMembersShare, 1.0);
+  internal::forEachItem(count, threads, found, [&](std::size_t thread, std::size_t c) {
     std::vector<double>& shortest = scratch[thread].shortest;
     std::vector<Index>& touched = scratch[thread].touched;
     shortest.resize(count, infinity);
@@ -251,11 +279,14 @@ void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double leng
     row.emplace(place, seed, length);
 }
 
-Eigen::SparseMatrix<double, Eigen::RowMajor, Index>
-interpolation(const Graph& graph, const Aggregates& cells, std::size_t count, int threads) {
+Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& graph,
+                                                                  const Aggregates& cells,
+                                                                  std::size_t count, int threads,
+                                                                  const ShareReport& report) {
   const std::size_t n = graph.size();
   std::vector<EntryBlock> blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
-  forEachBlock(n, threads, [&](std::size_t b, std::size_t begin, std::size_t end) {
+  const ShareReport found = partOf(report, 0.0, kRowsShare);
+  forEachBlock(n, threads, found, [&](std::size_t b, std::size_t begin, std::size_t end) {
     EntryBlock& block = blocks[b];
     // About three entries a row.
     constexpr std::size_t expected = 4 * internal::kBlockSize;
@@ -298,14 +329,18 @@ interpolation(const Graph& graph, const Aggregates& cells, std::size_t count, in
   return result;
 }
 
-HierarchyLevel coarsened(const Graph& graph, const HierarchyOptions& options) {
+HierarchyLevel coarsened(const Graph& graph, const HierarchyOptions& options,
+                         const ShareReport& report) {
   const int threads =
       internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold);
   HierarchyLevel level;
-  level.seeds = independentSet(graph, options.seed, threads);
-  Aggregates cells = geodesicCells(graph, level.seeds, threads);
-  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads);
-  level.prolongation = interpolation(graph, cells, level.seeds.size(), threads);
+  level.seeds = independentSet(graph, options.seed, threads, partOf(report, 0.0, kSetShare));
+  Aggregates cells =
+      geodesicCells(graph, level.seeds, threads, partOf(report, kSetShare, kCellsShare));
+  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads,
+                            partOf(report, kCellsShare, kGraphShare));
+  level.prolongation =
+      interpolation(graph, cells, level.seeds.size(), threads, partOf(report, kGraphShare, 1.0));
   level.aggregate_of = std::move(cells.of_node);
   return level;
 }
@@ -329,8 +364,13 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& o
   const auto is_dense = [](const Graph& level) {
     return level.neighbors.size() > static_cast<std::size_t>(kPlanarDegree) * level.size();
   };
+  const ShareReport report = internal::cancellable(options.progress, "buildGraphHierarchy");
+  double share = 0.0;
   while (finest->size() > static_cast<std::size_t>(options.coarsest_size) || is_dense(*finest)) {
-    HierarchyLevel level = coarsened(*finest, options);
+    // What is left is done on smaller and smaller levels.
+    const double share_after = share + (1.0 - kUsualCoarsening) * (1.0 - share);
+    HierarchyLevel level = coarsened(*finest, options, partOf(report, share, share_after));
+    share = share_after;
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
                                       kLeastCoarsening * static_cast<double>(finest->size()))
@@ -338,6 +378,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& o
     hierarchy.levels.push_back(std::move(level));
     finest = &hierarchy.levels.back().graph;
   }
+  internal::tell(report, 1.0);
   return hierarchy;
 }
 

@@ -5,6 +5,7 @@
 #include "core/multigrid.h"
 #include "core/parallel.h"
 #include "core/planar_start.h"
+#include "core/progress.h"
 #include "core/tangential_laplacian.h"
 #include "spherical_param/errors.h"
 
@@ -14,6 +15,7 @@
 #include <exception>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,7 @@ using internal::MultigridPreconditioner;
 using internal::NewtonReport;
 using internal::PaddedPositions;
 using internal::Rows;
+using internal::ShareReport;
 using internal::WeightRule;
 
 /// Relative residual to which a level is solved fully: limbs shrink exponentially along the sphere,
@@ -44,13 +47,16 @@ constexpr double kHopelessCentroid = 0.99;
 /// nodes are around a limb, the weaker is the barrier that keeps the sphere from slipping off it.
 constexpr std::size_t kLargestStart = 100000;
 /// A start is solved in about as much work as so many passes over the nodes.
-constexpr std::size_t kPassesOfStart = 200;
+constexpr int kPassesOfStart = 200;
 /// Beyond this mean the embedding has slipped along a tube towards one of its ends.
 constexpr double kSlippedCentroid = 0.5;
-/// Share of the work that the coarsest level counts for in the progress, and the other levels
-/// before the finest is solved.
-constexpr double kStartShare = 0.3;
-constexpr double kCascadeShare = 0.5;
+/// Passes over the nodes of a level that its other work takes about as long as, for the progress:
+/// before the sweeps (some of them to interpolate), for the residual thereafter, and to solve the
+/// finest level.
+constexpr double kPassesOfInterpolation = 1.5;
+constexpr double kPassesBefore = 4.0;
+constexpr double kPassesOfResidual = 3.0;
+constexpr double kPassesOfSolution = 60.0;
 
 void checkInput(const Graph& graph, const GraphHierarchy& hierarchy,
                 const MultilevelOptions& options) {
@@ -94,6 +100,7 @@ public:
       result_.levels[l].nodes = graphOf(l).size();
       result_.levels[l].edges = graphOf(l).edgeCount();
     }
+    planProgress();
     std::size_t level = 0;
     Positions u = solveCoarsest(level);
     if (u.cols() == 0) {
@@ -102,16 +109,23 @@ public:
     }
     for (std::size_t l = level; l-- > 0;) {
       u = interpolated(l, u);
-      smooth(l, options_.weights, options_.sweeps, u);
+      const double before = share_before_[l];
+      const double passes = kPassesBefore + options_.sweeps + kPassesOfResidual;
+      report(before + (share_after_[l] - before) * kPassesOfInterpolation / passes, residual_);
+      smooth(
+          l, options_.weights, options_.sweeps,
+          [&](double sweeps) {
+            report(before + (share_after_[l] - before) * (kPassesBefore + sweeps) / passes,
+                   residual_);
+          },
+          u);
       result_.levels[l].sweeps = options_.sweeps;
       if (isSolved(l) && !(l == 0 && options_.tolerance))  // which finish() solves further
         solveUncollapsed(l, std::nullopt, u);
       if (l == 0)
         break;  // finish() has the rest
       result_.levels[l].residual = residualOf(l, u);
-      report(kStartShare + (kCascadeShare - kStartShare) * static_cast<double>(level - l) /
-                               static_cast<double>(level),
-             result_.levels[l].residual);
+      report(share_after_[l], result_.levels[l].residual);
     }
     finish(u);
     return std::move(result_);
@@ -153,9 +167,33 @@ private:
     return energyWithout(l).gradient(u, gradient).absolute;
   }
 
+  /// Estimates the share of each level, by the passes over its nodes.
+  void planProgress() {
+    const std::size_t coarsest = hierarchy_.levels.size();
+    const auto passes = [&](std::size_t l, double count) {
+      return count * static_cast<double>(graphOf(l).size());
+    };
+    std::vector<double> work(coarsest + 1);
+    work[coarsest] = passes(coarsest, kPassesOfStart * options_.starts);
+    for (std::size_t l = 0; l < coarsest; ++l)
+      work[l] = passes(l, kPassesBefore + options_.sweeps + kPassesOfResidual +
+                              (isSolved(l) ? kPassesOfStart : 0.0));
+    const double all = std::accumulate(work.begin(), work.end(), 0.0) +
+                       (options_.tolerance ? passes(0, kPassesOfSolution) : 0.0);
+    share_before_.resize(work.size());
+    share_after_.resize(work.size());
+    double share = 0.0;
+    for (std::size_t l = work.size(); l-- > 0;) {
+      share_before_[l] = share;
+      share = std::min(1.0, share + work[l] / all);
+      share_after_[l] = share;
+    }
+  }
+
   /// Tells the callback; the share never falls.
   void report(double share, double residual) {
     share_ = std::max(share_, share);
+    residual_ = residual;
     if (options_.progress && !options_.progress(share_, residual))
       throw Cancelled("embedMultilevel: cancelled by the progress callback");
   }
@@ -208,7 +246,7 @@ private:
     EmbeddingEnergy energy = adaptiveEnergy(l);
     if (result_.added_barrier)
       energy.addBarrier(start.u);
-    smooth(l, EdgeWeights::Adaptive, kStartSweeps, start.u);
+    smooth(l, EdgeWeights::Adaptive, kStartSweeps, {}, start.u);
     minimize(energy, std::nullopt, preconditioner, progress, start.u, start.report);
     start.value = energy.value(start.u);
   }
@@ -218,8 +256,9 @@ private:
   Positions solveStarts(std::size_t l) {
     const std::vector<Index> centers = internal::centralNodes(graphOf(l));
     const std::size_t count = std::min(centers.size(), static_cast<std::size_t>(options_.starts));
-    const auto most = static_cast<std::size_t>(internal::threadCount(
-        options_.threads, kPassesOfStart * graphOf(l).size(), internal::kShortPassThreshold));
+    const auto most = static_cast<std::size_t>(
+        internal::threadCount(options_.threads, std::size_t{kPassesOfStart} * graphOf(l).size(),
+                              internal::kShortPassThreshold));
     const std::size_t threads = std::min(most, count);
     std::vector<MultigridPreconditioner> preconditioners(threads, preconditionerOf(l));
     LevelReport best_report;
@@ -229,7 +268,7 @@ private:
       std::vector<Start> starts(std::min(threads, count - first));
       for (Start& start : starts)
         start.report = result_.levels[l];
-      report(kStartShare * static_cast<double>(first) / options_.starts, 0.0);
+      report(share_after_.back() * static_cast<double>(first) / options_.starts, 0.0);
       std::atomic<bool> has_failed{false};
       internal::forEachTask(
           starts.size(), static_cast<int>(threads), [&](std::size_t thread, std::size_t i) {
@@ -285,7 +324,10 @@ private:
   }
 
   /// Damped Jacobi sweeps: lambda times the tangential Laplacian, all nodes at once.
-  void smooth(std::size_t l, EdgeWeights weights, int sweeps, Positions& u) const {
+  ///
+  /// \param swept told the number of sweeps before the first one, and after each; may be empty.
+  void smooth(std::size_t l, EdgeWeights weights, int sweeps, const ShareReport& swept,
+              Positions& u) const {
     const Graph& graph = graphOf(l);
     Rows rows = internal::makeRows(
         graph, weights == EdgeWeights::Uniform,
@@ -296,6 +338,7 @@ private:
     current.row(3).setZero();
     PaddedPositions next(4, u.cols());
     next.row(3).setZero();
+    internal::tell(swept, 0.0);
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       if (weights != EdgeWeights::Adaptive)
         sweepOnce<WeightRule::Fixed>(rows, current, next);
@@ -304,6 +347,7 @@ private:
       else
         sweepOnce<WeightRule::Power>(rows, current, next);
       std::swap(current, next);
+      internal::tell(swept, sweep + 1.0);
     }
     u = current.topRows<3>();
   }
@@ -360,7 +404,8 @@ private:
       // The residual falls from step to step by more and more orders of magnitude.
       const double goal = std::max(*options_.tolerance, 1e-16);
       const double done = std::log(first / residual) / std::log(std::max(first / goal, 2.0));
-      report(kCascadeShare + (1.0 - kCascadeShare) * std::clamp(done, 0.0, 1.0), residual);
+      const double before = share_after_[0];
+      report(before + (1.0 - before) * std::clamp(done, 0.0, 1.0), residual);
     };
     MultigridPreconditioner preconditioner = preconditionerOf(l);
     return minimize(energy, tolerance, preconditioner, progress, u, result_.levels[l]);
@@ -386,6 +431,7 @@ private:
     }
     result_.residual = residualOf(0, u);
     result_.levels[0].residual = result_.residual;
+    report(share_after_[0] - (share_after_[0] - share_) / 3.0, result_.residual);
     result_.energy = energyWithout(0).value(u);
     // The Laplacian alone decides: where a barrier pulls, its solution has not converged.
     if (options_.tolerance)
@@ -402,7 +448,11 @@ private:
   const GraphHierarchy& hierarchy_;
   const MultilevelOptions& options_;
   MultilevelEmbedding result_;
-  double share_ = 0.0;  ///< of the work that is done
+  double share_ = 0.0;     ///< of the work that is done
+  double residual_ = 0.0;  ///< told last
+  /// Of the work that is done before and after each level, about.
+  std::vector<double> share_before_;
+  std::vector<double> share_after_;
 };
 
 }  // namespace

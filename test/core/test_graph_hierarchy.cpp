@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -282,6 +283,25 @@ TEST(GraphHierarchy, RefusesBadInput) {
   Graph broken = sphereGraph(randomSphere(20, 1));
   broken.lengths.pop_back();
   EXPECT_THROW(buildGraphHierarchy(broken), InvalidInput);
+}
+
+TEST(GraphHierarchy, ProgressRisesAndCancels) {
+  const Graph graph = sphereGraph(test::spiralSphere(5000));
+  const auto run = [&](const std::function<bool(double)>& progress) {
+    HierarchyOptions options;
+    options.progress = progress;
+    return buildGraphHierarchy(graph, options);
+  };
+  const std::vector<double> shares = test::sharesOf(run);
+  EXPECT_TRUE(test::areShares(shares));
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_GE(shares.size(), 10U);
+  EXPECT_EQ(run({}).levels.back().seeds, run([](double) { return true; }).levels.back().seeds);
+  for (int last = 1; last <= static_cast<int>(shares.size()); ++last) {
+    int count = 0;
+    EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
+    EXPECT_EQ(count, last);
+  }
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <set>
 #include <thread>
 
 namespace spherical_param {
@@ -526,6 +527,23 @@ TEST(MultilevelEmbedding, ProgressRisesAndCancels) {
     EXPECT_THROW(embed(cloud.graph, options), Cancelled);
     EXPECT_EQ(count, stop);
   }
+}
+
+TEST(MultilevelEmbedding, ProgressTellsOfEverySweep) {
+  const Cloud cloud = dentedCloud(6000);
+  MultilevelOptions options;
+  options.solved_size = 0;
+  std::set<double> shares;
+  options.progress = [&](double share, double) {
+    shares.insert(share);
+    return true;
+  };
+  const MultilevelEmbedding watched = embed(cloud.graph, options);
+  EXPECT_EQ(*shares.rbegin(), 1.0);
+  EXPECT_GE(shares.size(),
+            (watched.levels.size() - 1) * static_cast<std::size_t>(options.sweeps + 2));
+  options.progress = {};
+  EXPECT_EQ(embed(cloud.graph, options).directions, watched.directions);
 }
 
 TEST(MultilevelEmbedding, StartsOfSeveralThreadsTellTheCallingOneAlone) {
