@@ -2,12 +2,23 @@
 
 #include "spherical_param/types.h"
 
+#include <functional>
+
 namespace spherical_param {
 
 /// How the points on the sphere are triangulated.
 enum class TriangulationMethod {
   Qhull,        ///< convex hull by qhull (Zwicker and Gotsman 2004, section 3), completed
   Incremental,  ///< incremental Delaunay triangulation with exact predicates
+};
+
+/// Parameters of triangulateSphere().
+struct TriangulationOptions {
+  TriangulationMethod method = TriangulationMethod::Incremental;  ///< how
+  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
+  /// ends the work with Cancelled. May be empty. Called from the calling thread only. Qhull itself
+  /// tells of nothing.
+  std::function<bool(double)> progress = {};
 };
 
 /// A triangulation of all points on the sphere, and how it came about.
@@ -42,7 +53,11 @@ struct SphereTriangulation {
 ///
 /// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
 /// \throw InvalidInput for n < 4, too many points, or a vector that is not of unit length;
-/// ComputeError if qhull runs out of memory. Cost: O(n log n), typically.
+/// ComputeError if qhull runs out of memory; Cancelled. Cost: O(n log n), typically.
+SphereTriangulation triangulateSphere(const Positions& directions,
+                                      const TriangulationOptions& options);
+
+/// The same without a callback.
 SphereTriangulation
 triangulateSphere(const Positions& directions,
                   TriangulationMethod method = TriangulationMethod::Incremental);

@@ -20,6 +20,14 @@
 namespace spherical_param::internal {
 namespace {
 
+/// Shares of the work that are done after its parts.
+constexpr double kPoleShare = 0.02;
+constexpr double kOrderShare = 0.2;
+constexpr double kProjectedShare = 0.24;
+constexpr double kInsertedShare = 0.95;
+/// Points between reports.
+constexpr Index kReportedPoints = Index{1} << 16;
+
 /// Stereographic projection from a pole on the sphere: inversion about it, which takes the sphere
 /// to a plane. It is written in differences from the pole, which keeps what is near the pole
 /// accurate in relation to its distance; and of a direction's rounding only that across the sphere
@@ -353,7 +361,7 @@ struct Vertices {
   }
 };
 
-Vertices projectInOrder(const Positions& directions) {
+Vertices projectInOrder(const Positions& directions, const ShareReport& report) {
   const auto n = static_cast<Index>(directions.cols());
   // Any point would do as pole. The highest one, nearest to the axis, makes the axes of the plane
   // nearly those of space, and does not depend on the order of the points.
@@ -372,7 +380,10 @@ Vertices projectInOrder(const Positions& directions) {
   vertices.places.resize(static_cast<std::size_t>(n));
   std::vector<Index> at_pole;
   const StereographicProjection projection(directions.col(pole));
-  for (const Index i : insertionOrder(directions)) {
+  tell(report, kPoleShare);
+  const std::vector<Index> order = insertionOrder(directions);
+  tell(report, kOrderShare);
+  for (const Index i : order) {
     if (i == pole)
       continue;
     if (projection.project(directions.col(i), vertices.places[vertices.input.size()]))
@@ -429,8 +440,9 @@ std::vector<Index> ringThroughPole(const Vertices& vertices,
 
 }  // namespace
 
-SphereDelaunay incrementalDelaunay(const Positions& directions) {
-  Vertices vertices = projectInOrder(directions);
+SphereDelaunay incrementalDelaunay(const Positions& directions, const ShareReport& report) {
+  Vertices vertices = projectInOrder(directions, report);
+  tell(report, kProjectedShare);
   const auto n = static_cast<Index>(vertices.input.size());
   std::vector<Coincidence> coincidences;
   for (Index p = vertices.in_plane; p < n; ++p)
@@ -440,7 +452,10 @@ SphereDelaunay incrementalDelaunay(const Positions& directions) {
   SphereDelaunay result;
   if (beginWithTriangle(vertices)) {
     triangulation.begin({{1, 2, 3}, {kPole, 3, 2}, {kPole, 1, 3}, {kPole, 2, 1}});
+    const ShareReport inserted = partOf(report, kProjectedShare, kInsertedShare);
     for (Index p = 4; p < vertices.in_plane; ++p) {
+      if (p % kReportedPoints == 0)
+        tell(inserted, static_cast<double>(p) / vertices.in_plane);
       const Index v = triangulation.insert(p);
       if (v != p)
         coincidences.push_back({v, p});
@@ -456,6 +471,7 @@ SphereDelaunay incrementalDelaunay(const Positions& directions) {
     }
     triangulation.begin(twoSidedPolygon(ring));
   }
+  tell(report, kInsertedShare);
   putBeside(std::move(coincidences), n, triangulation);
 
   result.triangles.resize(3, triangulation.size());

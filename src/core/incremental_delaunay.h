@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "spherical_param/types.h"
 
 namespace spherical_param::internal {
@@ -27,7 +28,8 @@ constexpr Index kMostDelaunayPoints = Index{1} << 29;
 /// their own.
 ///
 /// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= kMostDelaunayPoints.
+/// \param report     told of the share that is done.
 /// Cost: O(n log n) expected, about 100 bytes a point.
-SphereDelaunay incrementalDelaunay(const Positions& directions);
+SphereDelaunay incrementalDelaunay(const Positions& directions, const ShareReport& report = {});
 
 }  // namespace spherical_param::internal

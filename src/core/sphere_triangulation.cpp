@@ -1,6 +1,7 @@
 #include "spherical_param/sphere_triangulation.h"
 
 #include "core/incremental_delaunay.h"
+#include "core/progress.h"
 #include "core/space_filling_curve.h"
 #include "core/sphere_mesh.h"
 #include "spherical_param/errors.h"
@@ -28,6 +29,12 @@ using internal::SphereMesh;
 /// Relative bound under which a predicate counts as undecided: some hundred times the rounding
 /// error of its few operations.
 constexpr double kPredicateTolerance = 1e-13;
+
+/// Shares of the work that are done before and after the hull. Mostly it leaves few points out.
+constexpr double kDistinctShare = 0.1;
+constexpr double kHullShare = 0.9;
+/// Points between reports.
+constexpr std::size_t kReportedPoints = std::size_t{1} << 12U;
 
 /// The working memory of one run of reentrant qhull.
 class Qhull {
@@ -150,8 +157,11 @@ public:
     interior_ /= 3.0 * mesh_.size();
   }
 
-  void insert(const std::vector<Index>& points) {
-    for (const Index p : points) {
+  void insert(const std::vector<Index>& points, const internal::ShareReport& report) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i % kReportedPoints == 0)
+        internal::tell(report, static_cast<double>(i) / static_cast<double>(points.size()));
+      const Index p = points[i];
       const auto parts = mesh_.split(locate(p), p);
       last_ = parts[0];
       legalize({parts.begin(), parts.end()});
@@ -272,15 +282,18 @@ void checkInput(const Positions& directions) {
                          " is not of unit length; normalise the points first");
 }
 
-SphereTriangulation triangulateByQhull(const Positions& directions) {
+SphereTriangulation triangulateByQhull(const Positions& directions,
+                                       const internal::ShareReport& report) {
   SphereTriangulation result;
   const auto n = static_cast<std::size_t>(directions.cols());
   const DistinctPoints distinct = findDistinctPoints(directions);
+  internal::tell(report, kDistinctShare);
   result.coincident = static_cast<Index>(n - distinct.input_of_vertex.size());
 
   std::optional<Triangles> hull;
   if (distinct.input_of_vertex.size() >= 4)
     hull = convexHull(directions);
+  internal::tell(report, kHullShare);
   result.hull_rejected = !hull.has_value();
   const Triangles start = hull ? std::move(*hull) : firstTetrahedron(directions);
 
@@ -318,19 +331,20 @@ SphereTriangulation triangulateByQhull(const Positions& directions) {
     }
   }
   PointInserter inserter(directions, start);
-  inserter.insert(missing);
+  inserter.insert(missing, internal::partOf(report, kHullShare, 1.0));
   for (const auto& [p, vertex] : beside)
     inserter.insertAt(p, vertex);
   result.triangles = inserter.triangles();
   return result;
 }
 
-SphereTriangulation triangulateIncrementally(const Positions& directions) {
+SphereTriangulation triangulateIncrementally(const Positions& directions,
+                                             const internal::ShareReport& report) {
   if (directions.cols() > internal::kMostDelaunayPoints)
     throw InvalidInput("triangulateSphere: " + std::to_string(directions.cols()) +
                        " points; TriangulationMethod::Incremental takes at most " +
                        std::to_string(internal::kMostDelaunayPoints));
-  internal::SphereDelaunay delaunay = internal::incrementalDelaunay(directions);
+  internal::SphereDelaunay delaunay = internal::incrementalDelaunay(directions, report);
   SphereTriangulation result;
   result.triangles = std::move(delaunay.triangles);
   result.coincident = delaunay.coincident;
@@ -341,10 +355,21 @@ SphereTriangulation triangulateIncrementally(const Positions& directions) {
 
 }  // namespace
 
-SphereTriangulation triangulateSphere(const Positions& directions, TriangulationMethod method) {
+SphereTriangulation triangulateSphere(const Positions& directions,
+                                      const TriangulationOptions& options) {
   checkInput(directions);
-  return method == TriangulationMethod::Qhull ? triangulateByQhull(directions)
-                                              : triangulateIncrementally(directions);
+  const internal::ShareReport report = internal::cancellable(options.progress, "triangulateSphere");
+  SphereTriangulation result = options.method == TriangulationMethod::Qhull
+                                   ? triangulateByQhull(directions, report)
+                                   : triangulateIncrementally(directions, report);
+  internal::tell(report, 1.0);
+  return result;
+}
+
+SphereTriangulation triangulateSphere(const Positions& directions, TriangulationMethod method) {
+  TriangulationOptions options;
+  options.method = method;
+  return triangulateSphere(directions, options);
 }
 
 }  // namespace spherical_param

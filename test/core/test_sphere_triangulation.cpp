@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
 
 namespace spherical_param {
@@ -635,6 +636,28 @@ TEST(IncrementalTriangulation, CrowdsAreTriangulatedInTime) {
     const Positions points = cap(200000, radius, {0.6, 0.0, 0.8}, 2);
     const SphereTriangulation result = triangulateSphere(points, Method::Incremental);
     EXPECT_EQ(result.triangles.cols(), 2 * points.cols() - 4);
+  }
+}
+
+TEST_P(EveryMethod, ProgressRisesAndCancels) {
+  const bool is_fast = GetParam() == TriangulationMethod::Incremental;
+  const Positions directions = randomSphere(is_fast ? 300000 : 3000, 9);
+  const auto run = [&](const std::function<bool(double)>& progress) {
+    TriangulationOptions options;
+    options.method = GetParam();
+    options.progress = progress;
+    return triangulateSphere(directions, options);
+  };
+  const std::vector<double> shares = test::sharesOf(run);
+  EXPECT_TRUE(test::areShares(shares));
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_GE(shares.size(), is_fast ? 8U : 3U);
+  EXPECT_EQ(run([](double) { return true; }).triangles,
+            triangulateSphere(directions, GetParam()).triangles);
+  for (const int last : {1, 3, static_cast<int>(shares.size())}) {
+    int count = 0;
+    EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
+    EXPECT_EQ(count, last);
   }
 }
 
