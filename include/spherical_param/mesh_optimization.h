@@ -32,7 +32,9 @@ struct OptimizationOptions {
   /// After work on positions of `smoother`, untangle on the given points too, if that is not in
   /// vain.
   bool finish_on_points = true;
-  /// Told the share of the work that is done, in [0, 1). May throw to end the work. May be empty.
+  /// Told the share of the work that is done, in [0, 1), which never falls; about in proportion to
+  /// the time where nothing has to be untangled. May throw to end the work. May be empty. Called
+  /// from the calling thread only.
   std::function<void(double)> progress;
 };
 

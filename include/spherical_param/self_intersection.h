@@ -3,6 +3,7 @@
 #include "spherical_param/types.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace spherical_param {
@@ -10,6 +11,9 @@ namespace spherical_param {
 struct SelfIntersectionOptions {
   /// Threads to use; 0: as many as OpenMP would, at most 1024. The answer is the same for any.
   int threads = 0;
+  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
+  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
+  std::function<bool(double)> progress = {};
 };
 
 /// Pairs of triangles of a mesh that intersect more than neighbours must.
@@ -29,7 +33,7 @@ struct SelfIntersectionOptions {
 /// \param triangles 3 x m, indices in [0, n); need not be closed, manifold or oriented.
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw InvalidInput for an index out of range, a coordinate that is not finite, threads outside
-/// [0, 1024]. Cost: O(m log m) and the pairs whose bounding boxes overlap.
+/// [0, 1024]; Cancelled. Cost: O(m log m) and the pairs whose bounding boxes overlap.
 std::vector<std::array<Index, 2>>
 findSelfIntersections(const Positions& points, const Triangles& triangles,
                       const SelfIntersectionOptions& options = {});

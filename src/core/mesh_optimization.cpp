@@ -2,6 +2,7 @@
 
 #include "core/mesh_optimizer.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/sampling_analysis.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
@@ -16,6 +17,7 @@ namespace spherical_param {
 namespace {
 
 using internal::MeshOptimizer;
+using internal::ShareReport;
 using internal::SurfaceEnergy;
 using Bend = SurfaceEnergy::Bend;
 
@@ -63,6 +65,25 @@ constexpr double kPriceOfIntersection = 10.0;
 constexpr double kFewIntersections = 0.005;
 constexpr double kFewInAll = 1500.0;
 
+/// Shares of the work that are done after its parts, where nothing intersects: of
+/// OptimizationMethod::Full, and of the others. The last one is never told.
+constexpr double kCheckedShare = 0.04;
+constexpr double kMeshShare = 0.1;
+constexpr double kSphereShare = 0.15;
+constexpr double kPreparedShare = 0.2;
+constexpr double kFlipsShare = 0.36;
+constexpr double kRoughShare = 0.44;
+constexpr double kRelocateShare = 0.46;
+constexpr double kRecreateShare = 0.47;
+constexpr double kUntangleShare = 0.5;
+constexpr double kPolishShare = 0.56;
+constexpr double kPolishRelocateShare = 0.57;
+constexpr double kLastUntangleShare = 0.99;
+constexpr double kFlipsAloneShare = 0.5;
+constexpr double kAllShare = 0.999;
+/// Share of untangling that finds what intersects.
+constexpr double kIntersectionsShare = 0.9;
+
 /// Vertices that may be taken out in parts, in all.
 std::size_t budgetOf(std::size_t points) {
   constexpr std::size_t of_point = 5;
@@ -92,9 +113,11 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
 
 /// The optimiser of a mesh that is as it should be.
 MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangles,
-                               const Graph& graph, int threads) {
+                               const Graph& graph, int threads, const ShareReport& report) {
   checkInput(points, triangles, graph);
+  internal::tell(report, kCheckedShare);
   MeshOptimizer optimizer(points, triangles, graph, threads);
+  internal::tell(report, kMeshShare);
   if (!optimizer.mesh().isSphere(threads))
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points");
@@ -107,31 +130,34 @@ public:
                const OptimizationOptions& options)
       : graph_(graph), options_(options), given_(&points), points_(&points), random_(options.seed),
         budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
-        optimizer_(checkedOptimizer(points, triangles, graph, options.threads)) {}
+        optimizer_(checkedOptimizer(points, triangles, graph, options.threads, options.progress)) {}
 
   MeshOptimization run() {
+    const bool is_full = options_.method == OptimizationMethod::Full;
+    report(kSphereShare);
     analyze();
     setFlipEnergy(kMu);
-    flips("flips");
+    report(kPreparedShare);
+    flips("flips", kPreparedShare, is_full ? kFlipsShare : kFlipsAloneShare);
     optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
-    if (options_.method == OptimizationMethod::Full) {
-      std::vector<Index> rough = optimizer_.roughVertices(kSharp);
+    if (is_full) {
+      std::vector<Index> rough = optimizer_.roughVertices(kSharp, part(kFlipsShare, kRoughShare));
       result_.rough = static_cast<double>(rough.size()) / static_cast<double>(points_->cols());
       if (result_.rough > kNoisy)
         rough = beginOnNoise();
-      relocate(rough);
+      relocate(rough, kRoughShare, kRelocateShare);
       // Where nothing is folded, hardly anything intersects: once after the polish is enough.
       if (recreate())
-        untangle();
+        untangle(kRecreateShare, kUntangleShare);
       const Triangles unpolished = optimizer_.mesh().triangles();
       polish();
       // With the first energy: it is what keeps sheets apart.
       optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
-      result_.self_intersections = untangle();
+      result_.self_intersections = untangle(kPolishRelocateShare, kLastUntangleShare);
       if (!result_.self_intersections.empty())
         takeBackPolish(unpolished);
     } else {
-      result_.self_intersections = optimizer_.intersections();
+      result_.self_intersections = optimizer_.intersections(part(kFlipsAloneShare, kAllShare));
     }
     if (result_.smoothing_steps > 0)
       endOnNoise();
@@ -163,13 +189,22 @@ private:
     return result_.phases.back();
   }
 
-  void report(double share) const {
+  /// The share never falls, though parts may be repeated.
+  void report(double share) {
+    share_ = std::max(share_, std::min(share, kAllShare));
     if (options_.progress)
-      options_.progress(share);
+      options_.progress(share_);
   }
 
-  void flips(const char* name) {
-    phase(name, [&] { return Tally{0, optimizer_.flipAll()}; });
+  /// The report of a part of the work. \see partOf
+  ShareReport part(double begin, double end) {
+    if (!options_.progress)
+      return {};
+    return internal::partOf([this](double share) { report(share); }, begin, end);
+  }
+
+  void flips(const char* name, double share_before, double share_after) {
+    phase(name, [&] { return Tally{0, optimizer_.flipAll(part(share_before, share_after))}; });
   }
 
   /// Goes on with less noisy positions, or with fewer vertices. Returns the rough ones.
@@ -186,8 +221,8 @@ private:
       points_ = &smoothed_;
       optimizer_.setPoints(smoothed_);
       analyze();
-      flips("flips");
-      rough = optimizer_.roughVertices(kSharp);
+      flips("flips", share_, kRoughShare);
+      rough = optimizer_.roughVertices(kSharp, part(share_, kRoughShare));
       if (static_cast<double>(rough.size()) <= kSmoothEnough * static_cast<double>(points_->cols()))
         break;
     }
@@ -201,20 +236,27 @@ private:
     if (!options_.finish_on_points)
       return;
     result_.smoothed_self_intersections = result_.self_intersections.size();
-    result_.self_intersections = optimizer_.intersections();
+    result_.self_intersections =
+        optimizer_.intersections(part(kLastUntangleShare, kLastUntangleShare));
     const auto count = static_cast<double>(result_.self_intersections.size());
     if (count <= std::max(kFewInAll, kFewIntersections * optimizer_.mesh().size()))
-      result_.self_intersections = untangle();
+      result_.self_intersections = untangle(kLastUntangleShare, kAllShare);
   }
 
-  void relocate(std::vector<Index> rough) {
+  /// What is done with an item of a round, where all rounds are the share from `before` to `after`.
+  static double shareOf(int round, int rounds, std::size_t item, std::size_t items, double before,
+                        double after) {
+    const double of_round = static_cast<double>(item) / static_cast<double>(items);
+    return before + (after - before) * (round + of_round) / rounds;
+  }
+
+  void relocate(std::vector<Index> rough, double share_before, double share_after) {
     for (int round = 0; round < kRelocateRounds && !rough.empty(); ++round) {
       std::vector<Index> moved;
       phase("relocate", [&] {
         for (std::size_t i = 0; i < rough.size(); ++i) {
           if (i % 256 == 0)
-            report(0.1 +
-                   0.1 * (round + static_cast<double>(i) / static_cast<double>(rough.size())));
+            report(shareOf(round, kRelocateRounds, i, rough.size(), share_before, share_after));
           if (optimizer_.relocate(rough[i]))
             moved.push_back(rough[i]);
         }
@@ -250,8 +292,8 @@ private:
         Tally tally;
         for (std::size_t i = 0; i < folded.size(); ++i) {
           if (i % 16 == 0)
-            report(0.5 +
-                   0.04 * (round + static_cast<double>(i) / static_cast<double>(folded.size())));
+            report(
+                shareOf(round, kRecreateRounds, i, folded.size(), kRelocateShare, kRecreateShare));
           const auto& [v, w] = folded[i];
           for (std::size_t size = 4; size <= 32; size *= 2)
             if (optimizer_.mesh().areJoined(v, w))
@@ -281,8 +323,9 @@ private:
   }
 
   /// Ends with the mesh of fewest intersections on the way, and returns these.
-  std::vector<std::array<Index, 2>> untangle() {
-    auto pairs = optimizer_.intersections();
+  std::vector<std::array<Index, 2>> untangle(double share_before, double share_after) {
+    const double share_found = share_before + kIntersectionsShare * (share_after - share_before);
+    auto pairs = optimizer_.intersections(part(share_before, share_found));
     result_.phases.back().self_intersections = pairs.size();
     auto fewest = pairs;
     Triangles best;
@@ -299,13 +342,12 @@ private:
           corners.push_back({cornersOf(t), cornersOf(u)});
         for (std::size_t i = 0; i < pairs.size(); ++i) {
           if (i % 16 == 0)
-            report(0.7 +
-                   0.01 * (round + static_cast<double>(i) / static_cast<double>(pairs.size())));
+            report(shareOf(round, kUntangleRounds, i, pairs.size(), share_found, share_after));
           untanglePair(pairs[i], corners[i], round >= kRoundsByEnergy, tally);
         }
         return tally;
       });
-      pairs = optimizer_.intersections();
+      pairs = optimizer_.intersections(part(share_, share_));
       untangled.self_intersections = pairs.size();
     }
     if (pairs.size() <= fewest.size())
@@ -364,10 +406,11 @@ private:
   }
 
   void polish() {
+    report(kRecreateShare);
     setFlipEnergy(kPolishMu);
-    flips("polish");
+    flips("polish", kUntangleShare, kPolishShare);
     if (!isEven())
-      relocate(optimizer_.roughVertices(kSharp));
+      relocate(optimizer_.roughVertices(kSharp), kPolishShare, kPolishRelocateShare);
   }
 
   /// Goes back to the mesh before the polish if fewer of its triangles intersect.
@@ -375,7 +418,7 @@ private:
     phase("unpolish", [&] {
       const Triangles polished = optimizer_.mesh().triangles();
       optimizer_.reset(unpolished);
-      auto pairs = optimizer_.intersections();
+      auto pairs = optimizer_.intersections(part(kLastUntangleShare, kAllShare));
       if (pairs.size() < result_.self_intersections.size()) {
         result_.self_intersections = std::move(pairs);
         return Tally{1, 1};
@@ -393,6 +436,7 @@ private:
   std::uint64_t random_;
   std::size_t budget_;  ///< vertices that may still be taken out in parts
   MeshOptimizer optimizer_;
+  double share_ = 0.0;  ///< of the work that is done
   MeshOptimization result_;
 };
 
@@ -406,12 +450,20 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
                        std::to_string(internal::kMostThreads));
   if (options.method == OptimizationMethod::None) {
     MeshOptimization result;
-    MeshOptimizer optimizer = checkedOptimizer(points, triangles, graph, options.threads);
+    MeshOptimizer optimizer =
+        checkedOptimizer(points, triangles, graph, options.threads, options.progress);
     optimizer.setEnergy(energyOf(Bend::Angle, kMu));
     result.energy = optimizer.energy();
+    if (options.progress)
+      options.progress(kFlipsAloneShare);
     result.triangles = triangles;
     SelfIntersectionOptions intersections;
     intersections.threads = options.threads;
+    if (options.progress)
+      intersections.progress = [&](double share) {
+        options.progress(std::min(kFlipsAloneShare + (1.0 - kFlipsAloneShare) * share, kAllShare));
+        return true;
+      };
     result.self_intersections = findSelfIntersections(points, triangles, intersections);
     return result;
   }

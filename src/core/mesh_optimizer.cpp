@@ -16,6 +16,13 @@ namespace {
 /// Changes of the energy below this are rounding [mean length of the graph's edges].
 constexpr double kLeastGain = 1e-9;
 
+/// Candidates of flips between reports.
+constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
+/// Share of the work of flipAll() that finds the first candidates, and of intersections() before
+/// the pairs.
+constexpr double kCandidatesShare = 0.65;
+constexpr double kFansShare = 0.12;
+
 /// Neighbours in the graph up to so many mean lengths of a vertex's edges should be near on the
 /// mesh.
 constexpr double kNearNeighbor = 1.5;
@@ -172,10 +179,17 @@ bool MeshOptimizer::flip(Index t, int k, double gain) {
   return true;
 }
 
-std::size_t MeshOptimizer::flipQueued() {
+std::size_t MeshOptimizer::flipQueued(const ShareReport& report) {
   refused_.clear();
   std::size_t flips = 0;
-  while (!queue_.empty()) {
+  double share = 0.0;
+  for (std::size_t taken = 1; !queue_.empty(); ++taken) {
+    if (report && taken % kReportedCandidates == 0) {
+      // What is in the queue by now puts in less than it takes out.
+      share =
+          std::max(share, static_cast<double>(taken) / static_cast<double>(taken + queue_.size()));
+      report(share);
+    }
     const Candidate best = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
     queue_.pop_back();
@@ -230,7 +244,7 @@ void MeshOptimizer::unmark(std::uint8_t change) {
     marks &= static_cast<std::uint8_t>(~change);
 }
 
-std::size_t MeshOptimizer::flipAll() {
+std::size_t MeshOptimizer::flipAll(const ShareReport& report) {
   // The gain of a side depends on its two triangles and their neighbours alone.
   const bool are_most_settled = are_flips_settled_ && settled_terms_ == terms_;
   const auto is_due = [&](Index t) {
@@ -238,7 +252,7 @@ std::size_t MeshOptimizer::flipAll() {
   };
   std::vector<std::vector<Candidate>> found((facets_.size() + kBlockSize - 1) / kBlockSize);
   const double floor = kLeastGain * unit_;
-  forEachBlock(facets_.size(), threads_,
+  forEachBlock(facets_.size(), threads_, partOf(report, 0.0, kCandidatesShare),
                [&](std::size_t block, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
                    const auto t = static_cast<Index>(i);
@@ -262,7 +276,7 @@ std::size_t MeshOptimizer::flipAll() {
   for (const auto& part : found)
     queue_.insert(queue_.end(), part.begin(), part.end());
   std::make_heap(queue_.begin(), queue_.end());
-  const std::size_t flips = flipQueued();
+  const std::size_t flips = flipQueued(partOf(report, kCandidatesShare, 1.0));
   unmark(kChangedSinceFlips);
   // These would gain, and may not be refused again.
   for (const Index t : refused_)
@@ -484,9 +498,10 @@ std::vector<Index> MeshOptimizer::spread(const std::vector<Index>& seeds, std::s
 }
 
 template <typename Condition>
-std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& meets) const {
+std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& meets,
+                                         const ShareReport& report) const {
   std::vector<std::vector<Index>> found((count + kBlockSize - 1) / kBlockSize);
-  forEachBlock(count, threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  forEachBlock(count, threads_, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (meets(static_cast<Index>(i)))
         found[block].push_back(static_cast<Index>(i));
@@ -558,8 +573,9 @@ bool MeshOptimizer::isRough(Index v, double cosine) const {
   return false;
 }
 
-std::vector<Index> MeshOptimizer::roughVertices(double cosine) const {
-  return filter(seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); });
+std::vector<Index> MeshOptimizer::roughVertices(double cosine, const ShareReport& report) const {
+  return filter(
+      seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); }, report);
 }
 
 void MeshOptimizer::gatherCosines(Index v, std::vector<double>& cosines) const {
@@ -680,17 +696,19 @@ bool MeshOptimizer::isPlainFan(Index v) const {
   return (left_turns == sides || right_turns == sides) && passes == 2;
 }
 
-std::vector<std::uint8_t> MeshOptimizer::plainFans() const {
+std::vector<std::uint8_t> MeshOptimizer::plainFans(const ShareReport& report) const {
   std::vector<std::uint8_t> fans(seen_vertices_.size());
-  forEachBlock(fans.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+  forEachBlock(fans.size(), threads_, report, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       fans[v] = isPlainFan(static_cast<Index>(v)) ? 1 : 0;
   });
   return fans;
 }
 
-std::vector<std::array<Index, 2>> MeshOptimizer::intersections() const {
-  return findSelfIntersections(*points_, mesh_.triangles(), plainFans(), threads_);
+std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const ShareReport& report) const {
+  const std::vector<std::uint8_t> fans = plainFans(partOf(report, 0.0, kFansShare));
+  return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_,
+                               partOf(report, kFansShare, 1.0));
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {

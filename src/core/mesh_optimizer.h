@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "core/sphere_mesh.h"
 #include "core/surface_energy.h"
 #include "spherical_param/types.h"
@@ -42,7 +43,10 @@ public:
 
   /// Flips edges, the one that gains most first, until none gains. Returns the number of flips.
   /// Asked again with the same energy, it looks only at what has changed.
-  std::size_t flipAll();
+  ///
+  /// \param report told of the share that is done: an estimate, for a flip may make others gain.
+  /// What it throws leaves a sound mesh of which the energy is as it should be.
+  std::size_t flipAll(const ShareReport& report = {});
 
   /// Takes a vertex out and puts it back where it costs least, among the triangles around its
   /// neighbours in mesh and graph; keeps that if the energy falls: returns whether it did.
@@ -68,16 +72,16 @@ public:
   /// is more than two edges away from a near neighbour in the graph.
   bool isRough(Index v, double cosine) const;
   /// All such vertices, ascending.
-  std::vector<Index> roughVertices(double cosine) const;
+  std::vector<Index> roughVertices(double cosine, const ShareReport& report = {}) const;
 
   /// n entries: the median of the angles at a vertex's edges and those opposite to it [rad].
   std::vector<double> medianAngles() const;
 
   /// All pairs of triangles that intersect, by their places in the mesh; none may be free.
-  std::vector<std::array<Index, 2>> intersections() const;
+  std::vector<std::array<Index, 2>> intersections(const ShareReport& report = {}) const;
   /// For each vertex, 1 if the triangles around it are evidently such that no two of them
   /// intersect: seen along an axis, they go around it once.
-  std::vector<std::uint8_t> plainFans() const;
+  std::vector<std::uint8_t> plainFans(const ShareReport& report = {}) const;
   /// Pairs that intersect among the triangles around some vertices.
   std::size_t intersectionsAround(const std::vector<Index>& vertices);
 
@@ -113,7 +117,8 @@ private:
   void recomputeFacets();
   /// The items of [0, count) that meet a condition, ascending.
   template <typename Condition>
-  std::vector<Index> filter(std::size_t count, const Condition& meets) const;
+  std::vector<Index> filter(std::size_t count, const Condition& meets,
+                            const ShareReport& report = {}) const;
   double edge(Index v, Index w, const Facet& f, const Facet& g) const {
     return terms_.edge(v, w, points_->col(v), points_->col(w), f.normal, g.normal);
   }
@@ -126,7 +131,7 @@ private:
   void queueFlip(Index t, int k);
   /// Flips around some triangles until none gains.
   void flipAround(const std::vector<Index>& triangles);
-  std::size_t flipQueued();
+  std::size_t flipQueued(const ShareReport& report = {});
 
   /// What the energy rises by if a triangle is split, or no less than `ceiling` if that is so.
   double splitCost(Index t, Index v, double ceiling) const;

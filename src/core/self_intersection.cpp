@@ -2,6 +2,7 @@
 
 #include "core/exact_predicates.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/radix_sort.h"
 #include "core/self_intersection_of_fans.h"
 #include "spherical_param/errors.h"
@@ -32,7 +33,15 @@ using Eigen::Vector3d;
 using internal::kUnitRoundoff;
 using internal::orientation2d;
 using internal::orientation3d;
+using internal::partOf;
+using internal::ShareReport;
 using Pairs = std::vector<std::array<Index, 2>>;
+
+/// Shares of the work that are done after its parts: the tree, the pairs among its triangles. Of
+/// the tree, the order of the triangles.
+constexpr double kTreeShare = 0.5;
+constexpr double kPairsShare = 0.75;
+constexpr double kOrderShare = 0.4;
 
 /// A triangle with all that the tests need, in one place of the memory.
 struct Face {
@@ -621,7 +630,8 @@ void sortBlock(const BlockCenters& centers, const Index* block, std::size_t coun
 /// The triangles in an order in which neighbours are near.
 ///
 /// \param subset triangles, ascending; at least one.
-std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads) {
+std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads,
+                           const ShareReport& report) {
   const double usual = usualSize(mesh, subset);
   // Most meshes come in blocks that are small, and of triangles of about one size: then it is
   // enough to sort within these.
@@ -636,7 +646,8 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
   };
   std::vector<Index> order(subset.size());
   const Blocks blocks = internal::sumOfBlocks(
-      subset.size(), threads, Blocks{}, [&](std::size_t begin, std::size_t end) {
+      subset.size(), threads, Blocks{},
+      [&](std::size_t begin, std::size_t end) {
         BlockCenters centers;
         Blocks block;
         Box all = mesh.box(subset[begin]);
@@ -651,7 +662,8 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
         block.size = all.size();
         sortBlock(centers, subset.data() + begin, end - begin, order.data() + begin);
         return block;
-      });
+      },
+      report);
   const auto count =
       static_cast<double>((subset.size() + internal::kBlockSize - 1) / internal::kBlockSize);
   if (blocks.size > kLargeBlock * usual * count ||
@@ -666,7 +678,7 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
 class Tree {
 public:
   /// \param subset triangles, ascending; at least one. The mesh must outlive this.
-  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads);
+  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads, const ShareReport& report);
 
   /// Triangles of a bunch: those of a group of leaves.
   static constexpr std::size_t kBunch = kWidth * kWidth;
@@ -704,15 +716,17 @@ private:
   std::vector<std::vector<BoxGroup>> levels_;  ///< from the leaves to the root
 };
 
-Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads)
-    : mesh_(mesh), order_(ordered(mesh, subset, threads)) {
+Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
+           const ShareReport& report)
+    : mesh_(mesh), order_(ordered(mesh, subset, threads, partOf(report, 0.0, kOrderShare))) {
   levels_.emplace_back((order_.size() + kWidth - 1) / kWidth);
   static_assert(internal::kBlockSize % kWidth == 0, "a group is in one block");
-  internal::forEachBlock(
-      order_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          levels_.front()[i / kWidth].set(i % kWidth, WideBox(mesh.box(order_[i])));
-      });
+  internal::forEachBlock(order_.size(), threads, partOf(report, kOrderShare, 1.0),
+                         [&](std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t i = begin; i < end; ++i)
+                             levels_.front()[i / kWidth].set(i % kWidth,
+                                                             WideBox(mesh.box(order_[i])));
+                         });
   do {
     const std::vector<BoxGroup>& below = levels_.back();
     std::vector<BoxGroup> level((below.size() + kWidth - 1) / kWidth);
@@ -859,9 +873,9 @@ double checkedScale(const Positions& points, const Triangles& triangles, int thr
 
 /// Runs find(i, pairs) for i in [0, count) and joins what it appends.
 template <typename Find>
-Pairs collect(std::size_t count, int threads, const Find& find) {
+Pairs collect(std::size_t count, int threads, const ShareReport& report, const Find& find) {
   std::vector<Pairs> parts((count + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachBlock(count, threads,
+  internal::forEachBlock(count, threads, report,
                          [&](std::size_t block, std::size_t begin, std::size_t end) {
                            for (std::size_t i = begin; i < end; ++i)
                              find(i, parts[block]);
@@ -872,8 +886,8 @@ Pairs collect(std::size_t count, int threads, const Find& find) {
   return pairs;
 }
 
-Pairs pairsWithin(const Tree& tree, int threads) {
-  return collect(tree.size(), threads, [&](std::size_t i, Pairs& pairs) {
+Pairs pairsWithin(const Tree& tree, int threads, const ShareReport& report) {
+  return collect(tree.size(), threads, report, [&](std::size_t i, Pairs& pairs) {
     if (i % Tree::kBunch == 0)
       tree.findPairs(i / Tree::kBunch, pairs);
   });
@@ -884,12 +898,15 @@ Pairs pairsWithin(const Tree& tree, int threads) {
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const SelfIntersectionOptions& options) {
-  return internal::findSelfIntersections(points, triangles, {}, options.threads);
+  return internal::findSelfIntersections(
+      points, triangles, {}, options.threads,
+      internal::cancellable(options.progress, "findSelfIntersections"));
 }
 
 std::vector<std::array<Index, 2>>
 internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
-                                const std::vector<std::uint8_t>& fans, int requested_threads) {
+                                const std::vector<std::uint8_t>& fans, int requested_threads,
+                                const ShareReport& report) {
   const Mesh mesh(points, triangles, checkedScale(points, triangles, requested_threads), fans);
   std::vector<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
@@ -897,7 +914,8 @@ internal::findSelfIntersections(const Positions& points, const Triangles& triang
     return {};
   const int threads =
       internal::threadCount(requested_threads, all.size(), internal::kParallelThreshold);
-  Pairs pairs = pairsWithin(Tree(mesh, all, threads), threads);
+  const Tree tree(mesh, all, threads, partOf(report, 0.0, kTreeShare));
+  Pairs pairs = pairsWithin(tree, threads, partOf(report, kTreeShare, 1.0));
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -923,17 +941,20 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
     return {};
   const int threads =
       internal::threadCount(options.threads, mesh.size(), internal::kShortPassThreshold);
-  const Tree tree(mesh, subset, threads);
-  Pairs pairs = pairsWithin(tree, threads);
+  const ShareReport report = internal::cancellable(options.progress, "findSelfIntersectionsOf");
+  const Tree tree(mesh, subset, threads, partOf(report, 0.0, kTreeShare));
+  Pairs pairs = pairsWithin(tree, threads, partOf(report, kTreeShare, kPairsShare));
   const Box bounds = tree.box();
-  const Pairs others = collect(mesh.size(), threads, [&](std::size_t t, Pairs& found) {
-    if (in_set[t] != 0)
-      return;
-    const auto triangle = static_cast<Index>(t);
-    const Box box = mesh.box(triangle);
-    if (box.overlaps(bounds))
-      tree.findPairs(mesh.face(triangle, box.size()), box, found);
-  });
+  const ShareReport others_report = partOf(report, kPairsShare, 1.0);
+  const Pairs others =
+      collect(mesh.size(), threads, others_report, [&](std::size_t t, Pairs& found) {
+        if (in_set[t] != 0)
+          return;
+        const auto triangle = static_cast<Index>(t);
+        const Box box = mesh.box(triangle);
+        if (box.overlaps(bounds))
+          tree.findPairs(mesh.face(triangle, box.size()), box, found);
+      });
   pairs.insert(pairs.end(), others.begin(), others.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;

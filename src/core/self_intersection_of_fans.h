@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/progress.h"
 #include "spherical_param/types.h"
 
 #include <array>
@@ -14,9 +15,11 @@ namespace spherical_param::internal {
 /// \param fans for each point, 1 if no two triangles around it intersect, 0 if that is not known;
 /// empty: nothing is known.
 /// \param threads as there.
+/// \param report told of the share that is done.
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const std::vector<std::uint8_t>& fans,
-                                                        int threads);
+                                                        int threads,
+                                                        const ShareReport& report = {});
 
 }  // namespace spherical_param::internal

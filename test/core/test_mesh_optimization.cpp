@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -906,14 +907,41 @@ TEST(MeshOptimization, ProgressIsAShareBelowOne) {
     double most = 0.0;
     options.progress = [&](double share) {
       ++told;
-      EXPECT_GE(share, 0.0);
-      most = std::max(most, share);
+      EXPECT_GE(share, most);
+      most = share;
     };
     const MeshOptimization watched = optimize(of, options);
     EXPECT_GT(told, 5);
     EXPECT_LT(most, 1.0);
     EXPECT_EQ(watched.triangles, optimize(of).triangles);
   }
+}
+
+TEST(MeshOptimization, EveryMethodTellsOfLongWork) {
+  const Case of = scrambledEllipsoid(150000, 0.6, 100000, 5);
+  for (const OptimizationMethod method :
+       {OptimizationMethod::None, OptimizationMethod::Flips, OptimizationMethod::Full}) {
+    OptimizationOptions options;
+    options.method = method;
+    const auto run = [&](const std::function<bool(double)>& progress) {
+      options.progress = progress;
+      optimize(of, options);
+    };
+    const std::vector<double> shares = test::sharesOf(run);
+    EXPECT_TRUE(test::areShares(shares));
+    EXPECT_LT(shares.back(), 1.0);
+    EXPECT_GE(shares.size(), method == OptimizationMethod::None ? 8U : 20U);
+  }
+}
+
+TEST(MeshOptimization, FlipsTellAnEstimateThatOnlyGrows) {
+  const Case of = scrambledEllipsoid(100000, 0.6, 200000, 6);
+  MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
+  optimizer.setEnergy(SurfaceEnergy());
+  const auto run = [&](const std::function<bool(double)>& report) { optimizer.flipAll(report); };
+  const std::vector<double> shares = test::sharesOf(run);
+  EXPECT_TRUE(test::areShares(shares));
+  EXPECT_GE(shares.size(), 4U);  // two of the first candidates, then of the queue
 }
 
 TEST(MeshOptimization, ProgressMayEndTheWork) {

@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -504,6 +505,34 @@ TEST(SelfIntersection, BadInputIsInvalidInput) {
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     mesh.points(2, 1) = value;
     EXPECT_THROW(pairsOf(mesh), InvalidInput);
+  }
+}
+
+TEST(SelfIntersection, ProgressRisesAndCancels) {
+  // Two spheres through each other, each of more triangles than there are between reports.
+  Positions points = test::spiralSphere(140000);
+  const Triangles sphere = triangulateSphere(points).triangles;
+  Triangles both(3, 2 * sphere.cols());
+  both << sphere, (sphere.array() + static_cast<Index>(points.cols())).matrix();
+  points = test::horizontally(points, points.colwise() + Eigen::Vector3d(0.7, 0.2, 0.1));
+  const std::vector<Index> some{0, 5, 100};
+  for (const bool of_some : {false, true}) {
+    const auto run = [&](const std::function<bool(double)>& progress) {
+      SelfIntersectionOptions options;
+      options.progress = progress;
+      return of_some ? findSelfIntersectionsOf(points, both, some, options)
+                     : findSelfIntersections(points, both, options);
+    };
+    const std::vector<double> shares = test::sharesOf(run);
+    EXPECT_TRUE(test::areShares(shares));
+    EXPECT_EQ(shares.back(), 1.0);
+    EXPECT_GE(shares.size(), of_some ? 6U : 12U);
+    EXPECT_EQ(run([](double) { return true; }), run({}));
+    for (const int last : {1, 3, static_cast<int>(shares.size())}) {
+      int count = 0;
+      EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
+      EXPECT_EQ(count, last);
+    }
   }
 }
 
