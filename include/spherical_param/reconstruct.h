@@ -22,10 +22,12 @@ namespace spherical_param {
 
 /// State of the work, as told to Options::progress.
 struct Progress {
-  /// "graph", "embedding", "triangulation", "optimization", "smoothing" or "check"; the first four
-  /// once more for each further attempt
+  /// "neighbors", "graph", "embedding", "triangulation", "optimization", "smoothing" or "check";
+  /// all but the last once more for each further attempt
   const char* stage;
-  double fraction;  ///< share of the stage that is done, in [0, 1]; 1 at its end alone
+  /// Share of the stage that is done, in [0, 1], about in proportion to its time; never falls, and
+  /// is 1 at the stage's end alone.
+  double fraction;
   int iteration;    ///< iteration of the embedding's current level, else 0
   double residual;  ///< residual of the embedding, else 0
 };
@@ -67,8 +69,9 @@ struct Options {
   int smoothing_steps = 0;
 
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-  /// Told how far the work is; returning false ends it with Cancelled. May be empty. Called from
-  /// the calling thread only.
+  /// Told how far the work is, every second or two if it is long; returning false ends it with
+  /// Cancelled. May be empty. Called from the calling thread only. The paper's own stages, and a
+  /// tolerance for the multilevel solver, have longer silences.
   std::function<bool(const Progress&)> progress;
 };
 
@@ -227,6 +230,10 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
 /// \return a search whose points and answers are numbers of these points, 0 ... v - 1.
 using NeighborSearchFactory = std::function<NeighborSearch(
     const Positions& points, const std::vector<Index>& input_of_point)>;
+
+/// Share of the stage "neighbors" that is done when the search is first asked: the points are in
+/// order, and a search made. Whoever tells of the search's own progress does so from there to 1.
+inline constexpr double kShareBeforeSearch = 0.2;
 
 /// The same with a search instead of lists: faster, since the points are put in order before it.
 ///

@@ -44,6 +44,17 @@ constexpr double kManyPoints = 0.01;
 /// Areas and volumes of larger clouds leave the range of double.
 constexpr double kLargestCoordinate = 1e100;
 
+/// Shares of stages that are done after their parts.
+constexpr double kCheckedShare = 0.02;
+constexpr double kOrderedShare = 0.1;
+constexpr double kHierarchyShare = 0.39;
+constexpr double kTriangulatedShare = 0.94;
+constexpr double kSmoothedShare = 0.5;    // of a round
+constexpr double kFirstRoundShare = 0.6;  // and so on: of what is left
+constexpr double kMeasuredShare = 0.27;
+constexpr double kDiagnosedShare = 0.53;
+constexpr double kTopologyShare = 0.95;
+
 /// Neighbours of each point of the paper, and those that certify most local Delaunay cells.
 constexpr int kNearestNeighbors = 25;
 constexpr int kLocalDelaunayNeighbors = 12;
@@ -106,16 +117,33 @@ public:
       result_.stages.push_back({stage, time.count()});
     else
       known->seconds += time.count();
-    report(stage, 1.0);
+    tell({stage, 1.0, 0, 0.0});
     return outcome;
   }
 
+  /// A callback for what is the share from `begin` to `end` of a stage; empty if nobody listens.
+  std::function<bool(double)> part(const char* stage, double begin = 0.0, double end = 1.0) {
+    if (!options_.progress)
+      return {};
+    return [=](double share) {
+      report(stage, begin + (end - begin) * share);
+      return true;
+    };
+  }
+
+  /// \param fraction below 1, which is told once, at the end of the stage, by run().
   void report(const char* stage, double fraction, int iteration = 0, double residual = 0.0) {
-    if (options_.progress && !options_.progress({stage, fraction, iteration, residual}))
-      throw Cancelled("reconstruct: cancelled by the progress callback");
+    tell({stage, std::min(fraction, kMostBeforeEnd), iteration, residual});
   }
 
 private:
+  static constexpr double kMostBeforeEnd = 0.999;
+
+  void tell(const Progress& progress) {
+    if (options_.progress && !options_.progress(progress))
+      throw Cancelled("reconstruct: cancelled by the progress callback");
+  }
+
   const Options& options_;
   Result& result_;
 };
@@ -130,7 +158,7 @@ struct Neighbors {
 };
 
 /// The first neighbours are found once for each graph, and not kept: most clouds need one graph.
-using FindNeighbors = std::function<Neighbors(const Nodes&)>;
+using FindNeighbors = std::function<Neighbors(const Nodes&, StageLog&)>;
 
 std::vector<Index> nodesOfInput(const Nodes& nodes) {
   std::vector<Index> node_of_vertex(nodes.vertex_of_node.size());
@@ -187,9 +215,10 @@ Neighbors neighborsFromLists(const NeighborLists& lists, const NeighborSearch& s
 
 /// The neighbours from a search that is made for the nodes.
 Neighbors neighborsFromSearch(const NeighborSearchFactory& make_search, const Options& options,
-                              const Nodes& nodes) {
+                              const Nodes& nodes, StageLog& log) {
   Neighbors result;
   result.search = make_search(nodes.points, nodes.input_of_node);
+  log.report("neighbors", kShareBeforeSearch);
   if (!result.search)
     throw InvalidInput("reconstruct: the factory made an empty search; return one that can be "
                        "called");
@@ -325,12 +354,13 @@ Plan planOf(int attempt, const Options& options) {
 }
 
 NeighborGraph buildGraph(const Positions& points, const Neighbors& neighbors, const Plan& plan,
-                         const Options& options) {
+                         const Options& options, StageLog& log) {
   if (plan.graph == GraphMethod::NearestNeighbors)
     return buildNeighborGraph(points, neighbors.lists, {plan.k});
   LocalDelaunayOptions graph = localDelaunayOptions(options);
   graph.agreement = plan.agreement;
   graph.search = neighbors.search;
+  graph.progress = log.part("graph");
   return buildLocalDelaunayGraph(points, neighbors.lists, graph);
 }
 
@@ -339,9 +369,7 @@ Positions embedIteratively(const Graph& graph, const Positions& points, const Op
   EmbeddingOptions embedding = iterativeOptions(options);
   if (options.progress)
     embedding.progress = [&](int iteration, double residual) {
-      // Below 1, which is told once, at the end of the stage.
-      const double share = iteration / (options.max_iterations + 1.0);
-      log.report("embedding", share, iteration, residual);
+      log.report("embedding", iteration / (options.max_iterations + 1.0), iteration, residual);
       return true;
     };
   Embedding outcome = embedOnSphere(graph, points, embedding);
@@ -358,13 +386,13 @@ Positions embedByLevels(const Graph& graph, const Options& options, std::uint32_
   MultilevelOptions embedding = multilevelOptions(options);
   if (options.progress)
     embedding.progress = [&](double share, double residual) {
-      // Below 1, which is told once, at the end of the stage.
-      log.report("embedding", std::min(share, 0.999), 0, residual);
+      log.report("embedding", kHierarchyShare + (1.0 - kHierarchyShare) * share, 0, residual);
       return true;
     };
   HierarchyOptions hierarchy;
   hierarchy.seed = seed;
   hierarchy.threads = options.threads;
+  hierarchy.progress = log.part("embedding", 0.0, kHierarchyShare);
   MultilevelEmbedding outcome =
       embedMultilevel(graph, buildGraphHierarchy(graph, hierarchy), embedding);
   report.stop_reason = outcome.stop_reason;
@@ -487,9 +515,11 @@ struct Attempt {
 };
 
 std::vector<std::array<Index, 2>> findIntersections(const Positions& points,
-                                                    const Triangles& triangles, int threads) {
+                                                    const Triangles& triangles, int threads,
+                                                    std::function<bool(double)> progress) {
   SelfIntersectionOptions options;
   options.threads = threads;
+  options.progress = std::move(progress);
   return findSelfIntersections(points, triangles, options);
 }
 
@@ -515,16 +545,28 @@ void optimize(const Positions& points, const Plan& plan, const Options& options,
 
 /// Smooths the points, and optimises the mesh on the smoothed ones. Where that leaves triangles
 /// that intersect, the points are smoothed anew with the better mesh; the best round counts.
-void smooth(const Positions& points, const Plan& plan, const Options& options, Attempt& attempt) {
+void smooth(const Positions& points, const Plan& plan, const Options& options, StageLog& log,
+            Attempt& attempt) {
   Triangles triangles = attempt.triangles;
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   for (int round = 0; round < kSmoothingRounds && fewest > 0; ++round) {
     Smoothing smoothing = smoothSurface(points, triangles, smoothingOptions(options));
-    std::size_t count = findIntersections(smoothing.points, triangles, options.threads).size();
+    // Mostly one round is enough.
+    const double before = 1.0 - std::pow(1.0 - kFirstRoundShare, round);
+    const double after = 1.0 - std::pow(1.0 - kFirstRoundShare, round + 1);
+    const double smoothed = before + kSmoothedShare * (after - before);
+    log.report("smoothing", smoothed);
+    std::size_t count = findIntersections(smoothing.points, triangles, options.threads,
+                                          log.part("smoothing", smoothed, after))
+                            .size();
     if (count > 0 && options.optimization == OptimizationMethod::Full) {
       OptimizationOptions optimization;
       optimization.seed = plan.seed + static_cast<std::uint32_t>(round);
       optimization.threads = options.threads;
+      if (options.progress)
+        optimization.progress = [&](double share) {
+          log.report("smoothing", after + kFirstRoundShare / 2.0 * (1.0 - after) * share);
+        };
       MeshOptimization outcome =
           optimizeMesh(smoothing.points, triangles, attempt.graph.graph, optimization);
       triangles = std::move(outcome.triangles);
@@ -551,7 +593,10 @@ Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& point
     return embed(attempt.graph.graph, points, plan, options, log, attempt.embedding);
   });
   log.run("triangulation", [&] {
-    SphereTriangulation triangulation = triangulateSphere(attempt.sphere, options.hull);
+    TriangulationOptions by;
+    by.method = options.hull;
+    by.progress = log.part("triangulation", 0.0, kTriangulatedShare);
+    SphereTriangulation triangulation = triangulateSphere(attempt.sphere, by);
     attempt.triangulation = {triangulation.hull_vertices, triangulation.reinserted,
                              triangulation.coincident, triangulation.hull_rejected};
     attempt.triangles = std::move(triangulation.triangles);
@@ -569,7 +614,7 @@ Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& point
   });
   if (options.smoothing_steps > 0)
     log.run("smoothing", [&] {
-      smooth(points, plan, options, attempt);
+      smooth(points, plan, options, log, attempt);
       return true;
     });
   return attempt;
@@ -623,14 +668,16 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const FindNeighbor
     return attempts;
   for (int i = 1; i < options.attempts && !best.isGood(); ++i) {
     const Plan plan = planOf(i, options);
-    const Neighbors neighbors = log.run("neighbors", [&] { return find_neighbors(nodes); });
-    run(plan, log.run("graph", [&] { return buildGraph(nodes.points, neighbors, plan, options); }));
+    const Neighbors neighbors = log.run("neighbors", [&] { return find_neighbors(nodes, log); });
+    run(plan,
+        log.run("graph", [&] { return buildGraph(nodes.points, neighbors, plan, options, log); }));
   }
   return attempts;
 }
 
 /// Judges the mesh of the best attempt, and moves all there is into the result.
-void takeOver(Attempts& attempts, const Positions& points, const Options& options, Result& result) {
+void takeOver(Attempts& attempts, const Positions& points, const Options& options, StageLog& log,
+              Result& result) {
   Attempt& best = attempts.best;
   result.measures = measureMesh(points, best.triangles, {options.threads});
   if (result.measures.volume < 0.0) {
@@ -640,9 +687,12 @@ void takeOver(Attempts& attempts, const Positions& points, const Options& option
   }
   result.self_intersections = std::move(best.optimization.self_intersections);
   if (best.smoothed.cols() > 0)
-    result.self_intersections = findIntersections(points, best.triangles, options.threads);
+    result.self_intersections = findIntersections(points, best.triangles, options.threads,
+                                                  log.part("check", 0.0, kMeasuredShare));
+  log.report("check", kMeasuredShare);
   result.diagnosis = diagnoseSurface(points, best.triangles, attempts.judge().graph,
                                      attempts.judge().bridges, diagnosisOptions(options));
+  log.report("check", kDiagnosedShare);
   result.optimization = {std::move(best.optimization.phases),
                          best.optimization.energy,
                          best.optimization.rough,
@@ -665,7 +715,7 @@ void takeOver(Attempts& attempts, const Positions& points, const Options& option
 }
 
 /// Finds the nodes, of which there must be enough.
-Nodes checkedNodes(const Positions& points, const Options& options) {
+Nodes checkedNodes(const Positions& points, const Options& options, StageLog& log) {
   constexpr Eigen::Index most_points = Eigen::Index{1} << 30;
   if (points.cols() > most_points)
     throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +
@@ -677,7 +727,9 @@ Nodes checkedNodes(const Positions& points, const Options& options) {
     if (points.col(i).cwiseAbs().maxCoeff() > kLargestCoordinate)
       throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
   }
+  log.report("neighbors", kCheckedShare);
   Nodes nodes = internal::orderPoints(points, options.threads);
+  log.report("neighbors", kOrderedShare);
   const std::size_t count = nodes.input_of_node.size();
   if (count < 4)
     throw InvalidInput("reconstruct: at least 4 distinct finite points are needed, but there are " +
@@ -696,11 +748,12 @@ Result run(const Positions& points, const Options& options, const FindNeighbors&
   NeighborGraph graph;
   {
     const Neighbors neighbors = log.run("neighbors", [&] {
-      nodes = checkedNodes(points, options);
-      return find_neighbors(nodes);
+      nodes = checkedNodes(points, options, log);
+      return find_neighbors(nodes, log);
     });
-    graph = log.run(
-        "graph", [&] { return buildGraph(nodes.points, neighbors, planOf(0, options), options); });
+    graph = log.run("graph", [&] {
+      return buildGraph(nodes.points, neighbors, planOf(0, options), options, log);
+    });
   }
   Attempts attempts = runAttempts(std::move(graph), nodes, find_neighbors, options, log, result);
   for (AttemptReport& report : result.attempts)
@@ -709,11 +762,12 @@ Result run(const Positions& points, const Options& options, const FindNeighbors&
   result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
   result.duplicates = result.vertex_of_input.size() - result.input_of_vertex.size();
   result.topology = log.run("check", [&] {
-    takeOver(attempts, nodes.points, options, result);
+    takeOver(attempts, nodes.points, options, log, result);
     // Before the nodes get other numbers, while neighbours are near in memory: a sound mesh, the
     // only one that is handed out, has the same topology whatever the numbers.
     MeshTopology topology =
         checkTopology(result.triangles, result.vertexCount(), {options.threads});
+    log.report("check", kTopologyShare);
     scaleBack(nodes.exponent, result);
     renumber(nodes.vertex_of_node, result);
     return topology;
@@ -750,7 +804,7 @@ void checkOptions(const Options& options) {
 
 Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options,
                    const NeighborSearch& search) {
-  return run(points, options, [&](const Nodes& nodes) {
+  return run(points, options, [&](const Nodes& nodes, StageLog&) {
     internal::checkNeighborLists("reconstruct", lists, static_cast<std::size_t>(points.cols()));
     return neighborsFromLists(lists, search, nodes);
   });
@@ -758,8 +812,9 @@ Result reconstruct(const Positions& points, const NeighborLists& lists, const Op
 
 Result reconstruct(const Positions& points, const NeighborSearchFactory& make_search,
                    const Options& options) {
-  return run(points, options,
-             [&](const Nodes& nodes) { return neighborsFromSearch(make_search, options, nodes); });
+  return run(points, options, [&](const Nodes& nodes, StageLog& log) {
+    return neighborsFromSearch(make_search, options, nodes, log);
+  });
 }
 
 }  // namespace spherical_param

@@ -501,6 +501,27 @@ TEST(Reconstruct, StagesAreTimedAndTold) {
   }
 }
 
+TEST(Reconstruct, EveryStageOfALargeCloudTellsHowFarItIs) {
+  const Positions points = spiralSphere(300000);
+  const NeighborLists lists = test::spiralNeighbors(points, 12);
+  std::map<std::string, std::vector<double>> told;
+  Options options;
+  options.progress = [&](const Progress& progress) {
+    told[progress.stage].push_back(progress.fraction);
+    return true;
+  };
+  reconstruct(points, lists, options);
+  const std::map<std::string, std::size_t> least{{"neighbors", 4},     {"graph", 10},
+                                                 {"embedding", 30},    {"triangulation", 8},
+                                                 {"optimization", 20}, {"check", 5}};
+  ASSERT_EQ(told.size(), least.size());
+  for (const auto& [stage, shares] : told) {
+    EXPECT_TRUE(test::areShares(shares)) << stage;
+    EXPECT_EQ(std::count(shares.begin(), shares.end(), 1.0), 1) << stage;
+    EXPECT_GE(shares.size(), least.at(stage)) << stage;
+  }
+}
+
 TEST(Reconstruct, EveryOptionReachesItsStage) {
   const Positions points = ellipsoid(200, 1.0, 0.7, 0.5);
   Options options = paper();

@@ -440,7 +440,9 @@ spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoint
     const spherical_param::Positions& points, const spherical_param::Options& options) const {
   const auto report = [&options](double fraction) {
     // The end of the stage is told by the core.
-    if (fraction < 1.0 && options.progress && !options.progress({"neighbors", fraction, 0, 0.0}))
+    const double share = spherical_param::kShareBeforeSearch +
+                         (1.0 - spherical_param::kShareBeforeSearch) * fraction;
+    if (fraction < 1.0 && options.progress && !options.progress({"neighbors", share, 0, 0.0}))
       throw spherical_param::Cancelled("cancelled by the progress callback");
   };
   const auto make_search = [&](const spherical_param::Positions& distinct,
