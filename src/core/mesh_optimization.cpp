@@ -116,8 +116,8 @@ MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangl
                                const Graph& graph, int threads, const ShareReport& report) {
   checkInput(points, triangles, graph);
   internal::tell(report, kCheckedShare);
-  MeshOptimizer optimizer(points, triangles, graph, threads);
-  internal::tell(report, kMeshShare);
+  MeshOptimizer optimizer(points, triangles, graph, threads,
+                          internal::partOf(report, kCheckedShare, kMeshShare));
   if (!optimizer.mesh().isSphere(threads))
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points");

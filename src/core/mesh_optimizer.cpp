@@ -21,6 +21,7 @@ constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
 /// Share of the work of flipAll() that finds the first candidates, and of intersections() before
 /// the pairs.
 constexpr double kCandidatesShare = 0.65;
+constexpr double kNeighborsShare = 0.6;  // of what makes an optimiser
 constexpr double kFansShare = 0.12;
 
 /// Neighbours in the graph up to so many mean lengths of a vertex's edges should be near on the
@@ -41,7 +42,7 @@ double medianOf(std::vector<double>& values) {
 }  // namespace
 
 MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
-                             const Graph& graph, int threads)
+                             const Graph& graph, int threads, const ShareReport& report)
     : points_(&points), graph_(graph),
       threads_(
           threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
@@ -49,23 +50,25 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
       facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
       stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
       seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
+  tell(report, kNeighborsShare);
   double lengths = 0.0;
   for (const double length : graph_.lengths)
     lengths += length;
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph_.lengths.size());
-  recomputeFacets();
+  recomputeFacets(partOf(report, kNeighborsShare, 1.0));
 }
 
-void MeshOptimizer::recomputeFacets() {
+void MeshOptimizer::recomputeFacets(const ShareReport& report) {
   are_flips_settled_ = false;
   has_usual_angles_ = false;
-  forEachBlock(facets_.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto t = static_cast<Index>(i);
-      facets_[i] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
-    }
-  });
+  forEachBlock(facets_.size(), threads_, report,
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i) {
+                   const auto t = static_cast<Index>(i);
+                   facets_[i] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
+                 }
+               });
 }
 
 void MeshOptimizer::reset(const Triangles& triangles) {

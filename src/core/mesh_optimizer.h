@@ -18,9 +18,10 @@ namespace spherical_param::internal {
 /// taken back, to the last index and bit. The running total of the energy is kept.
 class MeshOptimizer {
 public:
-  /// All but the triangles must outlive this. Has no energy before it is told which.
+  /// All but the triangles and the report, which is told of the share of this that is done, must
+  /// outlive this. Has no energy before it is told which.
   MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
-                int threads);
+                int threads, const ShareReport& report = {});
 
   const SphereMesh& mesh() const { return mesh_; }
 
@@ -114,7 +115,7 @@ private:
   /// Of the angles of medianAngles().
   void gatherCosines(Index v, std::vector<double>& cosines) const;
   void updateUsualAngles(double factor, double least);
-  void recomputeFacets();
+  void recomputeFacets(const ShareReport& report = {});
   /// The items of [0, count) that meet a condition, ascending.
   template <typename Condition>
   std::vector<Index> filter(std::size_t count, const Condition& meets,
