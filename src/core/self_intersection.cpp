@@ -664,9 +664,8 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
         return block;
       },
       report);
-  const auto count =
-      static_cast<double>((subset.size() + internal::kBlockSize - 1) / internal::kBlockSize);
-  if (blocks.size > kLargeBlock * usual * count ||
+  const std::size_t count = (subset.size() + internal::kBlockSize - 1) / internal::kBlockSize;
+  if (blocks.size > kLargeBlock * usual * static_cast<double>(count) ||
       blocks.large > kFewLarge + subset.size() / kOfWhichOneMayBeLarge)
     return orderedAnew(mesh, subset, usual, threads);
   return order;
