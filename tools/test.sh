@@ -178,6 +178,9 @@ if [ "$quick" = no ]; then
     check "clang-tidy" tidy || true
   fi
   export UBSAN_OPTIONS=print_stacktrace=1
+  # Clang's OpenMP does not give back what it has for each thread.
+  echo 'leak:libomp' >"$logs/leaks-of-others"
+  export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
   if check "clang, ASan and UBSan: build" configure_and_build asan ""; then
     # Not those of results on many larger clouds: the same code runs on smaller ones in other tests.
     # The filter is for programs that are one test; others name the one of theirs that they run.

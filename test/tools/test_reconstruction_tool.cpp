@@ -936,7 +936,7 @@ TEST_F(ReconstructionTool, TellsWhenSinglePrecisionMovesThePoints) {
 }
 
 // Sanitizers take address space and memory of their own.
-#ifndef __SANITIZE_ADDRESS__
+#ifndef SPHERICAL_PARAM_SANITIZED
 // A thread takes address space; OpenMP ends the process where one cannot be had.
 TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
   writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(20000));
