@@ -4,7 +4,7 @@ namespace spherical_param::stages {
 namespace {
 
 void build(benchmark::State& state) {
-  const Positions& points = dataOf(state).scan();
+  const Positions& points = dataOf(state).points();
   for (auto _ : state)
     benchmark::DoNotOptimize(NeighborFinder(points));
   countPoints(state);
@@ -12,7 +12,7 @@ void build(benchmark::State& state) {
 BENCHMARK(build)->Name("neighbor_search/build_tree")->Apply(overSizes);
 
 void search(benchmark::State& state) {
-  const NeighborFinder& finder = dataOf(state).scanFinder();
+  const NeighborFinder& finder = dataOf(state).finder();
   for (auto _ : state)
     benchmark::DoNotOptimize(finder.allLists(kLocalDelaunayNeighbors, threadsOf(state)));
   countPoints(state);

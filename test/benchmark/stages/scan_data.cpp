@@ -8,9 +8,6 @@
 #include "spherical_param/sphere_embedding.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/search/kdtree.h>
 #include <pcl/surface/impl/spherical_param_reconstruction.hpp>
 
 #include <algorithm>
@@ -19,10 +16,6 @@
 #include <numeric>
 #include <utility>
 #include <vector>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace spherical_param::stages {
 namespace {
@@ -37,47 +30,27 @@ T& made(std::optional<T>& value, const Make& make) {
 
 }  // namespace
 
-/// As the PCL class makes it, which would scale points of another extent first.
+/// The search of the PCL class, which would scale points of another extent first.
 struct NeighborFinder::Tree {
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud{new pcl::PointCloud<pcl::PointXYZ>};
-  pcl::search::KdTree<pcl::PointXYZ> search{false};
-  std::vector<Index> all;    ///< 0 ... n - 1
-  std::vector<Index> order;  ///< of the queries
-
-  pcl::detail::NeighborSource source(int threads) const {
-    pcl::detail::NeighborSource result;
-    result.size = cloud->size();
-    result.concurrent = true;
-    result.threads = threads;
-    result.query = [this](Index point, std::size_t count, pcl::Indices& indices,
-                          std::vector<float>& distances, Index* neighbors) {
-      search.nearestKSearch((*cloud)[static_cast<std::size_t>(point)], static_cast<int>(count),
-                            indices, distances);
-      std::copy_n(indices.begin(), count, neighbors);
-    };
-    return result;
-  }
+  pcl::detail::KdTreeSearch search;
+  std::vector<Index> all;  ///< 0 ... n - 1
 };
 
-NeighborFinder::NeighborFinder(const Positions& points) : tree_(std::make_unique<Tree>()) {
-  tree_->cloud->resize(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    (*tree_->cloud)[static_cast<std::size_t>(i)].getVector3fMap() = points.col(i).cast<float>();
-  tree_->search.setInputCloud(tree_->cloud);
-  tree_->all.resize(tree_->cloud->size());
+NeighborFinder::NeighborFinder(const Positions& points)
+    : tree_(new Tree{pcl::detail::KdTreeSearch(points),
+                     std::vector<Index>(static_cast<std::size_t>(points.cols()))}) {
   std::iota(tree_->all.begin(), tree_->all.end(), Index{0});
-  tree_->order = spatialOrder(points);
 }
 
 NeighborFinder::~NeighborFinder() = default;
 
 NeighborLists NeighborFinder::allLists(int neighbors, int threads) const {
-  return pcl::detail::findNeighbors(tree_->source(threads), tree_->all, neighbors, [](double) {});
+  return search(threads)(tree_->all, neighbors);
 }
 
 NeighborSearch NeighborFinder::search(int threads) const {
-  return [source = tree_->source(threads)](const std::vector<Index>& points, int neighbors) {
-    return pcl::detail::findNeighbors(source, points, neighbors, [](double) {});
+  return [tree = tree_->search, threads](const std::vector<Index>& points, int neighbors) {
+    return tree.findNeighbors(points, neighbors, threads, [](double) {});
   };
 }
 

@@ -97,9 +97,7 @@ inline int searchThreads([[maybe_unused]] int threads, [[maybe_unused]] std::siz
 
 /** \brief Finds all neighbours of a set of points; it is searched once more for some of them. */
 struct NeighborSource {
-  std::size_t size = 0;     ///< number of points that can be found
-  bool concurrent = false;  ///< whether query may be called by several threads at once
-  int threads = 0;          ///< threads that it may be called by; 0: as many as OpenMP would use
+  std::size_t size = 0;  ///< number of points that can be found
   /** \brief Writes `count` (at most size) neighbours of a point to `neighbors`, the point itself
    * among them, all as positions in the indices used. The two vectors are scratch memory. */
   std::function<void(spherical_param::Index point, std::size_t count, pcl::Indices& indices,
@@ -128,8 +126,10 @@ spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
                                              int neighbors, const Report& report) {
   spherical_param::NeighborLists lists = listsOfOneLength(points.size(), neighbors, source.size);
   constexpr std::size_t reports = 32;
+  // A search object of the user need not be ready for concurrent queries.
+  constexpr int threads = 1;
   queryInBlocks(
-      points.size(), reports, source.concurrent ? searchThreads(source.threads, points.size()) : 1,
+      points.size(), reports, threads,
       [&](std::size_t i, pcl::Indices& indices, std::vector<float>& distances) {
         source.query(points[i], lists.offsets[i + 1] - lists.offsets[i], indices, distances,
                      lists.indices.data() + lists.offsets[i]);
@@ -520,8 +520,6 @@ detail::NeighborSource SphericalParamReconstruction<PointInT>::useSearchMethod(
 
   detail::NeighborSource source;
   source.size = point_of_distinct.size();
-  // A search object of the user need not be ready for concurrent queries.
-  source.concurrent = false;
   source.query = [this, cloud_of_distinct = std::move(cloud_of_distinct),
                   distinct_of_answer = std::move(distinct_of_answer)](
                      spherical_param::Index point, std::size_t count, pcl::Indices& indices,
