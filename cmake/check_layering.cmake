@@ -16,7 +16,8 @@ cmake_minimum_required(VERSION 3.21)
 # In the order of the pipeline.
 set(stages point_set outliers neighbor_graph graph_hierarchy sphere_embedding sphere_triangulation
            mesh_topology mesh_measures self_intersection mesh_optimization surface_diagnosis
-           smoothing sphere_map resampling morphing)
+           smoothing sphere_map sphere_surface resampling
+           spherical_harmonics texture_atlas morphing)
 
 # Sources of a stage besides the one of its name: part, then stage.
 set(ordered_points_stage point_set)

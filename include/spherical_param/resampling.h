@@ -1,0 +1,83 @@
+#pragma once
+
+#include "spherical_param/sphere_surface.h"
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace spherical_param {
+
+/// Regular triangulations of the unit sphere.
+enum class SphereGrid {
+  Icosahedral,  ///< geodesic: each face of an icosahedron in f^2 triangles; 10 f^2 + 2 vertices
+  Octahedral,   ///< each face of an octahedron in f^2 triangles; 4 f^2 + 2 vertices
+};
+
+/// A triangulated unit sphere.
+struct GridSphere {
+  Positions directions;  ///< 3 x v, unit vectors
+  Triangles triangles;   ///< 3 x (2v - 4), outward
+  int frequency = 0;     ///< f: parts of each edge of the solid
+};
+
+/// The frequency whose number of vertices is nearest to `vertices`, at least 1.
+int gridFrequency(SphereGrid grid, std::size_t vertices);
+
+/// Vertices of a grid. \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
+std::size_t gridVertices(SphereGrid grid, int frequency);
+
+/// A regular triangulation of the sphere.
+///
+/// The octahedral one has its directions where GeometryImage has its pixels.
+/// \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
+GridSphere makeGridSphere(SphereGrid grid, int frequency);
+
+/// A mesh, with the directions that its vertices come from.
+struct ResampledMesh {
+  Positions points;      ///< 3 x v [unit of the input]
+  Positions normals;     ///< 3 x v, unit vectors, outward
+  Positions directions;  ///< 3 x v, unit vectors: the map to the sphere goes with it
+  Triangles triangles;   ///< 3 x (2v - 4), outward
+};
+
+/// The surface at the vertices of a triangulated sphere: closed, manifold, genus 0, and a map to
+/// the sphere that is one to one.
+ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
+
+/// Points spread evenly over a surface, in space.
+struct SurfacePoints {
+  Positions points;   ///< 3 x n [unit of the input]
+  Positions normals;  ///< 3 x n, unit vectors, outward
+};
+
+/// Spreads points evenly over a surface: random ones by area, of which those that are closest to
+/// others are taken away (Yuksel 2015, "Sample elimination for generating Poisson disk sample
+/// sets").
+///
+/// \param count 1 and up, up to 2^24. \throw InvalidInput otherwise.
+/// The same, bit by bit, for the same seed and any number of threads.
+SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed = 1);
+
+/// A surface as an image of positions (Gu, Gortler and Hoppe 2002; the octahedral map of Praun and
+/// Hoppe 2003): side x side pixels, side = 2 f + 1, that cover a square into which an octahedron is
+/// unfolded. Pixels on the border come in pairs that are the same place: (0, j) and (0, side - 1 -
+/// j), likewise on the other sides; all four corners are one.
+struct GeometryImage {
+  int side = 0;         ///< pixels along each side; odd, 3 and up
+  Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
+};
+
+/// The direction of each pixel of a geometry image, 3 x side^2, unit vectors.
+/// \throw InvalidInput for a side that is even or below 3, or above 16385.
+Positions geometryImageDirections(int side);
+
+/// \throw InvalidInput as geometryImageDirections().
+GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
+
+/// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Where pixels of the
+/// border that are the same place differ, their mean counts.
+/// \throw InvalidInput for a wrong side or number of pixels, or positions that are not finite.
+ResampledMesh meshOfGeometryImage(const GeometryImage& image);
+
+}  // namespace spherical_param

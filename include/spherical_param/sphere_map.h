@@ -1,0 +1,87 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+namespace spherical_param {
+
+/// A quantity over the triangles of a mesh, each weighted by its area in space.
+struct DistortionStatistics {
+  double mean = 0.0;  ///< weighted mean
+  double p95 = 0.0;   ///< least value that 95 % of the area do not exceed
+  double max = 0.0;   ///< over all triangles
+};
+
+/// How far a map from a mesh to the unit sphere is from an isometry. Triangles are compared with
+/// the flat ones between their corners on the sphere; sigma_1 >= sigma_2 are the singular values of
+/// that linear map, after both surfaces are scaled to the same total area.
+struct MapDistortion {
+  /// Triangles whose corners are not counter-clockwise seen from outside the sphere: det(a, b, c)
+  /// <= 0, by an exact predicate. 0: the map is one to one.
+  Index flipped_triangles = 0;
+  /// Triangles without an area in space, to within rounding: no part of the statistics.
+  Index degenerate_triangles = 0;
+  DistortionStatistics angle;  ///< sigma_1 / sigma_2; 1: conformal
+  DistortionStatistics area;   ///< max(sigma_1 sigma_2, 1 / (sigma_1 sigma_2)); 1: equal areas
+  /// Absolute difference of the angles at the corners, as in Choi, Lam and Lui 2015; the mean over
+  /// all corners, unweighted [degree].
+  double mean_angle_difference = 0.0;
+  /// L2 stretch efficiency of Praun and Hoppe 2003 (after Sander et al. 2001), in (0, 1]; 1: no
+  /// stretch. Computed with the triangles as they are, without their subdivision.
+  double stretch_efficiency = 0.0;
+};
+
+/// Measures a map to the sphere.
+///
+/// \param points    3 x v, the mesh in space; \param sphere 3 x v, unit vectors.
+/// \param triangles 3 x m.
+/// \throw InvalidInput for sizes that do not match or an index out of range. Cost: O(m log m).
+MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,
+                                   const Positions& sphere, int threads = 0);
+
+/// Parameters of computeSphereMap().
+struct SphereMapOptions {
+  /// Weight of area against angle in the energy, in [0, 1]: 0 is as conformal as can be, 1 cares
+  /// for areas as much as a map that stays one to one can.
+  double area_weight = 0.5;
+  /// Sweeps over the vertices at most of each level; [0, 1000]. 0: the map is only made valid.
+  int sweeps = 10;
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
+  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
+  std::function<bool(double)> progress = {};
+};
+
+/// One level of the hierarchy of meshes, finest first.
+struct SphereMapLevel {
+  std::size_t vertices = 0;  ///< of the level's mesh
+  int sweeps = 0;            ///< that were made
+  double energy = 0.0;       ///< mean energy per unit of area after them
+};
+
+/// A map from a closed genus-0 mesh to the unit sphere that is one to one.
+struct SphereMap {
+  Positions sphere;                    ///< 3 x v, unit vectors
+  MapDistortion distortion;            ///< of `sphere`
+  MapDistortion before;                ///< of the start that was given
+  std::vector<SphereMapLevel> levels;  ///< finest first
+};
+
+/// Makes a map of low distortion from a mesh to the sphere that is one to one: no triangle is
+/// flipped.
+///
+/// \param points    3 x v, finite, v >= 4 [unit of the input].
+/// \param triangles 3 x (2v - 4), closed, manifold, consistently oriented outward, of genus 0, in
+///                  one piece, every vertex used.
+/// \param start     3 x v, unit vectors: the embedding; it gives the map its orientation in space,
+///                  and may have flipped triangles.
+/// \throw InvalidInput for a mesh or start that is not as said; ComputeError; Cancelled.
+///
+/// The same, bit by bit, for any number of threads. Cost: O(v log v).
+SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
+                           const Positions& start, const SphereMapOptions& options = {});
+
+}  // namespace spherical_param

@@ -1,0 +1,87 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <memory>
+#include <vector>
+
+namespace spherical_param {
+
+/// Where a direction meets a map to the sphere.
+struct SphereLocation {
+  Index triangle = 0;  ///< the triangle that holds the direction
+  /// Barycentric coordinates in the flat triangle between its corners on the sphere: >= 0, sum 1.
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+};
+
+/// A point of a surface.
+struct SurfaceSample {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [unit of the input]
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< unit vector, outward
+  SphereLocation location;                             ///< where it is in the mesh
+};
+
+/// How a surface is continued between the vertices of its mesh.
+enum class SurfaceFit {
+  Linear,  ///< the triangles themselves; normals are interpolated from those of the vertices
+  /// A quadric over the tangent plane of each vertex, fitted to its neighbours (after Zwicker et
+  /// al. 2002, "Pointshop 3D", section 4), blended over each triangle; through all vertices. Flat
+  /// where the quadrics do not fit, as at sharp edges.
+  Smooth,
+};
+
+/// Parameters of SphereSurface.
+struct SphereSurfaceOptions {
+  SurfaceFit fit = SurfaceFit::Smooth;  ///< between the vertices
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+};
+
+/// Many points of a surface.
+struct SurfaceSamples {
+  Positions positions;                    ///< 3 x n [unit of the input]
+  Positions normals;                      ///< 3 x n, unit vectors, outward
+  std::vector<SphereLocation> locations;  ///< n
+};
+
+/// The surface of an object as a function on the sphere (Zwicker and Gotsman 2004, section 5):
+/// every direction has a position and a normal. Immutable: may be used by many threads.
+class SphereSurface {
+public:
+  /// \param points    3 x v, finite; \param sphere 3 x v, unit vectors.
+  /// \param triangles 3 x (2v - 4), closed, genus 0; none flipped on the sphere.
+  /// \throw InvalidInput for a mesh that is not as said, or with a flipped triangle on the sphere.
+  /// Cost: O(v log v).
+  SphereSurface(const Positions& points, const Triangles& triangles, const Positions& sphere,
+                const SphereSurfaceOptions& options = {});
+  ~SphereSurface();
+  SphereSurface(SphereSurface&& other) noexcept;
+  SphereSurface& operator=(SphereSurface&& other) noexcept;
+  SphereSurface(const SphereSurface& other) = delete;
+  SphereSurface& operator=(const SphereSurface& other) = delete;
+
+  const Positions& points() const;     ///< as given
+  const Triangles& triangles() const;  ///< as given
+  const Positions& sphere() const;     ///< as given
+  double area() const;                 ///< of the mesh in space [squared unit of the input]
+
+  /// The triangle that holds a direction, the same for directions of any length > 0. On an edge or
+  /// at a corner one of the triangles that share it. O(log v), typically.
+  /// \throw InvalidInput for a direction that is zero or not finite.
+  SphereLocation locate(const Eigen::Vector3d& direction) const;
+
+  /// Position and normal at a direction. \throw as locate()
+  SurfaceSample evaluate(const Eigen::Vector3d& direction) const;
+
+  /// Position and normal at a known location, such as one of locate(), and any weights >= 0 with
+  /// sum 1 in any triangle.
+  SurfaceSample evaluate(const SphereLocation& location) const;
+
+  /// The same for the columns of `directions`, on several threads.
+  SurfaceSamples evaluate(const Positions& directions) const;
+
+private:
+  struct Data;
+  std::unique_ptr<const Data> data_;
+};
+
+}  // namespace spherical_param
