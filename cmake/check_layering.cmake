@@ -23,6 +23,7 @@ set(stages point_set outliers neighbor_graph graph_hierarchy sphere_embedding sp
 set(ordered_points_stage point_set)
 set(graph_building_stage neighbor_graph)
 set(local_delaunay_graph_stage neighbor_graph)
+set(map_distortion_stage sphere_map)
 set(mesh_optimizer_stage mesh_optimization)
 foreach(part block_cholesky embedding_energy embedding_newton multigrid multilevel_embedding planar_start)
   set(${part}_stage sphere_embedding)
