@@ -1,0 +1,72 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A triangle around a vertex: of the vertex, a neighbour, and the neighbour of the next corner.
+struct MapCorner {
+  Index neighbor;
+  float mass;  ///< area in space that the triangle stands for
+  /// Cotangents of the angles that it should have at the vertex, the neighbour and the next one.
+  float cot_vertex;
+  float cot_neighbor;
+  float cot_next;
+};
+
+/// The distortion that is minimised, and what it is measured with.
+struct MapEnergy {
+  double angle_weight;
+  double area_weight;
+  /// Area on the sphere, as by det(a, b, c) / 2, of a unit of mass.
+  double area_of_mass;
+};
+
+/// The corners around the vertices of a mesh, in the order in which they are worked on: vertices of
+/// one colour, no two of them neighbours, after those of another.
+struct MapRows {
+  std::vector<Index> vertices;
+  std::vector<std::uint32_t> begin;   ///< v + 1 positions in `corners`
+  std::vector<MapCorner> corners;     ///< counter-clockwise
+  std::vector<std::uint32_t> colors;  ///< where the vertices of each colour begin, and their end
+};
+
+/// Cotangents of the angles of a triangle; of a needle, those of one that is not as thin: its
+/// distortion would outweigh all others.
+Eigen::Vector3d mapCotangents(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                              const Eigen::Vector3d& c);
+
+/// \param masses of the triangles.
+MapRows makeMapRows(const Positions& points, const Triangles& triangles,
+                    const std::vector<float>& masses, Index vertex_count, int threads);
+
+/// Whether a point of the sphere makes all triangles counter-clockwise with its ring, for sure.
+bool isMapValid(const Positions& sphere, const MapCorner* corners, std::size_t count,
+                const Eigen::Vector3d& at);
+
+/// Moves a vertex by one step of Newton's method, shortened until the distortion of its triangles
+/// falls, and none is flipped.
+///
+/// \return by how much the energy fell; 0: the vertex was not moved.
+double relaxMapVertex(Positions& sphere, Index v, const MapCorner* corners, std::size_t count,
+                      const MapEnergy& energy);
+
+/// relaxMapVertex() for all vertices.
+///
+/// \return by how much the energy fell.
+double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy, int threads);
+
+/// The energy, a sum over the triangles, each weighted by its mass.
+double mapEnergy(const Positions& sphere, const MapRows& rows, const MapEnergy& energy,
+                 int threads);
+
+/// Sum of det(a, b, c) / 2 over the triangles.
+double mapArea(const Positions& sphere, const MapRows& rows, int threads);
+
+}  // namespace spherical_param::internal
