@@ -4,6 +4,7 @@
 #include "core/exact_predicates.h"
 #include "core/parallel.h"
 #include "core/sphere_locator.h"
+#include "core/vertex_normals.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 
@@ -118,33 +119,6 @@ double areaOf(const Positions& points, const Triangles& triangles, int threads) 
       });
 }
 
-/// Unit normals of the vertices, outward: those of the triangles, weighted by their angles, so that
-/// it does not matter how the surface is cut (G. Thuermer and C. A. Wuethrich, 1998). Vertices
-/// whose triangles have no area have the direction on the sphere.
-Positions vertexNormals(const Positions& points, const Triangles& triangles,
-                        const Positions& sphere, const internal::CornerTable& corners,
-                        int threads) {
-  const auto count = static_cast<std::size_t>(points.cols());
-  Positions normals(3, points.cols());
-  internal::forEachItem(
-      count, internal::threadCount(threads, count, internal::kParallelThreshold),
-      [&](std::size_t, std::size_t i) {
-        const auto v = static_cast<Index>(i);
-        Vector3d sum = Vector3d::Zero();
-        corners.forEachCorner(v, [&](Index t, Index k) {
-          const Vector3d a = points.col(triangles(internal::nextCorner(k), t)) - points.col(v);
-          const Vector3d b = points.col(triangles(internal::previousCorner(k), t)) - points.col(v);
-          const Vector3d normal = a.cross(b);
-          const double length = normal.norm();
-          if (length > 0.0)
-            sum += std::atan2(length, a.dot(b)) / length * normal;
-        });
-        const double length = sum.norm();
-        normals.col(v) = length > 0.0 ? Vector3d(sum / length) : Vector3d(sphere.col(v));
-      });
-  return normals;
-}
-
 }  // namespace
 
 struct SphereSurface::Data {
@@ -157,7 +131,7 @@ struct SphereSurface::Data {
     const int threads =
         internal::threadCount(options.threads, count, internal::kShortPassThreshold);
     const internal::CornerTable corners(triangles, count, threads);
-    normals = vertexNormals(points, triangles, sphere, corners, options.threads);
+    normals = internal::vertexNormals(points, triangles, sphere, corners, options.threads);
   }
 
   /// \param location with a triangle of the mesh.

@@ -1,0 +1,250 @@
+#include "spherical_param/resampling.h"
+
+#include "helpers.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A bumpy shape over random directions.
+SphereSurface bumpySurface(Index n, SurfaceFit fit = SurfaceFit::Smooth, int threads = 0) {
+  const Positions sphere = test::randomSphere(n, 1);
+  Positions points = sphere;
+  for (Index i = 0; i < n; ++i)
+    points.col(i) *= 2.0 + 0.3 * std::sin(3.0 * sphere(0, i)) * std::cos(2.0 * sphere(1, i));
+  return SphereSurface(points, triangulateSphere(sphere).triangles, sphere, {fit, threads});
+}
+
+double areaOnSphere(const GridSphere& grid, Eigen::Index t) {
+  const Vector3d a = grid.directions.col(grid.triangles(0, t));
+  const Vector3d b = grid.directions.col(grid.triangles(1, t));
+  const Vector3d c = grid.directions.col(grid.triangles(2, t));
+  return 2.0 * std::atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
+}
+
+constexpr SphereGrid kGrids[] = {SphereGrid::Icosahedral, SphereGrid::Octahedral};
+
+TEST(GridSphere, IsAClosedMeshThatCoversTheSphereOnce) {
+  for (const SphereGrid kind : kGrids)
+    for (const int frequency : {1, 2, 3, 4, 7, 12}) {
+      const GridSphere grid = makeGridSphere(kind, frequency);
+      EXPECT_EQ(grid.frequency, frequency);
+      ASSERT_EQ(static_cast<std::size_t>(grid.directions.cols()), gridVertices(kind, frequency));
+      EXPECT_TRUE(
+          test::isSphereOverAll(grid.triangles, static_cast<Index>(grid.directions.cols())));
+      double sum = 0.0;
+      for (Eigen::Index t = 0; t < grid.triangles.cols(); ++t) {
+        EXPECT_GT(areaOnSphere(grid, t), 0.0);
+        sum += areaOnSphere(grid, t);
+      }
+      EXPECT_NEAR(sum, 4.0 * test::kPi, 1e-11);
+      for (Eigen::Index i = 0; i < grid.directions.cols(); ++i)
+        EXPECT_NEAR(grid.directions.col(i).norm(), 1.0, 1e-15);
+    }
+}
+
+TEST(GridSphere, TrianglesOfTheGeodesicOneHaveSimilarAreas) {
+  const GridSphere grid = makeGridSphere(SphereGrid::Icosahedral, 16);
+  double least = 10.0;
+  double most = 0.0;
+  for (Eigen::Index t = 0; t < grid.triangles.cols(); ++t) {
+    least = std::min(least, areaOnSphere(grid, t));
+    most = std::max(most, areaOnSphere(grid, t));
+  }
+  EXPECT_LT(most / least, 1.25);
+}
+
+TEST(GridSphere, HasTheSymmetryOfItsSolid) {
+  // A third of a turn about (1, 1, 1) moves the axes in a circle, and half a turn two of them.
+  for (const SphereGrid kind : kGrids) {
+    const GridSphere grid = makeGridSphere(kind, 5);
+    Eigen::Matrix3d third = Eigen::Matrix3d::Zero();
+    third(0, 1) = third(1, 2) = third(2, 0) = 1.0;
+    const Eigen::Matrix3d half = Vector3d(-1.0, -1.0, 1.0).asDiagonal();
+    for (const Eigen::Matrix3d& turn : {third, half})
+      for (Eigen::Index i = 0; i < grid.directions.cols(); ++i) {
+        const Vector3d turned = turn * grid.directions.col(i);
+        EXPECT_LT((grid.directions.colwise() - turned).colwise().norm().minCoeff(), 1e-14);
+      }
+  }
+}
+
+TEST(GridSphere, TrianglesOfTheOctahedralOneStayInTheirOctant) {
+  const GridSphere grid = makeGridSphere(SphereGrid::Octahedral, 6);
+  for (Eigen::Index t = 0; t < grid.triangles.cols(); ++t)
+    for (Index axis = 0; axis < 3; ++axis) {
+      std::vector<double> values;
+      for (Index k = 0; k < 3; ++k)
+        values.push_back(grid.directions(axis, grid.triangles(k, t)));
+      EXPECT_GE(*std::min_element(values.begin(), values.end()) *
+                    *std::max_element(values.begin(), values.end()),
+                0.0);
+    }
+}
+
+TEST(GridSphere, FrequencyIsTheOneWhoseVerticesAreNearest) {
+  for (const SphereGrid kind : kGrids)
+    for (std::size_t n = 0; n < 3000; n += 7) {
+      const int f = gridFrequency(kind, n);
+      const auto distance = [&](int frequency) {
+        return std::abs(static_cast<double>(gridVertices(kind, frequency)) -
+                        static_cast<double>(n));
+      };
+      EXPECT_LE(distance(f), distance(f + 1));
+      if (f > 1) {
+        EXPECT_LE(distance(f), distance(f - 1));
+      }
+    }
+  EXPECT_EQ(gridFrequency(SphereGrid::Icosahedral, 163842), 128);
+  EXPECT_EQ(gridFrequency(SphereGrid::Octahedral, 0), 1);
+  EXPECT_NO_THROW(
+      gridVertices(SphereGrid::Octahedral,
+                   gridFrequency(SphereGrid::Octahedral, std::numeric_limits<std::size_t>::max())));
+}
+
+TEST(GridSphere, RefusesAFrequencyOutOfRange) {
+  for (const SphereGrid kind : kGrids)
+    for (const int frequency :
+         {0, -1, std::numeric_limits<int>::min(), std::numeric_limits<int>::max(),
+          gridFrequency(kind, std::size_t{1} << 29) + 1}) {
+      EXPECT_THROW(gridVertices(kind, frequency), InvalidInput);
+      EXPECT_THROW(makeGridSphere(kind, frequency), InvalidInput);
+    }
+}
+
+TEST(ResampleSurface, HasTheSurfaceAtEachDirection) {
+  const SphereSurface surface = bumpySurface(500);
+  for (const SphereGrid kind : kGrids) {
+    const GridSphere grid = makeGridSphere(kind, 9);
+    const ResampledMesh mesh = resampleSurface(surface, grid);
+    EXPECT_EQ(mesh.directions, grid.directions);
+    EXPECT_EQ(mesh.triangles, grid.triangles);
+    for (Eigen::Index i = 0; i < mesh.points.cols(); ++i) {
+      const SurfaceSample sample = surface.evaluate(Vector3d(grid.directions.col(i)));
+      EXPECT_EQ(mesh.points.col(i), sample.position);
+      EXPECT_EQ(mesh.normals.col(i), sample.normal);
+    }
+    EXPECT_GT(test::volumeOf(mesh.points, mesh.triangles), 0.0);
+  }
+}
+
+TEST(ResampleSurface, IsAMapThatCanBeResampledAgain) {
+  const ResampledMesh mesh =
+      resampleSurface(bumpySurface(500), makeGridSphere(SphereGrid::Icosahedral, 6));
+  const SphereSurface again(mesh.points, mesh.triangles, mesh.directions);
+  EXPECT_EQ(again.evaluate(mesh.directions).positions, mesh.points);
+}
+
+TEST(GeometryImage, IsLaidOutAsTheOctahedralChart) {
+  const int side = 9;
+  const Positions directions = geometryImageDirections(side);
+  const auto at = [&](int row, int column) {
+    return Vector3d(directions.col(row * side + column));
+  };
+  EXPECT_EQ(at(4, 4), Vector3d::UnitZ());
+  for (const auto& [row, column] : {std::pair(0, 0), {0, 8}, {8, 0}, {8, 8}})
+    EXPECT_EQ(at(row, column), -Vector3d::UnitZ());
+  EXPECT_EQ(at(4, 8), Vector3d::UnitX());
+  EXPECT_EQ(at(4, 0), -Vector3d::UnitX());
+  EXPECT_EQ(at(0, 4), Vector3d::UnitY());
+  EXPECT_EQ(at(8, 4), -Vector3d::UnitY());
+  // Upwards to the right of the middle.
+  EXPECT_GT(at(3, 5).minCoeff(), 0.0);
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) {
+      // The octahedron, above and below.
+      const double x = (column - 4) / 4.0;
+      const double y = (4 - row) / 4.0;
+      const Vector3d on_octahedron = at(row, column) / at(row, column).lpNorm<1>();
+      EXPECT_NEAR(on_octahedron.z(), 1.0 - std::abs(x) - std::abs(y), 1e-15);
+      if (on_octahedron.z() >= 0.0) {
+        EXPECT_NEAR(on_octahedron.x(), x, 1e-15);
+        EXPECT_NEAR(on_octahedron.y(), y, 1e-15);
+      } else {
+        EXPECT_NEAR(std::abs(on_octahedron.x()), 1.0 - std::abs(y), 1e-15);
+        EXPECT_GE(on_octahedron.x() * x, 0.0);
+        EXPECT_GE(on_octahedron.y() * y, 0.0);
+      }
+    }
+}
+
+TEST(GeometryImage, PairsOnTheBorderAreTheSameDirectionBitByBit) {
+  for (const int side : {3, 5, 9, 33}) {
+    const Positions directions = geometryImageDirections(side);
+    const int last = side - 1;
+    const auto at = [&](int row, int column) {
+      return Vector3d(directions.col(row * side + column));
+    };
+    for (int i = 0; i < side; ++i) {
+      EXPECT_EQ(at(0, i), at(0, last - i));
+      EXPECT_EQ(at(last, i), at(last, last - i));
+      EXPECT_EQ(at(i, 0), at(last - i, 0));
+      EXPECT_EQ(at(i, last), at(last - i, last));
+    }
+    std::set<std::vector<double>> different;
+    for (Eigen::Index i = 0; i < directions.cols(); ++i)
+      different.insert({directions(0, i), directions(1, i), directions(2, i)});
+    EXPECT_EQ(different.size(), static_cast<std::size_t>(last * last + 2));
+  }
+}
+
+TEST(GeometryImage, ItsMeshIsTheResampledSurfaceBitByBit) {
+  const SphereSurface surface = bumpySurface(500);
+  for (const int side : {3, 5, 21}) {
+    const GeometryImage image = makeGeometryImage(surface, side);
+    EXPECT_EQ(image.side, side);
+    const ResampledMesh mesh = meshOfGeometryImage(image);
+    const GridSphere grid = makeGridSphere(SphereGrid::Octahedral, side / 2);
+    const ResampledMesh expected = resampleSurface(surface, grid);
+    EXPECT_EQ(mesh.points, expected.points);
+    EXPECT_EQ(mesh.directions, grid.directions);
+    EXPECT_EQ(mesh.triangles, grid.triangles);
+    EXPECT_TRUE(test::isSphereOverAll(mesh.triangles, static_cast<Index>(mesh.points.cols())));
+    for (Eigen::Index i = 0; side > 20 && i < mesh.points.cols(); ++i)
+      EXPECT_GT(mesh.normals.col(i).dot(expected.normals.col(i)), 0.9);
+  }
+}
+
+TEST(GeometryImage, PixelsThatDifferOnTheBorderAreAveraged) {
+  GeometryImage image = makeGeometryImage(bumpySurface(500), 5);
+  const ResampledMesh before = meshOfGeometryImage(image);
+  image.positions.col(1) += Vector3d(2.0, 0.0, 0.0);          // (0, 1), the same as (0, 3)
+  image.positions.col(4) += Vector3d(0.0, 4.0, 0.0);          // one of the corners
+  image.positions.col(4 * 5 + 4) -= Vector3d(0.0, 0.0, 4.0);  // another
+  const ResampledMesh after = meshOfGeometryImage(image);
+  Positions change = after.points - before.points;
+  Positions expected = Positions::Zero(3, change.cols());
+  expected.col(0) << 0.0, 1.0, -1.0;
+  expected.col(1) << 1.0, 0.0, 0.0;
+  EXPECT_LT((change - expected).norm(), 1e-14);
+}
+
+TEST(GeometryImage, RefusesBadInput) {
+  const SphereSurface surface = bumpySurface(100);
+  for (const int side : {-3, 0, 1, 2, 4, 16386, 16387}) {
+    EXPECT_THROW(geometryImageDirections(side), InvalidInput);
+    EXPECT_THROW(makeGeometryImage(surface, side), InvalidInput);
+    EXPECT_THROW(meshOfGeometryImage({side, Positions(3, 9)}), InvalidInput);
+  }
+  GeometryImage image = makeGeometryImage(surface, 5);
+  image.positions(1, 7) = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(meshOfGeometryImage(image), InvalidInput);
+  EXPECT_THROW(meshOfGeometryImage({5, Positions::Zero(3, 24)}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace spherical_param
