@@ -5,6 +5,7 @@
 #include "core/parallel.h"
 #include "core/sphere_locator.h"
 #include "core/vertex_normals.h"
+#include "core/vertex_quadrics.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -132,12 +134,21 @@ struct SphereSurface::Data {
         internal::threadCount(options.threads, count, internal::kShortPassThreshold);
     const internal::CornerTable corners(triangles, count, threads);
     normals = internal::vertexNormals(points, triangles, sphere, corners, options.threads);
+    if (options.fit == SurfaceFit::Smooth)
+      quadrics.emplace(points, triangles, normals, corners, options.threads);
   }
 
   /// \param location with a triangle of the mesh.
   SurfaceSample at(const SphereLocation& location) const {
     SurfaceSample sample;
     sample.location = location;
+    if (quadrics) {
+      const internal::VertexQuadrics::Point point =
+          quadrics->at(location.triangle, location.weights);
+      sample.position = point.position;
+      sample.normal = unitNormal(point.normal, location);
+      return sample;
+    }
     Vector3d normal = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) {
       const Index v = triangles(k, location.triangle);
@@ -166,6 +177,7 @@ struct SphereSurface::Data {
   Positions normals;  ///< of the vertices
   double area;
   internal::SphereLocator locator;
+  std::optional<internal::VertexQuadrics> quadrics;  ///< for SurfaceFit::Smooth
 };
 
 SphereSurface::SphereSurface(const Positions& points, const Triangles& triangles,

@@ -287,6 +287,110 @@ TEST(SphereSurface, CanBeMoved) {
   EXPECT_EQ(other.evaluate(Vector3d(1.0, 2.0, 3.0)).position, expected);
 }
 
+/// Distance from an ellipsoid, to first order.
+double distanceFrom(const Vector3d& axes, const Vector3d& point) {
+  const Vector3d scaled = point.cwiseQuotient(axes);
+  return std::abs(scaled.squaredNorm() - 1.0) / (2.0 * scaled.cwiseQuotient(axes).norm());
+}
+
+struct Errors {
+  double rms = 0.0;
+  double max = 0.0;
+  double rms_angle = 0.0;  ///< of the normals
+};
+
+/// How far the surface through n points of an ellipsoid is from it.
+Errors errorsOnEllipsoid(const Positions& sphere, const Vector3d& axes, SurfaceFit fit) {
+  const Map map = triangulated(sphere);
+  const SphereSurface surface(axes.asDiagonal() * sphere, map.triangles, sphere, {fit, 0});
+  const Positions directions = test::randomSphere(3000, 8);
+  const SurfaceSamples samples = surface.evaluate(directions);
+  Errors errors;
+  for (Eigen::Index i = 0; i < directions.cols(); ++i) {
+    const Vector3d point = samples.positions.col(i);
+    const double error = distanceFrom(axes, point);
+    const double cosine =
+        samples.normals.col(i).dot(point.cwiseQuotient(axes).cwiseQuotient(axes).normalized());
+    errors.rms += error * error;
+    errors.max = std::max(errors.max, error);
+    errors.rms_angle += 2.0 * (1.0 - std::min(1.0, cosine));
+  }
+  errors.rms = std::sqrt(errors.rms / static_cast<double>(directions.cols()));
+  errors.rms_angle = std::sqrt(errors.rms_angle / static_cast<double>(directions.cols()));
+  return errors;
+}
+
+TEST(SphereSurface, SmoothFitIsFiveTimesCloserToASphereAndAnEllipsoid) {
+  for (const Vector3d& axes : {Vector3d(1.0, 1.0, 1.0), Vector3d(3.0, 2.0, 1.0)})
+    for (const bool is_regular : {true, false}) {
+      const Positions sphere = is_regular ? test::spiralSphere(1000) : test::randomSphere(3000, 3);
+      const Errors linear = errorsOnEllipsoid(sphere, axes, SurfaceFit::Linear);
+      const Errors smooth = errorsOnEllipsoid(sphere, axes, SurfaceFit::Smooth);
+      EXPECT_LT(5.0 * smooth.rms, linear.rms);
+      EXPECT_LT(smooth.max, linear.max);
+      // In a regular mesh the errors of the triangles' normals cancel around each vertex.
+      if (!is_regular) {
+        EXPECT_LT(smooth.rms_angle, 0.8 * linear.rms_angle);
+      }
+    }
+}
+
+TEST(SphereSurface, SmoothFitConvergesWithAHigherOrder) {
+  // Four times the points halve the edges: the error of the triangles falls to a quarter.
+  const Vector3d axes(1.5, 1.2, 1.0);
+  double last_linear = 0.0;
+  double last_smooth = 0.0;
+  for (const Index n : {500, 2000, 8000}) {
+    const double linear = errorsOnEllipsoid(test::spiralSphere(n), axes, SurfaceFit::Linear).rms;
+    const double smooth = errorsOnEllipsoid(test::spiralSphere(n), axes, SurfaceFit::Smooth).rms;
+    if (last_linear > 0.0) {
+      EXPECT_NEAR(last_linear / linear, 4.0, 0.5);
+      EXPECT_GT(last_smooth / smooth, 7.0);
+    }
+    last_linear = linear;
+    last_smooth = smooth;
+  }
+}
+
+TEST(SphereSurface, SmoothFitDoesNotBulgeAtSharpEdges) {
+  for (const int m : {4, 9, 17}) {
+    Positions points = test::cubeGrid(m).colwise() - Vector3d::Constant(0.5);
+    const Map map = triangulated(points.colwise().normalized());
+    const SphereSurface surface(points, map.triangles, map.sphere);
+    const SurfaceSamples samples = surface.evaluate(test::randomSphere(5000, 8));
+    const SurfaceSamples flat =
+        SphereSurface(points, map.triangles, map.sphere, {SurfaceFit::Linear, 0})
+            .evaluate(test::randomSphere(5000, 8));
+    double most = 0.0;
+    for (Eigen::Index i = 0; i < samples.positions.cols(); ++i)
+      most = std::max(most, (samples.positions.col(i) - flat.positions.col(i)).norm());
+    std::cout << "cube " << most * (m - 1) << " of an edge\n";
+    EXPECT_LT(most * (m - 1), 0.02);
+  }
+}
+
+TEST(SphereSurface, SmoothFitHasNoGapsAtEdges) {
+  for (const Map& map : maps()) {
+    const SphereSurface surface = surfaceOf(map, SurfaceFit::Smooth);
+    for (Index t = 0; t < map.triangles.cols(); ++t)
+      for (Index k = 0; k < 3; ++k) {
+        const Index a = map.triangles(k, t);
+        const Index b = map.triangles((k + 1) % 3, t);
+        // The other triangle of the edge.
+        SphereLocation other{0, Vector3d::Zero()};
+        for (Index s = 0; s < map.triangles.cols(); ++s)
+          for (Index j = 0; j < 3; ++j)
+            if (map.triangles(j, s) == b && map.triangles((j + 1) % 3, s) == a)
+              other = {s, 0.7 * Vector3d::Unit(j) + 0.3 * Vector3d::Unit((j + 1) % 3)};
+        const SphereLocation here{t, 0.3 * Vector3d::Unit(k) + 0.7 * Vector3d::Unit((k + 1) % 3)};
+        const SurfaceSample here_sample = surface.evaluate(here);
+        const SurfaceSample other_sample = surface.evaluate(other);
+        ASSERT_LT((here_sample.position - other_sample.position).norm(), 1e-14);
+        ASSERT_LT((here_sample.normal - other_sample.normal).norm(), 1e-12);
+      }
+  }
+}
+
 template <typename Call>
 std::string messageOf(const Call& call) {
   try {
