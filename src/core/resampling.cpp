@@ -1,7 +1,9 @@
 #include "spherical_param/resampling.h"
 
+#include "core/bit_mixing.h"
 #include "core/corner_table.h"
 #include "core/parallel.h"
+#include "core/sample_elimination.h"
 #include "core/vertex_normals.h"
 #include "spherical_param/errors.h"
 
@@ -11,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -228,6 +231,70 @@ private:
   Index f_;
 };
 
+// --- Random points -------------------------------------------------------------------------------
+
+constexpr std::size_t kMostSamples = std::size_t{1} << 24;
+
+/// Points by area for each that is kept: five are enough for a good distribution (Yuksel 2015,
+/// section 4); fewer where they would take much memory.
+std::size_t candidateCount(std::size_t count) {
+  constexpr std::size_t many = std::size_t{1} << 20;
+  return (count <= many ? 5 : 3) * count;
+}
+
+/// Numbers in [0, 1) that follow from their place alone, whichever thread asks.
+class RandomNumbers {
+public:
+  explicit RandomNumbers(std::uint32_t seed) : start_(internal::splitmix64(seed)) {}
+  double at(std::uint64_t i) const {
+    constexpr double unit = 1.0 / static_cast<double>(std::uint64_t{1} << 53U);
+    return static_cast<double>(internal::splitmix64(start_ + i) >> 11U) * unit;
+  }
+
+private:
+  std::uint64_t start_;
+};
+
+/// The sums of the areas up to each triangle, and in the end of all.
+std::vector<double> sumsOfAreas(const SphereSurface& surface) {
+  const Positions& points = surface.points();
+  const Triangles& triangles = surface.triangles();
+  std::vector<double> sums{0.0};
+  sums.reserve(static_cast<std::size_t>(triangles.cols()) + 1);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Vector3d a = points.col(triangles(0, t));
+    const Vector3d normal =
+        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
+    sums.push_back(sums.back() + 0.5 * normal.norm());
+  }
+  return sums;
+}
+
+/// Points of a surface by area: one from each of as many parts of equal area.
+SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
+  const std::vector<double> sums = sumsOfAreas(surface);
+  const RandomNumbers random(seed);
+  SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
+                       Positions(3, static_cast<Eigen::Index>(count))};
+  internal::forEachItem(count, internal::threadCount(0, count, internal::kParallelThreshold),
+                        [&](std::size_t, std::size_t i) {
+                          const double place = (static_cast<double>(i) + random.at(3 * i)) /
+                                               static_cast<double>(count) * sums.back();
+                          // The last triangle that begins at or before the place: one with an area.
+                          const auto next =
+                              std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
+                          SphereLocation location;
+                          location.triangle = static_cast<Index>(next - sums.begin() - 1);
+                          const double root = std::sqrt(random.at(3 * i + 1));
+                          const double share = random.at(3 * i + 2);
+                          location.weights << 1.0 - root, root * (1.0 - share), root * share;
+                          const SurfaceSample sample = surface.evaluate(location);
+                          result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
+                          result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
+                        });
+  return result;
+}
+
 void checkSide(const char* function, int side) {
   if (side < 3 || side > kLargestSide || side % 2 == 0)
     throw InvalidInput(std::string(function) + ": side = " + std::to_string(side) +
@@ -276,6 +343,24 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
   SurfaceSamples samples = surface.evaluate(grid.directions);
   return {std::move(samples.positions), std::move(samples.normals), grid.directions,
           grid.triangles};
+}
+
+SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
+  if (count < 1 || count > kMostSamples)
+    throw InvalidInput("sampleEvenly: count = " + std::to_string(count) +
+                       " is out of range; use 1 to 2^24");
+  if (!(surface.area() > 0.0))
+    throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
+  const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
+  const std::vector<Index> kept =
+      internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
+  SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
+                       Positions(3, static_cast<Eigen::Index>(count))};
+  for (std::size_t i = 0; i < count; ++i) {
+    result.points.col(static_cast<Eigen::Index>(i)) = all.points.col(kept[i]);
+    result.normals.col(static_cast<Eigen::Index>(i)) = all.normals.col(kept[i]);
+  }
+  return result;
 }
 
 Positions geometryImageDirections(int side) {

@@ -246,5 +246,116 @@ TEST(GeometryImage, RefusesBadInput) {
   EXPECT_THROW(meshOfGeometryImage({5, Positions::Zero(3, 24)}), InvalidInput);
 }
 
+/// A surface over directions, by a function of them.
+template <typename Place>
+SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
+  const Positions sphere = test::spiralSphere(n);
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) = place(Vector3d(sphere.col(i)));
+  return SphereSurface(points, triangulateSphere(sphere).triangles, sphere,
+                       {SurfaceFit::Linear, threads});
+}
+
+/// The distance of each point from the nearest other, by brute force.
+std::vector<double> nearestDistances(const Positions& points) {
+  const NeighborLists lists = test::bruteForceNeighbors(points, 1);
+  std::vector<double> result;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    result.push_back(
+        (points.col(i) - points.col(lists.indices[static_cast<std::size_t>(i)])).norm());
+  return result;
+}
+
+TEST(SampleEvenly, PointsKeepTheirDistance) {
+  const SphereSurface surface = surfaceOver(1000, [](const Vector3d& u) { return u; });
+  for (const std::size_t count : {50U, 400U, 1500U}) {
+    const SurfacePoints samples = sampleEvenly(surface, count);
+    ASSERT_EQ(samples.points.cols(), static_cast<Eigen::Index>(count));
+    // Of disks that are packed as densely as can be.
+    const double best =
+        2.0 * std::sqrt(surface.area() / (2.0 * std::sqrt(3.0) * static_cast<double>(count)));
+    const std::vector<double> distances = nearestDistances(samples.points);
+    // Poisson disk sets reach 0.65 to 0.85; random points have nearly 0.
+    EXPECT_GT(*std::min_element(distances.begin(), distances.end()), 0.6 * best);
+    EXPECT_LT(*std::max_element(distances.begin(), distances.end()), 1.3 * best);
+  }
+}
+
+TEST(SampleEvenly, LiesOnTheSurface) {
+  const SphereSurface surface = surfaceOver(1000, [](const Vector3d& u) { return 3.0 * u; });
+  const SurfacePoints samples = sampleEvenly(surface, 300);
+  for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
+    const Vector3d point = samples.points.col(i);
+    EXPECT_LT((surface.evaluate(point).position - point).norm(), 1e-13);
+    EXPECT_NEAR(samples.normals.col(i).norm(), 1.0, 1e-15);
+    EXPECT_GT(samples.normals.col(i).dot(point.normalized()), 0.99);
+  }
+}
+
+TEST(SampleEvenly, IsEvenInSpaceWhateverTheMap) {
+  // A cigar, whose ends the map squeezes: as many points for each part as it has area.
+  const SphereSurface surface = surfaceOver(4000, [](const Vector3d& u) {
+    return Vector3d(u.x(), u.y(), 8.0 * u.z() * std::abs(u.z()));
+  });
+  const std::size_t count = 3000;
+  const SurfacePoints samples = sampleEvenly(surface, count);
+  for (const double z : {0.5, 2.0, 6.0}) {
+    double area = 0.0;
+    const Triangles& triangles = surface.triangles();
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      const Vector3d a = surface.points().col(triangles(0, t));
+      const Vector3d b = surface.points().col(triangles(1, t));
+      const Vector3d c = surface.points().col(triangles(2, t));
+      if ((a + b + c).z() / 3.0 > z)
+        area += 0.5 * (b - a).cross(c - a).norm();
+    }
+    const auto expected = area / surface.area() * static_cast<double>(count);
+    const auto found = static_cast<double>((samples.points.row(2).array() > z).count());
+    EXPECT_NEAR(found, expected, 0.05 * expected + 3.0);
+  }
+}
+
+TEST(SampleEvenly, SheetsThatAreCloseDoNotPushEachOther) {
+  // A plate that is far thinner than the distance of the points: as many on either side, and no
+  // farther from each other on a side than they would be without the other.
+  const SphereSurface surface =
+      surfaceOver(2000, [](const Vector3d& u) { return Vector3d(u.x(), u.y(), 1e-3 * u.z()); });
+  const std::size_t count = 400;
+  const SurfacePoints samples = sampleEvenly(surface, count);
+  Positions upper(3, 0);
+  for (Eigen::Index i = 0; i < samples.points.cols(); ++i)
+    if (samples.normals(2, i) > 0.0)
+      upper = test::horizontally(upper, samples.points.col(i));
+  EXPECT_NEAR(static_cast<double>(upper.cols()), 200.0, 10.0);
+  const std::vector<double> distances = nearestDistances(upper);
+  const double best =
+      2.0 * std::sqrt(surface.area() / (2.0 * std::sqrt(3.0) * static_cast<double>(count)));
+  EXPECT_GT(*std::min_element(distances.begin(), distances.end()), 0.6 * best);
+}
+
+TEST(SampleEvenly, IsTheSameForTheSameSeedAndAnyNumberOfThreads) {
+  const auto place = [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); };
+  const SurfacePoints expected = sampleEvenly(surfaceOver(500, place, 1), 2000, 7);
+  for (const int threads : {2, 3}) {
+    const SurfacePoints samples = sampleEvenly(surfaceOver(500, place, threads), 2000, 7);
+    EXPECT_EQ(samples.points, expected.points);
+    EXPECT_EQ(samples.normals, expected.normals);
+  }
+  EXPECT_NE(sampleEvenly(surfaceOver(500, place), 2000, 8).points, expected.points);
+}
+
+TEST(SampleEvenly, OnePointIsEnough) {
+  EXPECT_EQ(sampleEvenly(bumpySurface(20), 1).points.cols(), 1);
+}
+
+TEST(SampleEvenly, RefusesBadInput) {
+  const SphereSurface surface = bumpySurface(20);
+  EXPECT_THROW(sampleEvenly(surface, 0), InvalidInput);
+  EXPECT_THROW(sampleEvenly(surface, (std::size_t{1} << 24) + 1), InvalidInput);
+  EXPECT_THROW(sampleEvenly(surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); }), 5),
+               InvalidInput);
+}
+
 }  // namespace
 }  // namespace spherical_param
