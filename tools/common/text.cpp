@@ -59,6 +59,14 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
   return parts;
 }
 
+std::string yesOrNo(bool value) {
+  return value ? "yes" : "no";
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string systemMessage(int error_number) {
   return std::generic_category().message(error_number);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,11 @@ std::vector<std::string_view> split(std::string_view text, std::string_view sepa
 /// Splits like split(), into a vector whose memory is used again.
 void split(std::string_view text, std::string_view separators,
            std::vector<std::string_view>& parts);
+
+std::string yesOrNo(bool value);
+
+/// A number with its noun, e.g. "1 point", "2 points".
+std::string counted(std::size_t count, const std::string& noun);
 
 /// Text of an errno value.
 std::string systemMessage(int error_number);

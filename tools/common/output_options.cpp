@@ -1,0 +1,71 @@
+#include "common/output_options.h"
+
+#include "common/console.h"
+#include "common/errors.h"
+#include "common/text.h"
+
+namespace spherical_param::tools {
+
+std::vector<OptionInfo> outputOptions() {
+  return {
+      {"json", "FILE", "write a report, - for the standard output and nothing else there"},
+      {"ascii", "", "write PLY, STL and VTK as text"},
+      {"quiet", "", "print nothing"},
+  };
+}
+
+OutputSettings parseOutputOptions(const CommandLine& command_line) {
+  OutputSettings settings;
+  settings.json = command_line.value("json", "");
+  if (command_line.has("json") && settings.json.empty()) {
+    throw UsageError("option -json: the name of the file is empty", "give a file, or - ");
+  }
+  settings.encoding = command_line.has("ascii") ? Encoding::Ascii : Encoding::Binary;
+  settings.quiet = command_line.has("quiet");
+  return settings;
+}
+
+void addToJson(const OutputSettings& settings, Json& json) {
+  json["json"] = settings.json;
+  json["ascii"] = settings.encoding == Encoding::Ascii;
+  json["quiet"] = settings.quiet;
+}
+
+void addReport(const OutputSettings& settings, std::vector<std::string>& outputs) {
+  if (!settings.json.empty() && !settings.jsonToStandardOutput()) {
+    outputs.push_back(settings.json);
+  }
+}
+
+void checkOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  std::vector<std::string> files = inputs;
+  for (const std::string& output : outputs) {
+    for (const std::string& file : files) {
+      if (isSameFile(file, output)) {
+        throw UsageError(inQuotes(output) + " would overwrite " + inQuotes(file),
+                         "give every file a name of its own");
+      }
+    }
+    files.push_back(output);
+  }
+  for (const std::string& output : outputs) {
+    checkOutputPath(output);
+  }
+}
+
+void storeReport(const OutputSettings& settings, const Json& report,
+                 std::vector<std::unique_ptr<OutputFile>>& files) {
+  if (settings.json.empty()) {
+    return;
+  }
+  const std::string text = textOf(report);
+  if (settings.jsonToStandardOutput()) {
+    printAll(text);
+    return;
+  }
+  files.push_back(std::make_unique<OutputFile>(settings.json));
+  files.back()->write(text);
+  files.back()->finish();
+}
+
+}  // namespace spherical_param::tools
