@@ -1,0 +1,149 @@
+#include "common/product_input.h"
+
+#include "common/errors.h"
+#include "common/numbers.h"
+#include "common/text.h"
+#include "spherical_param/errors.h"
+
+#include <cstddef>
+#include <string>
+
+namespace spherical_param::tools {
+namespace {
+
+/// Names of functions are nothing to users of a tool: "function: cause; remedy".
+Failure mapFailure(const std::string& path, const std::string& message) {
+  const std::size_t name = message.find(": ");
+  const std::size_t blank = message.find(' ');
+  const std::string text = name < blank ? message.substr(name + 2) : message;
+  const std::size_t remedy = text.find("; ");
+  return {"cannot map " + inQuotes(path) + " to the sphere: " + text.substr(0, remedy),
+          remedy == std::string::npos ? "try another -seed" : text.substr(remedy + 2)};
+}
+
+Json toJson(const DistortionStatistics& statistics) {
+  return {{"mean", statistics.mean}, {"p95", statistics.p95}, {"max", statistics.max}};
+}
+
+void addToJson(const MapDistortion& distortion, Json& json) {
+  json["flipped_triangles"] = distortion.flipped_triangles;
+  json["angle_distortion"] = toJson(distortion.angle);
+  json["area_distortion"] = toJson(distortion.area);
+}
+
+std::string listed(const DistortionStatistics& statistics, const DistortionStatistics& before) {
+  const auto three = [](const DistortionStatistics& values) {
+    return formatted(values.mean, 4) + ", " + formatted(values.p95, 4) + ", " +
+           formatted(values.max, 4);
+  };
+  return three(statistics) + " (mean, 95 %, max; embedding: " + three(before) + ")";
+}
+
+std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
+  std::vector<Color> colors;
+  if (cloud.data.colors.empty()) {
+    return colors;
+  }
+  colors.reserve(cloud.reconstruction.getVertexIndices().size());
+  for (const int index : cloud.reconstruction.getVertexIndices()) {
+    colors.push_back(cloud.data.colors[static_cast<std::size_t>(index)]);
+  }
+  return colors;
+}
+
+}  // namespace
+
+std::vector<OptionInfo> productOptions() {
+  std::vector<OptionInfo> options = reconstructionOptions();
+  options.push_back({"area-weight", "X", "map: areas against angles, 0 (angles) to 1 (0.5)"});
+  options.push_back({"map-sweeps", "N", "map: sweeps of each level at most, up to 1000 (10)"});
+  return options;
+}
+
+ProductSettings parseProductOptions(const CommandLine& command_line) {
+  ProductSettings settings;
+  settings.reconstruction = parseReconstructionOptions(command_line);
+  settings.map.threads = settings.reconstruction.options.threads;
+  if (command_line.has("area-weight")) {
+    settings.map.area_weight =
+        parseReal("area-weight", command_line.value("area-weight", ""), {0.0, 1.0, true});
+  }
+  if (command_line.has("map-sweeps")) {
+    settings.map.sweeps = static_cast<int>(
+        parseInteger("map-sweeps", command_line.value("map-sweeps", ""), {0, 1000}));
+  }
+  if (settings.map.sweeps == 0 && command_line.has("area-weight")) {
+    throw UsageError("option -area-weight does nothing with -map-sweeps 0",
+                     "leave -area-weight out, or give -map-sweeps 10");
+  }
+  return settings;
+}
+
+void printProductOptions(const ProductSettings& settings, Console& console) {
+  printReconstructionOptions(settings.reconstruction, console);
+  if (settings.map.sweeps > 0) {
+    console.entry("area weight", formatted(settings.map.area_weight, 6));
+  }
+  console.entry("map sweeps", "up to " + std::to_string(settings.map.sweeps));
+}
+
+Json productOptionsToJson(const ProductSettings& settings) {
+  Json json = reconstructionOptionsToJson(settings.reconstruction);
+  json["area_weight"] = settings.map.sweeps == 0 ? Json(nullptr) : Json(settings.map.area_weight);
+  json["map_sweeps"] = settings.map.sweeps;
+  return json;
+}
+
+StagePlan productStages(const ProductSettings& settings) {
+  StagePlan stages = reconstructionStages(settings.reconstruction);
+  stages.emplace_back("map", settings.map.sweeps == 0 ? 20.0 : 200.0);
+  return stages;
+}
+
+void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
+              MappedCloud& mapped) {
+  reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
+  mapped.points = vertexPositions(mapped.cloud);
+  mapped.colors = vertexColors(mapped.cloud);
+  console.begin("map");
+  SphereMapOptions options = settings.map;
+  options.progress = [&console](double share) {
+    console.update(share, "");
+    return true;
+  };
+  try {
+    mapped.map =
+        computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.result().sphere, options);
+  } catch (const InvalidInput& error) {
+    throw mapFailure(path, error.what());
+  } catch (const ComputeError& error) {
+    throw mapFailure(path, error.what());
+  }
+  mapped.cloud.stages.push_back({"map", console.end("")});
+}
+
+void addMapToJson(const MappedCloud& mapped, Json& json) {
+  json["input_points"] = mapped.cloud.data.points.size();
+  json["vertices"] = mapped.points.cols();
+  json["mesh_triangles"] = mapped.triangles().cols();
+  json["mesh_self_intersections"] = mapped.cloud.reconstruction.getSelfIntersections().size();
+  addToJson(mapped.map.distortion, json);
+  json["embedding_distortion"] = Json::object();
+  addToJson(mapped.map.before, json["embedding_distortion"]);
+}
+
+void printMap(const MappedCloud& mapped, Console& console) {
+  const SphereMap& map = mapped.map;
+  console.entry("input points", std::to_string(mapped.cloud.data.points.size()));
+  console.entry("vertices", std::to_string(mapped.points.cols()));
+  console.entry("mesh", std::to_string(mapped.triangles().cols()) + " triangles, " +
+                            counted(mapped.cloud.reconstruction.getSelfIntersections().size(),
+                                    "self-intersection"));
+  console.entry("flipped on sphere",
+                std::to_string(map.distortion.flipped_triangles) +
+                    " (embedding: " + std::to_string(map.before.flipped_triangles) + ")");
+  console.entry("angle distortion", listed(map.distortion.angle, map.before.angle));
+  console.entry("area distortion", listed(map.distortion.area, map.before.area));
+}
+
+}  // namespace spherical_param::tools

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "common/cloud_reconstruction.h"
+#include "common/command_line.h"
+#include "common/console.h"
+#include "common/json_report.h"
+#include "common/point_data.h"
+#include "common/reconstruction_options.h"
+#include "spherical_param/sphere_map.h"
+
+#include <string>
+#include <vector>
+
+namespace spherical_param::tools {
+
+/// What the tools that use the map to the sphere have in common: how they come to it.
+struct ProductSettings {
+  ReconstructionSettings reconstruction;
+  SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
+};
+
+/// The lines of the options of the reconstruction, then those of the map.
+std::vector<OptionInfo> productOptions();
+
+/// Refuses options that would change nothing as well. \throw UsageError
+ProductSettings parseProductOptions(const CommandLine& command_line);
+
+/// Prints what is in force.
+void printProductOptions(const ProductSettings& settings, Console& console);
+
+/// What is in force; what has no say with the chosen methods is null.
+Json productOptionsToJson(const ProductSettings& settings);
+
+/// A cloud, its mesh, and the map of that to the sphere.
+struct MappedCloud {
+  CloudReconstruction cloud;  ///< with the stage "map" as the last
+  Positions points;           ///< 3 x v, the vertices; smoothed, if that was asked for
+  std::vector<Color> colors;  ///< of the vertices: v, or none if the cloud has no colours
+  SphereMap map;
+
+  const Triangles& triangles() const { return cloud.result().triangles; }
+};
+
+/// The stages of mapCloud(), in the unit of reconstructionStages().
+StagePlan productStages(const ProductSettings& settings);
+
+/// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.
+/// \throw UsageError, Failure
+void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
+              MappedCloud& mapped);
+
+/// Adds the size of the mesh and what is wrong with the map: `input_points`, `vertices`,
+/// `mesh_triangles`, `mesh_self_intersections`, `flipped_triangles`, `angle_distortion`,
+/// `area_distortion`, and the same of the embedding as `embedding_distortion`.
+void addMapToJson(const MappedCloud& mapped, Json& json);
+
+/// Prints the same.
+void printMap(const MappedCloud& mapped, Console& console);
+
+}  // namespace spherical_param::tools
