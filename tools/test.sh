@@ -189,8 +189,8 @@ if [ "$quick" = no ]; then
       -E '^(Layering|Benchmark|test_shapes_are_meshed|MultilevelEmbedding.SameBits|MultilevelEmbedding.StepsDoNotGrow)'
     unset GTEST_FILTER
   fi
-  if check "TSan: build" configure_and_build tsan test/core/all; then
-    variant_tests "TSan: tests of concurrent use" tsan build/tsan/test/core -R Concurrent
+  if check "TSan: build" configure_and_build tsan test_concurrency; then
+    variant_tests "TSan: tests of concurrent use" tsan build/tsan/test/core -R '^Concurrency'
   fi
 fi
 

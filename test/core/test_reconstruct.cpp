@@ -986,25 +986,5 @@ TEST(Reconstruct, OptionsCanBeCheckedBeforehand) {
   bad([](Options& options) { options.smoothing_steps = 10001; });
 }
 
-TEST(Reconstruct, ConcurrentCallsAgreeWithSingleOnes) {
-  constexpr std::size_t count = 4;
-  Options options;
-  options.threads = 1;
-  options.max_iterations = 50;
-  options.k = 8;
-  const auto run = [&](std::size_t i) {
-    return mesh(ellipsoid(300 + 50 * static_cast<Index>(i), 1.0, 0.8, 0.5), options);
-  };
-  std::vector<Result> alone(count);
-  for (std::size_t i = 0; i < count; ++i)
-    alone[i] = run(i);
-  const std::vector<Result> together = test::runTogether(count, run);
-  for (std::size_t i = 0; i < count; ++i) {
-    EXPECT_EQ(alone[i].triangles, together[i].triangles);
-    EXPECT_EQ(alone[i].sphere, together[i].sphere);
-    EXPECT_EQ(alone[i].embedding.residuals, together[i].embedding.residuals);
-  }
-}
-
 }  // namespace
 }  // namespace spherical_param

@@ -230,19 +230,6 @@ TEST_P(EveryMethod, BadInputIsInvalidInput) {
   EXPECT_THROW(triangulate(points), InvalidInput);
 }
 
-TEST_P(EveryMethod, ConcurrentCallsAgreeWithSingleOnes) {
-  constexpr std::size_t count = 4;
-  std::vector<Triangles> alone(count);
-  const auto run = [this](std::size_t i) {
-    return triangulate(randomSphere(500 + 100 * static_cast<Index>(i), i)).triangles;
-  };
-  for (std::size_t i = 0; i < count; ++i)
-    alone[i] = run(i);
-  const std::vector<Triangles> together = test::runTogether(count, run);
-  for (std::size_t i = 0; i < count; ++i)
-    EXPECT_EQ(alone[i], together[i]);
-}
-
 /// Most triangles around one of the vertices [0, n).
 int highestDegree(const Triangles& triangles, Index n) {
   std::vector<int> degree(static_cast<std::size_t>(n), 0);
