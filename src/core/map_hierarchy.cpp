@@ -281,8 +281,8 @@ std::vector<double> massesOf(const Positions& points, const Triangles& triangles
 /// Takes out vertices, and writes down how.
 class Coarsening {
 public:
-  Coarsening(const Positions& points, const Triangles& triangles, int threads)
-      : points_(points), threads_(threads),
+  Coarsening(const Positions& points, const Triangles& triangles, int requested, int threads)
+      : points_(points), requested_threads_(requested),
         mesh_(points, triangles, massesOf(points, triangles, threads), threads),
         blocked_(static_cast<std::size_t>(points.cols()), 0) {
     for (Index v = 0; v < points.cols(); ++v)
@@ -353,7 +353,7 @@ private:
   void findCandidates(Index most_neighbors) {
     constexpr Index none = -1;
     found_.resize(alive_.size());
-    const int threads = threadCount(threads_, alive_.size(), kParallelThreshold);
+    const int threads = threadCount(requested_threads_, alive_.size(), kParallelThreshold);
     forEachBlock(alive_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
       std::vector<Index> ring;
       for (std::size_t i = begin; i < end; ++i) {
@@ -474,7 +474,7 @@ private:
   };
 
   const Positions& points_;
-  int threads_;
+  int requested_threads_;
   CollapsibleMesh mesh_;
   std::vector<Index> alive_;
   std::vector<std::uint32_t> blocked_;  // the last batch that changes something at the vertex
@@ -504,7 +504,7 @@ MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangl
   if (extent > 0.0)
     scaled /= extent;
   MapHierarchy hierarchy =
-      Coarsening(scaled, renumbered(triangles, inverseOf(order)), threads).run(report);
+      Coarsening(scaled, renumbered(triangles, inverseOf(order)), threads, most).run(report);
   for (Index& v : hierarchy.order)
     v = order[static_cast<std::size_t>(v)];
   return hierarchy;
