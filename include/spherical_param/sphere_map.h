@@ -46,9 +46,9 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
 struct SphereMapOptions {
   /// Weight of area against angle in the energy, in [0, 1]: 0 is as conformal as can be, 1 cares
   /// for areas as much as a map that stays one to one can.
-  double area_weight = 0.5;
+  double area_weight = 0.8;
   /// Sweeps over the vertices at most of each level; [0, 1000]. 0: the map is only made valid.
-  int sweeps = 10;
+  int sweeps = 15;
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
   /// ends the work with Cancelled. May be empty. Called from the calling thread only.

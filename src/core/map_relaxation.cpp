@@ -22,39 +22,73 @@ using Eigen::Vector3d;
 
 /// Triangles thinner than this, height to longest side, count as such.
 constexpr double kThinnest = 0.05;
+/// Logarithms of ratios of areas below this count by their squares rather.
+constexpr double kSmallLog = 0.05;
+/// Share of the term of the angles that is over the determinant.
+constexpr double kDeterminantShare = 0.2;
 
-/// A triangle of vertex u and two neighbours, on the sphere: half their determinant, which is its
-/// area but for its distance from the sphere, and its Dirichlet energy, 1/4 of the sum of squared
-/// sides times cotangents, which is the area at least, and just that if the map is conformal
-/// (U. Pinkall and K. Polthier, 1993).
+/// A triangle of vertex u and two neighbours, on the sphere.
 struct Image {
-  double area;
+  Vector3d cross;
+  double area;  ///< of the flat triangle
+  /// Half the determinant: the area of a small triangle, and 0 where a triangle of any size begins
+  /// to be flipped.
+  double determinant;
+  /// 1/4 of the sum of squared sides times cotangents: the area at least, and just that if the map
+  /// is conformal (U. Pinkall and K. Polthier, 1993).
   double dirichlet;
 
   Image(const Vector3d& u, const Vector3d& to_first, const Vector3d& to_next,
         const MapCorner& corner)
-      : area(0.5 * u.dot(to_first.cross(to_next))),
+      : cross(to_first.cross(to_next)), area(0.5 * cross.norm()), determinant(0.5 * u.dot(cross)),
         dirichlet(0.25 * (corner.cot_vertex * (to_next - to_first).squaredNorm() +
                           corner.cot_neighbor * to_next.squaredNorm() +
                           corner.cot_next * to_first.squaredNorm())) {}
 };
 
-/// Whether the sign of the area is beyond doubt. The differences are rounded by half a unit in the
-/// last place each, the determinant by a few more.
-bool isSurelyPositive(const Vector3d& to_first, const Vector3d& to_next, double area) {
+/// Whether the sign of the determinant is beyond doubt. The differences are rounded by half a unit
+/// in the last place each, the determinant by a few more.
+bool isSurelyPositive(const Vector3d& to_first, const Vector3d& to_next, double determinant) {
   constexpr double unit = 32.0 * kUnitRoundoff;
-  return area > 0.0 && area * area > unit * unit * to_first.squaredNorm() * to_next.squaredNorm();
+  return determinant > 0.0 &&
+         determinant * determinant > unit * unit * to_first.squaredNorm() * to_next.squaredNorm();
 }
 
 bool isPositive(const Vector3d& u, const Vector3d& first, const Vector3d& next) {
   return orientation3d(Vector3d::Zero(), u, first, next) > 0;
 }
 
-/// MIPS (K. Hormann and G. Greiner, 2000) for the angles; the ratio of areas and its inverse.
+/// What the ratio of an area to its target costs, and the derivatives by the ratio's logarithm.
+struct AreaTerm {
+  double value;
+  double slope;
+  double curvature;
+
+  AreaTerm(double ratio, const MapEnergy& energy) {
+    const double inverse = 1.0 / ratio;
+    value = energy.ratio_weight * 0.5 * (ratio + inverse);
+    slope = energy.ratio_weight * 0.5 * (ratio - inverse);
+    curvature = value;
+    if (energy.log_weight > 0.0) {
+      const double log = std::log(ratio);
+      const double root = std::sqrt(kSmallLog * kSmallLog + log * log);
+      value += energy.log_weight * (1.0 - kSmallLog + root);
+      slope += energy.log_weight * log / root;
+      curvature += energy.log_weight * (kSmallLog * kSmallLog) / (root * root * root);
+    }
+  }
+};
+
+/// For the angles MIPS (K. Hormann and G. Greiner, 2000), the mean of sigma_1 / sigma_2 and its
+/// inverse. Over the area alone it would not keep triangles that are large from beginning to be
+/// flipped, which takes no change of their area: a share is over the determinant. For the areas
+/// terms as the statistics of the distortion have: they grow with the ratio and its inverse; and
+/// the logarithm makes them sharp where the ratio is near 1.
 double termOf(const Image& image, double mass, const MapEnergy& energy) {
-  const double target = mass * energy.area_of_mass;
-  return mass * (energy.angle_weight * image.dirichlet / image.area +
-                 energy.area_weight * 0.5 * (image.area / target + target / image.area));
+  return mass *
+         (energy.angle_weight * image.dirichlet *
+              (kDeterminantShare / image.determinant + (1.0 - kDeterminantShare) / image.area) +
+          AreaTerm(image.area / (mass * energy.area_of_mass), energy).value);
 }
 
 /// Energy of the triangles around a vertex that is at u; infinite if one is flipped.
@@ -67,9 +101,9 @@ double energyAround(const Positions& sphere, const MapCorner* corners, std::size
     const bool is_last = i + 1 == count;
     const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(corners[i + 1].neighbor) - u);
     const Image image(u, to_first, to_next, corners[i]);
-    if (!isSurelyPositive(to_first, to_next, image.area) &&
-        !(image.area > 0.0 && isPositive(u, sphere.col(corners[i].neighbor),
-                                         sphere.col(corners[is_last ? 0 : i + 1].neighbor))))
+    if (!isSurelyPositive(to_first, to_next, image.determinant) &&
+        !(image.determinant > 0.0 && isPositive(u, sphere.col(corners[i].neighbor),
+                                                sphere.col(corners[is_last ? 0 : i + 1].neighbor))))
       return std::numeric_limits<double>::infinity();
     sum += termOf(image, corners[i].mass, energy);
     to_first = to_next;
@@ -81,15 +115,27 @@ double energyAround(const Positions& sphere, const MapCorner* corners, std::size
 struct Model {
   double value = 0.0;
   Vector2d gradient = Vector2d::Zero();
-  Matrix2d hessian = Matrix2d::Zero();
+  Matrix2d hessian = Matrix2d::Zero();  ///< the lower triangle
+
+  /// Adds f(a) where a has this gradient, and a Hessian of so much times the identity.
+  void addFunctionOf(double slope, double curvature, const Vector2d& of_gradient,
+                     double of_hessian) {
+    gradient += slope * of_gradient;
+    hessian(0, 0) += curvature * of_gradient.x() * of_gradient.x() + slope * of_hessian;
+    hessian(1, 0) += curvature * of_gradient.x() * of_gradient.y();
+    hessian(1, 1) += curvature * of_gradient.y() * of_gradient.y() + slope * of_hessian;
+  }
+  /// Adds the mixed second derivative of a function of two values with these gradients.
+  void addMixed(double derivative, const Vector2d& a, const Vector2d& b) {
+    hessian(0, 0) += 2.0 * derivative * a.x() * b.x();
+    hessian(1, 0) += derivative * (a.x() * b.y() + a.y() * b.x());
+    hessian(1, 1) += 2.0 * derivative * a.y() * b.y();
+  }
 };
 
 Model modelAround(const Positions& sphere, const MapCorner* corners, std::size_t count,
                   const Vector3d& u, const TangentBasis& basis, const MapEnergy& energy) {
   Model model;
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
   const Vector3d x = basis.col(0);
   const Vector3d y = basis.col(1);
   Vector3d to_first = sphere.col(corners[0].neighbor) - u;
@@ -102,53 +148,52 @@ Model modelAround(const Positions& sphere, const MapCorner* corners, std::size_t
     const Vector2d next = is_last ? begin : Vector2d(x.dot(to_next), y.dot(to_next));
     const MapCorner& corner = corners[i];
     const double mass = corner.mass;
-    const Vector3d cross = to_first.cross(to_next);
-    const double area = 0.5 * u.dot(cross);
-    const double first_squared = to_first.squaredNorm();
-    const double next_squared = to_next.squaredNorm();
-    const double dirichlet =
-        0.25 * (corner.cot_vertex * (to_next - to_first).squaredNorm() +
-                corner.cot_neighbor * next_squared + corner.cot_next * first_squared);
-    // On the sphere, u moves by x - |x|^2 / 2 u to second order; the determinant is linear in u.
+    const Image image(u, to_first, to_next, corner);
+    // A step of x in the tangent plane takes u to u + x - |x|^2 / 2 u, to second order. The
+    // determinant is linear in u.
     const Vector2d edge = next - first;
-    const Vector2d area_gradient(0.5 * (x.dot(cross) - edge.y()), 0.5 * (y.dot(cross) + edge.x()));
-    const double area_hessian = -area;
-    const Vector2d d_gradient = -0.5 * (corner.cot_neighbor * next + corner.cot_next * first);
-    const double d_hessian = 0.25 * (corner.cot_neighbor * (2.0 - next_squared) +
-                                     corner.cot_next * (2.0 - first_squared));
+    const Vector2d determinant_gradient(0.5 * (x.dot(image.cross) - edge.y()),
+                                        0.5 * (y.dot(image.cross) + edge.x()));
+    const double determinant_hessian = -image.determinant;
+    const Vector2d dirichlet_gradient =
+        -0.5 * (corner.cot_neighbor * next + corner.cot_next * first);
+    const double dirichlet_hessian = 0.25 * (corner.cot_neighbor * (2.0 - to_next.squaredNorm()) +
+                                             corner.cot_next * (2.0 - to_first.squaredNorm()));
+    // Nearly linear in u as well.
+    const Vector3d turned = image.cross.cross(to_next - to_first) * (0.25 / image.area);
+    const Vector2d area_gradient(x.dot(turned), y.dot(turned));
+    const double area_hessian = -image.area;
 
-    const double inverse = 1.0 / area;
-    const double target = mass * energy.area_of_mass;
-    const double angle = mass * energy.angle_weight;
-    const double areas = mass * energy.area_weight;
-    const double mips = dirichlet * inverse;
-    // Derivatives by the area.
-    const double by_area =
-        -angle * mips * inverse + areas * 0.5 * (1.0 / target - target * inverse * inverse);
-    const double by_area_twice =
-        (2.0 * angle * mips + areas * target * inverse) * inverse * inverse;
-    const double by_d = angle * inverse;
-    const double by_both = -angle * inverse * inverse;
-    model.value += angle * mips + areas * 0.5 * (area / target + target * inverse);
-    model.gradient += by_d * d_gradient + by_area * area_gradient;
-    const double isotropic = by_d * d_hessian + by_area * area_hessian;
-    xx += isotropic + by_area_twice * area_gradient.x() * area_gradient.x() +
-          2.0 * by_both * area_gradient.x() * d_gradient.x();
-    yy += isotropic + by_area_twice * area_gradient.y() * area_gradient.y() +
-          2.0 * by_both * area_gradient.y() * d_gradient.y();
-    xy += by_area_twice * area_gradient.x() * area_gradient.y() +
-          by_both * (area_gradient.x() * d_gradient.y() + area_gradient.y() * d_gradient.x());
+    const double determinant_weight = mass * energy.angle_weight * kDeterminantShare;
+    const double area_weight = mass * energy.angle_weight * (1.0 - kDeterminantShare);
+    const double by_determinant = 1.0 / image.determinant;
+    const double by_area = 1.0 / image.area;
+    const double over_determinant = determinant_weight * image.dirichlet * by_determinant;
+    const double over_area = area_weight * image.dirichlet * by_area;
+    const AreaTerm term(image.area / (mass * energy.area_of_mass), energy);
+    model.value += over_determinant + over_area + mass * term.value;
+    model.addFunctionOf(determinant_weight * by_determinant + area_weight * by_area, 0.0,
+                        dirichlet_gradient, dirichlet_hessian);
+    model.addFunctionOf(-over_determinant * by_determinant,
+                        2.0 * over_determinant * by_determinant * by_determinant,
+                        determinant_gradient, determinant_hessian);
+    model.addFunctionOf((mass * term.slope - over_area) * by_area,
+                        (2.0 * over_area + mass * std::max(0.0, term.curvature - term.slope)) *
+                            by_area * by_area,
+                        area_gradient, area_hessian);
+    model.addMixed(-determinant_weight * by_determinant * by_determinant, determinant_gradient,
+                   dirichlet_gradient);
+    model.addMixed(-area_weight * by_area * by_area, area_gradient, dirichlet_gradient);
     to_first = to_next;
     first = next;
   }
-  model.hessian << xx, xy, xy, yy;
   return model;
 }
 
 /// -H^-1 g with the absolute values of H's eigenvalues: downhill.
 Vector2d newtonStep(const Model& model) {
   const double a = model.hessian(0, 0);
-  const double b = model.hessian(0, 1);
+  const double b = model.hessian(1, 0);
   const double c = model.hessian(1, 1);
   const double middle = 0.5 * (a + c);
   const double radius = std::hypot(0.5 * (a - c), b);

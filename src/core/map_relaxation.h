@@ -20,12 +20,12 @@ struct MapCorner {
   float cot_next;
 };
 
-/// The distortion that is minimised, and what it is measured with.
+/// The distortion that is minimised: the weights of its terms, and what areas are measured with.
 struct MapEnergy {
-  double angle_weight;
-  double area_weight;
-  /// Area on the sphere, as by det(a, b, c) / 2, of a unit of mass.
-  double area_of_mass;
+  double angle_weight;  ///< of what the angles are off
+  double log_weight;    ///< of the logarithm of the ratio of areas, but for its sign
+  double ratio_weight;  ///< of the mean of the ratio and its inverse
+  double area_of_mass;  ///< area on the sphere of a unit of mass, if all were equal
 };
 
 /// The corners around the vertices of a mesh, in the order in which they are worked on: vertices of
@@ -66,7 +66,7 @@ double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy,
 double mapEnergy(const Positions& sphere, const MapRows& rows, const MapEnergy& energy,
                  int threads);
 
-/// Sum of det(a, b, c) / 2 over the triangles.
+/// Sum of the areas of the flat triangles between corners on the sphere.
 double mapArea(const Positions& sphere, const MapRows& rows, int threads);
 
 }  // namespace spherical_param::internal

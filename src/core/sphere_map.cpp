@@ -213,12 +213,14 @@ public:
     for (const float mass : hierarchy.meshes.front().masses)
       mass_ += static_cast<double>(mass);
     const double area = options.area_weight;
-    energy_ = {std::max(1.0 - area, kLeastAngleWeight), area, 0.0};
+    const double angle = std::max(1.0 - area, kLeastAngleWeight);
+    final_ = {angle, (1.0 - kRatioShare) * area, kRatioShare * area, 0.0};
+    const double mild_area = std::min(area, kMildAreaWeight);
+    mild_ = {1.0 - mild_area, 0.0, mild_area, 0.0};
   }
 
   Positions run(std::vector<SphereMapLevel>& levels, const internal::ShareReport& report) {
     placeTetrahedron(hierarchy_.meshes.back(), sphere_);
-    const auto n = static_cast<double>(hierarchy_.points.cols());
     double work = 0.0;
     for (const MapMesh& mesh : hierarchy_.meshes)
       work += static_cast<double>(mesh.vertex_count);
@@ -234,14 +236,20 @@ public:
       levels.push_back(relax(mesh, internal::partOf(report, done / work, (done + share) / work)));
       done += share;
     }
-    static_cast<void>(n);
     std::reverse(levels.begin(), levels.end());
     return std::move(sphere_);
   }
 
 private:
   /// Areas alone do not say where in its ring a vertex is best.
-  static constexpr double kLeastAngleWeight = 0.01;
+  static constexpr double kLeastAngleWeight = 0.02;
+  /// Share of the ratio in the weight of areas, the logarithm has the rest: enough to bring what is
+  /// far from its area nearer.
+  static constexpr double kRatioShare = 0.3;
+  /// Areas weigh no more than this while there are vertices that came just now: triangles that all
+  /// have their areas leave each other no room to move, whatever their shapes are.
+  static constexpr double kMildAreaWeight = 0.7;
+  static constexpr int kMildSweeps = 2;
 
   void insert(Index first, Index end) {
     const auto count = static_cast<std::size_t>(end - first);
@@ -251,7 +259,7 @@ private:
     internal::forEachBlock(count, threads, [&](std::size_t, std::size_t begin, std::size_t stop) {
       Insertion work;
       for (std::size_t i = begin; i < stop; ++i)
-        if (!insertVertex(hierarchy_, first + static_cast<Index>(i), energy_, sphere_, work))
+        if (!insertVertex(hierarchy_, first + static_cast<Index>(i), mild_, sphere_, work))
           ++failed;
     });
     if (failed > 0)
@@ -262,18 +270,21 @@ private:
   SphereMapLevel relax(const MapMesh& mesh, const internal::ShareReport& report) {
     const MapRows rows = internal::makeMapRows(hierarchy_.points, mesh.triangles, mesh.masses,
                                                mesh.vertex_count, options_.threads);
-    energy_.area_of_mass = internal::mapArea(sphere_, rows, options_.threads) / mass_;
     SphereMapLevel level;
     level.vertices = static_cast<std::size_t>(mesh.vertex_count);
-    double value = internal::mapEnergy(sphere_, rows, energy_, options_.threads);
-    for (; level.sweeps < options_.sweeps; ++level.sweeps) {
+    mild_.area_of_mass = internal::mapArea(sphere_, rows, options_.threads) / mass_;
+    for (; level.sweeps < std::min(kMildSweeps, options_.sweeps); ++level.sweeps) {
       internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
-      const double gain = internal::sweepMap(sphere_, rows, energy_, options_.threads);
+      internal::sweepMap(sphere_, rows, mild_, options_.threads);
+    }
+    final_.area_of_mass = internal::mapArea(sphere_, rows, options_.threads) / mass_;
+    double value = internal::mapEnergy(sphere_, rows, final_, options_.threads);
+    bool goes_on = true;
+    for (; goes_on && level.sweeps < options_.sweeps; ++level.sweeps) {
+      internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      const double gain = internal::sweepMap(sphere_, rows, final_, options_.threads);
       value -= gain;
-      if (!(gain > kLeastGain * value)) {
-        ++level.sweeps;
-        break;
-      }
+      goes_on = gain > kLeastGain * value;
     }
     level.energy = value / mass_;
     return level;
@@ -285,7 +296,8 @@ private:
   const MapHierarchy& hierarchy_;
   const SphereMapOptions& options_;
   Positions sphere_;
-  MapEnergy energy_{};
+  MapEnergy mild_{};
+  MapEnergy final_{};
   double mass_ = 0.0;
 };
 

@@ -267,5 +267,290 @@ TEST(MapDistortion, RefusesWhatDoesNotFit) {
   EXPECT_EQ(measureMapDistortion(sphere.points, Triangles(3, 0), sphere.points).area.mean, 0.0);
 }
 
+/// A sphere triangulation with other positions.
+Mesh deformed(const Mesh& sphere, const Eigen::Matrix3d& map) {
+  return {map * sphere.points, sphere.triangles};
+}
+
+/// Two apices and a ring of so many points between them.
+Mesh doubleCone(Index ring) {
+  Mesh mesh{Positions(3, ring + 2), Triangles(3, 2 * ring)};
+  for (Index i = 0; i < ring; ++i) {
+    const double angle = 2.0 * test::kPi * i / ring;
+    mesh.points.col(i) << std::cos(angle), std::sin(angle), 0.0;
+    const Index next = (i + 1) % ring;
+    mesh.triangles.col(2 * i) << i, next, ring;
+    mesh.triangles.col(2 * i + 1) << next, i, ring + 1;
+  }
+  mesh.points.col(ring) << 0.0, 0.0, 1.0;
+  mesh.points.col(ring + 1) << 0.0, 0.0, -1.0;
+  return mesh;
+}
+
+/// Flips by a determinant in long double; a flat triangle counts.
+int flipsOf(const Positions& sphere, const Triangles& triangles) {
+  int flips = 0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Matrix<long double, 3, 1> a = sphere.col(triangles(0, t)).cast<long double>();
+    const Eigen::Matrix<long double, 3, 1> b = sphere.col(triangles(1, t)).cast<long double>();
+    const Eigen::Matrix<long double, 3, 1> c = sphere.col(triangles(2, t)).cast<long double>();
+    flips += a.dot((b - a).cross(c - a)) > 0.0L ? 0 : 1;
+  }
+  return flips;
+}
+
+void expectOneToOne(const SphereMap& map, const Mesh& mesh) {
+  ASSERT_EQ(map.sphere.cols(), mesh.points.cols());
+  for (Eigen::Index v = 0; v < map.sphere.cols(); ++v)
+    ASSERT_NEAR(map.sphere.col(v).norm(), 1.0, 1e-14);
+  EXPECT_EQ(flipsOf(map.sphere, mesh.triangles), 0);
+  EXPECT_EQ(map.distortion.flipped_triangles, 0);
+  // No triangle is flipped, and they cover the sphere once: the solid angles are its area.
+  double sum = 0.0;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Vector3d a = map.sphere.col(mesh.triangles(0, t));
+    const Vector3d b = map.sphere.col(mesh.triangles(1, t));
+    const Vector3d c = map.sphere.col(mesh.triangles(2, t));
+    // A. van Oosterom and J. Strackee, 1983.
+    sum += 2.0 * std::atan2(a.dot((b - a).cross(c - a)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
+  }
+  EXPECT_NEAR(sum, 4.0 * test::kPi, 1e-9);
+}
+
+/// The radial projection of a shape that is seen from the origin.
+Positions directions(const Positions& points) {
+  return points.colwise().normalized();
+}
+
+TEST(SphereMap, SphereMapsToItself) {
+  const Mesh sphere = octasphere(4);
+  const SphereMap map = computeSphereMap(2.5 * sphere.points, sphere.triangles, sphere.points);
+  expectOneToOne(map, sphere);
+  EXPECT_LT(map.distortion.angle.mean, 1.01);
+  EXPECT_LT(map.distortion.area.mean, 1.01);
+  EXPECT_LT((map.sphere - sphere.points).colwise().norm().maxCoeff(), 0.05);
+}
+
+TEST(SphereMap, AreasOfAnEllipsoidAreKept) {
+  const Mesh sphere = octasphere(4);
+  const Mesh mesh = deformed(sphere, Vector3d(1.0, 1.0, 3.0).asDiagonal());
+  const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, directions(mesh.points));
+  expectOneToOne(map, mesh);
+  EXPECT_GT(map.before.area.mean, 1.5);
+  EXPECT_LT(map.distortion.area.mean, 1.1);
+  EXPECT_LT(map.distortion.angle.mean, 2.5);
+}
+
+TEST(SphereMap, WeightOfAreasTradesThemForAngles) {
+  const test::Tube tube = test::bentTube(12.0, 0.0, 16);
+  const Positions start = directions(tube.points.colwise() - Vector3d(6.0, 0.0, 0.0));
+  double angle = 1.0;
+  double area = std::numeric_limits<double>::infinity();
+  for (const double weight : {0.0, 0.5, 0.9}) {
+    SphereMapOptions options;
+    options.area_weight = weight;
+    const SphereMap map = computeSphereMap(tube.points, tube.triangles, start, options);
+    EXPECT_EQ(map.distortion.flipped_triangles, 0);
+    EXPECT_GT(map.distortion.angle.mean, angle);
+    EXPECT_LT(map.distortion.area.mean, area);
+    angle = map.distortion.angle.mean;
+    area = map.distortion.area.mean;
+  }
+}
+
+TEST(SphereMap, EndOfALimbKeepsItsArea) {
+  // A tube bent to a half circle, 20 times as long as it is thick: a conformal map would shrink its
+  // ends by e^20.
+  const test::Tube tube = test::bentTube(40.0, test::kPi, 12);
+  const Mesh mesh{tube.points, tube.triangles};
+  const Positions start = test::randomSphere(static_cast<Index>(tube.points.cols()), 5);
+  const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, start);
+  expectOneToOne(map, mesh);
+  EXPECT_GT(map.before.flipped_triangles, 0);
+  EXPECT_LT(map.distortion.area.mean, 2.5);
+}
+
+TEST(SphereMap, IsOneToOneForAnyPositions) {
+  const Mesh sphere = octasphere(3);
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Mesh mesh{randomPositions(sphere.points.cols(), seed), sphere.triangles};
+    const Positions start = test::randomSphere(static_cast<Index>(mesh.points.cols()), seed);
+    for (const int sweeps : {0, 1, 15}) {
+      SphereMapOptions options;
+      options.sweeps = sweeps;
+      expectOneToOne(computeSphereMap(mesh.points, mesh.triangles, start, options), mesh);
+    }
+  }
+}
+
+TEST(SphereMap, IsOneToOneForAnyWeight) {
+  const Mesh sphere = octasphere(3);
+  Mesh mesh = sphere;
+  mesh.points.row(0) = mesh.points.row(0).array().pow(3.0);
+  for (const double weight : {0.0, 0.3, 1.0}) {
+    SphereMapOptions options;
+    options.area_weight = weight;
+    expectOneToOne(computeSphereMap(mesh.points, mesh.triangles, sphere.points, options), mesh);
+  }
+}
+
+TEST(SphereMap, SmallestMeshes) {
+  Mesh tetrahedron{Positions(3, 4), Triangles(3, 4)};
+  tetrahedron.points << 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  tetrahedron.triangles << 0, 0, 1, 2, 2, 1, 2, 0, 1, 3, 3, 3;
+  const Positions start = directions(tetrahedron.points.colwise() - Vector3d::Constant(0.2));
+  expectOneToOne(computeSphereMap(tetrahedron.points, tetrahedron.triangles, start), tetrahedron);
+  const Mesh octahedron = octasphere(0);
+  const SphereMap map =
+      computeSphereMap(octahedron.points, octahedron.triangles, octahedron.points);
+  expectOneToOne(map, octahedron);
+  EXPECT_LT(map.distortion.angle.mean, 1.05);
+  for (const Index ring : {3, 4, 5})
+    expectOneToOne(computeSphereMap(doubleCone(ring).points, doubleCone(ring).triangles,
+                                    directions(doubleCone(ring).points)),
+                   doubleCone(ring));
+}
+
+TEST(SphereMap, VertexOfManyNeighbors) {
+  const Mesh cone = doubleCone(1000);
+  expectOneToOne(computeSphereMap(cone.points, cone.triangles, directions(cone.points)), cone);
+}
+
+TEST(SphereMap, Needle) {
+  const Mesh sphere = octasphere(4);
+  const Mesh mesh = deformed(sphere, Vector3d(1.0, 1.0, 60.0).asDiagonal());
+  const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, directions(mesh.points));
+  expectOneToOne(map, mesh);
+  EXPECT_LT(map.distortion.area.mean, 0.5 * map.before.area.mean);
+}
+
+TEST(SphereMap, TrianglesWithoutArea) {
+  // Flat and with rows of collinear points: the octahedron, cut in four without rounding it off,
+  // and then all of its upper half in the plane; and a solid that is crushed to a line.
+  Mesh mesh = octasphere(3);
+  const Positions start = mesh.points;
+  for (Eigen::Index v = 0; v < mesh.points.cols(); ++v)
+    mesh.points.col(v) /= mesh.points.col(v).lpNorm<1>();
+  mesh.points.row(2) = mesh.points.row(2).cwiseMin(0.0);
+  mesh.points.row(0) = (2.0 * mesh.points.row(0)).array().round() / 2.0;
+  const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, start);
+  expectOneToOne(map, mesh);
+  EXPECT_GT(map.distortion.degenerate_triangles, 0);
+  mesh.points.topRows(2).setZero();
+  expectOneToOne(computeSphereMap(mesh.points, mesh.triangles, start), mesh);
+  mesh.points.setZero();
+  expectOneToOne(computeSphereMap(mesh.points, mesh.triangles, start), mesh);
+}
+
+TEST(SphereMap, TinyClusterHasRoom) {
+  Mesh mesh = octasphere(4);
+  const Positions start = mesh.points;
+  for (Eigen::Index v = 0; v < mesh.points.cols(); ++v)
+    if (mesh.points(2, v) > 0.7)
+      mesh.points.col(v) = Vector3d::UnitZ() + 1e-9 * (mesh.points.col(v) - Vector3d::UnitZ());
+  expectOneToOne(computeSphereMap(mesh.points, mesh.triangles, start), mesh);
+}
+
+TEST(SphereMap, IsTheSameForAnyNumberOfThreads) {
+  const Mesh sphere = octasphere(6);
+  const Mesh mesh = deformed(sphere, Vector3d(1.0, 2.0, 4.0).asDiagonal());
+  SphereMapOptions options;
+  options.sweeps = 3;
+  options.threads = 1;
+  const SphereMap expected = computeSphereMap(mesh.points, mesh.triangles, sphere.points, options);
+  for (const int threads : {0, 2, 3}) {
+    options.threads = threads;
+    const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, sphere.points, options);
+    EXPECT_TRUE(map.sphere == expected.sphere);
+    EXPECT_TRUE(areEqual(map.distortion, expected.distortion));
+  }
+}
+
+TEST(SphereMap, TurnsWithItsStart) {
+  const Mesh sphere = octasphere(4);
+  Mesh mesh = deformed(sphere, Vector3d(1.0, 1.5, 2.5).asDiagonal());
+  // Nothing is symmetric, so that rounding breaks no ties.
+  mesh.points += 0.002 * randomPositions(mesh.points.cols(), 6);
+  const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, sphere.points);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.2, Vector3d(3.0, -1.0, 2.0).normalized()).toRotationMatrix();
+  const SphereMap of_start = computeSphereMap(mesh.points, mesh.triangles, turn * sphere.points);
+  EXPECT_LT((of_start.sphere - turn * map.sphere).cwiseAbs().maxCoeff(), 1e-12);
+  // The frame and the unit of the mesh do not matter.
+  const SphereMap of_mesh =
+      computeSphereMap(1e6 * turn * mesh.points, mesh.triangles, sphere.points);
+  // But its rounding does, as much as another order of the collapses of a few vertices.
+  EXPECT_LT((of_mesh.sphere - map.sphere).cwiseAbs().maxCoeff(), 0.02);
+}
+
+TEST(SphereMap, LevelsEndAtATetrahedron) {
+  const Mesh sphere = octasphere(4);
+  const SphereMap map = computeSphereMap(sphere.points, sphere.triangles, sphere.points);
+  ASSERT_FALSE(map.levels.empty());
+  EXPECT_EQ(map.levels.front().vertices, static_cast<std::size_t>(sphere.points.cols()));
+  EXPECT_EQ(map.levels.back().vertices, 4U);
+  for (std::size_t l = 0; l < map.levels.size(); ++l) {
+    EXPECT_LE(map.levels[l].sweeps, SphereMapOptions().sweeps);
+    EXPECT_TRUE(std::isfinite(map.levels[l].energy));
+    EXPECT_TRUE(l == 0 || map.levels[l].vertices < map.levels[l - 1].vertices);
+  }
+}
+
+TEST(SphereMap, TellsHowFarItIs) {
+  const Mesh sphere = octasphere(3);
+  const auto run = [&](const std::function<bool(double)>& progress) {
+    SphereMapOptions options;
+    options.progress = progress;
+    computeSphereMap(sphere.points, sphere.triangles, sphere.points, options);
+  };
+  const std::vector<double> shares = test::sharesOf(run);
+  EXPECT_TRUE(test::areShares(shares));
+  EXPECT_EQ(shares.back(), 1.0);
+  EXPECT_THROW(run([](double share) { return share < 0.5; }), Cancelled);
+}
+
+TEST(SphereMap, RefusesBadInput) {
+  const Mesh sphere = octasphere(2);
+  const Positions& points = sphere.points;
+  const Triangles& triangles = sphere.triangles;
+  const auto refuses = [](const Positions& p, const Triangles& t, const Positions& start,
+                          const SphereMapOptions& options = {}) {
+    EXPECT_THROW(computeSphereMap(p, t, start, options), InvalidInput);
+  };
+  refuses(points, triangles.leftCols(triangles.cols() - 1), points);
+  refuses(points, triangles, points.leftCols(7));
+  refuses(points, triangles, 1.1 * points);
+  refuses(points, triangles, Positions::Zero(3, points.cols()));
+  Positions wrong = points;
+  wrong(1, 1) = std::numeric_limits<double>::infinity();
+  refuses(wrong, triangles, points);
+  wrong = points;
+  wrong(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  refuses(points, triangles, wrong);
+  Triangles turned = triangles;
+  std::swap(turned(0, 3), turned(1, 3));
+  refuses(points, turned, points);
+  Positions unused(3, points.cols() + 1);
+  unused << points, Vector3d::UnitX();
+  refuses(unused, triangles, unused);
+  Triangles two(3, 2 * triangles.cols());
+  two << triangles, (triangles.array() + static_cast<Index>(points.cols())).matrix();
+  refuses(test::horizontally(points, points), two, test::horizontally(points, points));
+  refuses(points.leftCols(3), Triangles(3, 0), points.leftCols(3));
+  for (const double weight : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
+    SphereMapOptions options;
+    options.area_weight = weight;
+    refuses(points, triangles, points, options);
+  }
+  for (const int value : {-1, 1025}) {
+    SphereMapOptions options;
+    options.threads = value;
+    refuses(points, triangles, points, options);
+    options = {};
+    options.sweeps = value;
+    refuses(points, triangles, points, options);
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param
