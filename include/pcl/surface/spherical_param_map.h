@@ -1,0 +1,51 @@
+#pragma once
+
+#include <pcl/surface/spherical_param_reconstruction.h>
+
+#include "spherical_param/sphere_map.h"
+#include "spherical_param/types.h"
+
+#include <functional>
+#include <string>
+
+namespace pcl {
+
+/** \brief Mesh a cloud and map the mesh to the unit sphere, one to one and with low distortion:
+ * what texturing, remeshing and morphing begin with.
+ *
+ * The vertices of the mesh are those of reconstruction.getResult(), which stays there, with its
+ * triangles; reconstruction.getVertexIndices() tells which points of the cloud they are.
+ *
+ * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called
+ * \param[out] points 3 x v, the vertices: smoothed, if setSmoothingSteps() asks for that
+ * \param[out] map the map of these vertices
+ * \param[in] options where no threads are given, those of the reconstruction are used
+ * \return false after a failure, which is told by PCL_ERROR; points and map are empty then. No
+ * exception leaves the function, except one that a progress callback throws.
+ * \ingroup surface
+ */
+template <typename PointInT>
+bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruction,
+                              spherical_param::Positions& points, spherical_param::SphereMap& map,
+                              const spherical_param::SphereMapOptions& options = {});
+
+namespace detail {
+
+/** \brief Calls a piece of work that uses the core. Whatever exception it throws is told by
+ * PCL_ERROR as one of a function.
+ * \return false after an exception */
+PCL_EXPORTS bool runCore(const std::string& function, const std::function<void()>& work);
+
+/** \brief Maps a mesh to the sphere; a failure is told as one of computeSphericalParamMap().
+ * \return false after a failure, with an empty map */
+PCL_EXPORTS bool mapMesh(const spherical_param::Positions& points,
+                         const spherical_param::Result& mesh,
+                         const spherical_param::SphereMapOptions& options,
+                         spherical_param::SphereMap& map);
+
+}  // namespace detail
+}  // namespace pcl
+
+#ifdef PCL_NO_PRECOMPILE
+#include <pcl/surface/impl/spherical_param_map.hpp>
+#endif
