@@ -1,25 +1,16 @@
 #include "common/product_input.h"
 
-#include "common/errors.h"
+#include "common/library_failure.h"
 #include "common/numbers.h"
 #include "common/text.h"
 #include "spherical_param/errors.h"
 
 #include <cstddef>
+#include <exception>
 #include <string>
 
 namespace spherical_param::tools {
 namespace {
-
-/// Names of functions are nothing to users of a tool: "function: cause; remedy".
-Failure mapFailure(const std::string& path, const std::string& message) {
-  const std::size_t name = message.find(": ");
-  const std::size_t blank = message.find(' ');
-  const std::string text = name < blank ? message.substr(name + 2) : message;
-  const std::size_t remedy = text.find("; ");
-  return {"cannot map " + inQuotes(path) + " to the sphere: " + text.substr(0, remedy),
-          remedy == std::string::npos ? "try another -seed" : text.substr(remedy + 2)};
-}
 
 Json toJson(const DistortionStatistics& statistics) {
   return {{"mean", statistics.mean}, {"p95", statistics.p95}, {"max", statistics.max}};
@@ -111,13 +102,17 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
     console.update(share, "");
     return true;
   };
+  const auto fail = [&path](const std::exception& error) {
+    return libraryFailure("cannot map " + inQuotes(path) + " to the sphere", error,
+                          "try another -seed");
+  };
   try {
     mapped.map =
         computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.result().sphere, options);
   } catch (const InvalidInput& error) {
-    throw mapFailure(path, error.what());
+    throw fail(error);
   } catch (const ComputeError& error) {
-    throw mapFailure(path, error.what());
+    throw fail(error);
   }
   mapped.cloud.stages.push_back({"map", console.end("")});
 }

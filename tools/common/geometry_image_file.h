@@ -1,0 +1,32 @@
+#pragma once
+
+#include "common/block_reader.h"
+#include "common/output_file.h"
+#include "spherical_param/resampling.h"
+
+#include <string>
+
+namespace spherical_param::tools {
+
+/// Tells whether the extension is that of a geometry image: .tif or .tiff, in upper or lower case.
+bool isGeometryImageFile(const std::string& path);
+
+/// Writes a geometry image as TIFF 6.0: three samples of 32-bit IEEE float for each pixel, x, y and
+/// z, without compression, in the byte order of this machine.
+///
+/// VTK's writer is not used: it knows nothing of temporary files, and takes no notice of a disk
+/// that is full when it closes the file (VTK 9.1).
+///
+/// \param image at most 16385 pixels along a side, so that offsets have 32 bits.
+/// \param progress told of the share that is written; may be empty. \throw Failure.
+void writeGeometryImage(OutputFile& file, const GeometryImage& image,
+                        const FileProgress& progress = {});
+
+/// Reads a geometry image: the kind of TIFF that writeGeometryImage() writes, in either byte order,
+/// whoever wrote it. Nothing in the file is believed before it is checked.
+///
+/// \param progress told of the share that is read; may be empty.
+/// \throw Failure for anything else than a square of an odd side with finite positions.
+GeometryImage readGeometryImage(const std::string& path, const FileProgress& progress = {});
+
+}  // namespace spherical_param::tools
