@@ -310,7 +310,7 @@ void writeGeometryImage(OutputFile& file, const GeometryImage& image,
   const auto side = static_cast<std::uint32_t>(image.side);
   const std::size_t row_size = pixel_size * side;
   const auto rows_per_strip =
-      static_cast<std::uint32_t>(std::max<std::size_t>(strip_size / row_size, 1));
+      std::min(side, static_cast<std::uint32_t>(std::max<std::size_t>(strip_size / row_size, 1)));
   const std::size_t first_strip = makeDirectory(side, rows_per_strip, 0).end();
   constexpr std::uint16_t version = 42;
   constexpr std::uint32_t directory_offset = 8;

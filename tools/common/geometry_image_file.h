@@ -14,8 +14,9 @@ bool isGeometryImageFile(const std::string& path);
 /// Writes a geometry image as TIFF 6.0: three samples of 32-bit IEEE float for each pixel, x, y and
 /// z, without compression, in the byte order of this machine.
 ///
-/// VTK's writer is not used: it knows nothing of temporary files, and takes no notice of a disk
-/// that is full when it closes the file (VTK 9.1).
+/// VTK is not used (9.1): its writer reports success if the disk is full as the file is closed, and
+/// removes what has the name otherwise; its reader takes such an image for one of bytes, be it one
+/// that its writer made.
 ///
 /// \param image at most 16385 pixels along a side, so that offsets have 32 bits.
 /// \param progress told of the share that is written; may be empty. \throw Failure.
