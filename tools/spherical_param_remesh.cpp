@@ -378,6 +378,7 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
         surface, wanted, settings.product.reconstruction.options.seed);
     output.mesh.points = std::move(points.points);
     output.mesh.normals = std::move(points.normals);
+    output.colors = interpolatedColors(mapped, points.locations);
   } else if (settings.writes_image) {
     output.frequency = settings.side
                            ? (*settings.side - 1) / 2

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace spherical_param {
 
@@ -64,8 +65,9 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads = 0);
 
 /// Points spread evenly over a surface, in space.
 struct SurfacePoints {
-  Positions points;   ///< 3 x n [unit of the input]
-  Positions normals;  ///< 3 x n, unit vectors, outward
+  Positions points;                       ///< 3 x n [unit of the input]
+  Positions normals;                      ///< 3 x n, unit vectors, outward
+  std::vector<SphereLocation> locations;  ///< n: where they are in the mesh
 };
 
 /// Spreads points evenly over a surface: random ones by area, of which those that are closest to

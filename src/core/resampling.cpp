@@ -278,7 +278,8 @@ SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std:
   const std::vector<double> sums = sumsOfAreas(surface);
   const RandomNumbers random(seed);
   SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
-                       Positions(3, static_cast<Eigen::Index>(count))};
+                       Positions(3, static_cast<Eigen::Index>(count)),
+                       std::vector<SphereLocation>(count)};
   internal::forEachItem(count, internal::threadCount(0, count, internal::kParallelThreshold),
                         [&](std::size_t, std::size_t i) {
                           const double place = (static_cast<double>(i) + random.at(3 * i)) /
@@ -294,6 +295,7 @@ SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std:
                           const SurfaceSample sample = surface.evaluate(location);
                           result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
                           result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
+                          result.locations[i] = location;
                         });
   return result;
 }
@@ -472,10 +474,12 @@ SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std:
   const std::vector<Index> kept =
       internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
   SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
-                       Positions(3, static_cast<Eigen::Index>(count))};
+                       Positions(3, static_cast<Eigen::Index>(count)),
+                       std::vector<SphereLocation>(count)};
   for (std::size_t i = 0; i < count; ++i) {
     result.points.col(static_cast<Eigen::Index>(i)) = all.points.col(kept[i]);
     result.normals.col(static_cast<Eigen::Index>(i)) = all.normals.col(kept[i]);
+    result.locations[i] = all.locations[static_cast<std::size_t>(kept[i])];
   }
   return result;
 }

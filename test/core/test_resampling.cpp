@@ -352,6 +352,7 @@ TEST(SampleEvenly, LiesOnTheSurface) {
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
     const Vector3d point = samples.points.col(i);
     EXPECT_LT((surface.evaluate(point).position - point).norm(), 1e-13);
+    EXPECT_EQ(surface.evaluate(samples.locations[static_cast<std::size_t>(i)]).position, point);
     EXPECT_NEAR(samples.normals.col(i).norm(), 1.0, 1e-15);
     EXPECT_GT(samples.normals.col(i).dot(point.normalized()), 0.99);
   }

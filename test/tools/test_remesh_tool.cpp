@@ -43,14 +43,19 @@ std::vector<Eigen::Vector3d> spiral(int count) {
   return directions;
 }
 
+/// Linear, so that what is interpolated between the points is as good as the surface there.
+Eigen::Vector3d colorAt(const Eigen::Vector3d& direction) {
+  return 127.5 * (direction.normalized() + Eigen::Vector3d::Ones());
+}
+
 /// Points of an ellipsoid as lines of text, coloured by the direction of the point.
 std::string coloredEllipsoid(int count) {
   std::ostringstream text;
   text.precision(9);
   for (const Eigen::Vector3d& direction : spiral(count)) {
     const Eigen::Vector3d point = center + axes.cwiseProduct(direction);
-    const Eigen::Vector3d color = 127.5 * (direction + Eigen::Vector3d::Ones());
-    text << point.transpose() << " " << color.array().round().matrix().transpose() << "\n";
+    text << point.transpose() << " " << colorAt(direction).array().round().matrix().transpose()
+         << "\n";
   }
   return text.str();
 }
@@ -190,9 +195,7 @@ TEST_F(RemeshTool, MakesAClosedSphereWithTheNearestNumberOfPointsNormalsAndColor
       const Eigen::Vector3d normal = mesh.vector(i, {"nx", "ny", "nz"});
       EXPECT_GT(normal.dot(direction.cwiseQuotient(axes).normalized()), 0.98);
       const Eigen::Vector3d color = mesh.vector(i, {"red", "green", "blue"});
-      // Colours are linear in the direction; between the points that is as good as the surface.
-      const Eigen::Vector3d expected = 127.5 * (direction.normalized() + Eigen::Vector3d::Ones());
-      EXPECT_LT((color - expected).cwiseAbs().maxCoeff(), 6.0);
+      EXPECT_LT((color - colorAt(direction)).cwiseAbs().maxCoeff(), 6.0);
     }
   }
 }
@@ -317,6 +320,8 @@ TEST_F(RemeshTool, EvenCloudHasThatManyPointsOnTheSurfaceWithNormals) {
     EXPECT_NEAR(direction.norm(), 1.0, 0.01);
     EXPECT_GT(cloud.vector(i, {"nx", "ny", "nz"}).dot(direction.cwiseQuotient(axes).normalized()),
               0.98);
+    const Eigen::Vector3d color = cloud.vector(i, {"red", "green", "blue"});
+    EXPECT_LT((color - colorAt(direction)).cwiseAbs().maxCoeff(), 6.0);
     for (std::size_t k = 0; k < i; ++k) {
       nearest = std::min(nearest, (cloud.point(i) - cloud.point(k)).norm());
     }
