@@ -73,12 +73,17 @@ struct SphereMap {
 /// Makes a map of low distortion from a mesh to the sphere that is one to one: no triangle is
 /// flipped.
 ///
-/// \param points    3 x v, finite, v >= 4 [unit of the input].
+/// \param points    3 x v, finite, 4 <= v <= 2^28 [unit of the input].
 /// \param triangles 3 x (2v - 4), closed, manifold, consistently oriented outward, of genus 0, in
 ///                  one piece, every vertex used.
 /// \param start     3 x v, unit vectors: the embedding; it gives the map its orientation in space,
 ///                  and may have flipped triangles.
 /// \throw InvalidInput for a mesh or start that is not as said; ComputeError; Cancelled.
+///
+/// Coarse to fine over a hierarchy of the mesh, after E. Praun and H. Hoppe (2003): vertices are
+/// taken out one by one until a tetrahedron is left, and put back into the kernels of their rings
+/// on the sphere, where they are moved to where the distortion is least. Triangles without an area,
+/// or of less than a millionth of the mean, are given that much on the sphere.
 ///
 /// The same, bit by bit, for any number of threads. Cost: O(v log v).
 SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,

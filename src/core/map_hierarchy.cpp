@@ -104,8 +104,8 @@ public:
     const Index last = star_.back();
     join(opposite(first), opposite(after(first)));
     join(opposite(last), opposite(before(last)));
-    vertex_[static_cast<std::size_t>(first / 3 * 3)] = -1;
-    vertex_[static_cast<std::size_t>(last / 3 * 3)] = -1;
+    remove(first / 3);
+    remove(last / 3);
     const std::size_t k = star_.size();
     valence_[static_cast<std::size_t>(v)] += static_cast<Index>(k) - 4;
     --valence_[static_cast<std::size_t>(ring_[1])];
@@ -142,6 +142,8 @@ private:
     opposite_[static_cast<std::size_t>(b)] = a;
   }
 
+  void remove(Index triangle) { vertex_[3 * static_cast<std::size_t>(triangle)] = -1; }
+
   /// Finds the opposite corners over the edges of v.
   ///
   /// \param behind to work in: the vertex behind v, and the corner at v, of each triangle.
@@ -149,7 +151,8 @@ private:
                      std::vector<std::pair<Index, Index>>& behind) {
     behind.clear();
     corners.forEachCorner(v, [&](Index t, Index k) {
-      behind.emplace_back(vertex_[static_cast<std::size_t>(3 * t + nextCorner(k))], 3 * t + k);
+      const Index corner = 3 * t + k;
+      behind.emplace_back(vertex_[static_cast<std::size_t>(after(corner))], corner);
     });
     std::sort(behind.begin(), behind.end());
     for (const auto& [neighbor, corner] : behind) {

@@ -52,6 +52,10 @@ void checkMesh(const Positions& points, const Triangles& triangles, const Positi
   if (points.cols() < 4)
     throw InvalidInput(caller + std::to_string(points.cols()) +
                        " vertices make no closed mesh; give at least 4");
+  constexpr Eigen::Index most_vertices = Eigen::Index{1} << 28;
+  if (points.cols() > most_vertices)
+    throw InvalidInput(caller + std::to_string(points.cols()) +
+                       " vertices are more than 2^28; simplify the mesh");
   if (start.cols() != points.cols())
     throw InvalidInput(caller + "there are " + std::to_string(points.cols()) +
                        " vertices, but the start has " + std::to_string(start.cols()) +
@@ -197,7 +201,7 @@ Eigen::Matrix3d rotationTo(const Positions& start, const Positions& sphere, cons
   if (!sum.allFinite())
     return Eigen::Matrix3d::Identity();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vector3d singular = svd.singularValues();
+  const Vector3d& singular = svd.singularValues();
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   constexpr double distinct = 1e-9;
   if (!(singular[1] + sign * singular[2] > distinct * singular[0]))

@@ -455,10 +455,10 @@ TEST(SphereMap, IsTheSameForAnyNumberOfThreads) {
   const Mesh sphere = octasphere(6);
   const Mesh mesh = deformed(sphere, Vector3d(1.0, 2.0, 4.0).asDiagonal());
   SphereMapOptions options;
-  options.sweeps = 3;
+  options.sweeps = 2;
   options.threads = 1;
   const SphereMap expected = computeSphereMap(mesh.points, mesh.triangles, sphere.points, options);
-  for (const int threads : {0, 2, 3}) {
+  for (const int threads : {2, 3}) {
     options.threads = threads;
     const SphereMap map = computeSphereMap(mesh.points, mesh.triangles, sphere.points, options);
     EXPECT_TRUE(map.sphere == expected.sphere);
