@@ -46,6 +46,23 @@ struct ResampledMesh {
 /// the sphere that is one to one.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
+/// What untangle() did.
+struct UntanglingReport {
+  std::size_t before = 0;  ///< pairs of triangles that intersected
+  std::size_t after = 0;   ///< pairs that are left
+  int rounds = 0;          ///< that were made
+  Index moved = 0;         ///< vertices that were slid
+};
+
+/// Slides vertices along the surface, until triangles do not intersect: where they are long and
+/// thin, they cut across folds of the surface. The mesh keeps its triangles, and its map to the
+/// sphere stays one to one; where nothing intersects, nothing changes.
+///
+/// \param mesh of resampleSurface(); changed in place. The best that was found is kept.
+/// 	hrow InvalidInput for sizes that do not match, or threads out of range.
+/// The same, bit by bit, for any number of threads.
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
+
 /// Points spread evenly over a surface, in space.
 struct SurfacePoints {
   Positions points;                       ///< 3 x n [unit of the input]
@@ -76,6 +93,11 @@ Positions geometryImageDirections(int side);
 
 /// \throw InvalidInput as geometryImageDirections().
 GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
+
+/// The geometry image of a mesh that has the vertices and triangles of makeGridSphere() for
+/// SphereGrid::Octahedral, such as that of resampleSurface() or untangle().
+/// \throw InvalidInput for another number of vertices.
+GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
 
 /// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Where pixels of the
 /// border that are the same place differ, their mean counts.

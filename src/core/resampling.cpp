@@ -377,6 +377,21 @@ GeometryImage makeGeometryImage(const SphereSurface& surface, int side) {
   return {side, surface.evaluate(pixelDirections(side)).positions};
 }
 
+GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
+  const auto count = static_cast<std::size_t>(mesh.points.cols());
+  const int frequency = gridFrequency(SphereGrid::Octahedral, count);
+  const int side = 2 * frequency + 1;
+  if (side > kLargestSide || gridVertices(SphereGrid::Octahedral, frequency) != count)
+    throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
+                       " vertices are not those of an octahedral grid; use makeGridSphere()");
+  const OctahedralSquare square(frequency);
+  const std::vector<Index> vertex = square.vertices();
+  GeometryImage image{side, Positions(3, square.pixelCount())};
+  for (Eigen::Index i = 0; i < square.pixelCount(); ++i)
+    image.positions.col(i) = mesh.points.col(vertex[static_cast<std::size_t>(i)]);
+  return image;
+}
+
 ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
   checkSide("meshOfGeometryImage", image.side);
   const OctahedralSquare square(image.side / 2);

@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <Eigen/Geometry>
@@ -255,6 +256,92 @@ SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
     points.col(i) = place(Vector3d(sphere.col(i)));
   return SphereSurface(points, triangulateSphere(sphere).triangles, sphere,
                        {SurfaceFit::Linear, threads});
+}
+
+/// A cigar whose map is twisted: triangles of a grid wind round it, and cut across each other.
+SphereSurface twistedCigar(int threads = 0) {
+  return surfaceOver(
+      8000,
+      [](const Vector3d& u) {
+        const double angle = 10.0 * u.z();
+        const Vector3d turned(std::cos(angle) * u.x() - std::sin(angle) * u.y(),
+                              std::sin(angle) * u.x() + std::cos(angle) * u.y(), u.z());
+        return Vector3d(turned.x(), 0.15 * turned.y(), 2.0 * turned.z());
+      },
+      threads);
+}
+
+TEST(Untangle, SlidesVerticesUntilNothingIntersectsAndKeepsAllElse) {
+  const SphereSurface surface = twistedCigar();
+  const GridSphere grid = makeGridSphere(SphereGrid::Icosahedral, 8);
+  const ResampledMesh before = resampleSurface(surface, grid);
+  const std::size_t pairs = findSelfIntersections(before.points, before.triangles).size();
+  ASSERT_GT(pairs, 0U);
+  ResampledMesh mesh = before;
+  const UntanglingReport report = untangle(surface, mesh);
+  EXPECT_EQ(report.before, pairs);
+  EXPECT_EQ(report.after, 0U);
+  EXPECT_EQ(findSelfIntersections(mesh.points, mesh.triangles).size(), report.after);
+  EXPECT_EQ(mesh.triangles, before.triangles);
+  Index moved = 0;
+  for (Eigen::Index i = 0; i < mesh.points.cols(); ++i) {
+    moved += mesh.directions.col(i) != before.directions.col(i) ? 1 : 0;
+    EXPECT_NEAR(mesh.directions.col(i).norm(), 1.0, 1e-14);
+    const SurfaceSample sample = surface.evaluate(Vector3d(mesh.directions.col(i)));
+    EXPECT_EQ(sample.position, mesh.points.col(i));
+    EXPECT_EQ(sample.normal, mesh.normals.col(i));
+  }
+  EXPECT_EQ(moved, report.moved);
+  EXPECT_LT(moved, mesh.points.cols());
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const auto corner = [&](Eigen::Index k) {
+      return Vector3d(mesh.directions.col(mesh.triangles(k, t)));
+    };
+    EXPECT_GT(corner(0).cross(corner(1)).dot(corner(2)), 0.0);
+  }
+  for (const int threads : {1, 3}) {
+    ResampledMesh other = before;
+    untangle(surface, other, threads);
+    EXPECT_EQ(other.points, mesh.points) << threads;
+  }
+}
+
+TEST(Untangle, ChangesNothingWhereNothingIntersects) {
+  const SphereSurface surface = bumpySurface(20);
+  const ResampledMesh before = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 9));
+  ResampledMesh mesh = before;
+  const UntanglingReport report = untangle(surface, mesh);
+  EXPECT_EQ(report.before, 0U);
+  EXPECT_EQ(report.rounds, 0);
+  EXPECT_EQ(report.moved, 0);
+  EXPECT_EQ(mesh.points, before.points);
+  EXPECT_EQ(mesh.directions, before.directions);
+}
+
+TEST(Untangle, RefusesWhatIsNoMeshOfTheSphere) {
+  const SphereSurface surface = bumpySurface(20);
+  const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
+  ResampledMesh mesh = good;
+  EXPECT_THROW(untangle(surface, mesh, -1), InvalidInput);
+  mesh.directions.conservativeResize(3, 5);
+  EXPECT_THROW(untangle(surface, mesh), InvalidInput);
+  mesh = good;
+  mesh.triangles(0, 0) = 38;
+  EXPECT_THROW(untangle(surface, mesh), InvalidInput);
+}
+
+TEST(GeometryImage, OfAnOctahedralMeshGivesTheMeshBack) {
+  const SphereSurface surface = bumpySurface(20);
+  const ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 9));
+  const GeometryImage image = geometryImageOfMesh(mesh);
+  EXPECT_EQ(image.side, 19);
+  EXPECT_EQ(image.positions, makeGeometryImage(surface, 19).positions);
+  const ResampledMesh back = meshOfGeometryImage(image);
+  EXPECT_EQ(back.points, mesh.points);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  EXPECT_THROW(
+      geometryImageOfMesh(resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 3))),
+      InvalidInput);
 }
 
 /// The distance of each point from the nearest other, by brute force.
