@@ -73,6 +73,15 @@ constexpr int longest_side = 16385;
 constexpr std::int64_t most_even_points = std::int64_t{1} << 24;
 constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
 
+/// Triangles of a grid are as long and thin as the map makes them, and cut across folds of the
+/// surface then: angles count more than for other uses of the map.
+spherical_param::SphereMapOptions mapDefaults() {
+  spherical_param::SphereMapOptions options;
+  options.area_weight = 0.4;
+  options.sweeps = 100;
+  return options;
+}
+
 std::vector<OptionInfo> optionTable() {
   std::vector<OptionInfo> table = {
       {"grid", "NAME", "icosahedral or octahedral: meshes; even: a cloud (icosahedral)"},
@@ -85,7 +94,7 @@ std::vector<OptionInfo> optionTable() {
       {"series", "", "output the surface of that series"},
       {"degree", "L", "degree of the series, up to 512 (32)"},
   };
-  for (const auto& options : {productOptions(), outputOptions()}) {
+  for (const auto& options : {productOptions(mapDefaults()), outputOptions()}) {
     table.insert(table.end(), options.begin(), options.end());
   }
   return table;
@@ -127,6 +136,8 @@ struct Settings {
   OutputSettings report;
 
   bool makesCloud() const { return !reads_image && sampling == Sampling::Even; }
+  /// Tells whether vertices are slid along the surface, so that triangles do not intersect.
+  bool slides() const { return !reads_image && !series && sampling != Sampling::Even; }
   bool needsHarmonics() const { return series || !harmonics.empty(); }
   int threads() const { return product.map.threads; }
 };
@@ -248,7 +259,7 @@ Settings parseSettings(const CommandLine& command_line) {
         static_cast<int>(parseInteger("degree", command_line.value("degree", ""), {0, 512}));
   }
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line);
+  settings.product = parseProductOptions(command_line, mapDefaults());
   checkCombination(command_line, settings);
   if (settings.writes_image) {
     settings.sampling = Sampling::Octahedral;
@@ -326,6 +337,7 @@ struct Output {
   GeometryImage image;        ///< if one is read or written
   int frequency = 0;          ///< of the grid
   std::optional<SphericalHarmonics> harmonics;
+  std::optional<spherical_param::UntanglingReport> untangling;
   spherical_param::MeshTopology topology;
   spherical_param::MeshMeasures measures;
   std::vector<std::array<Index, 2>> self_intersections;
@@ -368,6 +380,16 @@ std::vector<Color> interpolatedColors(const MappedCloud& mapped,
   return colors;
 }
 
+GridSphere gridOf(const Settings& settings, std::size_t points) {
+  const SphereGrid kind =
+      settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral : SphereGrid::Octahedral;
+  int frequency = spherical_param::gridFrequency(kind, points);
+  if (settings.writes_image) {
+    frequency = (settings.side ? *settings.side : std::min(2 * frequency + 1, longest_side)) / 2;
+  }
+  return spherical_param::makeGridSphere(kind, frequency);
+}
+
 /// Samples the surface as the user wants it.
 void resample(const Settings& settings, const MappedCloud& mapped, const SphereSurface& surface,
               Output& output) {
@@ -379,19 +401,8 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
     output.mesh.points = std::move(points.points);
     output.mesh.normals = std::move(points.normals);
     output.colors = interpolatedColors(mapped, points.locations);
-  } else if (settings.writes_image) {
-    output.frequency = settings.side
-                           ? (*settings.side - 1) / 2
-                           : spherical_param::gridFrequency(SphereGrid::Octahedral, wanted);
-    output.image = spherical_param::makeGeometryImage(
-        surface, std::min(2 * output.frequency + 1, longest_side));
-    output.image.positions = rounded(output.image.positions);
-    output.mesh = spherical_param::meshOfGeometryImage(output.image);
   } else {
-    const SphereGrid kind = settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral
-                                                                       : SphereGrid::Octahedral;
-    const GridSphere grid =
-        spherical_param::makeGridSphere(kind, spherical_param::gridFrequency(kind, wanted));
+    const GridSphere grid = gridOf(settings, wanted);
     output.frequency = grid.frequency;
     if (settings.series) {
       output.mesh.points = spherical_param::evaluateSphericalHarmonics(
@@ -401,11 +412,7 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
     } else {
       output.mesh = spherical_param::resampleSurface(surface, grid);
     }
-    if (!mapped.colors.empty()) {
-      output.colors = interpolatedColors(mapped, surface.evaluate(grid.directions).locations);
-    }
   }
-  output.mesh.points = rounded(output.mesh.points);
 }
 
 /// Looks at the mesh as it will be in the file.
@@ -452,6 +459,19 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   resample(settings, mapped, surface, output);
   output.stages.push_back(
       {"resample", console.end(std::to_string(output.pointCount()) + " points")});
+  if (settings.slides()) {
+    console.begin("untangle");
+    output.untangling = spherical_param::untangle(surface, output.mesh, settings.threads());
+    output.stages.push_back(
+        {"untangle", console.end(std::to_string(output.untangling->moved) + " points slid")});
+  }
+  if (!output.isCloud() && !mapped.colors.empty()) {
+    output.colors = interpolatedColors(mapped, surface.evaluate(output.mesh.directions).locations);
+  }
+  output.mesh.points = rounded(output.mesh.points);
+  if (settings.writes_image) {
+    output.image = spherical_param::geometryImageOfMesh(output.mesh);
+  }
 }
 
 void makeFromImage(const Settings& settings, Output& output, Console& console) {
@@ -479,7 +499,11 @@ StagePlan stagesOf(const Settings& settings) {
       stages.emplace_back("harmonics", 5.0);
     }
   }
-  stages.insert(stages.end(), {{"resample", 5.0}, {"verify", 10.0}, {"write", 2.0}});
+  stages.emplace_back("resample", 5.0);
+  if (settings.slides()) {
+    stages.emplace_back("untangle", 10.0);
+  }
+  stages.insert(stages.end(), {{"verify", 10.0}, {"write", 2.0}});
   return stages;
 }
 
@@ -490,11 +514,12 @@ std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud&
     warnings = warningsOf(mapped.cloud);
   }
   if (!output.self_intersections.empty()) {
-    warnings.push_back("The output intersects itself at " +
-                       counted(output.self_intersections.size(), "pair") + " of triangles" +
-                       (settings.reads_image || settings.series
-                            ? "."
-                            : ": more points (-points), or -fit linear, may mend that."));
+    warnings.push_back(
+        "The output intersects itself at " + counted(output.self_intersections.size(), "pair") +
+        " of triangles" +
+        (settings.reads_image || settings.series
+             ? "."
+             : ": more points (-points), or a smaller -area-weight, may mend that."));
   }
   return warnings;
 }
@@ -555,6 +580,12 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   json["volume"] = unless(is_cloud, output.measures.volume);
   json["area"] = unless(is_cloud, output.measures.area);
   json["self_intersections"] = unless(is_cloud, output.self_intersections.size());
+  json["untangling"] = nullptr;
+  if (output.untangling) {
+    json["untangling"] = {{"self_intersections_before", output.untangling->before},
+                          {"rounds", output.untangling->rounds},
+                          {"moved", output.untangling->moved}};
+  }
   json["distance"] = nullptr;
   if (output.distance) {
     json["distance"] = {{"mean", output.distance->mean},
@@ -598,7 +629,14 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
     console.entry("oriented", yesOrNo(output.topology.oriented));
     console.entry("genus",
                   output.topology.genus ? std::to_string(*output.topology.genus) : "undefined");
-    console.entry("self-intersections", std::to_string(output.self_intersections.size()));
+    const bool were_more =
+        output.untangling && output.untangling->before > output.self_intersections.size();
+    console.entry("self-intersections",
+                  std::to_string(output.self_intersections.size()) +
+                      (were_more ? " (" + std::to_string(output.untangling->before) + " before " +
+                                       std::to_string(output.untangling->moved) +
+                                       " points were slid along the surface)"
+                                 : ""));
     console.entry("volume", formatted(output.measures.volume, 6));
     console.entry("area", formatted(output.measures.area, 6));
   }

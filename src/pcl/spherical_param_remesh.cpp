@@ -28,10 +28,11 @@ bool remesh(const spherical_param::Positions& points, const spherical_param::Tri
         options.points > 0 ? options.points : static_cast<std::size_t>(points.cols());
     const spherical_param::SphereSurface surface(points, triangles, sphere,
                                                  {options.fit, options.map.threads});
-    const spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
+    spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
         surface, spherical_param::makeGridSphere(
                      options.grid, spherical_param::gridFrequency(options.grid, wanted)));
 
+    spherical_param::untangle(surface, resampled, options.map.threads);
     pcl::PointCloud<pcl::PointNormal> cloud;
     cloud.resize(static_cast<std::size_t>(resampled.points.cols()));
     for (std::size_t i = 0; i < cloud.size(); ++i) {

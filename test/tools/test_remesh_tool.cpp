@@ -412,6 +412,8 @@ TEST_F(RemeshTool, ReportHasAllKeys) {
   EXPECT_EQ(report["grid"]["frequency"], 10);
   EXPECT_TRUE(report["grid"]["side"].is_null());
   EXPECT_TRUE(report["harmonics"].is_null());
+  EXPECT_EQ(report["untangling"]["self_intersections_before"], 0);
+  EXPECT_EQ(report["untangling"]["moved"], 0);
   // The volume of the ellipsoid, less what a mesh of 500 points lacks.
   EXPECT_NEAR(report["volume"], 4.0 / 3.0 * kPi * axes.prod(), 0.15);
   EXPECT_LE(report["distance"]["mean"], report["distance"]["rms"]);
@@ -421,9 +423,9 @@ TEST_F(RemeshTool, ReportHasAllKeys) {
   for (const json& stage : report["stages"]) {
     stages.push_back(stage["name"]);
   }
-  const std::vector<std::string> expected = {"read",          "neighbors",    "graph",  "embedding",
-                                             "triangulation", "optimization", "check",  "map",
-                                             "surface",       "resample",     "verify", "write"};
+  const std::vector<std::string> expected = {
+      "read", "neighbors", "graph",    "embedding", "triangulation", "optimization", "check",
+      "map",  "surface",   "resample", "untangle",  "verify",        "write"};
   EXPECT_EQ(stages, expected);
   EXPECT_EQ(report["options"]["points"], 1000);
   EXPECT_EQ(report["options"]["fit"], "smooth");

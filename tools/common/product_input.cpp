@@ -44,15 +44,21 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
 
 }  // namespace
 
-std::vector<OptionInfo> productOptions() {
+std::vector<OptionInfo> productOptions(const SphereMapOptions& defaults) {
   std::vector<OptionInfo> options = reconstructionOptions();
-  options.push_back({"area-weight", "X", "map: areas against angles, 0 (angles) to 1 (0.5)"});
-  options.push_back({"map-sweeps", "N", "map: sweeps of each level at most, up to 1000 (10)"});
+  options.push_back(
+      {"area-weight", "X",
+       "map: areas against angles, 0 (angles) to 1 (" + formatted(defaults.area_weight, 3) + ")"});
+  options.push_back(
+      {"map-sweeps", "N",
+       "map: sweeps of each level at most, up to 1000 (" + std::to_string(defaults.sweeps) + ")"});
   return options;
 }
 
-ProductSettings parseProductOptions(const CommandLine& command_line) {
+ProductSettings parseProductOptions(const CommandLine& command_line,
+                                    const SphereMapOptions& defaults) {
   ProductSettings settings;
+  settings.map = defaults;
   settings.reconstruction = parseReconstructionOptions(command_line);
   settings.map.threads = settings.reconstruction.options.threads;
   if (command_line.has("area-weight")) {
@@ -65,7 +71,8 @@ ProductSettings parseProductOptions(const CommandLine& command_line) {
   }
   if (settings.map.sweeps == 0 && command_line.has("area-weight")) {
     throw UsageError("option -area-weight does nothing with -map-sweeps 0",
-                     "leave -area-weight out, or give -map-sweeps 10");
+                     "leave -area-weight out, or give -map-sweeps " +
+                         std::to_string(defaults.sweeps));
   }
   return settings;
 }

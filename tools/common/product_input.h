@@ -20,10 +20,13 @@ struct ProductSettings {
 };
 
 /// The lines of the options of the reconstruction, then those of the map.
-std::vector<OptionInfo> productOptions();
+///
+/// \param defaults of the map, which each tool may have of its own.
+std::vector<OptionInfo> productOptions(const SphereMapOptions& defaults = {});
 
 /// Refuses options that would change nothing as well. \throw UsageError
-ProductSettings parseProductOptions(const CommandLine& command_line);
+ProductSettings parseProductOptions(const CommandLine& command_line,
+                                    const SphereMapOptions& defaults = {});
 
 /// Prints what is in force.
 void printProductOptions(const ProductSettings& settings, Console& console);

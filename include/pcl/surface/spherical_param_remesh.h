@@ -22,13 +22,23 @@ struct SphericalParamRemeshOptions {
   std::size_t points = 0;
   /** \brief How the surface is continued between the points of the cloud. */
   spherical_param::SurfaceFit fit = spherical_param::SurfaceFit::Smooth;
-  /** \brief Parameters of the map to the sphere. Where no threads are given, those of the
-   * reconstruction are used, in all steps. */
-  spherical_param::SphereMapOptions map = {};
+  /** \brief Parameters of the map to the sphere, which by default keeps angles more than for other
+   * uses: long thin triangles cut across folds of the surface. Where no threads are given, those of
+   * the reconstruction are used, in all steps. */
+  spherical_param::SphereMapOptions map = makeMapOptions();
+
+private:
+  static spherical_param::SphereMapOptions makeMapOptions() {
+    spherical_param::SphereMapOptions options;
+    options.area_weight = 0.4;
+    options.sweeps = 100;
+    return options;
+  }
 };
 
 /** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere: closed,
- * manifold, oriented outward, of genus 0, with as many vertices as one likes.
+ * manifold, oriented outward, of genus 0, with as many vertices as one likes. Vertices are slid
+ * along the surface where triangles would intersect (see spherical_param::untangle()).
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
  * results stay there
