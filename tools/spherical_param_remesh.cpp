@@ -185,7 +185,7 @@ void checkCombination(const CommandLine& command_line, const Settings& settings)
 }
 
 std::string nonempty(const CommandLine& command_line, const std::string& option) {
-  const std::string value = command_line.value(option, "");
+  std::string value = command_line.value(option, "");
   if (command_line.has(option) && value.empty()) {
     throw UsageError("option -" + option + ": the name of the file is empty", "give a file");
   }
