@@ -1,128 +1,25 @@
 #include "common/mesh_writer.h"
 
 #include "common/errors.h"
+#include "common/record_writer.h"
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <string_view>
 
 namespace spherical_param::tools {
 namespace {
 
-enum class ByteOrder { Little, Big };
-
-/// Puts numbers and text together and hands them to the file in blocks.
-class Writer {
-public:
-  /// \param records lines, or vertices and triangles, that there will be.
-  Writer(OutputFile& file, std::size_t records, const FileProgress& progress)
-      : file_(file), records_(records), progress_(progress) {
-    block_.reserve(block_size + longest_part);
-  }
-
-  void text(std::string_view part) {
-    block_ += part;
-    sendIfFull();
-  }
-  /// 9 digits tell every two floats apart.
-  void number(float value) {
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                   std::chars_format::general, 9);
-    block_.append(digits.data(), end.ptr);
-  }
-  void number(std::int64_t value) {
-    std::array<char, 32> digits;
-    block_.append(digits.data(),
-                  std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-  }
-  void numbers(const Point& values) {
-    number(values[0]);
-    block_ += ' ';
-    number(values[1]);
-    block_ += ' ';
-    number(values[2]);
-  }
-
-  void byte(std::uint8_t value) { block_ += static_cast<char>(value); }
-  void word(std::uint32_t value, ByteOrder order) {
-    std::array<char, 4> bytes{};
-    for (unsigned i = 0; i < 4; ++i) {
-      const unsigned shift = order == ByteOrder::Little ? 8 * i : 24 - 8 * i;
-      bytes[i] = static_cast<char>(static_cast<std::uint8_t>(value >> shift));
-    }
-    block_.append(bytes.data(), bytes.size());
-  }
-  void word(float value, ByteOrder order) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    word(bits, order);
-  }
-  void words(const Point& values, ByteOrder order) {
-    for (const float value : values) {
-      word(value, order);
-    }
-  }
-  void words(const Triangle& triangle, ByteOrder order) {
-    for (const std::int32_t corner : triangle) {
-      word(static_cast<std::uint32_t>(corner), order);
-    }
-  }
-
-  void endLine() {
-    block_ += '\n';
-    endRecord();
-  }
-  void line(std::string_view whole) {
-    text(whole);
-    endLine();
-  }
-  /// Ends what counts as a record: a line, or the bytes of a vertex or triangle.
-  void endRecord() {
-    ++written_;
-    sendIfFull();
-  }
-
-  /// Hands over what is left.
-  void finish() {
-    file_.write(block_);
-    block_.clear();
-  }
-
-private:
-  static constexpr std::size_t block_size = std::size_t{1} << 20;
-  /// Nothing longer is put together before the block is looked at again.
-  static constexpr std::size_t longest_part = 4096;
-
-  void sendIfFull() {
-    if (block_.size() < block_size) {
-      return;
-    }
-    finish();
-    if (progress_) {
-      progress_(std::min(1.0, static_cast<double>(written_) / static_cast<double>(records_)));
-    }
-  }
-
-  OutputFile& file_;
-  std::size_t records_;
-  std::size_t written_ = 0;
-  const FileProgress& progress_;
-  std::string block_;
-};
-
 std::string count(std::size_t number) {
   return std::to_string(number);
 }
 
-void writeCorners(Writer& writer, const Triangle& triangle) {
+void writeCorners(RecordWriter& writer, const Triangle& triangle) {
   for (const std::int32_t corner : triangle) {
     writer.text(" ");
     writer.number(std::int64_t{corner});
@@ -133,7 +30,7 @@ std::size_t channelCount(const MeshView& mesh) {
   return mesh.hasAlpha() ? 4 : 3;
 }
 
-void writePly(Writer& writer, const MeshView& mesh, Encoding encoding) {
+void writePly(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   writer.line("ply");
   writer.line(encoding == Encoding::Binary ? "format binary_little_endian 1.0"
                                            : "format ascii 1.0");
@@ -197,7 +94,7 @@ void writePly(Writer& writer, const MeshView& mesh, Encoding encoding) {
   }
 }
 
-void writeObj(Writer& writer, const MeshView& mesh) {
+void writeObj(RecordWriter& writer, const MeshView& mesh) {
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     writer.text("v ");
     writer.numbers(mesh.point(i));
@@ -246,7 +143,7 @@ Point facetNormal(const Point& a, const Point& b, const Point& c) {
           static_cast<float>(cross[2] / length)};
 }
 
-void writeStl(Writer& writer, const MeshView& mesh, Encoding encoding) {
+void writeStl(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   if (encoding == Encoding::Binary) {
     // 80 bytes of free text, which must not begin with "solid", as files in text do.
     std::string header = "binary STL";
@@ -291,7 +188,7 @@ void writeStl(Writer& writer, const MeshView& mesh, Encoding encoding) {
 }
 
 /// Legacy format, version 3.0: every VTK can read that, and pcl_viewer with it.
-void writeVtk(Writer& writer, const MeshView& mesh, Encoding encoding) {
+void writeVtk(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   const bool binary = encoding == Encoding::Binary;
   const auto write_point = [&](const Point& point) {
     if (binary) {
@@ -370,7 +267,7 @@ void writeVtk(Writer& writer, const MeshView& mesh, Encoding encoding) {
 }
 
 /// Colours are 0 ... 255 with alpha, as most programs read them.
-void writeOff(Writer& writer, const MeshView& mesh) {
+void writeOff(RecordWriter& writer, const MeshView& mesh) {
   writer.text(!mesh.hasColors() ? "" : "C");
   writer.text(!mesh.hasNormals() ? "" : "N");
   writer.line("OFF");
@@ -397,7 +294,7 @@ void writeOff(Writer& writer, const MeshView& mesh) {
   }
 }
 
-void writeXyz(Writer& writer, const MeshView& mesh) {
+void writeXyz(RecordWriter& writer, const MeshView& mesh) {
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     writer.numbers(mesh.point(i));
     if (mesh.hasColors()) {
@@ -415,7 +312,7 @@ void writeXyz(Writer& writer, const MeshView& mesh) {
 }
 
 /// The header is PCL's. It writes the body to named files only, hence the packing in here.
-void writePcd(Writer& writer, const MeshView& mesh) {
+void writePcd(RecordWriter& writer, const MeshView& mesh) {
   pcl::PCLPointCloud2 cloud;
   cloud.width = static_cast<std::uint32_t>(mesh.vertexCount());
   cloud.height = 1;
@@ -471,8 +368,8 @@ void writeMesh(OutputFile& file, const MeshView& mesh, FileFormat format, Encodi
                                     ? 1 + (mesh.hasNormals() ? 1 : 0)
                                     : 1;
   const std::size_t of_triangle = stl && encoding == Encoding::Ascii ? 7 : 1;
-  Writer writer(file, of_vertex * mesh.vertexCount() + of_triangle * mesh.triangleCount(),
-                progress);
+  RecordWriter writer(file, of_vertex * mesh.vertexCount() + of_triangle * mesh.triangleCount(),
+                      progress);
   switch (format) {
   case FileFormat::Ply:
     writePly(writer, mesh, encoding);

@@ -1,0 +1,419 @@
+// pcl_spherical_param_texture: meshes a point cloud and gives the mesh a texture with its colours.
+
+#include "common/cloud_reconstruction.h"
+#include "common/command_line.h"
+#include "common/console.h"
+#include "common/errors.h"
+#include "common/file_formats.h"
+#include "common/json_report.h"
+#include "common/library_failure.h"
+#include "common/names.h"
+#include "common/numbers.h"
+#include "common/output_file.h"
+#include "common/output_options.h"
+#include "common/product_input.h"
+#include "common/run_tool.h"
+#include "common/text.h"
+#include "common/textured_mesh.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/texture_atlas.h"
+#include "spherical_param/version.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace spherical_param::tools;
+using spherical_param::BakeOptions;
+using spherical_param::SphereChart;
+using spherical_param::TextureAtlas;
+using spherical_param::TextureAtlasOptions;
+using spherical_param::TextureImage;
+
+const std::string tool_name = "pcl_spherical_param_texture";
+const std::string extensions = ".glb .obj .ply";
+
+const Names<SphereChart> chart_names = {
+    {"equirectangular", SphereChart::Equirectangular},
+    {"octahedral", SphereChart::Octahedral},
+    {"cube", SphereChart::CubeMap},
+};
+
+enum class TextureFormat { Glb, Obj, Ply };
+
+const Names<TextureFormat> format_names = {
+    {".glb", TextureFormat::Glb},
+    {".obj", TextureFormat::Obj},
+    {".ply", TextureFormat::Ply},
+};
+
+/// Squares along a quarter of a great circle where a cloud has no colours.
+constexpr int usual_cells = 8;
+
+std::vector<OptionInfo> optionTable() {
+  std::vector<OptionInfo> table = {
+      {"chart", "NAME", "equirectangular, octahedral or cube (octahedral)"},
+      {"size", "N", "height of the image, 16 to 16384 pixels (1024)"},
+      {"gutter", "N", "pixels around the triangles that are painted too, up to 256 (8)"},
+      {"checker", "N", "a checkerboard of N squares to a quarter circle instead of colours"},
+      {"image", "FILE", "image beside .obj and .ply, .png (as the output)"},
+  };
+  for (const auto& options : {productOptions(), outputOptions()}) {
+    table.insert(table.end(), options.begin(), options.end());
+  }
+  return table;
+}
+
+const std::vector<OptionInfo> option_table = optionTable();
+
+std::string helpText() {
+  return "Usage: " + tool_name +
+         " input output [options]\n\n"
+         "Meshes the points of an object without holes through it, and paints their colours into "
+         "a texture.\n"
+         "  input:  " +
+         extensionsFor(FileUse::ReadCloud) +
+         "\n  output: .glb, with the image in it; .obj, with .mtl and .png beside it; .ply, with "
+         ".png\n"
+         "\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
+         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+}
+
+/// What the user asked for.
+struct Settings {
+  std::string input;
+  std::string output;
+  TextureFormat format = TextureFormat::Glb;
+  std::string material;  ///< empty: there is none
+  std::string image;     ///< empty: it is in the output
+  TextureAtlasOptions atlas;
+  BakeOptions bake;
+  std::optional<int> cells;  ///< none: the colours of the points, if there are any
+  ProductSettings product;
+  OutputSettings report;
+};
+
+/// The name by which a file is found from the place of another.
+std::string seenFrom(const std::string& place, const std::string& file) {
+  namespace fs = std::filesystem;
+  const fs::path directory = fs::absolute(place).parent_path();
+  return fs::absolute(file)
+      .lexically_normal()
+      .lexically_relative(directory.lexically_normal())
+      .generic_string();
+}
+
+/// Names that would be read as something else where they are mentioned.
+void checkName(const Settings& settings, const std::string& name) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  const bool is_obj = settings.format == TextureFormat::Obj;
+  if (std::any_of(name.begin(), name.end(), [&](char c) {
+        return is_control(static_cast<unsigned char>(c)) || (is_obj && c == ' ');
+      })) {
+    throw UsageError(inQuotes(name) + " cannot be mentioned in " + inQuotes(settings.output) +
+                         ": it has a " + (is_obj ? "blank" : "control character") + " in it",
+                     is_obj ? "give names without blanks, or write .glb"
+                            : "give another name, or write .glb");
+  }
+}
+
+void parseFiles(const CommandLine& command_line, Settings& settings) {
+  const std::vector<std::string>& files = command_line.others();
+  if (files.size() != 2) {
+    throw UsageError(files.empty()       ? "there is no input file"
+                     : files.size() == 1 ? "there is no output file"
+                                         : "there is one file too many: " + inQuotes(files[2]),
+                     "run '" + tool_name + " input output [options]', -h shows the options");
+  }
+  settings.input = files[0];
+  settings.output = files[1];
+  requireFormat(settings.input, FileUse::ReadCloud);
+  const std::filesystem::path output = settings.output;
+  const std::string extension = lowerCase(output.extension().string());
+  const auto format =
+      std::find_if(format_names.begin(), format_names.end(),
+                   [&extension](const auto& entry) { return entry.first == extension; });
+  if (format == format_names.end()) {
+    throw UsageError(inQuotes(settings.output) + " has an extension that no texture is written for",
+                     "use one of " + extensions);
+  }
+  settings.format = format->second;
+
+  if (settings.format == TextureFormat::Glb) {
+    if (command_line.has("image")) {
+      throw UsageError("option -image does nothing with .glb, which has the image in it",
+                       "leave -image out, or write .obj or .ply");
+    }
+    return;
+  }
+  const auto beside = [&output](const char* other) {
+    return std::filesystem::path(output).replace_extension(other).string();
+  };
+  settings.image = command_line.value("image", beside(".png"));
+  if (lowerCase(std::filesystem::path(settings.image).extension().string()) != ".png") {
+    throw UsageError("option -image: " + inQuotes(settings.image) + " does not end in .png",
+                     "give a name that does");
+  }
+  checkName(settings, seenFrom(settings.output, settings.image));
+  if (settings.format == TextureFormat::Obj) {
+    settings.material = beside(".mtl");
+    checkName(settings, seenFrom(settings.output, settings.material));
+  }
+}
+
+Settings parseSettings(const CommandLine& command_line) {
+  Settings settings;
+  parseFiles(command_line, settings);
+  const auto integer = [&command_line](const char* option, int fallback,
+                                       const IntegerRange& range) {
+    return command_line.has(option)
+               ? static_cast<int>(parseInteger(option, command_line.value(option, ""), range))
+               : fallback;
+  };
+  if (command_line.has("chart")) {
+    settings.atlas.chart = parseName("chart", command_line.value("chart", ""), chart_names);
+  }
+  settings.bake.height = integer("size", settings.bake.height, {16, 16384});
+  settings.bake.gutter = integer("gutter", settings.bake.gutter, {0, 256});
+  if (command_line.has("checker")) {
+    settings.cells = integer("checker", usual_cells, {1, 4096});
+  }
+  settings.report = parseOutputOptions(command_line);
+  settings.product = parseProductOptions(command_line);
+  if (command_line.has("ascii") && settings.format != TextureFormat::Ply) {
+    throw UsageError("option -ascii does nothing with " + nameOf(settings.format, format_names),
+                     "leave -ascii out, or write .ply");
+  }
+  // The faces of a cube keep room for the gutter, unless they were hardly to be seen then.
+  constexpr double largest_margin = 0.2;
+  const double face = settings.bake.height / 2.0;
+  settings.atlas.margin = std::min(settings.bake.gutter / face, largest_margin);
+  settings.bake.threads = settings.product.map.threads;
+  return settings;
+}
+
+/// The files that will be written, the standard output not among them.
+std::vector<std::string> outputsOf(const Settings& settings) {
+  std::vector<std::string> outputs = {settings.output};
+  for (const std::string& file : {settings.material, settings.image}) {
+    if (!file.empty()) {
+      outputs.push_back(file);
+    }
+  }
+  addReport(settings.report, outputs);
+  return outputs;
+}
+
+void printParameters(const Settings& settings, Console& console) {
+  console.heading(tool_name + " " + SPHERICAL_PARAM_VERSION);
+  console.entry("input", oneLine(settings.input));
+  console.entry("output", oneLine(settings.output));
+  if (!settings.image.empty()) {
+    console.entry("image", oneLine(settings.image));
+  }
+  if (!settings.report.json.empty()) {
+    console.entry("json", oneLine(settings.report.json));
+  }
+  console.entry("chart", nameOf(settings.atlas.chart, chart_names));
+  console.entry("size", std::to_string(settings.bake.height));
+  console.entry("gutter", std::to_string(settings.bake.gutter));
+  if (settings.cells) {
+    console.entry("checker", std::to_string(*settings.cells));
+  }
+  printProductOptions(settings.product, console);
+}
+
+Json optionsToJson(const Settings& settings) {
+  Json json;
+  json["chart"] = nameOf(settings.atlas.chart, chart_names);
+  json["size"] = settings.bake.height;
+  json["gutter"] = settings.bake.gutter;
+  json["checker"] = settings.cells ? Json(*settings.cells) : Json(nullptr);
+  json["image"] = settings.image.empty() ? Json(nullptr) : Json(settings.image);
+  const Json product = productOptionsToJson(settings.product);
+  for (const auto& [name, value] : product.items()) {
+    json[name] = value;
+  }
+  addToJson(settings.report, json);
+  return json;
+}
+
+/// What is written, with how it came about.
+struct Output {
+  TextureAtlas atlas;
+  TextureImage image;
+  bool is_checkerboard = false;
+  std::vector<spherical_param::StageTime> stages;
+
+  /// Share of the pixels that are in a triangle (1) or in the gutter (2).
+  double share(std::uint8_t kind) const {
+    return static_cast<double>(std::count(image.covered.begin(), image.covered.end(), kind)) /
+           static_cast<double>(image.covered.size());
+  }
+};
+
+void make(const Settings& settings, MappedCloud& mapped, Output& output, Console& console) {
+  mapCloud(settings.input, settings.product, console, mapped);
+  output.stages = mapped.cloud.stages;
+  console.begin("atlas");
+  output.atlas =
+      spherical_param::makeTextureAtlas(mapped.triangles(), mapped.map.sphere, settings.atlas);
+  output.stages.push_back({"atlas", console.end("")});
+
+  console.begin("image");
+  output.is_checkerboard = settings.cells || mapped.colors.empty();
+  if (output.is_checkerboard) {
+    output.image = spherical_param::bakeCheckerboard(
+        output.atlas, mapped.map.sphere, settings.cells.value_or(usual_cells), settings.bake);
+  } else {
+    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.points.cols());
+    for (Eigen::Index v = 0; v < colors.cols(); ++v) {
+      const Color& color = mapped.colors[static_cast<std::size_t>(v)];
+      colors.col(v) << color[0], color[1], color[2];
+    }
+    output.image = spherical_param::bakeColors(output.atlas, colors, settings.bake);
+  }
+  output.stages.push_back({"image", console.end(std::to_string(output.image.width) + " x " +
+                                                std::to_string(output.image.height) + " pixels")});
+}
+
+StagePlan stagesOf(const Settings& settings) {
+  StagePlan stages = productStages(settings.product);
+  stages.insert(stages.end(), {{"atlas", 10.0}, {"image", 5.0}, {"write", 10.0}});
+  return stages;
+}
+
+std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud& mapped) {
+  std::vector<std::string> warnings = warningsOf(mapped.cloud);
+  if (mapped.colors.empty() && !settings.cells) {
+    warnings.push_back("The cloud has no colours: the texture is a checkerboard.");
+  }
+  return warnings;
+}
+
+Json report(const Settings& settings, const MappedCloud& mapped, const Output& output) {
+  Json json;
+  json["version"] = SPHERICAL_PARAM_VERSION;
+  json["input"] = settings.input;
+  json["output"] = settings.output;
+  json["options"] = optionsToJson(settings);
+  addMapToJson(mapped, json);
+  json["chart"] = nameOf(settings.atlas.chart, chart_names);
+  json["texture"] = output.is_checkerboard ? "checkerboard" : "colors";
+  json["image"] = {{"width", output.image.width},
+                   {"height", output.image.height},
+                   {"covered_share", output.share(1)},
+                   {"gutter_share", output.share(2)}};
+  json["cut_vertices"] =
+      output.atlas.vertices.size() - static_cast<std::size_t>(mapped.points.cols());
+  json["texture_coordinates"] = output.atlas.coordinates.cols();
+  json["triangles"] = output.atlas.triangles.cols();
+  json["stages"] = toJson(output.stages);
+  json["peak_memory_bytes"] = peakMemoryToJson();
+  json["warnings"] = warningsOf(settings, mapped);
+  return json;
+}
+
+void printVerdict(const Settings& settings, const MappedCloud& mapped, const Output& output,
+                  Console& console) {
+  printMap(mapped, console);
+  console.entry("texture", std::string(output.is_checkerboard ? "checkerboard" : "colours") + ", " +
+                               std::to_string(output.image.width) + " x " +
+                               std::to_string(output.image.height) + " pixels, " +
+                               formatted(100.0 * output.share(1), 4) + " % in triangles");
+  console.entry("cut vertices", std::to_string(output.atlas.vertices.size() -
+                                               static_cast<std::size_t>(mapped.points.cols())));
+  console.entry("coordinates", std::to_string(output.atlas.coordinates.cols()));
+  console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
+  for (const std::string& warning : warningsOf(settings, mapped)) {
+    console.entry("warning", oneLine(warning));
+  }
+}
+
+/// Stores all files but the report, none of them under its name yet.
+std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const MappedCloud& mapped,
+                                               Output& output, Console& console) {
+  console.begin("write");
+  const TexturedMesh mesh = makeTexturedMesh(output.atlas, mapped.points, mapped.triangles());
+  const std::string png = encodePng(output.image);
+  console.update(0.5, "");
+  std::vector<std::unique_ptr<OutputFile>> files;
+  const auto open = [&files](const std::string& path) -> OutputFile& {
+    files.push_back(std::make_unique<OutputFile>(path));
+    return *files.back();
+  };
+  // What another mentions gets its name before that does.
+  if (!settings.image.empty()) {
+    open(settings.image).write(png);
+  }
+  switch (settings.format) {
+  case TextureFormat::Glb:
+    writeGlb(open(settings.output), mesh, png);
+    break;
+  case TextureFormat::Obj:
+    writeMaterial(open(settings.material), seenFrom(settings.material, settings.image));
+    writeTexturedObj(open(settings.output), mesh, seenFrom(settings.output, settings.material));
+    break;
+  case TextureFormat::Ply:
+    writeTexturedPly(open(settings.output), mesh, seenFrom(settings.output, settings.image),
+                     settings.report.encoding);
+    break;
+  }
+  for (const auto& file : files) {
+    file->finish();
+  }
+  output.stages.push_back({"write", console.end("")});
+  return files;
+}
+
+void run(const std::vector<std::string>& words) {
+  const CommandLine command_line(words, option_table);
+  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+    return;
+  }
+  const Settings settings = parseSettings(command_line);
+  checkOutputs({settings.input}, outputsOf(settings));
+
+  Console console(settings.report.printsText());
+  printParameters(settings, console);
+  console.plan(stagesOf(settings));
+  MappedCloud mapped;
+  Output output;
+  const auto fail = [&settings](const std::exception& error) {
+    return libraryFailure("cannot texture " + inQuotes(settings.input), error,
+                          "this should not happen: please report it");
+  };
+  try {
+    make(settings, mapped, output, console);
+  } catch (const spherical_param::InvalidInput& error) {
+    throw fail(error);
+  } catch (const spherical_param::ComputeError& error) {
+    throw fail(error);
+  }
+  std::vector<std::unique_ptr<OutputFile>> files = store(settings, mapped, output, console);
+
+  // Nothing gets its name before everything is stored, the report included.
+  if (!settings.report.json.empty()) {
+    storeReport(settings.report, report(settings, mapped, output), files);
+  }
+  printVerdict(settings, mapped, output, console);
+  console.flush();
+  for (const auto& file : files) {
+    file->commit();
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runTool(tool_name, argc, argv, run);
+}
