@@ -226,7 +226,7 @@ Color checkerColor(const Eigen::Vector3d& direction, int cells) {
     const double place = (angle + half_side) / (2.0 * half_side) * cells;
     squares += std::clamp(static_cast<int>(std::floor(place)), 0, cells - 1);
   }
-  // Squares of one side meet those of the next without a break if their number is even.
+  // Three squares meet at a corner of the cube: along some of its edges, equal ones have to.
   const bool is_light = squares % 2 == 0;
   Color color{};
   for (Eigen::Index d = 0; d < 3; ++d) {

@@ -136,7 +136,7 @@ std::vector<Mesh> meshes() {
   all.push_back(divided(tetrahedron(Eigen::Matrix3d::Identity())));
   all.push_back(divided(divided(divided(tetrahedron(someRotation())))));
   all.push_back(delaunay("cube", (cubeGrid(7).array() - 0.5).matrix().colwise().normalized()));
-  for (const Index n : {4, 5, 7, 12, 50, 3000})
+  for (const Index n : {4, 5, 7, 12, 50, 800})
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
       const Positions points = randomSphere(n, seed);
       if (n < 50) {
@@ -364,11 +364,11 @@ TEST_P(EachChart, EveryPixelInATriangleHasItsColor) {
     const TextureAtlas atlas = makeTextureAtlas(mesh.triangles, mesh.sphere, options());
     const Colors colors = 127.5 * (mesh.sphere.array() + 1.0).matrix();
     const Eigen::MatrixXd of_vertices = atCutVertices(atlas, colors);
-    const TextureImage image = bakeColors(atlas, colors, {48, 0, 1});
-    ASSERT_EQ(image.height, 48);
-    ASSERT_EQ(image.width, GetParam() == SphereChart::Equirectangular ? 96
-                           : GetParam() == SphereChart::Octahedral    ? 48
-                                                                      : 72);
+    const TextureImage image = bakeColors(atlas, colors, {32, 0, 1});
+    ASSERT_EQ(image.height, 32);
+    ASSERT_EQ(image.width, GetParam() == SphereChart::Equirectangular ? 64
+                           : GetParam() == SphereChart::Octahedral    ? 32
+                                                                      : 48);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x) {
         const auto i = static_cast<std::size_t>(y * image.width + x);
