@@ -17,14 +17,14 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Rotations that are tried: nearest ones are some 10 degrees apart.
-constexpr std::size_t kRotations = 16384;
+/// Rotations that are tried: nearest ones are some 12 degrees apart.
+constexpr std::size_t kRotations = 8192;
 /// Samples of each surface that they are compared at.
-constexpr std::size_t kCoarseSamples = 256;
+constexpr std::size_t kCoarseSamples = 160;
 /// Those of least error are improved, if they are not near a better one [rad].
-constexpr std::size_t kCandidates = 16;
+constexpr std::size_t kCandidates = 12;
 constexpr double kApart = 0.25;
-constexpr std::size_t kMediumSamples = 768;
+constexpr std::size_t kMediumSamples = 512;
 /// Of these the best are improved once more.
 constexpr std::size_t kFinalists = 3;
 constexpr std::size_t kFineSamples = 4096;
@@ -72,7 +72,7 @@ public:
       corners.col(k) = surface_.sphere().col(v);
       points.col(k) = normalized(surface_.points().col(v));
     }
-    const Eigen::Vector3d position = points * location.weights;
+    Eigen::Vector3d position = points * location.weights;
     if (derivative != nullptr) {
       // The direction is corners * beta, the position points * beta / sum(beta).
       const Eigen::Matrix3d inverse = corners.inverse();
@@ -143,8 +143,10 @@ public:
       : positions_(static_cast<std::size_t>(kSide * kSide)) {
     forEachItem(positions_.size(), threadCount(threads, positions_.size(), kParallelThreshold),
                 [&](std::size_t, std::size_t i) {
-                  const double s = static_cast<double>(i % kSide) / kTableCells - 1.0;
-                  const double t = static_cast<double>(i / kSide) / kTableCells - 1.0;
+                  const std::size_t row = i / kSide;
+                  const std::size_t column = i % kSide;
+                  const double s = static_cast<double>(column) / kTableCells - 1.0;
+                  const double t = static_cast<double>(row) / kTableCells - 1.0;
                   Eigen::Vector3d direction(s, t, 1.0 - std::abs(s) - std::abs(t));
                   if (direction.z() < 0.0) {
                     direction.x() = std::copysign(1.0 - std::abs(t), s);

@@ -36,7 +36,9 @@ constexpr double kShortestStep = 1e-3;
 /// A field's support, in distances [chord]: of landmarks, and ways that they go.
 constexpr double kSupportOfDistance = 3.0;
 constexpr double kSupportOfWay = 4.0;
-constexpr int kUntangleRounds = 30;
+/// Rounds over flipped triangles after each step, and at the end.
+constexpr int kStepRounds = 4;
+constexpr int kEndRounds = 30;
 /// Places besides the landmarks where a field is examined.
 constexpr int kSpread = 512;
 
@@ -254,9 +256,9 @@ public:
   }
 
   /// Mends what it can. \return the triangles that are still flipped
-  std::vector<Index> mend(Positions& sphere, int threads, Index& moved) const {
+  std::vector<Index> mend(Positions& sphere, int rounds, int threads, Index& moved) const {
     std::vector<Index> bad = flipped(sphere, threads);
-    for (int round = 0; round < kUntangleRounds && !bad.empty(); ++round) {
+    for (int round = 0; round < rounds && !bad.empty(); ++round) {
       std::vector<Index> vertices;
       for (const Index t : bad)
         for (int k = 0; k < 3; ++k)
@@ -479,7 +481,7 @@ SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
     std::ptrdiff_t stuck = -1;
     double t = 0.0;
     double step = 0.25;
-    std::vector<Index> bad = untangler.mend(warp.sphere, threads, warp.untangled);
+    std::vector<Index> bad = untangler.mend(warp.sphere, kEndRounds, threads, warp.untangled);
     // The last step goes nowhere but to the targets, from where rounding has left the landmarks.
     for (bool is_last = n == 0; !is_last;) {
       is_last = t >= 1.0;
@@ -514,7 +516,7 @@ SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
                   });
       for (Eigen::Index i = 0; i < n; ++i)
         places.col(i) = warp.sphere.col(landmarks[active[static_cast<std::size_t>(i)]].vertex);
-      bad = untangler.mend(warp.sphere, threads, warp.untangled);
+      bad = untangler.mend(warp.sphere, kStepRounds, threads, warp.untangled);
       ++warp.steps;
       t = goal;
       step *= 1.5;
@@ -526,7 +528,7 @@ SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
         warp.worst = std::max(warp.worst, (places.col(i) - ends.col(i)).norm());
         warp.sphere.col(landmarks[active[static_cast<std::size_t>(i)]].vertex) = ends.col(i);
       }
-      bad = untangler.mend(warp.sphere, threads, warp.untangled);
+      bad = untangler.mend(warp.sphere, kEndRounds, threads, warp.untangled);
       if (!bad.empty()) {
         // The landmark that is nearest to a triangle that cannot be mended is in the way.
         Eigen::Vector3d middle = Eigen::Vector3d::Zero();

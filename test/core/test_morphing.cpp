@@ -188,7 +188,7 @@ TEST(Morphing, FindsTheRotationOfACopy) {
   const Mapped mesh = meshOf(firstBlob(), test::spiralSphere(700));
   const SphereSurface surface = mesh.surface();
   int turn = 0;
-  for (const double angle : {0.0, 0.01, 1.0, 2.0, 3.0, test::kPi}) {
+  for (const double angle : {0.01, 2.5}) {
     const Matrix3d rotation = rotationBy(angle, Vector3d(0.3, std::cos(turn), std::sin(turn)));
     ++turn;
     Mapped other = mesh;
@@ -303,7 +303,6 @@ TEST(Morphing, EndsAreTheMeshes) {
     const Mapped second = meshOf(secondBlob(), test::randomSphere(b, 6));
     if (first.triangles.cols() != 2 * a - 4)
       continue;
-    MorphOptions options;
     const auto covers = [](const Mapped& mesh) {
       for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
         if (internal::orientation3d(Vector3d::Zero(), mesh.sphere.col(mesh.triangles(0, t)),
@@ -314,7 +313,7 @@ TEST(Morphing, EndsAreTheMeshes) {
     };
     if (!covers(first) || !covers(second))
       continue;  // few random points may leave a half sphere empty
-    const MorphResult morph = morphSurfaces(first.surface(), second.surface(), options);
+    const MorphResult morph = morphSurfaces(first.surface(), second.surface(), unaligned());
     expectSound(morph);
     expectEnds(morph, first, second);
     EXPECT_TRUE(morph.impossible.empty());
@@ -458,18 +457,17 @@ TEST(Morphing, WhatCannotBeHonouredLeavesTheOthers) {
   const Mapped first = meshOf(firstBlob(), test::spiralSphere(400));
   const Mapped second = meshOf(secondBlob(), test::spiralSphere(400));
   std::vector<PointPair> pairs;
-  for (Index i = 0; i < 24; ++i)
-    pairs.push_back({200 + i, 200 + (7 * i + 5) % 24});
+  for (Index i = 0; i < 12; ++i)
+    pairs.push_back({200 + i, 200 + (7 * i + 5) % 12});
   const MorphResult morph = morphSurfaces(first.surface(), second.surface(), unaligned(pairs));
   std::set<std::size_t> impossible;
   for (const ImpossiblePair& pair : morph.impossible)
     impossible.insert(pair.pair);
   EXPECT_LT(impossible.size(), pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (impossible.count(i) == 0)
-      EXPECT_EQ(
-          countPair(morph, first.points.col(pairs[i].first), second.points.col(pairs[i].second)),
-          1);
+    EXPECT_EQ(
+        countPair(morph, first.points.col(pairs[i].first), second.points.col(pairs[i].second)),
+        impossible.count(i) == 0 ? 1 : 0);
   expectSound(morph);
   expectEnds(morph, first, second);
 }
@@ -496,10 +494,10 @@ TEST(Morphing, ResampledOnesLieOnBothShapes) {
 }
 
 TEST(Morphing, TheSameBitsForAnyNumberOfThreads) {
-  const Mapped first = meshOf(firstBlob(), test::spiralSphere(5000));
-  const Mapped second = meshOf(secondBlob(), test::spiralSphere(4200));
+  const Mapped first = meshOf(firstBlob(), test::spiralSphere(3000));
+  const Mapped second = meshOf(secondBlob(), test::spiralSphere(2500));
   MorphOptions options;
-  options.pairs = {{100, 130}, {2000, 1700}, {4000, 3500}};
+  options.pairs = {{100, 90}, {1500, 1240}, {2900, 2400}};
   std::vector<MorphResult> results;
   for (const int threads : {1, 2, 3}) {
     options.threads = threads;
@@ -519,7 +517,7 @@ TEST(Morphing, TheSameBitsForAnyNumberOfThreads) {
 TEST(Morphing, InBetweensAreLinear) {
   const Mapped first = meshOf(firstBlob(), test::spiralSphere(50));
   const Mapped second = meshOf(secondBlob(), test::spiralSphere(60));
-  const MorphResult morph = morphSurfaces(first.surface(), second.surface());
+  const MorphResult morph = morphSurfaces(first.surface(), second.surface(), unaligned());
   EXPECT_EQ(inBetween(morph, 0.0), morph.first);
   EXPECT_EQ(inBetween(morph, 1.0), morph.second);
   EXPECT_LT((inBetween(morph, 0.25) - (0.75 * morph.first + 0.25 * morph.second)).norm(), 1e-12);
@@ -560,7 +558,7 @@ TEST(Morphing, ProgressNeverFallsAndMayCancel) {
   });
   EXPECT_TRUE(test::areShares(shares));
   EXPECT_EQ(shares.back(), 1.0);
-  for (const std::size_t calls : {std::size_t{1}, shares.size() / 2, shares.size()}) {
+  for (const std::size_t calls : {std::size_t{1}, shares.size() / 2}) {
     std::size_t count = 0;
     options.progress = [&](double) { return ++count < calls; };
     EXPECT_THROW(morphSurfaces(first.surface(), second.surface(), options), Cancelled);
