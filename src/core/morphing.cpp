@@ -62,18 +62,18 @@ PairChoice choosePairs(const SphereSurface& first, const SphereSurface& second,
   PairChoice choice;
   std::unordered_map<Index, std::size_t> of_first;
   std::unordered_map<Index, std::size_t> of_second;
-  const auto outOfRange = [](Index vertex, const SphereSurface& surface, const char* which) {
+  const auto out_of_range = [](Index vertex, const SphereSurface& surface, const char* which) {
     return "vertex " + std::to_string(vertex) + " is not in the " + which + " mesh, which has " +
            std::to_string(surface.points().cols());
   };
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const PointPair& pair = pairs[i];
     if (pair.first < 0 || pair.first >= first.points().cols()) {
-      impossible.push_back({i, outOfRange(pair.first, first, "first")});
+      impossible.push_back({i, out_of_range(pair.first, first, "first")});
       continue;
     }
     if (pair.second < 0 || pair.second >= second.points().cols()) {
-      impossible.push_back({i, outOfRange(pair.second, second, "second")});
+      impossible.push_back({i, out_of_range(pair.second, second, "second")});
       continue;
     }
     const auto a = of_first.find(pair.first);
@@ -192,19 +192,18 @@ Triangles triangulateFaces(const internal::SphereOverlay& overlay, const MorphRe
   Triangles triangles(3, 2 * overlay.directions.cols() - 4);
   Eigen::Index t = 0;
   std::vector<Index> face;
-  const auto squaredLength = [&](Index i, Index j) {
+  const auto squared_length = [&](Index i, Index j) {
     return first_scale * (morph.first.col(i) - morph.first.col(j)).squaredNorm() +
            second_scale * (morph.second.col(i) - morph.second.col(j)).squaredNorm();
   };
   for (std::size_t f = 0; f + 1 < overlay.offsets.size(); ++f) {
     face.assign(overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.offsets[f]),
                 overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.offsets[f + 1]));
-    while (face.size() > 3) {
-      const std::size_t n = face.size();
+    for (std::size_t n = face.size(); n > 3; --n) {
       std::size_t ear = 0;
       double shortest = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i < n; ++i) {
-        const double length = squaredLength(face[(i + n - 1) % n], face[(i + 1) % n]);
+        const double length = squared_length(face[(i + n - 1) % n], face[(i + 1) % n]);
         if (length < shortest) {
           shortest = length;
           ear = i;

@@ -214,7 +214,7 @@ ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index
   Walk result;
   // The corner opposite to the side by which the arc leaves its first triangle.
   Index corner = -1;
-  const auto leavesBy = [&](Index right, Index left) {
+  const auto leaves_by = [&](Index right, Index left) {
     return orientationOf(points_, from, right, to) > 0 &&
            orientationOf(points_, from, left, to) < 0;
   };
@@ -227,10 +227,11 @@ ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index
       const Index right = vertex(t, (k + 1) % 3);
       const Index left = vertex(t, (k + 2) % 3);
       if (right == to || left == to) {
-        result.along = edge_of_[static_cast<std::size_t>(3 * t + (k + (right == to ? 2 : 1)) % 3)];
+        const Index opposite = 3 * t + (k + (right == to ? 2 : 1)) % 3;
+        result.along = edge_of_[static_cast<std::size_t>(opposite)];
         return result;
       }
-      if (leavesBy(right, left)) {
+      if (leaves_by(right, left)) {
         corner = around;
         break;
       }
@@ -256,7 +257,7 @@ ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index
         continue;
       if (orientationOf(points_, right, left, to) < 0) {
         inside = false;
-        if (leavesBy(right, left))
+        if (leaves_by(right, left))
           corner = 3 * start + k;
       }
     }
