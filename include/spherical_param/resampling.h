@@ -59,7 +59,7 @@ struct UntanglingReport {
 /// sphere stays one to one; where nothing intersects, nothing changes.
 ///
 /// \param mesh of resampleSurface(); changed in place. The best that was found is kept.
-/// 	hrow InvalidInput for sizes that do not match, or threads out of range.
+/// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
 

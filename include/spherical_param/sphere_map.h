@@ -15,9 +15,10 @@ struct DistortionStatistics {
   double max = 0.0;   ///< over all triangles
 };
 
-/// How far a map from a mesh to the unit sphere is from an isometry. Triangles are compared with
-/// the flat ones between their corners on the sphere; sigma_1 >= sigma_2 are the singular values of
-/// that linear map, after both surfaces are scaled to the same total area.
+/// How far a map from a mesh to the unit sphere is from an isometry. For the angles, triangles are
+/// compared with the flat ones between their corners on the sphere: sigma_1 >= sigma_2 are the
+/// singular values of that linear map. For the areas, r is the share of the sphere that a spherical
+/// triangle covers, over the share of the surface in space that the triangle has.
 struct MapDistortion {
   /// Triangles whose corners are not counter-clockwise seen from outside the sphere: det(a, b, c)
   /// <= 0, by an exact predicate. 0: the map is one to one.
@@ -25,7 +26,7 @@ struct MapDistortion {
   /// Triangles without an area in space, to within rounding: no part of the statistics.
   Index degenerate_triangles = 0;
   DistortionStatistics angle;  ///< sigma_1 / sigma_2; 1: conformal
-  DistortionStatistics area;   ///< max(sigma_1 sigma_2, 1 / (sigma_1 sigma_2)); 1: equal areas
+  DistortionStatistics area;   ///< max(r, 1 / r); 1: equal areas
   /// Absolute difference of the angles at the corners, as in Choi, Lam and Lui 2015; the mean over
   /// all corners, unweighted [degree].
   double mean_angle_difference = 0.0;
@@ -46,7 +47,7 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
 struct SphereMapOptions {
   /// Weight of area against angle in the energy, in [0, 1]: 0 is as conformal as can be, 1 cares
   /// for areas as much as a map that stays one to one can.
-  double area_weight = 0.8;
+  double area_weight = 0.85;
   /// Sweeps over the vertices at most of each level; [0, 1000]. 0: the map is only made valid.
   int sweeps = 15;
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
@@ -82,8 +83,9 @@ struct SphereMap {
 ///
 /// Coarse to fine over a hierarchy of the mesh, after E. Praun and H. Hoppe (2003): vertices are
 /// taken out one by one until a tetrahedron is left, and put back into the kernels of their rings
-/// on the sphere, where they are moved to where the distortion is least. Triangles without an area,
-/// or of less than a millionth of the mean, are given that much on the sphere.
+/// on the sphere, where they are moved to where the distortion is least: MIPS (K. Hormann and
+/// G. Greiner, 2000) for the angles, r + 1 / r and |log r| for the areas. Triangles without an
+/// area, or of less than a millionth of the mean, are given that much on the sphere.
 ///
 /// The same, bit by bit, for any number of threads. Cost: O(v log v).
 SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,

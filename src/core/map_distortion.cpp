@@ -85,6 +85,16 @@ struct LinearMap {
   }
 };
 
+/// Area of the spherical triangle between the corners of an image, without sign: the solid angle
+/// (A. van Oosterom and J. Strackee, 1983).
+double areaOnSphere(const Vector3d& corner, const Sides& sides) {
+  const double determinant = corner.dot(sides.first.cross(sides.second));
+  // 1 + ab + bc + ca of unit vectors, by differences.
+  const double denominator = 4.0 - 0.5 * (sides.first.squaredNorm() + sides.second.squaredNorm() +
+                                          (sides.second - sides.first).squaredNorm());
+  return 2.0 * std::atan2(std::abs(determinant), denominator);
+}
+
 /// A triangle's value and its weight.
 using Weighted = std::pair<double, double>;
 
@@ -114,7 +124,8 @@ DistortionStatistics statisticsOf(std::vector<Weighted>& values) {
 /// Sums over triangles.
 struct Sums {
   double in_space = 0.0;   // twice the area of those with an area
-  double on_sphere = 0.0;  // the same of their images
+  double on_sphere = 0.0;  // the same of their flat images
+  double covered = 0.0;    // area on the sphere of these
   std::size_t counted = 0;
   Index flipped = 0;
   Index degenerate = 0;
@@ -122,6 +133,7 @@ struct Sums {
   Sums& operator+=(const Sums& other) {
     in_space += other.in_space;
     on_sphere += other.on_sphere;
+    covered += other.covered;
     counted += other.counted;
     flipped += other.flipped;
     degenerate += other.degenerate;
@@ -174,7 +186,9 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
       }
       ++sums.counted;
       sums.in_space += solid.twice_area;
-      sums.on_sphere += Sides(sphere, triangles, t, 1.0).twice_area;
+      const Sides flat(sphere, triangles, t, 1.0);
+      sums.on_sphere += flat.twice_area;
+      sums.covered += areaOnSphere(sphere.col(triangles(0, t)), flat);
     }
   });
   // Where the values of a block begin; the sums follow the order of the blocks.
@@ -203,7 +217,7 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
       const Sides flat(sphere, triangles, t, 1.0);
       const LinearMap map(solid, flat);
       const double weight = solid.twice_area / sums.in_space;
-      const double area = map.determinant * (sums.in_space / sums.on_sphere);
+      const double area = areaOnSphere(sphere.col(triangles(0, t)), flat) / sums.covered / weight;
       // Written so that what is not a number, of 0 / 0, counts as unbounded.
       angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
       areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};

@@ -26,26 +26,44 @@ constexpr double kThinnest = 0.05;
 constexpr double kSmallLog = 0.05;
 /// Vertices of a colour for several threads: to move one takes about a microsecond.
 constexpr std::size_t kLeastOfColor = 2048;
-/// Share of the term of the angles that is over the determinant.
-constexpr double kDeterminantShare = 0.2;
 
 /// A triangle of vertex u and two neighbours, on the sphere.
 struct Image {
   Vector3d cross;
-  double area;  ///< of the flat triangle
   /// Half the determinant: the area of a small triangle, and 0 where a triangle of any size begins
   /// to be flipped.
   double determinant;
+  /// The tangent of half the area is determinant / quotient.
+  double quotient;
+  double area;  ///< of the spherical triangle (A. van Oosterom and J. Strackee, 1983)
   /// 1/4 of the sum of squared sides times cotangents: the area at least, and just that if the map
   /// is conformal (U. Pinkall and K. Polthier, 1993).
   double dirichlet;
 
   Image(const Vector3d& u, const Vector3d& to_first, const Vector3d& to_next,
         const MapCorner& corner)
-      : cross(to_first.cross(to_next)), area(0.5 * cross.norm()), determinant(0.5 * u.dot(cross)),
-        dirichlet(0.25 * (corner.cot_vertex * (to_next - to_first).squaredNorm() +
-                          corner.cot_neighbor * to_next.squaredNorm() +
-                          corner.cot_next * to_first.squaredNorm())) {}
+      : cross(to_first.cross(to_next)), determinant(0.5 * u.dot(cross)) {
+    const double first_squared = to_first.squaredNorm();
+    const double next_squared = to_next.squaredNorm();
+    const double opposite_squared = (to_next - to_first).squaredNorm();
+    dirichlet = 0.25 * (corner.cot_vertex * opposite_squared + corner.cot_neighbor * next_squared +
+                        corner.cot_next * first_squared);
+    // Half of 1 + ab + bc + ca, by differences.
+    quotient = 2.0 - 0.25 * (first_squared + next_squared + opposite_squared);
+    area = 2.0 * arcTangent(determinant, quotient);
+  }
+
+private:
+  /// atan2(y, x) for y > 0; by its series where that is exact to 1e-13, as for nearly all
+  /// triangles.
+  static double arcTangent(double y, double x) {
+    constexpr double small = 0.015;
+    if (!(y < small * x))
+      return std::atan2(y, x);
+    const double tangent = y / x;
+    const double squared = tangent * tangent;
+    return tangent * (1.0 - squared * (1.0 / 3.0 - squared * 0.2));
+  }
 };
 
 /// Whether the sign of the determinant is beyond doubt. The differences are rounded by half a unit
@@ -82,15 +100,12 @@ struct AreaTerm {
 };
 
 /// For the angles MIPS (K. Hormann and G. Greiner, 2000), the mean of sigma_1 / sigma_2 and its
-/// inverse. Over the area alone it would not keep triangles that are large from beginning to be
-/// flipped, which takes no change of their area: a share is over the determinant. For the areas
-/// terms as the statistics of the distortion have: they grow with the ratio and its inverse; and
-/// the logarithm makes them sharp where the ratio is near 1.
+/// inverse; over the determinant, so that it grows beyond all bounds before a triangle is flipped,
+/// however large that is. For the areas terms as the statistics of the distortion have: they grow
+/// with the ratio and its inverse; and the logarithm makes them sharp where the ratio is near 1.
 double termOf(const Image& image, double mass, const MapEnergy& energy) {
-  return mass *
-         (energy.angle_weight * image.dirichlet *
-              (kDeterminantShare / image.determinant + (1.0 - kDeterminantShare) / image.area) +
-          AreaTerm(image.area / (mass * energy.area_of_mass), energy).value);
+  return mass * (energy.angle_weight * image.dirichlet / image.determinant +
+                 AreaTerm(image.area / (mass * energy.area_of_mass), energy).value);
 }
 
 /// Energy of the triangles around a vertex that is at u; infinite if one is flipped.
@@ -161,31 +176,26 @@ Model modelAround(const Positions& sphere, const MapCorner* corners, std::size_t
         -0.5 * (corner.cot_neighbor * next + corner.cot_next * first);
     const double dirichlet_hessian = 0.25 * (corner.cot_neighbor * (2.0 - to_next.squaredNorm()) +
                                              corner.cot_next * (2.0 - to_first.squaredNorm()));
-    // Nearly linear in u as well.
-    const Vector3d turned = image.cross.cross(to_next - to_first) * (0.25 / image.area);
-    const Vector2d area_gradient(x.dot(turned), y.dot(turned));
-    const double area_hessian = -image.area;
+    // The derivative of the arc tangent; ab + ca has the gradient b + c. How the gradient changes
+    // is left out: next to its square it does not count.
+    const Vector2d area_gradient =
+        2.0 / (image.determinant * image.determinant + image.quotient * image.quotient) *
+        (image.quotient * determinant_gradient - 0.5 * image.determinant * (first + next));
 
-    const double determinant_weight = mass * energy.angle_weight * kDeterminantShare;
-    const double area_weight = mass * energy.angle_weight * (1.0 - kDeterminantShare);
+    const double angle_weight = mass * energy.angle_weight;
     const double by_determinant = 1.0 / image.determinant;
-    const double by_area = 1.0 / image.area;
-    const double over_determinant = determinant_weight * image.dirichlet * by_determinant;
-    const double over_area = area_weight * image.dirichlet * by_area;
+    const double angle = angle_weight * image.dirichlet * by_determinant;
     const AreaTerm term(image.area / (mass * energy.area_of_mass), energy);
-    model.value += over_determinant + over_area + mass * term.value;
-    model.addFunctionOf(determinant_weight * by_determinant + area_weight * by_area, 0.0,
-                        dirichlet_gradient, dirichlet_hessian);
-    model.addFunctionOf(-over_determinant * by_determinant,
-                        2.0 * over_determinant * by_determinant * by_determinant,
+    const double by_area = 1.0 / image.area;
+    model.value += angle + mass * term.value;
+    model.addFunctionOf(angle_weight * by_determinant, 0.0, dirichlet_gradient, dirichlet_hessian);
+    model.addFunctionOf(-angle * by_determinant, 2.0 * angle * by_determinant * by_determinant,
                         determinant_gradient, determinant_hessian);
-    model.addFunctionOf((mass * term.slope - over_area) * by_area,
-                        (2.0 * over_area + mass * std::max(0.0, term.curvature - term.slope)) *
-                            by_area * by_area,
-                        area_gradient, area_hessian);
-    model.addMixed(-determinant_weight * by_determinant * by_determinant, determinant_gradient,
+    model.addMixed(-angle_weight * by_determinant * by_determinant, determinant_gradient,
                    dirichlet_gradient);
-    model.addMixed(-area_weight * by_area * by_area, area_gradient, dirichlet_gradient);
+    model.addFunctionOf(mass * term.slope * by_area,
+                        mass * std::max(0.0, term.curvature - term.slope) * by_area * by_area,
+                        area_gradient, 0.0);
     to_first = to_next;
     first = next;
   }
@@ -408,11 +418,6 @@ double mapEnergy(const Positions& sphere, const MapRows& rows, const MapEnergy& 
   return sumOverTriangles(sphere, rows, threads, [&](const Image& image, double mass) {
     return termOf(image, mass, energy);
   });
-}
-
-double mapArea(const Positions& sphere, const MapRows& rows, int threads) {
-  return sumOverTriangles(sphere, rows, threads,
-                          [](const Image& image, double) { return image.area; });
 }
 
 }  // namespace spherical_param::internal

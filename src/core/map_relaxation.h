@@ -25,7 +25,7 @@ struct MapEnergy {
   double angle_weight;  ///< of what the angles are off
   double log_weight;    ///< of the logarithm of the ratio of areas, but for its sign
   double ratio_weight;  ///< of the mean of the ratio and its inverse
-  double area_of_mass;  ///< area on the sphere of a unit of mass, if all were equal
+  double area_of_mass;  ///< area on the sphere that a unit of mass should have
 };
 
 /// The corners around the vertices of a mesh, in the order in which they are worked on: vertices of
@@ -65,8 +65,5 @@ double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy,
 /// The energy, a sum over the triangles, each weighted by its mass.
 double mapEnergy(const Positions& sphere, const MapRows& rows, const MapEnergy& energy,
                  int threads);
-
-/// Sum of the areas of the flat triangles between corners on the sphere.
-double mapArea(const Positions& sphere, const MapRows& rows, int threads);
 
 }  // namespace spherical_param::internal

@@ -218,9 +218,10 @@ public:
       mass_ += static_cast<double>(mass);
     const double area = options.area_weight;
     const double angle = std::max(1.0 - area, kLeastAngleWeight);
-    final_ = {angle, (1.0 - kRatioShare) * area, kRatioShare * area, 0.0};
+    const double area_of_mass = kAreaOfSphere / mass_;
+    final_ = {angle, (1.0 - kRatioShare) * area, kRatioShare * area, area_of_mass};
     const double mild_area = std::min(area, kMildAreaWeight);
-    mild_ = {1.0 - mild_area, 0.0, mild_area, 0.0};
+    mild_ = {1.0 - mild_area, 0.0, mild_area, area_of_mass};
   }
 
   Positions run(std::vector<SphereMapLevel>& levels, const internal::ShareReport& report) {
@@ -247,9 +248,11 @@ public:
 private:
   /// Areas alone do not say where in its ring a vertex is best.
   static constexpr double kLeastAngleWeight = 0.02;
-  /// Share of the ratio in the weight of areas, the logarithm has the rest: enough to bring what is
-  /// far from its area nearer.
-  static constexpr double kRatioShare = 0.3;
+  static constexpr double kAreaOfSphere = 12.566370614359172;  // 4 pi
+  /// Share of the ratio in the weight of areas, the logarithm has the rest. The more of that, the
+  /// more triangles have just their areas, but the rougher is the map: others next to them are
+  /// sheared for it.
+  static constexpr double kRatioShare = 0.7;
   /// Areas weigh no more than this while there are vertices that came just now: triangles that all
   /// have their areas leave each other no room to move, whatever their shapes are.
   static constexpr double kMildAreaWeight = 0.7;
@@ -276,12 +279,10 @@ private:
                                                mesh.vertex_count, options_.threads);
     SphereMapLevel level;
     level.vertices = static_cast<std::size_t>(mesh.vertex_count);
-    mild_.area_of_mass = internal::mapArea(sphere_, rows, options_.threads) / mass_;
     for (; level.sweeps < std::min(kMildSweeps, options_.sweeps); ++level.sweeps) {
       internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
       internal::sweepMap(sphere_, rows, mild_, options_.threads);
     }
-    final_.area_of_mass = internal::mapArea(sphere_, rows, options_.threads) / mass_;
     double value = internal::mapEnergy(sphere_, rows, final_, options_.threads);
     bool goes_on = true;
     for (; goes_on && level.sweeps < options_.sweeps; ++level.sweeps) {

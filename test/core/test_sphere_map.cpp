@@ -80,16 +80,30 @@ bool areEqual(const MapDistortion& a, const MapDistortion& b) {
          a.stretch_efficiency == b.stretch_efficiency;
 }
 
+/// Area of a spherical triangle by its angles (A. Girard, 1629).
+double sphericalArea(const std::array<Vector3d, 3>& corners) {
+  double sum = -test::kPi;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d& a = corners[k];
+    sum += std::acos(a.cross(corners[(k + 1) % 3])
+                         .normalized()
+                         .dot(a.cross(corners[(k + 2) % 3]).normalized()));
+  }
+  return sum;
+}
+
 TEST(MapDistortion, SphereToItselfHasNone) {
-  const Mesh sphere = octasphere(4);
+  // So fine that the flat triangles have the areas of the spherical ones.
+  const Mesh sphere = octasphere(6);
   const MapDistortion distortion =
       measureMapDistortion(7.0 * sphere.points, sphere.triangles, sphere.points);
   EXPECT_EQ(distortion.flipped_triangles, 0);
   EXPECT_EQ(distortion.degenerate_triangles, 0);
-  for (const DistortionStatistics& statistics : {distortion.angle, distortion.area}) {
-    EXPECT_NEAR(statistics.mean, 1.0, 1e-10);
-    EXPECT_NEAR(statistics.p95, 1.0, 1e-10);
-    EXPECT_NEAR(statistics.max, 1.0, 1e-10);
+  for (const auto& [statistics, tolerance] :
+       {std::pair(distortion.angle, 1e-10), std::pair(distortion.area, 1e-3)}) {
+    EXPECT_NEAR(statistics.mean, 1.0, tolerance);
+    EXPECT_NEAR(statistics.p95, 1.0, tolerance);
+    EXPECT_NEAR(statistics.max, 1.0, tolerance);
   }
   EXPECT_NEAR(distortion.mean_angle_difference, 0.0, 1e-5);
   EXPECT_NEAR(distortion.stretch_efficiency, 1.0, 1e-10);
@@ -133,7 +147,7 @@ TEST(MapDistortion, IsThatOfSingularValueDecompositions) {
       }
       difference += std::abs(angle[0] - angle[1]);
     }
-    triangles.push_back({area[0], area[1], sigma[0] / sigma[1], 0.0,
+    triangles.push_back({area[0], sphericalArea(corners[1]), sigma[0] / sigma[1], 0.0,
                          0.5 * (std::pow(sigma[0], -2) + std::pow(sigma[1], -2)), difference});
     in_space += area[0];
     on_sphere += area[1];
@@ -143,7 +157,7 @@ TEST(MapDistortion, IsThatOfSingularValueDecompositions) {
   double stretch = 0.0;
   double difference = 0.0;
   for (Triangle& t : triangles) {
-    const double ratio = t.image / on_sphere / (t.weight / in_space);
+    const double ratio = t.image / (4.0 * test::kPi) / (t.weight / in_space);
     t.ratio = std::max(ratio, 1.0 / ratio);
     angle += t.weight / in_space * t.angle;
     area += t.weight / in_space * t.ratio;
@@ -196,7 +210,8 @@ TEST(MapDistortion, TurnedOverSphereIsFlippedEverywhere) {
   const MapDistortion distortion =
       measureMapDistortion(sphere.points, sphere.triangles, -sphere.points);
   EXPECT_EQ(distortion.flipped_triangles, sphere.triangles.cols());
-  EXPECT_NEAR(distortion.area.max, 1.0, 1e-10);
+  EXPECT_EQ(distortion.area.max,
+            measureMapDistortion(sphere.points, sphere.triangles, sphere.points).area.max);
 }
 
 TEST(MapDistortion, CollapsedImageIsHugeAndFinite) {
