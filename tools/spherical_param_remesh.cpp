@@ -77,7 +77,7 @@ constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
 /// surface then: angles count more than for other uses of the map.
 spherical_param::SphereMapOptions mapDefaults() {
   spherical_param::SphereMapOptions options;
-  options.area_weight = 0.4;
+  options.area_weight = 0.5;
   options.sweeps = 100;
   return options;
 }

@@ -20,6 +20,8 @@ void addToJson(const MapDistortion& distortion, Json& json) {
   json["flipped_triangles"] = distortion.flipped_triangles;
   json["angle_distortion"] = toJson(distortion.angle);
   json["area_distortion"] = toJson(distortion.area);
+  json["mean_angle_difference_degrees"] = distortion.mean_angle_difference;
+  json["stretch_efficiency"] = distortion.stretch_efficiency;
 }
 
 std::string listed(const DistortionStatistics& statistics, const DistortionStatistics& before) {

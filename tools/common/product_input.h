@@ -54,7 +54,8 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
 
 /// Adds the size of the mesh and what is wrong with the map: `input_points`, `vertices`,
 /// `mesh_triangles`, `mesh_self_intersections`, `flipped_triangles`, `angle_distortion`,
-/// `area_distortion`, and the same of the embedding as `embedding_distortion`.
+/// `area_distortion`, `mean_angle_difference_degrees`, `stretch_efficiency`, and the same of the
+/// embedding as `embedding_distortion`.
 void addMapToJson(const MappedCloud& mapped, Json& json);
 
 /// Prints the same.
