@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-from . import comparison, machine, paper, readme, scaling, stages
+from . import comparison, machine, maps, paper, readme, scaling, stages
 from .processes import Failure
 from .product import Programs, Renderer, load_clouds
 from .report import write_report
@@ -58,6 +58,7 @@ class Context:
 SECTIONS = {
     "paper": paper.section,
     "comparison": comparison.section,
+    "maps": maps.section,
     "scaling": scaling.section,
     "stages": stages.section,
 }

@@ -28,7 +28,9 @@ class Programs:
         self.folder = pathlib.Path(folder)
         self.samples = samples  # of the referee on each mesh; None: its default
         self.reconstruction = self._find("pcl_spherical_param_reconstruction")
+        self.remesh = self._find("pcl_spherical_param_remesh")
         self.scan = self._find("pcl_spherical_param_scan")
+        self.texture = self._find("pcl_spherical_param_texture")
         self.quality = self._find("benchmark_mesh_quality")
 
     def _find(self, name):
@@ -76,6 +78,11 @@ class Programs:
         if sphere:
             command += ["-sphere", sphere]
         return json.loads(require(command).output)
+
+    def measure_mesh(self, mesh, cloud):
+        """The referee's measures of a mesh beside the truth, whatever its points are."""
+        samples = ["-samples", self.samples] if self.samples else []
+        return json.loads(require([self.quality, mesh, "-truth", cloud.truth, *samples]).output)
 
     def measure_map(self, mesh, sphere):
         """The referee's measures of a mesh alone and of its map to the sphere."""

@@ -20,6 +20,11 @@ QUOTED = {
     "the diagonal of its bounding box):",
     "models_summary": "Beside other methods, which get the points alone, too, on the real models "
     "below:",
+    "maps": "The map to the sphere of the finished meshes, beside the embedding that they come from "
+    "(area distortion max(r, 1/r) of a triangle's share r of the area, angle distortion the ratio "
+    "of the singular values, both weighted by area; 1: none):",
+    "maps_generated": "The same on generated scans:",
+    "remeshed": "Remeshed from the sphere, beside the true surface:",
     "race": "In turn with the fastest peer, whole processes:",
     "scaling": "Over the number of points:",
     "budget": "Where the time goes, beside the least that each stage could take (counted by hand, "
