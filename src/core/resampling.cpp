@@ -2,10 +2,13 @@
 
 #include "core/bit_mixing.h"
 #include "core/corner_table.h"
+#include "core/exact_predicates.h"
 #include "core/parallel.h"
 #include "core/sample_elimination.h"
+#include "core/sphere_mesh.h"
 #include "core/vertex_normals.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
 
@@ -312,6 +315,83 @@ Positions pixelDirections(int side) {
   return directions;
 }
 
+// --- Edges around triangles that intersect -------------------------------------------------------
+
+double angleBetween(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A resampled mesh whose edges are flipped.
+class FlippableMesh {
+public:
+  FlippableMesh(const ResampledMesh& mesh, int threads)
+      : points_(mesh.points), directions_(mesh.directions),
+        mesh_(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), threads) {}
+
+  bool isSphere(int threads) const { return mesh_.isSphere(threads); }
+  Triangles triangles() const { return mesh_.triangles(); }
+
+  /// The triangles that have a corner in common with some, so many times over; ascending.
+  std::vector<Index> around(std::vector<Index> triangles, int rings) const {
+    for (int ring = 0; ring < rings; ++ring) {
+      std::vector<Index> wider;
+      for (const Index t : triangles)
+        for (int k = 0; k < 3; ++k)
+          mesh_.forEachAround(mesh_.vertex(t, k), [&](Index near, int) { wider.push_back(near); });
+      std::sort(wider.begin(), wider.end());
+      wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+      triangles = std::move(wider);
+    }
+    return triangles;
+  }
+
+  /// Flips sides of some triangles as long as that makes angles smaller; returns how often.
+  std::size_t flipSidesOf(const std::vector<Index>& triangles) {
+    constexpr int most_sweeps = 20;
+    std::size_t flips = 0;
+    bool is_changed = true;
+    for (int sweep = 0; sweep < most_sweeps && is_changed; ++sweep) {
+      is_changed = false;
+      for (const Index t : triangles)
+        for (int k = 0; k < 3; ++k)
+          if (isBetterFlipped(t, k) && mesh_.flip(t, k)) {
+            is_changed = true;
+            ++flips;
+            break;
+          }
+    }
+    return flips;
+  }
+
+private:
+  /// Sum of the angles opposite to the edge from b to c.
+  double oppositeAngles(Index a, Index b, Index c, Index d) const {
+    const auto angleAt = [&](Index v) {
+      return angleBetween(points_.col(b) - points_.col(v), points_.col(c) - points_.col(v));
+    };
+    return angleAt(a) + angleAt(d);
+  }
+  bool isOutward(Index a, Index b, Index c) const {
+    return internal::orientation3d(Vector3d::Zero(), directions_.col(a), directions_.col(b),
+                                   directions_.col(c)) > 0;
+  }
+  bool isBetterFlipped(Index triangle, int corner) const {
+    const Index a = mesh_.vertex(triangle, corner);
+    const Index b = mesh_.vertex(triangle, (corner + 1) % 3);
+    const Index c = mesh_.vertex(triangle, (corner + 2) % 3);
+    const Index d =
+        mesh_.vertex(mesh_.neighbor(triangle, corner), mesh_.oppositeCorner(triangle, corner));
+    // Rounding must not flip an edge forth and back.
+    constexpr double least_gain = 1e-9;
+    return oppositeAngles(b, a, d, c) < oppositeAngles(a, b, c, d) - least_gain &&
+           isOutward(a, b, d) && isOutward(a, d, c);
+  }
+
+  const Positions& points_;
+  const Positions& directions_;
+  internal::SphereMesh mesh_;
+};
+
 }  // namespace
 
 int gridFrequency(SphereGrid grid, std::size_t vertices) {
@@ -345,6 +425,43 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
   SurfaceSamples samples = surface.evaluate(grid.directions);
   return {std::move(samples.positions), std::move(samples.normals), grid.directions,
           grid.triangles};
+}
+
+IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
+  if (threads < 0 || threads > internal::kMostThreads)
+    throw InvalidInput("removeIntersections: threads = " + std::to_string(threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+  if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
+    throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
+                       " points need as many directions, all finite");
+  internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
+  SelfIntersectionOptions options;
+  options.threads = threads;
+  auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
+  IntersectionRemoval result{pairs.size(), pairs.size(), 0};
+  const int workers = internal::threadCount(
+      threads, static_cast<std::size_t>(mesh.triangles.cols()), internal::kShortPassThreshold);
+  FlippableMesh flippable(mesh, workers);
+  if (!flippable.isSphere(workers))
+    throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
+                       "consistently oriented mesh of genus 0 over all points");
+  // Around what is left, farther and farther.
+  constexpr int most_rounds = 6;
+  for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {
+    std::vector<Index> triangles;
+    for (const auto& pair : pairs)
+      triangles.insert(triangles.end(), pair.begin(), pair.end());
+    triangles = flippable.around(std::move(triangles), round);
+    const std::size_t flips = flippable.flipSidesOf(triangles);
+    if (flips == 0)
+      continue;
+    result.flips += flips;
+    mesh.triangles = flippable.triangles();
+    pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
+    result.left = pairs.size();
+  }
+  return result;
 }
 
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {

@@ -30,6 +30,17 @@ SphereSurface bumpySurface(Index n, SurfaceFit fit = SurfaceFit::Smooth, int thr
   return SphereSurface(points, triangulateSphere(sphere).triangles, sphere, {fit, threads});
 }
 
+/// A surface over directions, by a function of them.
+template <typename Place>
+SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
+  const Positions sphere = test::spiralSphere(n);
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) = place(Vector3d(sphere.col(i)));
+  return SphereSurface(points, triangulateSphere(sphere).triangles, sphere,
+                       {SurfaceFit::Linear, threads});
+}
+
 double areaOnSphere(const GridSphere& grid, Eigen::Index t) {
   const Vector3d a = grid.directions.col(grid.triangles(0, t));
   const Vector3d b = grid.directions.col(grid.triangles(1, t));
@@ -247,15 +258,67 @@ TEST(GeometryImage, RefusesBadInput) {
   EXPECT_THROW(meshOfGeometryImage({5, Positions::Zero(3, 24)}), InvalidInput);
 }
 
-/// A surface over directions, by a function of them.
-template <typename Place>
-SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
-  const Positions sphere = test::spiralSphere(n);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i)
-    points.col(i) = place(Vector3d(sphere.col(i)));
-  return SphereSurface(points, triangulateSphere(sphere).triangles, sphere,
-                       {SurfaceFit::Linear, threads});
+/// A long body with a groove along it, and a map that is twisted, so that the edges of a grid run
+/// askew to the groove.
+SphereSurface groovedBody() {
+  return surfaceOver(20000, [](const Vector3d& u) {
+    const double angle = std::remainder(std::atan2(u.y(), u.x()) + 4.0 * u.z(), 2.0 * test::kPi);
+    const double radius = std::hypot(u.x(), u.y()) * (1.0 - 0.9 * std::exp(-16.0 * angle * angle));
+    return Vector3d(radius * std::cos(angle), radius * std::sin(angle), 6.0 * u.z());
+  });
+}
+
+TEST(RemoveIntersections, FlipsEdgesUntilNoTrianglesIntersect) {
+  ResampledMesh mesh = resampleSurface(groovedBody(), makeGridSphere(SphereGrid::Icosahedral, 16));
+  const ResampledMesh before = mesh;
+  const IntersectionRemoval result = removeIntersections(mesh);
+  EXPECT_EQ(result.found, findSelfIntersections(before.points, before.triangles).size());
+  EXPECT_GT(result.found, 0U);
+  EXPECT_GT(result.flips, 0U);
+  EXPECT_EQ(result.left, 0U);
+  EXPECT_EQ(result.left, findSelfIntersections(mesh.points, mesh.triangles).size());
+  EXPECT_EQ(mesh.points, before.points);
+  EXPECT_EQ(mesh.directions, before.directions);
+  EXPECT_TRUE(test::isSphereOverAll(mesh.triangles, static_cast<Index>(mesh.points.cols())));
+  // Still a map that is one to one.
+  EXPECT_NO_THROW(SphereSurface(mesh.points, mesh.triangles, mesh.directions));
+}
+
+TEST(RemoveIntersections, LeavesAMeshWithoutThemAsItIs) {
+  ResampledMesh mesh =
+      resampleSurface(bumpySurface(500), makeGridSphere(SphereGrid::Octahedral, 8));
+  const Triangles before = mesh.triangles;
+  const IntersectionRemoval result = removeIntersections(mesh);
+  EXPECT_EQ(result.found, 0U);
+  EXPECT_EQ(result.flips, 0U);
+  EXPECT_EQ(mesh.triangles, before);
+}
+
+TEST(RemoveIntersections, IsTheSameForAnyNumberOfThreads) {
+  const ResampledMesh mesh =
+      resampleSurface(groovedBody(), makeGridSphere(SphereGrid::Icosahedral, 16));
+  ResampledMesh expected = mesh;
+  removeIntersections(expected, 1);
+  for (const int threads : {2, 3}) {
+    ResampledMesh found = mesh;
+    removeIntersections(found, threads);
+    EXPECT_EQ(found.triangles, expected.triangles);
+  }
+}
+
+TEST(RemoveIntersections, RefusesBadInput) {
+  const ResampledMesh mesh =
+      resampleSurface(bumpySurface(100), makeGridSphere(SphereGrid::Octahedral, 2));
+  ResampledMesh bad = mesh;
+  EXPECT_THROW(removeIntersections(bad, -1), InvalidInput);
+  bad.directions = mesh.directions.leftCols(5);
+  EXPECT_THROW(removeIntersections(bad), InvalidInput);
+  bad = mesh;
+  bad.triangles = mesh.triangles.leftCols(7);
+  EXPECT_THROW(removeIntersections(bad), InvalidInput);
+  bad = mesh;
+  bad.triangles(0, 0) = 1000;
+  EXPECT_THROW(removeIntersections(bad), InvalidInput);
 }
 
 /// A cigar whose map is twisted: triangles of a grid wind round it, and cut across each other.
