@@ -78,7 +78,7 @@ constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
 spherical_param::SphereMapOptions mapDefaults() {
   spherical_param::SphereMapOptions options;
   options.area_weight = 0.5;
-  options.sweeps = 100;
+  options.sweeps = 40;
   return options;
 }
 
@@ -338,6 +338,7 @@ struct Output {
   int frequency = 0;          ///< of the grid
   std::optional<SphericalHarmonics> harmonics;
   std::optional<spherical_param::UntanglingReport> untangling;
+  std::size_t flipped_edges = 0;  ///< after it
   spherical_param::MeshTopology topology;
   spherical_param::MeshMeasures measures;
   std::vector<std::array<Index, 2>> self_intersections;
@@ -462,6 +463,11 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   if (settings.slides()) {
     console.begin("untangle");
     output.untangling = spherical_param::untangle(surface, output.mesh, settings.threads());
+    // What sliding leaves, other edges may mend; those of an image are given.
+    if (output.untangling->after > 0 && !settings.writes_image) {
+      output.flipped_edges =
+          spherical_param::removeIntersections(output.mesh, settings.threads()).flips;
+    }
     output.stages.push_back(
         {"untangle", console.end(std::to_string(output.untangling->moved) + " points slid")});
   }
@@ -584,7 +590,8 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   if (output.untangling) {
     json["untangling"] = {{"self_intersections_before", output.untangling->before},
                           {"rounds", output.untangling->rounds},
-                          {"moved", output.untangling->moved}};
+                          {"moved", output.untangling->moved},
+                          {"flipped_edges", output.flipped_edges}};
   }
   json["distance"] = nullptr;
   if (output.distance) {

@@ -62,6 +62,7 @@ struct UntanglingReport {
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
+
 /// What removeIntersections() did.
 struct IntersectionRemoval {
   std::size_t found = 0;  ///< pairs of triangles that intersected
@@ -75,7 +76,7 @@ struct IntersectionRemoval {
 /// An edge is flipped if the opposite angles become smaller in space (C. L. Lawson, 1977) and the
 /// new triangles are not flipped on the sphere: the mesh stays closed, manifold, of genus 0, and
 /// its map one to one. Vertices stay, and so do all triangles elsewhere. Normals stay.
-/// 	hrow InvalidInput for a mesh that is not as resampleSurface() makes it.
+/// \throw InvalidInput for a mesh that is not as resampleSurface() makes it.
 /// The same for any number of threads.
 IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads = 0);
 

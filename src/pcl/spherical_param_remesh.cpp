@@ -32,7 +32,9 @@ bool remesh(const spherical_param::Positions& points, const spherical_param::Tri
         surface, spherical_param::makeGridSphere(
                      options.grid, spherical_param::gridFrequency(options.grid, wanted)));
 
-    spherical_param::untangle(surface, resampled, options.map.threads);
+    // What sliding leaves, other edges may mend.
+    if (spherical_param::untangle(surface, resampled, options.map.threads).after > 0)
+      spherical_param::removeIntersections(resampled, options.map.threads);
     pcl::PointCloud<pcl::PointNormal> cloud;
     cloud.resize(static_cast<std::size_t>(resampled.points.cols()));
     for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -30,8 +30,8 @@ struct SphericalParamRemeshOptions {
 private:
   static spherical_param::SphereMapOptions makeMapOptions() {
     spherical_param::SphereMapOptions options;
-    options.area_weight = 0.4;
-    options.sweeps = 100;
+    options.area_weight = 0.5;
+    options.sweeps = 40;
     return options;
   }
 };
