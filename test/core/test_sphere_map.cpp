@@ -85,9 +85,8 @@ double sphericalArea(const std::array<Vector3d, 3>& corners) {
   double sum = -test::kPi;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3d& a = corners[k];
-    sum += std::acos(a.cross(corners[(k + 1) % 3])
-                         .normalized()
-                         .dot(a.cross(corners[(k + 2) % 3]).normalized()));
+    sum += std::acos(
+        a.cross(corners[(k + 1) % 3]).normalized().dot(a.cross(corners[(k + 2) % 3]).normalized()));
   }
   return sum;
 }
