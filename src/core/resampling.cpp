@@ -102,7 +102,9 @@ public:
   }
 
 private:
-  static std::size_t place(Index a, Index b) { return static_cast<std::size_t>(12 * a + b); }
+  static std::size_t place(Index a, Index b) {
+    return 12 * static_cast<std::size_t>(a) + static_cast<std::size_t>(b);
+  }
 
   /// Vertex i of f on the edge from a to b.
   Index onEdge(Index a, Index b, Index i) const {
@@ -366,10 +368,10 @@ public:
 private:
   /// Sum of the angles opposite to the edge from b to c.
   double oppositeAngles(Index a, Index b, Index c, Index d) const {
-    const auto angleAt = [&](Index v) {
+    const auto angle_at = [&](Index v) {
       return angleBetween(points_.col(b) - points_.col(v), points_.col(c) - points_.col(v));
     };
-    return angleAt(a) + angleAt(d);
+    return angle_at(a) + angle_at(d);
   }
   bool isOutward(Index a, Index b, Index c) const {
     return internal::orientation3d(Vector3d::Zero(), directions_.col(a), directions_.col(b),

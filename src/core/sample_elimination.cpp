@@ -172,7 +172,7 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
     sorted_normals.col(static_cast<Eigen::Index>(i)) = normals.col(grid.order()[i]);
   }
   /// Calls visit(j, weight of the pair) for the samples that are near sample i.
-  const auto forEachNear = [&](std::size_t i, const auto& visit) {
+  const auto for_each_near = [&](std::size_t i, const auto& visit) {
     const Vector3d point = sorted_points.col(static_cast<Eigen::Index>(i));
     const Vector3d normal = sorted_normals.col(static_cast<Eigen::Index>(i));
     grid.forEachCellAround(i, [&](std::size_t begin, std::size_t end) {
@@ -192,13 +192,13 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
   std::vector<double> weights(n);
   forEachItem(n, threadCount(threads, n, kParallelThreshold), [&](std::size_t, std::size_t i) {
     double sum = 0.0;
-    forEachNear(i, [&](std::size_t, double weight) { sum += weight; });
+    for_each_near(i, [&](std::size_t, double weight) { sum += weight; });
     weights[i] = sum;
   });
   Heap heap(std::move(weights));
   while (heap.size() > count) {
     const std::size_t top = heap.takeTop();
-    forEachNear(top, [&](std::size_t j, double weight) {
+    for_each_near(top, [&](std::size_t j, double weight) {
       if (heap.has(j))
         heap.lighten(j, weight);
     });

@@ -56,7 +56,8 @@ public:
     do {
       const Index t = corner / 3;
       const Index k = corner % 3;
-      const Index edge = edge_of_[static_cast<std::size_t>(3 * t + (k + 2) % 3)];
+      const Index behind = 3 * t + (k + 2) % 3;
+      const Index edge = edge_of_[static_cast<std::size_t>(behind)];
       visit(edge, ends(edge)[0] == vertex, this->vertex(t, (k + 1) % 3));
       corner = nextAround(corner);
     } while (corner != first);
@@ -65,8 +66,9 @@ public:
 private:
   /// The corner at the same vertex in the next triangle around it, counter-clockwise.
   Index nextAround(Index corner) const {
-    const Index across =
-        across_[static_cast<std::size_t>(3 * (corner / 3) + (corner + 1 - 3 * (corner / 3)) % 3)];
+    const Index begin = corner - corner % 3;
+    const Index next = begin + (corner + 1 - begin) % 3;
+    const Index across = across_[static_cast<std::size_t>(next)];
     // There the common side begins at the vertex, behind the opposite corner.
     return 3 * (across / 3) + (across % 3 + 1) % 3;
   }
