@@ -68,11 +68,11 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
                                             std::vector<Index>& around) const {
   Quadric quadric;
   around.clear();
-  const auto addNeighbors = [&](Index v) {
+  const auto add_neighbors = [&](Index v) {
     corners.forEachCorner(
         v, [&](Index t, Index k) { around.push_back(triangles_(nextCorner(k), t)); });
   };
-  addNeighbors(vertex);
+  add_neighbors(vertex);
   const std::size_t nearest = around.size();
   for (const Index v : around)
     quadric.size += (points_.col(v) - points_.col(vertex)).norm();
@@ -81,7 +81,7 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
     return quadric;
   for (std::size_t i = 0; i < nearest; ++i)
     if (corners.countAt(around[i]) <= kMostAround)
-      addNeighbors(around[i]);
+      add_neighbors(around[i]);
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   around.erase(std::remove(around.begin(), around.end(), vertex), around.end());
