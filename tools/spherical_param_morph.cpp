@@ -45,7 +45,6 @@ namespace {
 using namespace spherical_param::tools;
 using spherical_param::ImpossiblePair;
 using spherical_param::Index;
-using spherical_param::MeshMeasures;
 using spherical_param::MorphConnectivity;
 using spherical_param::MorphResult;
 using spherical_param::Positions;

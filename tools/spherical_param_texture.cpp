@@ -295,7 +295,7 @@ StagePlan stagesOf(const Settings& settings) {
 std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud& mapped) {
   std::vector<std::string> warnings = warningsOf(mapped.cloud);
   if (mapped.colors.empty() && !settings.cells) {
-    warnings.push_back("The cloud has no colours: the texture is a checkerboard.");
+    warnings.emplace_back("The cloud has no colours: the texture is a checkerboard.");
   }
   return warnings;
 }
