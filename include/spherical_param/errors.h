@@ -4,6 +4,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup types
+/// @{
+
 /// The caller's mistake, found at entry: the message names function, value and remedy.
 class InvalidInput : public std::invalid_argument {
 public:
@@ -22,5 +25,7 @@ class Cancelled : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;
 };
+
+/// @}
 
 }  // namespace spherical_param

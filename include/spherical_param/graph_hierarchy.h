@@ -10,6 +10,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup embedding
+/// @{
+
 /// A graph of fewer nodes and what joins it to the next finer one.
 struct HierarchyLevel {
   Graph graph;                      ///< connected; lengths are those of shortest paths
@@ -43,6 +46,7 @@ struct HierarchyOptions {
 /// the same on all levels.
 ///
 /// \param graph connected, with positive edge lengths.
+/// \param options size of the coarsest level, seed, threads, progress
 /// \return the levels, each of some 4 to 5 times fewer nodes than the one before; none for a graph
 ///         of at most `coarsest_size` nodes. The same for the same seed on every platform and for
 ///         any number of threads, and, up
@@ -52,5 +56,7 @@ struct HierarchyOptions {
 /// Cancelled.
 /// Cost: O(n log n).
 GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

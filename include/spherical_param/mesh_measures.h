@@ -4,13 +4,18 @@
 
 namespace spherical_param {
 
+/// \addtogroup checks
+/// @{
+
 /// Size, place and mass properties of a closed mesh and the solid that it encloses.
 struct MeshMeasures {
   double volume = 0.0;  ///< signed, positive if oriented outward [cubed unit of the input]
   double area = 0.0;    ///< [squared unit of the input]
   double mean_edge_length = 0.0;  ///< [unit of the input]
-  /// Corners of the box along the axes around the vertices of the triangles [unit of the input].
+  /// Lower corner of the box along the axes around the vertices of the triangles [unit of the
+  /// input].
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
+  /// Upper corner of that box [unit of the input].
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
   /// Centre of mass of the solid; without a volume that is more than rounding, that of the surface
   /// [unit of the input].
@@ -20,6 +25,7 @@ struct MeshMeasures {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 
+/// Parameters of measureMesh().
 struct MeasureOptions {
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
 };
@@ -32,9 +38,19 @@ struct MeasureOptions {
 /// mesh intersects itself, regions count as often as it winds around them.
 ///
 /// \param points    3 x n; \param triangles 3 x m, consistently oriented, each edge twice.
+/// \param options threads
 /// \return all zero for a mesh without triangles; the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for an index or threads out of range. Cost: O(m).
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
                          const MeasureOptions& options = {});
+
+/// Normals of the vertices of a mesh, those of its triangles weighted by their areas.
+///
+/// \param points    3 x n; \param triangles 3 x m, indices in [0, n).
+/// \return 3 x n: for each vertex the sum of its triangles' normals, each twice as long as the
+/// triangle's area; not of unit length [squared unit of the input]. Cost: O(n + m).
+Positions areaWeightedNormals(const Positions& points, const Triangles& triangles);
+
+/// @}
 
 }  // namespace spherical_param

@@ -12,6 +12,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup optimization
+/// @{
+
 /// How far a mesh on fixed points is optimised.
 enum class OptimizationMethod {
   None,   ///< not at all
@@ -96,6 +99,7 @@ struct MeshOptimization {
 /// \param points    3 x n, finite, distinct; extent about 1, or such that areas are numbers.
 /// \param triangles 3 x (2n - 4), over all points; closed, manifold, oriented, of genus 0.
 /// \param graph     n nodes, the neighbours of each point.
+/// \param options how far, seed, threads, what takes noise off, progress
 /// \return the mesh: the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for sizes that disagree, an index or option out of range, or a mesh that is
 ///        not as said.
@@ -105,5 +109,7 @@ struct MeshOptimization {
 /// proportional to n.
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
                               const Graph& graph, const OptimizationOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

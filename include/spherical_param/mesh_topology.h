@@ -9,6 +9,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup checks
+/// @{
+
 /// What is wrong with a mesh, and where. A sound closed surface has all lists empty.
 struct TopologyFaults {
   std::vector<std::array<Index, 2>> boundary_edges;     ///< edges with one triangle
@@ -33,16 +36,19 @@ struct MeshTopology {
   long long euler_characteristic = 0;  ///< V - E + F over the used vertices
   /// Sum of the genera of the components; none unless closed, manifold and oriented.
   std::optional<long long> genus;
-  TopologyFaults faults;
+  TopologyFaults faults;  ///< what is wrong, and where
 
+  /// Manifold at edges and vertices. \return whether it is
   bool manifold() const { return edge_manifold && vertex_manifold; }
   /// A closed, manifold, consistently oriented sphere in one piece over all vertices.
+  /// \return whether it is one
   bool isSphere() const {
     return closed && manifold() && oriented && components == 1 && genus == 0 &&
            faults.unused_vertices.empty();
   }
 };
 
+/// Parameters of checkTopology().
 struct TopologyOptions {
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
 };
@@ -51,6 +57,7 @@ struct TopologyOptions {
 ///
 /// \param triangles    3 x m, any order, m at most 2^30.
 /// \param vertex_count vertices are [0, vertex_count).
+/// \param options threads
 /// \return the same for any number of threads.
 /// \throw InvalidInput for an index out of range, more triangles than that, or threads out of
 /// range. Cost: O(m + n), and memory of 12 m + 8 n bytes.
@@ -61,12 +68,21 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 /// positive if the triangles are oriented outward. Meaningless for an open mesh.
 ///
 /// \param points 3 x n; \param triangles 3 x m, indices in [0, n).
+/// \return the volume, of less than nothing if the triangles are oriented inward.
 double signedVolume(const Positions& points, const Triangles& triangles);
 
 /// Sum of the areas of the triangles [squared unit of the input].
+///
+/// \param points 3 x n
+/// \param triangles 3 x m, indices in [0, n).
+/// \return the sum.
 double surfaceArea(const Positions& points, const Triangles& triangles);
 
 /// Turns every triangle over.
+///
+/// \param triangles 3 x m, changed in place.
 void flipOrientation(Triangles& triangles);
+
+/// @}
 
 }  // namespace spherical_param

@@ -11,6 +11,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup morphing
+/// @{
+
 /// A pair of vertices, one of each of two meshes, that are to be the same place.
 struct PointPair {
   Index first = 0;   ///< vertex of the first mesh
@@ -75,14 +78,24 @@ struct MorphResult {
 /// or one of them stands in an earlier pair with a different partner, or no motion was found that
 /// takes it to its place while others stay apart. With SurfaceFit::Linear the first and the second
 /// shape are the two meshes, cut along each other's edges.
+///
+/// \param first surface at the beginning, with its map.
+/// \param second surface at the end, with its map.
+/// \param options alignment, pairs, connectivity, threads, progress
+/// \return both shapes on the triangles of one sphere, and how well they fit.
 /// \throw InvalidInput for options out of range; ComputeError if a map is so near to not being one
 /// to one that a rotation's rounding makes the difference; Cancelled.
 /// The same, bit by bit, for any number of threads.
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
                           const MorphOptions& options = {});
 
-/// Vertices of the in-between at t: (1 - t) first + t second. \param t any finite number; [0, 1]
-/// lies between.
+/// Vertices of the in-between at t: (1 - t) first + t second.
+///
+/// \param morph of morphSurfaces().
+/// \param t     any finite number; [0, 1] lies between.
+/// \return 3 x w, for MorphResult::triangles.
 Positions inBetween(const MorphResult& morph, double t);
+
+/// @}
 
 }  // namespace spherical_param

@@ -7,6 +7,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup neighbor_graph
+/// @{
+
 /// How points become neighbours.
 enum class GraphMethod {
   NearestNeighbors,  ///< k nearest neighbours (Zwicker and Gotsman 2004, section 3)
@@ -81,6 +84,8 @@ struct LocalDelaunayOptions {
 ///
 /// \param points 3 x n, finite, distinct.
 /// \param lists  n neighbour lists; unsorted, longer or shorter than k, and with the point itself.
+/// \param options k
+/// \return the graph, and the edges that joined its components.
 /// \throw InvalidInput for sizes that disagree, an index out of range, or k < 3.
 /// Cost: O(n k log k) and O(c log c log n) for the bridges of c components, typically.
 NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& lists,
@@ -105,6 +110,7 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
 /// \param points 3 x n, finite, distinct.
 /// \param lists  n neighbour lists, the nearest of each point; unsorted, with or without the point
 ///               itself. 12 nearest neighbours are mostly enough.
+/// \param options agreement of stars, tangent planes, search for more, threads, progress
 /// \return the graph; the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for sizes that disagree, an index out of range, or options out of range;
 /// Cancelled.
@@ -115,5 +121,7 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
 /// points, nor that a chain of parts that hang by one node each (a needle) is tied everywhere.
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
                                       const LocalDelaunayOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

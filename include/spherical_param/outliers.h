@@ -6,6 +6,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup outliers
+/// @{
+
 /// Parameters of findOutliers().
 struct OutlierOptions {
   /// Outliers are further off than the mean by so many standard deviations; [0, 1000].
@@ -25,9 +28,9 @@ struct Outliers {
   /// distances there; that of an outlier as of the round in which it was found.
   std::vector<double> scores;
   int rounds = 0;  ///< passes over the points; the last one finds none
-  // Of the scores, each counted as 1 at most, of the points that are not outliers.
+  /// Mean of the scores, each counted as 1 at most, of the points that are not outliers.
   double mean = 0.0;
-  double standard_deviation = 0.0;
+  double standard_deviation = 0.0;  ///< of the same scores
   double threshold = 0.0;  ///< what they are compared to: no point but the outliers is above it
 };
 
@@ -58,6 +61,7 @@ struct Outliers {
 /// \param lists  n neighbour lists, the nearest of each point; unsorted, longer or shorter than k,
 ///               with or without the point itself. What is beyond the k nearest steps in for
 ///               outliers. A list of fewer than three others gives score 0.
+/// \param options how far off an outlier is, k, threads
 /// \return the outliers, the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for coordinates that are not finite, sizes that disagree, an index out of
 ///        range, or options out of range.
@@ -68,5 +72,7 @@ struct Outliers {
 /// spacing jumps by ten and more, points at the rim may be taken for outliers.
 Outliers findOutliers(const Positions& points, const NeighborLists& lists,
                       const OutlierOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

@@ -6,6 +6,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup point_set
+/// @{
+
 /// Partition of points by exact equality of their coordinates (-0 equals +0).
 struct DistinctPoints {
   /// n entries: vertex of each input point, in [0, input_of_vertex.size()).
@@ -17,6 +20,7 @@ struct DistinctPoints {
 /// Finds the points that share all three coordinates.
 ///
 /// \param points 3 x n, finite.
+/// \return the vertex of each point, and the first point of each vertex.
 /// \throw InvalidInput if a coordinate is not finite or n exceeds 2^30. Cost: O(n log n).
 DistinctPoints findDistinctPoints(const Positions& points);
 
@@ -24,15 +28,19 @@ DistinctPoints findDistinctPoints(const Positions& points);
 /// along a space-filling curve (G. M. Morton, 1966). Work that visits points in it finds their
 /// neighbours in the processor's cache.
 ///
-/// \param points 3 x n, finite. Cost: O(n log n).
+/// \param points 3 x n, finite.
+/// \return a permutation of 0 ... n - 1. Cost: O(n log n).
 std::vector<Index> spatialOrder(const Positions& points);
 
 /// Tells whether all points lie exactly in one plane (or line, or point), in exact arithmetic on
 /// the given doubles: a cloud that is flat but for rounding is not coplanar.
 ///
 /// \param points 3 x n, finite. The largest coordinate difference should be between 1e-90 and
+/// \return whether they do.
 /// 1e90: beyond that, products underflow or overflow (reconstruct() scales before it asks).
 /// Cost: O(n).
 bool areCoplanar(const Positions& points);
+
+/// @}
 
 }  // namespace spherical_param

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/embedding_history.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
@@ -19,6 +20,9 @@
 #include <vector>
 
 namespace spherical_param {
+
+/// \addtogroup pipeline
+/// @{
 
 /// State of the work, as told to Options::progress.
 struct Progress {
@@ -68,6 +72,12 @@ struct Options {
   /// mesh; the mesh is then optimised on the smoothed points.
   int smoothing_steps = 0;
 
+  /// What is kept of how the embedding unfolded, in Result::history; nothing, by default. It costs
+  /// about the memory of its frames, and with the multilevel solver the time of its coarsest level.
+  HistoryLimits history;
+  /// Fill Result::vertex_residuals and SurfaceDiagnosis::triangle_marks as well.
+  bool details = false;
+
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Told how far the work is, every second or two if it is long; returning false ends it with
   /// Cancelled. May be empty. Called from the calling thread only. The paper's own stages, and a
@@ -96,7 +106,7 @@ struct GraphReport {
 
 /// How the embedding ended.
 struct EmbeddingReport {
-  StopReason stop_reason = StopReason::IterationLimit;
+  StopReason stop_reason = StopReason::IterationLimit;  ///< why it ended
   int iterations = 0;             ///< steps made; of Newton's method for the multilevel solver
   double residual = 0.0;          ///< mean tangential Laplacian of Result::sphere [radius]
   std::vector<double> residuals;  ///< of the iteration, before each step and at its end [radius]
@@ -165,6 +175,12 @@ struct Result {
   std::vector<std::array<Index, 2>> self_intersections;
   /// 3 x v, the points after Options::smoothing_steps; empty without [unit of the input].
   Positions smoothed;
+  /// How the embedding of the attempt that counts unfolded, to Result::sphere; empty unless
+  /// Options::history asks for it.
+  EmbeddingHistory history;
+  /// v entries: length of the tangential Laplacian of Result::sphere [radius]; empty unless
+  /// Options::details asks for it.
+  std::vector<double> vertex_residuals;
 
   MeshTopology topology;       ///< checked on `triangles`
   MeshMeasures measures;       ///< of the mesh on the input's points
@@ -175,24 +191,29 @@ struct Result {
   /// in [0, 1]. Large where the embedding is folded, or the cloud is no closed genus-0 surface.
   double edges_outside_graph = 0.0;
 
-  GraphReport graph;
-  EmbeddingReport embedding;
-  TriangulationReport triangulation;
-  OptimizationReport optimization;
+  GraphReport graph;                    ///< how the neighbour graph came about
+  EmbeddingReport embedding;            ///< how the embedding ended
+  TriangulationReport triangulation;    ///< how the sphere was triangulated
+  OptimizationReport optimization;      ///< how the mesh was optimised
   SmoothingReport smoothing;            ///< all zero without smoothing
   std::vector<AttemptReport> attempts;  ///< in the order of the work; at least one
   std::vector<StageTime> stages;        ///< in the order of the work, of all attempts together
   std::vector<std::string> warnings;    ///< one sentence each; empty if nothing is to be said
 
+  /// Number of distinct points. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
 };
 
 /// The neighbours of each point that a caller should search for: Options::k or its default.
+///
+/// \param options of which Options::k and Options::graph count.
+/// \return the number, 3 and up.
 int neighborsToSearch(const Options& options);
 
 /// Checks the ranges of all options, as reconstruct() does first: for callers who have long work to
 /// do before, such as a neighbour search.
 ///
+/// \param options all of them.
 /// \throw InvalidInput with the option, its value and the remedy.
 void checkOptions(const Options& options);
 
@@ -204,6 +225,7 @@ void checkOptions(const Options& options);
 ///               topology sound, but not the geometry.
 /// \param lists  n neighbour lists, e.g. the k nearest of each point; unsorted, with or without the
 ///               point itself. Those of points that repeat an earlier point may be empty.
+/// \param options the defaults need no tuning.
 /// \param search asked for longer lists of some points, by local Delaunay neighbourhoods; of points
 ///               that repeat an earlier one it is never asked. Called from the calling thread.
 ///               May be empty: the lists are then all there is.
@@ -237,10 +259,15 @@ inline constexpr double kShareBeforeSearch = 0.2;
 
 /// The same with a search instead of lists: faster, since the points are put in order before it.
 ///
+/// \param points      as above.
 /// \param make_search called at the beginning, and again for further attempts. The search is asked
 ///                    for the neighborsToSearch() nearest of all points, then for more of some.
 ///                    Both are called from the calling thread; what they throw is passed on.
+/// \param options     the defaults need no tuning.
+/// \return the mesh, as above.
 Result reconstruct(const Positions& points, const NeighborSearchFactory& make_search,
                    const Options& options = {});
+
+/// @}
 
 }  // namespace spherical_param

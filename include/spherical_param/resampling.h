@@ -9,6 +9,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup resampling
+/// @{
+
 /// Regular triangulations of the unit sphere.
 enum class SphereGrid {
   Icosahedral,  ///< geodesic: each face of an icosahedron in f^2 triangles; 10 f^2 + 2 vertices
@@ -22,15 +25,28 @@ struct GridSphere {
   int frequency = 0;     ///< f: parts of each edge of the solid
 };
 
-/// The frequency whose number of vertices is nearest to `vertices`, at least 1.
+/// The frequency that comes nearest to a number of vertices.
+///
+/// \param grid     the kind of grid.
+/// \param vertices the number.
+/// \return the frequency, at least 1.
 int gridFrequency(SphereGrid grid, std::size_t vertices);
 
-/// Vertices of a grid. \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
+/// Vertices of a grid.
+///
+/// \param grid      the kind of grid.
+/// \param frequency parts of each edge of the solid.
+/// \return their number.
+/// \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
 std::size_t gridVertices(SphereGrid grid, int frequency);
 
 /// A regular triangulation of the sphere.
 ///
 /// The octahedral one has its directions where GeometryImage has its pixels.
+///
+/// \param grid the kind of grid.
+/// \param frequency parts of each edge of the solid.
+/// \return the sphere.
 /// \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
 GridSphere makeGridSphere(SphereGrid grid, int frequency);
 
@@ -44,6 +60,10 @@ struct ResampledMesh {
 
 /// The surface at the vertices of a triangulated sphere: closed, manifold, genus 0, and a map to
 /// the sphere that is one to one.
+///
+/// \param surface with its map.
+/// \param grid    that of makeGridSphere(), or any other.
+/// \return the mesh, with the triangles of the grid.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
 /// What untangle() did.
@@ -58,7 +78,10 @@ struct UntanglingReport {
 /// thin, they cut across folds of the surface. The mesh keeps its triangles, and its map to the
 /// sphere stays one to one; where nothing intersects, nothing changes.
 ///
-/// \param mesh of resampleSurface(); changed in place. The best that was found is kept.
+/// \param surface that the mesh was sampled from.
+/// \param mesh    of resampleSurface(); changed in place. The best that was found is kept.
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \return what was done.
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
@@ -76,6 +99,10 @@ struct IntersectionRemoval {
 /// An edge is flipped if the opposite angles become smaller in space (C. L. Lawson, 1977) and the
 /// new triangles are not flipped on the sphere: the mesh stays closed, manifold, of genus 0, and
 /// its map one to one. Vertices stay, and so do all triangles elsewhere. Normals stay.
+///
+/// \param mesh of resampleSurface(); changed in place.
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \return what was done.
 /// \throw InvalidInput for a mesh that is not as resampleSurface() makes it.
 /// The same for any number of threads.
 IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads = 0);
@@ -91,7 +118,11 @@ struct SurfacePoints {
 /// others are taken away (Yuksel 2015, "Sample elimination for generating Poisson disk sample
 /// sets").
 ///
-/// \param count 1 and up, up to 2^24. \throw InvalidInput otherwise.
+/// \param surface with its map.
+/// \param count   number of points, 1 and up, up to 2^24.
+/// \param seed    of the random points.
+/// \return the points, with their normals and places.
+/// \throw InvalidInput for another count.
 /// The same, bit by bit, for the same seed and any number of threads.
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed = 1);
 
@@ -104,21 +135,37 @@ struct GeometryImage {
   Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
 };
 
-/// The direction of each pixel of a geometry image, 3 x side^2, unit vectors.
+/// The direction of each pixel of a geometry image.
+///
+/// \param side pixels along each side.
+/// \return 3 x side^2, unit vectors, row by row.
 /// \throw InvalidInput for a side that is even or below 3, or above 16385.
 Positions geometryImageDirections(int side);
 
+/// The geometry image of a surface.
+///
+/// \param surface with its map.
+/// \param side    pixels along each side.
+/// \return the image.
 /// \throw InvalidInput as geometryImageDirections().
 GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
 
 /// The geometry image of a mesh that has the vertices and triangles of makeGridSphere() for
 /// SphereGrid::Octahedral, such as that of resampleSurface() or untangle().
+///
+/// \param mesh with such vertices, which may have slid.
+/// \return the image, whose pixels are the vertices.
 /// \throw InvalidInput for another number of vertices.
 GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
 
 /// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Where pixels of the
 /// border that are the same place differ, their mean counts.
+///
+/// \param image of any origin.
+/// \return the mesh, with normals.
 /// \throw InvalidInput for a wrong side or number of pixels, or positions that are not finite.
 ResampledMesh meshOfGeometryImage(const GeometryImage& image);
+
+/// @}
 
 }  // namespace spherical_param

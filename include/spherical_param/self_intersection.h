@@ -8,6 +8,10 @@
 
 namespace spherical_param {
 
+/// \addtogroup checks
+/// @{
+
+/// Parameters of findSelfIntersections().
 struct SelfIntersectionOptions {
   /// Threads to use; 0: as many as OpenMP would, at most 1024. The answer is the same for any.
   int threads = 0;
@@ -31,6 +35,7 @@ struct SelfIntersectionOptions {
 ///
 /// \param points    3 x n, finite, any unit.
 /// \param triangles 3 x m, indices in [0, n); need not be closed, manifold or oriented.
+/// \param options threads, progress
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw InvalidInput for an index out of range, a coordinate that is not finite, threads outside
 /// [0, 1024]; Cancelled. Cost: O(m log m) and the pairs whose bounding boxes overlap.
@@ -41,10 +46,17 @@ findSelfIntersections(const Positions& points, const Triangles& triangles,
 /// The pairs of which at least one triangle is in a set: what has to be asked again after that set
 /// has changed.
 ///
-/// \param of triangles, in [0, m), any order; repetitions count once. \see above for the rest.
+/// \param points    3 x n, finite, any unit.
+/// \param triangles 3 x m, indices in [0, n).
+/// \param of        triangles, in [0, m), any order; repetitions count once.
+/// \param options   threads, progress
+/// \return {lower, higher} indices of triangles, ascending, each pair once.
+/// \throw as findSelfIntersections().
 /// Cost: O(m) and that of the set.
 std::vector<std::array<Index, 2>>
 findSelfIntersectionsOf(const Positions& points, const Triangles& triangles,
                         const std::vector<Index>& of, const SelfIntersectionOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

@@ -4,6 +4,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup smoothing
+/// @{
+
 /// How noise is taken off a surface. Each is a low-pass filter: with the uniform Laplacian of the
 /// mesh (the mean of the neighbours minus the point), whose frequencies k lie in [0, 3/2], a part
 /// of the surface of frequency k is multiplied by a gain.
@@ -51,6 +54,7 @@ struct Smoothing {
 /// \param points    3 x n, finite. Points of no triangle stay where they are. Coordinates should
 ///                  differ by 1e-90 to 1e90 at most, so that the volume can be formed.
 /// \param triangles 3 x m, closed, manifold, consistently oriented, any genus and number of pieces.
+/// \param options filter, strength, threads
 /// \return the points, the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for coordinates that are not finite, an index or option out of range, or a
 ///        mesh that is not as said.
@@ -62,5 +66,7 @@ struct Smoothing {
 /// of (volume_after tells).
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
                         const SmoothingOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

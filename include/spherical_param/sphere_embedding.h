@@ -3,12 +3,15 @@
 #include "spherical_param/graph_hierarchy.h"
 #include "spherical_param/types.h"
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <vector>
 
 namespace spherical_param {
+
+/// \addtogroup embedding
+/// @{
 
 /// How a graph is embedded on the sphere.
 enum class EmbeddingMethod {
@@ -34,6 +37,32 @@ enum class StopReason {
   Unfinished,      ///< convergence was not asked for: the last smoothing sweep was made
 };
 
+/// What was done last to a state of an embedding.
+enum class EmbeddingStep {
+  Start,      ///< nothing yet on this level: the very start, or what came from the coarser level
+  Sweeps,     ///< the smoothing sweeps of a level
+  Newton,     ///< a step of Newton's method; number 0 is the state before the first
+  Iteration,  ///< a step of embedOnSphere(); number 0 is the state before the first
+  End,        ///< the embedding that is returned
+};
+
+/// A state of an embedding on its way to the result, as an observer is shown it.
+struct EmbeddingState {
+  std::size_t level = 0;  ///< of the hierarchy: 0 is the graph itself, 1 the next coarser
+  std::size_t nodes = 0;  ///< of the level
+  EmbeddingStep step = EmbeddingStep::Start;  ///< kind of the work before it
+  int iteration = 0;                          ///< steps of this kind that were made on this level
+  std::optional<double>
+      residual;  ///< mean tangential Laplacian, where the solver knows it [radius]
+  /// Makes a copy of the state, 3 x nodes, unit vectors; to be called before the observer returns.
+  /// Many states are shown: ask for those alone that are of use.
+  std::function<Positions()> directions;
+};
+
+/// Shown the states of an embedding one after the other, from the calling thread only. What it
+/// throws is passed on. The result is the same, bit by bit, whether somebody looks or not.
+using EmbeddingObserver = std::function<void(const EmbeddingState&)>;
+
 /// Parameters of embedOnSphere().
 struct EmbeddingOptions {
   EdgeWeights weights = EdgeWeights::Adaptive;  ///< weights of the Laplacian
@@ -50,19 +79,21 @@ struct EmbeddingOptions {
   /// Called with (iteration, residual) after each evaluation of the residual; returning false
   /// ends the work with Cancelled. May be empty. Called from the calling thread only.
   std::function<bool(int, double)> progress;
+  EmbeddingObserver observer = {};  ///< shown every iteration, and the end; may be empty
 };
 
 /// An embedding of a graph on the unit sphere and how it was reached.
 struct Embedding {
-  Positions directions;  ///< 3 x n, unit vectors, column i = node i
-  StopReason stop_reason = StopReason::IterationLimit;
-  int iterations = 0;     ///< steps made
+  Positions directions;                                 ///< 3 x n, unit vectors, column i = node i
+  StopReason stop_reason = StopReason::IterationLimit;  ///< why it ended
+  int iterations = 0;                                   ///< steps made
   double residual = 0.0;  ///< mean length of the tangential Laplacian at `directions` [radius]
   /// Mean length of the tangential Laplacian before each step, and of the last state:
   /// iterations + 1 entries (Figures 6 and 7 of the paper).
   std::vector<double> residuals;
   double centroid_norm = 0.0;  ///< length of the mean of `directions`, in [0, 1]; 1: collapsed
 
+  /// Whether the tolerance was reached. \return true if it was
   bool converged() const { return stop_reason == StopReason::Converged; }
 };
 
@@ -70,6 +101,7 @@ struct Embedding {
 /// of the paper. A point at the centroid itself is given a fixed direction.
 ///
 /// \param points 3 x n, finite.
+/// \return 3 x n, unit vectors.
 Positions projectFromCentroid(const Positions& points);
 
 /// Directions that are never collapsed, whatever the points: the rank of a point along the cloud's
@@ -77,6 +109,7 @@ Positions projectFromCentroid(const Positions& points);
 /// axis its longitude. The start of last resort.
 ///
 /// \param points 3 x n, finite.
+/// \return 3 x n, unit vectors.
 Positions projectByRank(const Positions& points);
 
 /// Embeds a graph on the unit sphere by the iteration of Zwicker and Gotsman 2004, Figure 3:
@@ -87,6 +120,7 @@ Positions projectByRank(const Positions& points);
 ///
 /// \param graph      connected, with positive edge lengths.
 /// \param start      3 x n, finite: the points themselves (u = p) or any other start.
+/// \param options weights, damping, when to end, threads, progress
 /// \return the last state. The result is bit-identical for any number of threads.
 /// \throw InvalidInput for sizes that disagree or options out of range; Cancelled.
 /// Cost: O(edges) per iteration.
@@ -112,11 +146,16 @@ struct MultilevelOptions {
   /// Called with (share done in [0, 1], residual of the level at hand); returning false ends the
   /// work with Cancelled. May be empty. Called from the calling thread only.
   std::function<bool(double, double)> progress;
+  /// Shown the start that is kept and each step of its solution, then each finer level as it is
+  /// interpolated, after its sweeps, and at each step of Newton's method, and the end. May be
+  /// empty. The coarsest level is solved once more for it. Where a level collapses, its states are
+  /// followed by those of the solution with a barrier.
+  EmbeddingObserver observer = {};
 };
 
 /// Work on one level of a multilevel embedding.
 struct LevelReport {
-  std::size_t nodes = 0;
+  std::size_t nodes = 0;      ///< of the level's graph
   std::size_t edges = 0;      ///< undirected
   int sweeps = 0;             ///< smoothing sweeps
   int newton_iterations = 0;  ///< steps of Newton's method
@@ -140,6 +179,7 @@ struct MultilevelEmbedding {
   std::vector<LevelReport> levels;  ///< the finest (the graph itself) first
   std::vector<double> residuals;    ///< of the finest level, before each Newton step and at the end
 
+  /// Whether the tolerance was reached. \return true if it was
   bool converged() const { return stop_reason == StopReason::Converged; }
 };
 
@@ -177,6 +217,7 @@ struct MultilevelEmbedding {
 ///
 /// \param graph     connected, with positive edge lengths.
 /// \param hierarchy of that graph. Coarsest levels of some hundred nodes suit best.
+/// \param options weights, exponent, sweeps, tolerance, starts, threads, progress
 /// \return the embedding, the same, bit by bit, for any number of threads. If all starts collapse
 ///         even with a barrier: StopReason::Collapsed and no columns.
 /// \throw InvalidInput for a hierarchy of another graph or options out of range; Cancelled.
@@ -189,13 +230,24 @@ struct MultilevelEmbedding {
 MultilevelEmbedding embedMultilevel(const Graph& graph, const GraphHierarchy& hierarchy,
                                     const MultilevelOptions& options = {});
 
-/// Mean length of the tangential Laplacian of an embedding [radius of the sphere], computed apart
-/// from the solvers, one edge after the other.
+/// Length of the tangential Laplacian of an embedding at each node [radius of the sphere], computed
+/// apart from the solvers, one edge after the other.
 ///
 /// \param graph       as for embedOnSphere().
 /// \param directions  3 x n, unit vectors.
+/// \param weights     of the Laplacian.
 /// \param exponent    p of the energy of adaptive weights.
+/// \return n entries.
+std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
+                                               EdgeWeights weights, double exponent = 3.0);
+
+/// The mean of tangentialLaplacianLengths().
+///
+/// \param graph, directions, weights, exponent as there.
+/// \return 0 without nodes.
 double meanTangentialLaplacian(const Graph& graph, const Positions& directions, EdgeWeights weights,
                                double exponent = 3.0);
+
+/// @}
 
 }  // namespace spherical_param

@@ -8,6 +8,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup sphere_map
+/// @{
+
 /// A quantity over the triangles of a mesh, each weighted by its area in space.
 struct DistortionStatistics {
   double mean = 0.0;  ///< weighted mean
@@ -39,6 +42,8 @@ struct MapDistortion {
 ///
 /// \param points    3 x v, the mesh in space; \param sphere 3 x v, unit vectors.
 /// \param triangles 3 x m.
+/// \param threads   OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \return flips, distortion of angles and areas, stretch.
 /// \throw InvalidInput for sizes that do not match or an index out of range. Cost: O(m log m).
 MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,
                                    const Positions& sphere, int threads = 0);
@@ -79,6 +84,8 @@ struct SphereMap {
 ///                  one piece, every vertex used.
 /// \param start     3 x v, unit vectors: the embedding; it gives the map its orientation in space,
 ///                  and may have flipped triangles.
+/// \param options areas against angles, sweeps, threads, progress
+/// \return the map, and how good it is.
 /// \throw InvalidInput for a mesh or start that is not as said; ComputeError; Cancelled.
 ///
 /// Coarse to fine over a hierarchy of the mesh, after E. Praun and H. Hoppe (2003): vertices are
@@ -90,5 +97,7 @@ struct SphereMap {
 /// The same, bit by bit, for any number of threads. Cost: O(v log v).
 SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
                            const Positions& start, const SphereMapOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

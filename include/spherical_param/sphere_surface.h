@@ -7,6 +7,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup sphere_map
+/// @{
+
 /// Where a direction meets a map to the sphere.
 struct SphereLocation {
   Index triangle = 0;  ///< the triangle that holds the direction
@@ -49,39 +52,57 @@ class SphereSurface {
 public:
   /// \param points    3 x v, finite; \param sphere 3 x v, unit vectors.
   /// \param triangles 3 x (2v - 4), closed, genus 0; none flipped on the sphere.
+  /// \param options   fit, threads
   /// \throw InvalidInput for a mesh that is not as said, or with a flipped triangle on the sphere.
   /// Cost: O(v log v).
   SphereSurface(const Positions& points, const Triangles& triangles, const Positions& sphere,
                 const SphereSurfaceOptions& options = {});
   ~SphereSurface();
+  /// Takes a surface over. \param other is left without one
   SphereSurface(SphereSurface&& other) noexcept;
+  /// Takes a surface over. \param other is left without one \return this one
   SphereSurface& operator=(SphereSurface&& other) noexcept;
   SphereSurface(const SphereSurface& other) = delete;
   SphereSurface& operator=(const SphereSurface& other) = delete;
 
-  const Positions& points() const;     ///< as given
-  const Triangles& triangles() const;  ///< as given
-  const Positions& sphere() const;     ///< as given
-  double area() const;                 ///< of the mesh in space [squared unit of the input]
+  /// Vertices in space. \return as given
+  const Positions& points() const;
+  /// Triangles. \return as given
+  const Triangles& triangles() const;
+  /// Vertices on the sphere. \return as given
+  const Positions& sphere() const;
+  /// Area of the mesh in space. \return [squared unit of the input]
+  double area() const;
 
   /// The triangle that holds a direction, the same for directions of any length > 0. On an edge or
   /// at a corner one of the triangles that share it. O(log v), typically.
+  /// \param direction of any length > 0.
+  /// \return the triangle, and where in it.
   /// \throw InvalidInput for a direction that is zero or not finite.
   SphereLocation locate(const Eigen::Vector3d& direction) const;
 
-  /// Position and normal at a direction. \throw as locate()
+  /// Position and normal at a direction.
+  /// \param direction of any length > 0.
+  /// \return the point of the surface.
+  /// \throw as locate()
   SurfaceSample evaluate(const Eigen::Vector3d& direction) const;
 
   /// Position and normal at a known location, such as one of locate(), and any weights >= 0 with
   /// sum 1 in any triangle.
+  /// \param location triangle and weights.
+  /// \return the point of the surface.
   SurfaceSample evaluate(const SphereLocation& location) const;
 
-  /// The same for the columns of `directions`, on several threads.
+  /// The same for many directions, on several threads.
+  /// \param directions 3 x n, each of any length > 0.
+  /// \return one point for each column.
   SurfaceSamples evaluate(const Positions& directions) const;
 
 private:
   struct Data;
   std::unique_ptr<const Data> data_;
 };
+
+/// @}
 
 }  // namespace spherical_param

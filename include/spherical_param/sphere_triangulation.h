@@ -6,6 +6,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup triangulation
+/// @{
+
 /// How the points on the sphere are triangulated.
 enum class TriangulationMethod {
   Qhull,        ///< convex hull by qhull (Zwicker and Gotsman 2004, section 3), completed
@@ -52,14 +55,22 @@ struct SphereTriangulation {
 /// qhull nor on rounding.
 ///
 /// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
+/// \param options    method, progress
+/// \return the triangles, and how they came about.
 /// \throw InvalidInput for n < 4, too many points, or a vector that is not of unit length;
 /// ComputeError if qhull runs out of memory; Cancelled. Cost: O(n log n), typically.
 SphereTriangulation triangulateSphere(const Positions& directions,
                                       const TriangulationOptions& options);
 
 /// The same without a callback.
+///
+/// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
+/// \param method     how.
+/// \return the triangles, and how they came about.
 SphereTriangulation
 triangulateSphere(const Positions& directions,
                   TriangulationMethod method = TriangulationMethod::Incremental);
+
+/// @}
 
 }  // namespace spherical_param

@@ -4,10 +4,14 @@
 #include "spherical_param/types.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace spherical_param {
+
+/// \addtogroup checks
+/// @{
 
 /// What a cloud shows, judged by its mesh and its neighbour graph.
 enum class SurfaceKind {
@@ -16,6 +20,15 @@ enum class SurfaceKind {
   Handles,       ///< the surface has handles, which the mesh cuts
   SeveralParts,  ///< there are several surfaces, which the mesh joins
   Unclear,       ///< the mesh leaves the graph in too many places: noise, or the mesh is folded
+};
+
+/// Bits of SurfaceDiagnosis::triangle_marks.
+struct TriangleMarks {
+  static constexpr std::uint8_t self_intersection = 1;  ///< intersects another: of a Result alone
+  static constexpr std::uint8_t lid = 2;                ///< part of a lid
+  static constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
+  static constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
+  static constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
 };
 
 /// Parameters of diagnoseSurface(). The defaults need no tuning.
@@ -28,18 +41,19 @@ struct DiagnosisOptions {
   double part_gap = 4.0;
   /// At most so many vertices are listed of each finding.
   std::size_t max_vertices = 64;
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  bool mark_triangles = false;  ///< fill SurfaceDiagnosis::triangle_marks
 };
 
 /// Connected triangles over a place without points that is wide against the distance of the points
 /// around it: an opening of the surface, or a cut through a handle or between parts.
 struct Lid {
   SurfaceKind cause = SurfaceKind::Open;  ///< or Handles, SeveralParts, of which it is a trace
-  std::size_t triangles = 0;
-  double area = 0.0;             ///< [squared unit of the input]
-  double boundary_length = 0.0;  ///< of all its rims [unit of the input]
-  double diameter = 0.0;         ///< of the disc that area and boundary make [unit of the input]
-  double spacing = 0.0;          ///< distance of the points at its rim [unit of the input]
+  std::size_t triangles = 0;              ///< of the mesh, over the place
+  double area = 0.0;                      ///< [squared unit of the input]
+  double boundary_length = 0.0;           ///< of all its rims [unit of the input]
+  double diameter = 0.0;  ///< of the disc that area and boundary make [unit of the input]
+  double spacing = 0.0;   ///< distance of the points at its rim [unit of the input]
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centroid of its triangles
   std::vector<Index> vertices;                       ///< of its rim, ascending
 };
@@ -71,12 +85,20 @@ struct SurfaceDiagnosis {
   /// Share of the mesh's edges that join points more than two steps apart in the graph, in [0, 1].
   double edges_outside_graph = 0.0;
   std::string summary;  ///< one sentence
+  /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless
+  /// DiagnosisOptions::mark_triangles asks for it.
+  std::vector<std::uint8_t> triangle_marks;
 
+  /// Whether nothing speaks against a closed genus-0 surface. \return true if nothing does
   bool looksClosedGenus0() const { return kind == SurfaceKind::ClosedGenus0; }
-  std::size_t openings() const;  ///< lids that are a trace of nothing else
+  /// Lids that are a trace of nothing else. \return their number
+  std::size_t openings() const;
 };
 
 /// SurfaceDiagnosis::summary, from all else: for who changed the unit of what was found.
+///
+/// \param diagnosis of which all but the summary counts.
+/// \return one sentence.
 std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 
 /// Tells whether a cloud looks like a closed genus-0 surface: the mesh always is one, whatever the
@@ -89,6 +111,7 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// \param graph     n nodes, lengths in the unit of the points: local Delaunay neighbourhoods, on
 ///                  which all thresholds were measured.
 /// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
+/// \param options the defaults need no tuning.
 /// \return what was found, the same for any number of threads.
 /// \throw InvalidInput for sizes that disagree, no triangles, an index or an option out of range.
 /// Cost: O(n) where nothing is wrong.
@@ -101,5 +124,7 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
                                  const DiagnosisOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

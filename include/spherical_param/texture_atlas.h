@@ -8,6 +8,9 @@
 
 namespace spherical_param {
 
+/// \addtogroup texture
+/// @{
+
 /// How the sphere is laid out in the unit square, u to the right and v up.
 enum class SphereChart {
   /// Longitude and latitude: u = (1 + atan2(y, x) / pi) / 2, v = 1/2 + asin(z) / pi. Cut along the
@@ -48,21 +51,31 @@ struct TextureAtlasOptions {
 /// Lays a mesh out in a chart of the sphere.
 ///
 /// \param triangles 3 x m, closed, genus 0; \param sphere 3 x v, unit vectors; none flipped.
+/// \param options   chart and margin
+/// \return the mesh, cut where the chart is, with its texture coordinates.
 /// \throw InvalidInput for a mesh that is not as said, or a triangle flipped on the sphere.
 TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& sphere,
                               const TextureAtlasOptions& options = {});
 
-/// Values of the mesh's vertices (positions, colours ...), one a column, at those of the atlas.
+/// Values of the mesh's vertices (positions, colours ...) at those of the atlas.
+///
+/// \param atlas  of that mesh.
+/// \param values v columns, one for each vertex of the mesh.
+/// \return a column for each vertex of the atlas.
 Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& values);
 
-/// The place of a direction in a chart, (u, v) in [0, 1]; on a cut, one of its sides.
+/// The place of a direction in a chart.
+///
+/// \param options   chart and margin
+/// \param direction of any length but zero.
+/// \return (u, v) in [0, 1]; on a cut, one of its sides.
 Eigen::Vector2d chartCoordinates(const TextureAtlasOptions& options,
                                  const Eigen::Vector3d& direction);
 
 /// An image of 8 bits a channel, row by row from the top, three channels a pixel.
 struct TextureImage {
-  int width = 0;
-  int height = 0;
+  int width = 0;                      ///< pixels
+  int height = 0;                     ///< pixels
   std::vector<std::uint8_t> pixels;   ///< 3 x width x height, RGB
   std::vector<std::uint8_t> covered;  ///< width x height; 1: in a triangle, 2: gutter, 0: neither
 };
@@ -78,16 +91,26 @@ struct BakeOptions {
 
 /// Paints the colours of a mesh's vertices into a texture, interpolated over its triangles.
 ///
-/// \param colors 3 x v, RGB in [0, 255]: one for each vertex of the mesh (not of the atlas).
+/// \param atlas   of the mesh.
+/// \param colors  3 x v, RGB in [0, 255]: one for each vertex of the mesh (not of the atlas).
+/// \param options size of the image, gutter, threads
+/// \return the image.
 /// \throw InvalidInput for options out of range or a number of colours that does not match.
 /// The same, byte by byte, for any number of threads.
 TextureImage bakeColors(const TextureAtlas& atlas,
                         const Eigen::Matrix<double, 3, Eigen::Dynamic>& colors,
                         const BakeOptions& options = {});
 
-/// A checkerboard on the sphere, for looking at a map: `cells` squares along each quarter of a
-/// great circle, coloured by the octant. \param sphere 3 x v: of each vertex of the mesh.
+/// A checkerboard on the sphere, for looking at a map, coloured by the octant.
+///
+/// \param atlas   of the mesh.
+/// \param sphere  3 x v: of each vertex of the mesh.
+/// \param cells   squares along each quarter of a great circle.
+/// \param options size of the image, gutter, threads
+/// \return the image.
 TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere, int cells = 8,
                               const BakeOptions& options = {});
+
+/// @}
 
 }  // namespace spherical_param

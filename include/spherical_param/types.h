@@ -10,6 +10,9 @@
 /// It depends on Eigen and the standard library only, reads and writes no files and prints nothing.
 namespace spherical_param {
 
+/// \addtogroup types
+/// @{
+
 /// Index of a point, vertex or triangle. 32 bits: a cloud has fewer than 2^30 points.
 using Index = std::int32_t;
 
@@ -26,7 +29,8 @@ struct NeighborLists {
   std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `indices`, ascending, the first 0
   std::vector<Index> indices;           ///< neighbours, each in [0, n)
 
-  std::size_t size() const { return offsets.size() - 1; }  ///< number of lists, n
+  /// Number of lists. \return n
+  std::size_t size() const { return offsets.size() - 1; }
 };
 
 /// Undirected graph in compressed rows: every edge is stored at both of its ends.
@@ -36,8 +40,12 @@ struct Graph {
   std::vector<Index> neighbors;         ///< 2 x edges entries
   std::vector<double> lengths;  ///< Euclidean length of each entry's edge [unit of the input], > 0
 
-  std::size_t size() const { return offsets.size() - 1; }         ///< number of nodes, n
-  std::size_t edgeCount() const { return neighbors.size() / 2; }  ///< number of undirected edges
+  /// Number of nodes. \return n
+  std::size_t size() const { return offsets.size() - 1; }
+  /// Number of undirected edges. \return half the number of entries
+  std::size_t edgeCount() const { return neighbors.size() / 2; }
 };
+
+/// @}
 
 }  // namespace spherical_param

@@ -132,4 +132,17 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   return measures;
 }
 
+Positions areaWeightedNormals(const Positions& points, const Triangles& triangles) {
+  internal::checkTriangles("areaWeightedNormals", triangles, points.cols());
+  Positions normals = Positions::Zero(3, points.cols());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Eigen::Vector3d a = points.col(triangles(0, t));
+    const Eigen::Vector3d normal =
+        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
+    for (Eigen::Index k = 0; k < 3; ++k)
+      normals.col(triangles(k, t)) += normal;
+  }
+  return normals;
+}
+
 }  // namespace spherical_param

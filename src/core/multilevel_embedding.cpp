@@ -109,6 +109,7 @@ public:
     }
     for (std::size_t l = level; l-- > 0;) {
       u = interpolated(l, u);
+      observe(l, EmbeddingStep::Start, 0, std::nullopt, u);
       const double before = share_before_[l];
       const double passes = kPassesBefore + options_.sweeps + kPassesOfResidual;
       report(before + (share_after_[l] - before) * kPassesOfInterpolation / passes, residual_);
@@ -120,11 +121,17 @@ public:
           },
           u);
       result_.levels[l].sweeps = options_.sweeps;
-      if (isSolved(l) && !(l == 0 && options_.tolerance))  // which finish() solves further
+      const bool is_last = l == 0;  // finish() has the rest
+      const bool solves = isSolved(l) && !(is_last && options_.tolerance);
+      if (solves || is_last)
+        observe(l, EmbeddingStep::Sweeps, options_.sweeps, std::nullopt, u);
+      if (solves)
         solveUncollapsed(l, std::nullopt, u);
-      if (l == 0)
-        break;  // finish() has the rest
+      if (is_last)
+        break;
       result_.levels[l].residual = residualOf(l, u);
+      if (!solves)
+        observe(l, EmbeddingStep::Sweeps, options_.sweeps, result_.levels[l].residual, u);
       report(share_after_[l], result_.levels[l].residual);
     }
     finish(u);
@@ -198,6 +205,28 @@ private:
       throw Cancelled("embedMultilevel: cancelled by the progress callback");
   }
 
+  void observe(std::size_t l, EmbeddingStep step, int iteration, std::optional<double> residual,
+               const Positions& u) const {
+    if (options_.observer)
+      options_.observer({l, graphOf(l).size(), step, iteration, residual, [&u] { return u; }});
+  }
+
+  /// Shows the start that was kept on its way. Several threads had several of them at the same
+  /// time: only now is it known which one to look at, and its states were not kept.
+  void showStart(std::size_t l) {
+    if (!options_.observer)
+      return;
+    observe(l, EmbeddingStep::Start, 0, std::nullopt,
+            internal::planarStart(graphOf(l), best_center_));
+    Start start;
+    MultigridPreconditioner preconditioner = preconditionerOf(l);
+    const auto progress = [&](int iteration, double residual) {
+      report(share_, residual);
+      observe(l, EmbeddingStep::Newton, iteration, residual, start.u);
+    };
+    solveStart(l, best_center_, preconditioner, progress, start);
+  }
+
   /// The start on the coarsest level that has a good one, or else the last one found. If none
   /// is, as on graphs of a few nodes or with wide gaps, that on the coarsest level with a barrier.
   Positions solveCoarsest(std::size_t& level) {
@@ -220,6 +249,8 @@ private:
       level = hierarchy_.levels.size();
       best = solveStarts(level);
     }
+    if (best.cols() > 0)
+      showStart(level);
     if (best.cols() > 0 && !isAdaptive())
       solve(level, energyAt(level, best), std::nullopt, best);
     return best;
@@ -289,7 +320,8 @@ private:
       for (const Start& start : starts)
         if (start.error)
           std::rethrow_exception(start.error);
-      for (Start& start : starts) {
+      for (std::size_t i = 0; i < starts.size(); ++i) {
+        Start& start = starts[i];
         ++result_.starts;
         if (isCollapsed(start.u) || !std::isfinite(start.value)) {
           ++result_.collapsed_starts;
@@ -297,6 +329,7 @@ private:
           least = start.value;
           best = std::move(start.u);
           best_report = start.report;
+          best_center_ = centers[first + i];
         }
       }
     }
@@ -397,7 +430,8 @@ private:
   /// minimize() with a level's own report.
   NewtonReport solve(std::size_t l, const EmbeddingEnergy& energy, std::optional<double> tolerance,
                      Positions& u) {
-    const auto progress = [&, first = 0.0](int, double residual) mutable {
+    const auto progress = [&, first = 0.0](int iteration, double residual) mutable {
+      observe(l, EmbeddingStep::Newton, iteration, residual, u);
       if (l > 0 || !tolerance)
         return report(share_, residual);
       first = std::max(first, residual);
@@ -441,6 +475,7 @@ private:
     result_.centroid_norm = u.rowwise().mean().norm();
     if (isCollapsed(u))
       result_.stop_reason = StopReason::Collapsed;
+    observe(0, EmbeddingStep::End, 0, result_.residual, u);
     result_.directions = std::move(u);
   }
 
@@ -450,6 +485,7 @@ private:
   MultilevelEmbedding result_;
   double share_ = 0.0;     ///< of the work that is done
   double residual_ = 0.0;  ///< told last
+  Index best_center_ = 0;  ///< of the start that solveStarts() kept last
   /// Of the work that is done before and after each level, about.
   std::vector<double> share_before_;
   std::vector<double> share_after_;

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -90,6 +91,7 @@ LocalDelaunayOptions localDelaunayOptions(const Options& options) {
 DiagnosisOptions diagnosisOptions(const Options& options) {
   DiagnosisOptions diagnosis;
   diagnosis.threads = options.threads;
+  diagnosis.mark_triangles = options.details;
   return diagnosis;
 }
 
@@ -296,6 +298,12 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
   result.triangles = result.triangles.unaryExpr(vertex);
   permute(result.sphere);
   permute(result.smoothed);
+  std::transform(result.history.vertices.begin(), result.history.vertices.end(),
+                 result.history.vertices.begin(), vertex);
+  std::vector<double> of_vertices(result.vertex_residuals.size());
+  for (std::size_t node = 0; node < of_vertices.size(); ++node)
+    of_vertices[static_cast<std::size_t>(vertex_of_node[node])] = result.vertex_residuals[node];
+  result.vertex_residuals = std::move(of_vertices);
   for (Bridge& bridge : result.graph.bridges) {
     bridge.from = vertex(bridge.from);
     bridge.to = vertex(bridge.to);
@@ -364,9 +372,26 @@ NeighborGraph buildGraph(const Positions& points, const Neighbors& neighbors, co
   return buildLocalDelaunayGraph(points, neighbors.lists, graph);
 }
 
-Positions embedIteratively(const Graph& graph, const Positions& points, const Options& options,
-                           StageLog& log, EmbeddingReport& report) {
+/// An embedding, and how it came about.
+struct Unfolding {
+  Positions directions;
+  EmbeddingReport report;
+  EmbeddingHistory history;
+};
+
+/// Adds a state that no solver came to.
+void endAt(const Positions& directions, const EmbeddingReport& report,
+           EmbeddingRecorder& recorder) {
+  recorder({0, static_cast<std::size_t>(directions.cols()), EmbeddingStep::End, 0, report.residual,
+            [&] { return directions; }});
+}
+
+void embedIteratively(const Graph& graph, const Positions& points, const Options& options,
+                      StageLog& log, EmbeddingRecorder& recorder, Unfolding& unfolding) {
+  EmbeddingReport& report = unfolding.report;
   EmbeddingOptions embedding = iterativeOptions(options);
+  if (options.history.vertices > 0)
+    embedding.observer = std::ref(recorder);
   if (options.progress)
     embedding.progress = [&](int iteration, double residual) {
       log.report("embedding", iteration / (options.max_iterations + 1.0), iteration, residual);
@@ -378,23 +403,21 @@ Positions embedIteratively(const Graph& graph, const Positions& points, const Op
   report.residual = outcome.residual;
   report.residuals = std::move(outcome.residuals);
   report.centroid_norm = outcome.centroid_norm;
-  return std::move(outcome.directions);
+  unfolding.directions = std::move(outcome.directions);
 }
 
-Positions embedByLevels(const Graph& graph, const Options& options, std::uint32_t seed,
-                        StageLog& log, EmbeddingReport& report) {
+void embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy, const Options& options,
+                   StageLog& log, EmbeddingRecorder& recorder, Unfolding& unfolding) {
+  EmbeddingReport& report = unfolding.report;
   MultilevelOptions embedding = multilevelOptions(options);
+  if (options.history.vertices > 0)
+    embedding.observer = std::ref(recorder);
   if (options.progress)
     embedding.progress = [&](double share, double residual) {
       log.report("embedding", kHierarchyShare + (1.0 - kHierarchyShare) * share, 0, residual);
       return true;
     };
-  HierarchyOptions hierarchy;
-  hierarchy.seed = seed;
-  hierarchy.threads = options.threads;
-  hierarchy.progress = log.part("embedding", 0.0, kHierarchyShare);
-  MultilevelEmbedding outcome =
-      embedMultilevel(graph, buildGraphHierarchy(graph, hierarchy), embedding);
+  MultilevelEmbedding outcome = embedMultilevel(graph, hierarchy, embedding);
   report.stop_reason = outcome.stop_reason;
   report.residual = outcome.residual;
   report.residuals = std::move(outcome.residuals);
@@ -406,29 +429,46 @@ Positions embedByLevels(const Graph& graph, const Options& options, std::uint32_
   report.starts = outcome.starts;
   report.collapsed_starts = outcome.collapsed_starts;
   report.added_barrier = outcome.added_barrier;
-  return std::move(outcome.directions);
+  unfolding.directions = std::move(outcome.directions);
 }
 
 /// The embedding, or a start that is not collapsed where the solver collapses.
-Positions embed(const Graph& graph, const Positions& points, const Plan& plan,
-                const Options& options, StageLog& log, EmbeddingReport& report) {
-  if (plan.radial_start) {
-    Positions directions = projectFromCentroid(points);
-    report.stop_reason = StopReason::Unfinished;
+Unfolding embed(const Graph& graph, const Positions& points, const Plan& plan,
+                const Options& options, StageLog& log) {
+  Unfolding unfolding;
+  EmbeddingReport& report = unfolding.report;
+  const auto use = [&](const Positions& directions, EmbeddingRecorder& recorder) {
+    unfolding.directions = directions;
     report.residual = meanTangentialLaplacian(graph, directions, options.weights, options.exponent);
     report.centroid_norm = directions.rowwise().mean().norm();
-    return directions;
+    endAt(directions, report, recorder);
+  };
+  if (plan.radial_start) {
+    EmbeddingRecorder recorder(graph.size(), options.history);
+    report.stop_reason = StopReason::Unfinished;
+    use(projectFromCentroid(points), recorder);
+    unfolding.history = recorder.take();
+    return unfolding;
   }
-  Positions directions = options.solver == EmbeddingMethod::Iterative
-                             ? embedIteratively(graph, points, options, log, report)
-                             : embedByLevels(graph, options, plan.seed, log, report);
-  if (report.stop_reason != StopReason::Collapsed)
-    return directions;
-  report.fallback_start = true;
-  directions = projectByRank(points);
-  report.residual = meanTangentialLaplacian(graph, directions, options.weights, options.exponent);
-  report.centroid_norm = directions.rowwise().mean().norm();
-  return directions;
+  GraphHierarchy hierarchy;
+  if (options.solver == EmbeddingMethod::Multilevel) {
+    HierarchyOptions coarsening;
+    coarsening.seed = plan.seed;
+    coarsening.threads = options.threads;
+    coarsening.progress = log.part("embedding", 0.0, kHierarchyShare);
+    hierarchy = buildGraphHierarchy(graph, coarsening);
+  }
+  EmbeddingRecorder recorder(graph.size(), hierarchy, options.history);
+  if (options.solver == EmbeddingMethod::Iterative)
+    embedIteratively(graph, points, options, log, recorder, unfolding);
+  else
+    embedByLevels(graph, hierarchy, options, log, recorder, unfolding);
+  if (report.stop_reason == StopReason::Collapsed) {
+    report.fallback_start = true;
+    use(projectByRank(points), recorder);
+  }
+  unfolding.history = recorder.take();
+  return unfolding;
 }
 
 std::string percent(double share) {
@@ -497,6 +537,7 @@ struct Attempt {
   Positions sphere;
   NeighborGraph graph;
   EmbeddingReport embedding;
+  EmbeddingHistory history;
   TriangulationReport triangulation;
   MeshOptimization optimization;
   Positions smoothed;  ///< with Options::smoothing_steps
@@ -513,6 +554,14 @@ struct Attempt {
                                     optimization.smoothed_self_intersections == 0);
   }
 };
+
+/// Mesh and sphere together, so that triangles that face outward on one do so on the other.
+void turnInsideOut(Attempt& attempt) {
+  flipOrientation(attempt.triangles);
+  attempt.sphere = -attempt.sphere;
+  for (HistoryFrame& frame : attempt.history.frames)
+    frame.sphere = -frame.sphere;
+}
 
 std::vector<std::array<Index, 2>> findIntersections(const Positions& points,
                                                     const Triangles& triangles, int threads,
@@ -589,9 +638,11 @@ Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& point
                    const Options& options, StageLog& log) {
   Attempt attempt;
   attempt.graph = std::move(graph);
-  attempt.sphere = log.run("embedding", [&] {
-    return embed(attempt.graph.graph, points, plan, options, log, attempt.embedding);
-  });
+  Unfolding unfolding =
+      log.run("embedding", [&] { return embed(attempt.graph.graph, points, plan, options, log); });
+  attempt.sphere = std::move(unfolding.directions);
+  attempt.embedding = std::move(unfolding.report);
+  attempt.history = std::move(unfolding.history);
   log.run("triangulation", [&] {
     TriangulationOptions by;
     by.method = options.hull;
@@ -603,8 +654,7 @@ Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& point
     if (signedVolume(points, attempt.triangles) < 0.0) {
       // The embedding is a mirror image: turn mesh and sphere inside out together, so that the
       // triangles face outward on both.
-      flipOrientation(attempt.triangles);
-      attempt.sphere = -attempt.sphere;
+      turnInsideOut(attempt);
     }
     return true;
   });
@@ -681,8 +731,7 @@ void takeOver(Attempts& attempts, const Positions& points, const Options& option
   Attempt& best = attempts.best;
   result.measures = measureMesh(points, best.triangles, {options.threads});
   if (result.measures.volume < 0.0) {
-    flipOrientation(best.triangles);
-    best.sphere = -best.sphere;
+    turnInsideOut(best);
     result.measures = measureMesh(points, best.triangles, {options.threads});
   }
   result.self_intersections = std::move(best.optimization.self_intersections);
@@ -699,6 +748,14 @@ void takeOver(Attempts& attempts, const Positions& points, const Options& option
                          best.optimization.smoothing_steps,
                          best.optimization.alignment,
                          best.optimization.unevenness};
+  if (options.details) {
+    result.vertex_residuals = tangentialLaplacianLengths(best.graph.graph, best.sphere,
+                                                         options.weights, options.exponent);
+    for (const auto& pair : result.self_intersections)
+      for (const Index t : pair)
+        result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
+            TriangleMarks::self_intersection;
+  }
   result.graph.edges = best.graph.graph.edgeCount();
   result.graph.components = best.graph.components;
   result.graph.bridges = std::move(best.graph.bridges);
@@ -708,6 +765,7 @@ void takeOver(Attempts& attempts, const Positions& points, const Options& option
   result.graph.weak = best.graph.weak;
   result.triangles = std::move(best.triangles);
   result.sphere = std::move(best.sphere);
+  result.history = std::move(best.history);
   result.smoothed = std::move(best.smoothed);
   result.smoothing = best.smoothing;
   result.embedding = std::move(best.embedding);
@@ -793,6 +851,7 @@ void checkOptions(const Options& options) {
   embedOnSphere(Graph(), Positions(3, 0), iterativeOptions(options));
   embedMultilevel(Graph(), GraphHierarchy(), multilevelOptions(options));
   smoothSurface(Positions(3, 0), Triangles(3, 0), smoothingOptions(options));
+  EmbeddingRecorder(0, options.history).take();
   if (options.attempts < 1 || options.attempts > kMostAttempts)
     throw InvalidInput("reconstruct: attempts = " + std::to_string(options.attempts) +
                        " is out of range; use 1 (no more than one) to " +

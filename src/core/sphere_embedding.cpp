@@ -301,6 +301,9 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
               throw Cancelled("embedOnSphere: cancelled by the progress callback");
             result.residual = residual;
             result.residuals.push_back(residual);
+            if (options.observer)
+              options.observer({0, graph.size(), EmbeddingStep::Iteration, result.iterations,
+                                residual, [&] { return iteration.directions(); }});
             if (residual <= options.tolerance)
               result.stop_reason = StopReason::Converged;
             else if (result.iterations >= options.max_iterations)
@@ -318,16 +321,19 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
   // Judged at the end only: the centring undoes a passing collapse within a few steps.
   if (isCollapsed(result.directions))
     result.stop_reason = StopReason::Collapsed;
+  if (options.observer)
+    options.observer({0, graph.size(), EmbeddingStep::End, result.iterations, result.residual,
+                      [&] { return result.directions; }});
   return result;
 }
 
-double meanTangentialLaplacian(const Graph& graph, const Positions& directions, EdgeWeights weights,
-                               double exponent) {
+std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
+                                               EdgeWeights weights, double exponent) {
   if (static_cast<std::size_t>(directions.cols()) != graph.size())
-    throw InvalidInput("meanTangentialLaplacian: " + std::to_string(directions.cols()) +
+    throw InvalidInput("tangentialLaplacianLengths: " + std::to_string(directions.cols()) +
                        " directions for a graph of " + std::to_string(graph.size()) +
                        " nodes; give one for each");
-  double total = 0.0;
+  std::vector<double> lengths(graph.size());
   for (std::size_t i = 0; i < graph.size(); ++i) {
     const Eigen::Vector3d center = directions.col(static_cast<Eigen::Index>(i));
     Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
@@ -344,9 +350,18 @@ double meanTangentialLaplacian(const Graph& graph, const Positions& directions, 
     }
     if (weight_sum > 0.0)
       laplacian /= weight_sum;
-    total += (laplacian - laplacian.dot(center) * center).norm();
+    lengths[i] = (laplacian - laplacian.dot(center) * center).norm();
   }
-  return graph.size() == 0 ? 0.0 : total / static_cast<double>(graph.size());
+  return lengths;
+}
+
+double meanTangentialLaplacian(const Graph& graph, const Positions& directions, EdgeWeights weights,
+                               double exponent) {
+  const std::vector<double> lengths =
+      tangentialLaplacianLengths(graph, directions, weights, exponent);
+  return lengths.empty() ? 0.0
+                         : std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+                               static_cast<double>(lengths.size());
 }
 
 }  // namespace spherical_param

@@ -651,6 +651,41 @@ std::optional<SurfaceKind> causeOf(const Region& region, Parts* parts,
   return std::nullopt;
 }
 
+/// Puts marks on triangles.
+class TriangleMarker {
+public:
+  TriangleMarker(const Surface& surface, std::size_t triangle_count)
+      : surface_(surface), marks_(triangle_count, 0) {}
+
+  void mark(const std::vector<Index>& triangles, std::uint8_t bit) {
+    for (const Index t : triangles)
+      add(t, bit);
+  }
+  /// The triangles with a corner at one of the vertices.
+  void markAround(const std::vector<Index>& vertices, std::uint8_t bit) {
+    for (const Index v : vertices)
+      surface_.forEachCorner(v, [&](Index t, Index) { add(t, bit); });
+  }
+  /// The triangles on both sides of edges.
+  void markBesides(const std::vector<Side>& sides, std::uint8_t bit) {
+    for (const Side& side : sides) {
+      add(side.triangle, bit);
+      const Index other = surface_.beyond(side.triangle, side.corner);
+      if (other >= 0)
+        add(other, bit);
+    }
+  }
+  std::vector<std::uint8_t> take() { return std::move(marks_); }
+
+private:
+  void add(Index t, std::uint8_t bit) {
+    marks_[at(t)] = static_cast<std::uint8_t>(marks_[at(t)] | bit);
+  }
+
+  const Surface& surface_;
+  std::vector<std::uint8_t> marks_;
+};
+
 std::string number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.4g", value);
@@ -769,6 +804,9 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
     result.handles =
         handlesOf(surface, tornEdges(surface, difference.edges, regions, lid_count, triangle_count,
                                      bridge_edges, graph.size(), options.handle_steps));
+  std::optional<TriangleMarker> marker;
+  if (options.mark_triangles)
+    marker.emplace(surface, triangle_count);
   for (std::size_t r = 0; r < lid_count; ++r) {
     const Region& region = regions[r];
     const std::optional<SurfaceKind> cause =
@@ -777,6 +815,16 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
       result.lids.push_back({*cause, region.triangles.size(), region.area, region.boundary_length,
                              region.diameter, region.spacing, region.center,
                              someOf(region.rim, options.max_vertices)});
+    if (cause && marker)
+      marker->mark(region.triangles, TriangleMarks::lid);
+  }
+  if (marker) {
+    for (const CollapsedHandle& handle : result.handles)
+      marker->markAround(handle.vertices, TriangleMarks::handle);
+    for (const PartBridge& bridge : result.bridges)
+      marker->markAround(bridge.vertices, TriangleMarks::part_bridge);
+    marker->markBesides(outside, TriangleMarks::outside_graph);
+    result.triangle_marks = marker->take();
   }
   std::stable_sort(result.lids.begin(), result.lids.end(),
                    [](const Lid& a, const Lid& b) { return a.area > b.area; });

@@ -5,6 +5,8 @@
 #include <pcl/point_types.h>
 #include <pcl/surface/impl/spherical_param_texture.hpp>
 
+#include "spherical_param/mesh_measures.h"
+
 #include <Eigen/Geometry>
 
 #include <cstddef>
@@ -27,20 +29,6 @@ pcl::TexMaterial materialOf(const std::string& image_file) {
   return material;
 }
 
-/** \brief Normals at the vertices of a mesh, weighted by area, not of unit length. */
-spherical_param::Positions vertexNormals(const spherical_param::Positions& points,
-                                         const spherical_param::Triangles& triangles) {
-  spherical_param::Positions normals = spherical_param::Positions::Zero(3, points.cols());
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3d a = points.col(triangles(0, t));
-    const Eigen::Vector3d normal =
-        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
-    for (Eigen::Index k = 0; k < 3; ++k)
-      normals.col(triangles(k, t)) += normal;
-  }
-  return normals;
-}
-
 }  // namespace
 
 bool textureMesh(const spherical_param::Positions& points,
@@ -59,8 +47,8 @@ bool textureMesh(const spherical_param::Positions& points,
                                       atlas, sphere, options.checkerboard_cells, options.bake);
 
     const Eigen::MatrixXd places = spherical_param::atCutVertices(atlas, points);
-    const Eigen::MatrixXd normals =
-        spherical_param::atCutVertices(atlas, vertexNormals(points, triangles));
+    const Eigen::MatrixXd normals = spherical_param::atCutVertices(
+        atlas, spherical_param::areaWeightedNormals(points, triangles));
     pcl::PointCloud<pcl::PointNormal> cloud;
     cloud.resize(atlas.vertices.size());
     for (std::size_t i = 0; i < cloud.size(); ++i) {

@@ -269,5 +269,21 @@ TEST(MeshMeasures, IndexOutOfRangeIsRefused) {
   EXPECT_THROW(measureMesh(mesh.points, make({{0, 1, -1}})), InvalidInput);
 }
 
+TEST(AreaWeightedNormals, AreTheSumsOfTheTriangles) {
+  const Mesh mesh = tetrahedron();
+  const Positions normals = areaWeightedNormals(mesh.points, mesh.triangles);
+  // The three triangles at the origin have the normals -z, -y and -x; the fourth has (1, 1, 1).
+  EXPECT_EQ(Eigen::Vector3d(normals.col(0)), Eigen::Vector3d(-1.0, -1.0, -1.0));
+  EXPECT_EQ(Eigen::Vector3d(normals.col(1)), Eigen::Vector3d(1.0, 0.0, 0.0));
+  EXPECT_EQ(Eigen::Vector3d(normals.col(2)), Eigen::Vector3d(0.0, 1.0, 0.0));
+  EXPECT_EQ(Eigen::Vector3d(normals.col(3)), Eigen::Vector3d(0.0, 0.0, 1.0));
+}
+
+TEST(AreaWeightedNormals, RefuseAnIndexOutOfRange) {
+  Mesh mesh = tetrahedron();
+  mesh.triangles(0, 0) = 4;
+  EXPECT_THROW(areaWeightedNormals(mesh.points, mesh.triangles), InvalidInput);
+}
+
 }  // namespace
 }  // namespace spherical_param

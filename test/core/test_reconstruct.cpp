@@ -903,6 +903,184 @@ TEST(Reconstruct, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+/// A dented ellipsoid, shuffled, with some of its points twice.
+Positions shuffledWithRepetitions(Index n) {
+  Positions points = ellipsoid(n, 1.0, 0.8, 0.6);
+  for (Index i = 0; i < n; ++i)
+    points.col(i) *= 1.0 + 0.2 * std::sin(4.0 * points(0, i));
+  points = horizontally(points, points.leftCols(n / 10));
+  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::mt19937_64 random(7);
+  std::shuffle(order.begin(), order.end(), random);
+  Positions shuffled(3, points.cols());
+  for (Index i = 0; i < points.cols(); ++i)
+    shuffled.col(i) = points.col(order[static_cast<std::size_t>(i)]);
+  return shuffled;
+}
+
+Options watched(Options options) {
+  options.history.vertices = 300;
+  options.history.frames = 25;
+  options.details = true;
+  return options;
+}
+
+TEST(Reconstruct, LookingOnChangesNothing) {
+  const Positions points = shuffledWithRepetitions(1500);
+  for (const Options& options : bothMethods()) {
+    const Result alone = mesh(points, options);
+    const Result seen = mesh(points, watched(options));
+    EXPECT_TRUE(alone.history.frames.empty());
+    EXPECT_TRUE(alone.history.vertices.empty());
+    EXPECT_TRUE(alone.vertex_residuals.empty());
+    EXPECT_TRUE(alone.diagnosis.triangle_marks.empty());
+    EXPECT_FALSE(seen.history.frames.empty());
+    EXPECT_EQ(alone.triangles, seen.triangles);
+    EXPECT_EQ(alone.sphere, seen.sphere);
+    EXPECT_EQ(quantitiesOf(alone), quantitiesOf(seen));
+  }
+}
+
+TEST(Reconstruct, HistoryEndsAtTheSphereOfItsVerticesHoweverThePointsAreNumbered) {
+  const Positions points = shuffledWithRepetitions(1500);
+  for (const Options& options : bothMethods()) {
+    const Result result = mesh(points, watched(options));
+    const EmbeddingHistory& history = result.history;
+    ASSERT_GT(history.vertices.size(), 100U);
+    ASSERT_LE(history.vertices.size(), 300U);
+    ASSERT_GE(history.frames.size(), 5U);
+    ASSERT_LE(history.frames.size(), 25U);
+    EXPECT_EQ(std::set<Index>(history.vertices.begin(), history.vertices.end()).size(),
+              history.vertices.size());
+    for (const HistoryFrame& frame : history.frames) {
+      ASSERT_EQ(frame.sphere.cols(), static_cast<Index>(history.vertices.size()));
+      EXPECT_LT((frame.sphere.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-12);
+    }
+    EXPECT_EQ(history.frames.back().step, EmbeddingStep::End);
+    EXPECT_EQ(history.frames.back().residual, result.embedding.residual);
+    for (std::size_t i = 0; i < history.vertices.size(); ++i)
+      EXPECT_EQ(history.frames.back().sphere.col(static_cast<Index>(i)),
+                result.sphere.col(history.vertices[i]));
+  }
+}
+
+TEST(Reconstruct, HistoryOfAMirroredOrCollapsedEmbeddingEndsAtTheSphereThatCounts) {
+  Positions mirrored = ellipsoid(800, 1.0, 0.8, 0.6);
+  mirrored.row(0) *= -1.0;
+  const Positions& straight = ellipsoid(800, 1.0, 0.8, 0.6);
+  Options collapsing = quick(paper());
+  collapsing.weights = EdgeWeights::Uniform;
+  collapsing.max_iterations = 20000;
+  collapsing.k = 3;
+  Options radial = paper();
+  radial.max_iterations = 0;
+  for (const Positions& points : {straight, mirrored})
+    for (const Options& options : {Options(), radial, collapsing}) {
+      const Result result = mesh(points, watched(options));
+      const EmbeddingHistory& history = result.history;
+      ASSERT_FALSE(history.frames.empty());
+      for (std::size_t i = 0; i < history.vertices.size(); ++i)
+        EXPECT_EQ(history.frames.back().sphere.col(static_cast<Index>(i)),
+                  result.sphere.col(history.vertices[i]));
+    }
+}
+
+TEST(Reconstruct, ResidualsOfVerticesAreThoseOfTheEmbedding) {
+  const Positions points = shuffledWithRepetitions(1200);
+  for (const Options& options : bothMethods()) {
+    const Result result = mesh(points, watched(options));
+    ASSERT_EQ(result.vertex_residuals.size(), result.vertexCount());
+    const double mean =
+        std::accumulate(result.vertex_residuals.begin(), result.vertex_residuals.end(), 0.0) /
+        static_cast<double>(result.vertexCount());
+    EXPECT_NEAR(mean, result.embedding.residual, 1e-9 * result.embedding.residual);
+  }
+  // The graph of nearest neighbours can be made again, with the numbers of the vertices.
+  Options options = quick(paper());
+  options.max_iterations = 3;
+  const Positions distinct = verticesOf(points, mesh(points, options));
+  const Result result = mesh(distinct, watched(options));
+  const Positions vertices = verticesOf(distinct, result);
+  const Graph graph = buildNeighborGraph(vertices, bruteForceNeighbors(vertices, 25), {25}).graph;
+  const std::vector<double> expected =
+      tangentialLaplacianLengths(graph, result.sphere, options.weights);
+  double largest = 0.0;
+  for (std::size_t v = 0; v < expected.size(); ++v)
+    largest = std::max(largest, std::abs(expected[v] - result.vertex_residuals[v]));
+  const auto [low, high] = std::minmax_element(expected.begin(), expected.end());
+  EXPECT_LT(largest, 1e-6 * (*high - *low));
+}
+
+TEST(Reconstruct, MarksTellWhichTrianglesIntersectAndAreLids) {
+  // A sphere without its cap.
+  const Positions sphere = spiralSphere(3000);
+  const Positions bowl = sphere.rightCols(2600);
+  const Result result = mesh(bowl, watched(quick()));
+  const std::vector<std::uint8_t>& marks = result.diagnosis.triangle_marks;
+  ASSERT_EQ(marks.size(), static_cast<std::size_t>(result.triangles.cols()));
+  ASSERT_EQ(result.diagnosis.lids.size(), 1U);
+  const auto count = [&](std::uint8_t bit) {
+    return static_cast<std::size_t>(std::count_if(
+        marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
+  };
+  EXPECT_EQ(count(TriangleMarks::lid), result.diagnosis.lids.front().triangles);
+  std::set<Index> intersecting;
+  for (const auto& pair : result.self_intersections)
+    intersecting.insert(pair.begin(), pair.end());
+  EXPECT_EQ(count(TriangleMarks::self_intersection), intersecting.size());
+  for (const Index t : intersecting)
+    EXPECT_NE(marks[static_cast<std::size_t>(t)] & TriangleMarks::self_intersection, 0);
+  EXPECT_GE(count(TriangleMarks::outside_graph), 1U);
+  const Positions vertices = verticesOf(bowl, result);
+  for (Index t = 0; t < result.triangles.cols(); ++t)
+    if ((marks[static_cast<std::size_t>(t)] & TriangleMarks::lid) != 0) {
+      // All corners are at the rim, about 0.87 up; the surface has no triangle of this size.
+      for (Index k = 0; k < 3; ++k)
+        EXPECT_GT(vertices(2, result.triangles(k, t)), 0.6);
+    }
+}
+
+TEST(Reconstruct, MarksTellOfHandlesAndBridgesBetweenParts) {
+  const auto has = [](const Result& result, std::uint8_t bit) {
+    const std::vector<std::uint8_t>& marks = result.diagnosis.triangle_marks;
+    return std::any_of(marks.begin(), marks.end(),
+                       [bit](std::uint8_t mark) { return (mark & bit) != 0; });
+  };
+  Positions far = spiralSphere(500);
+  far.row(0).array() += 5.0;
+  const Result parts = mesh(horizontally(spiralSphere(600), far), watched(quick()));
+  EXPECT_EQ(parts.diagnosis.kind, SurfaceKind::SeveralParts);
+  EXPECT_TRUE(has(parts, TriangleMarks::part_bridge));
+  EXPECT_FALSE(has(parts, TriangleMarks::handle));
+  const Result closed = mesh(spiralSphere(600), watched(quick()));
+  EXPECT_EQ(
+      std::count(closed.diagnosis.triangle_marks.begin(), closed.diagnosis.triangle_marks.end(), 0),
+      closed.triangles.cols());
+}
+
+TEST(Reconstruct, HistoryAndDetailsHaveTheSameBitsForAnyNumberOfThreads) {
+  const Positions points = test::withNoise(ellipsoid(5200, 1.0, 0.7, 0.5), 0.004, 10);
+  const NeighborLists lists = bruteForceNeighbors(points, 24);
+  for (const EmbeddingMethod solver : {EmbeddingMethod::Multilevel, EmbeddingMethod::Iterative}) {
+    Options options = watched(quick());
+    options.solver = solver;
+    options.max_iterations = 40;
+    options.threads = 1;
+    const Result one = reconstruct(points, lists, options);
+    for (const int threads : {2, 3}) {
+      options.threads = threads;
+      const Result other = reconstruct(points, lists, options);
+      EXPECT_EQ(one.vertex_residuals, other.vertex_residuals);
+      EXPECT_EQ(one.diagnosis.triangle_marks, other.diagnosis.triangle_marks);
+      EXPECT_EQ(one.history.vertices, other.history.vertices);
+      ASSERT_EQ(one.history.frames.size(), other.history.frames.size());
+      for (std::size_t f = 0; f < one.history.frames.size(); ++f)
+        EXPECT_EQ(one.history.frames[f].sphere, other.history.frames[f].sphere);
+    }
+  }
+}
+
 TEST(Reconstruct, SmoothingIsAStageOfItsOwn) {
   const Positions points = ellipsoid(200, 1.0, 0.7, 0.5);
   Options options;

@@ -1469,6 +1469,23 @@ TEST_F(SphericalParamReconstruction, ResidualIsThatOfTheSphereOnTheGraphOfNeares
 
 // ----------------------------------------------------------------------------------------- options
 
+TEST_F(SphericalParamReconstruction, OptionsSetAtOnceAreThoseOfTheSetters) {
+  Reconstruction reconstruction;
+  reconstruction.setStarts(9);
+  spherical_param::Options options;
+  options.k = 17;
+  options.seed = 5;
+  options.weights = EdgeWeights::Uniform;
+  reconstruction.setOptions(options);
+  EXPECT_EQ(reconstruction.getKSearch(), 17);
+  EXPECT_EQ(reconstruction.getSeed(), 5U);
+  EXPECT_EQ(reconstruction.getWeights(), EdgeWeights::Uniform);
+  EXPECT_EQ(reconstruction.getStarts(), options.starts);
+  reconstruction.setSeed(6);
+  EXPECT_EQ(reconstruction.getOptions().seed, 6U);
+  EXPECT_EQ(reconstruction.getOptions().k, 17);
+}
+
 TEST_F(SphericalParamReconstruction, DefaultsAreThoseOfTheCore) {
   const Reconstruction reconstruction;
   const spherical_param::Options defaults;

@@ -1,0 +1,253 @@
+#include "spherical_param/embedding_history.h"
+
+#include "helpers.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using test::graphOfMesh;
+using test::spiralSphere;
+
+/// An ellipsoid with dents, and its true edges.
+Graph dentedGraph(Index n) {
+  const Positions sphere = spiralSphere(n);
+  Positions points = sphere;
+  for (Index i = 0; i < n; ++i)
+    points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
+  points.row(2) *= 1.7;
+  return graphOfMesh(points, triangulateSphere(sphere).triangles);
+}
+
+struct Seen {
+  std::size_t level;
+  EmbeddingStep step;
+  int iteration;
+  std::optional<double> residual;
+  Positions directions;
+};
+
+EmbeddingObserver into(std::vector<Seen>& states) {
+  return [&states, caller = std::this_thread::get_id()](const EmbeddingState& state) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    states.push_back(
+        {state.level, state.step, state.iteration, state.residual, state.directions()});
+    EXPECT_EQ(states.back().directions.cols(), static_cast<Index>(state.nodes));
+    EXPECT_LT((states.back().directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-12);
+  };
+}
+
+TEST(EmbeddingObserver, SeesEveryLevelFromTheStartToTheEndAndChangesNothing) {
+  const Graph graph = dentedGraph(6000);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  for (const EdgeWeights weights : {EdgeWeights::Adaptive, EdgeWeights::Uniform})
+    for (const int threads : {1, 3}) {
+      MultilevelOptions options;
+      options.weights = weights;
+      options.starts = 4;
+      options.threads = threads;
+      options.solved_size = 1000;
+      const MultilevelEmbedding alone = embedMultilevel(graph, hierarchy, options);
+      std::vector<Seen> states;
+      options.observer = into(states);
+      const MultilevelEmbedding seen = embedMultilevel(graph, hierarchy, options);
+      EXPECT_EQ(alone.directions, seen.directions);
+      EXPECT_EQ(alone.residual, seen.residual);
+      EXPECT_EQ(alone.starts, seen.starts);
+      EXPECT_EQ(alone.levels.back().newton_iterations, seen.levels.back().newton_iterations);
+
+      ASSERT_FALSE(states.empty());
+      EXPECT_EQ(states.front().level, hierarchy.levels.size());
+      EXPECT_EQ(states.front().step, EmbeddingStep::Start);
+      EXPECT_EQ(states.back().step, EmbeddingStep::End);
+      EXPECT_EQ(states.back().directions, seen.directions);
+      EXPECT_EQ(states.back().residual, seen.residual);
+      EXPECT_TRUE(std::is_sorted(states.begin(), states.end(),
+                                 [](const Seen& a, const Seen& b) { return a.level > b.level; }));
+      // Each level goes on from where the coarser one ended: its seeds are where they were.
+      for (std::size_t i = 1; i < states.size(); ++i)
+        if (states[i].level < states[i - 1].level) {
+          EXPECT_EQ(states[i].step, EmbeddingStep::Start);
+          const std::vector<Index>& seeds = hierarchy.levels[states[i].level].seeds;
+          for (std::size_t node = 0; node < seeds.size(); ++node)
+            EXPECT_LT((states[i].directions.col(seeds[node]) -
+                       states[i - 1].directions.col(static_cast<Index>(node)))
+                          .norm(),
+                      1e-12);
+        }
+    }
+}
+
+TEST(EmbeddingObserver, SeesEveryIterationOfThePapersSolver) {
+  const Graph graph = dentedGraph(5000);
+  EmbeddingOptions options;
+  options.max_iterations = 12;
+  options.threads = 3;
+  const Embedding alone = embedOnSphere(graph, spiralSphere(5000), options);
+  std::vector<Seen> states;
+  options.observer = into(states);
+  const Embedding seen = embedOnSphere(graph, spiralSphere(5000), options);
+  EXPECT_EQ(alone.directions, seen.directions);
+  EXPECT_EQ(alone.residuals, seen.residuals);
+  ASSERT_EQ(states.size(), 14U);
+  for (int i = 0; i < 13; ++i) {
+    const Seen& state = states[static_cast<std::size_t>(i)];
+    EXPECT_EQ(state.step, EmbeddingStep::Iteration);
+    EXPECT_EQ(state.iteration, i);
+    EXPECT_EQ(state.residual, seen.residuals[static_cast<std::size_t>(i)]);
+    // The residual that is told is that of the state.
+    EXPECT_NEAR(meanTangentialLaplacian(graph, state.directions, options.weights), *state.residual,
+                1e-9 * *state.residual);
+  }
+  EXPECT_EQ(states.back().step, EmbeddingStep::End);
+  EXPECT_EQ(states.back().directions, seen.directions);
+}
+
+TEST(EmbeddingObserver, WhatItThrowsIsPassedOn) {
+  const Graph graph = dentedGraph(3000);
+  const auto fail = [](const EmbeddingState& state) {
+    if (state.step == EmbeddingStep::End || state.iteration == 2)
+      throw std::runtime_error("enough");
+  };
+  EmbeddingOptions iterative;
+  iterative.observer = fail;
+  EXPECT_THROW(embedOnSphere(graph, spiralSphere(3000), iterative), std::runtime_error);
+  MultilevelOptions multilevel;
+  multilevel.observer = fail;
+  EXPECT_THROW(embedMultilevel(graph, buildGraphHierarchy(graph, {200, 1}), multilevel),
+               std::runtime_error);
+}
+
+TEST(EmbeddingRecorder, KeepsAtMostWhatIsAskedForAndAlwaysBothEnds) {
+  const Graph graph = dentedGraph(6000);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  std::vector<Seen> states;
+  MultilevelOptions options;
+  options.observer = into(states);
+  const MultilevelEmbedding embedding = embedMultilevel(graph, hierarchy, options);
+  for (const auto& [vertices, frames] : std::vector<std::pair<Index, int>>{
+           {1, 2}, {4, 3}, {150, 7}, {250, 40}, {700, 12}, {1500, 40}, {5999, 5}, {60000, 1000}}) {
+    EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, frames});
+    options.observer = std::ref(recorder);
+    embedMultilevel(graph, hierarchy, options);
+    const EmbeddingHistory history = recorder.take();
+    EXPECT_LE(history.vertices.size(), static_cast<std::size_t>(vertices));
+    EXPECT_GE(3 * history.vertices.size(),
+              static_cast<std::size_t>(std::min(vertices, Index{6000})));
+    EXPECT_EQ(std::set<Index>(history.vertices.begin(), history.vertices.end()).size(),
+              history.vertices.size());
+    ASSERT_GE(history.frames.size(), 2U);
+    EXPECT_LE(history.frames.size(), static_cast<std::size_t>(frames));
+    EXPECT_EQ(history.frames.front().level, hierarchy.levels.size());
+    EXPECT_EQ(history.frames.front().step, EmbeddingStep::Start);
+    EXPECT_EQ(history.frames.back().step, EmbeddingStep::End);
+    EXPECT_EQ(history.frames.back().residual, embedding.residual);
+    for (std::size_t i = 0; i < history.vertices.size(); ++i)
+      EXPECT_EQ(history.frames.back().sphere.col(static_cast<Index>(i)),
+                embedding.directions.col(history.vertices[i]));
+  }
+}
+
+TEST(EmbeddingRecorder, CarriesCoarseStatesAsTheSolverDoes) {
+  const Graph graph = dentedGraph(6000);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  ASSERT_GE(hierarchy.levels.size(), 2U);
+  for (const Index vertices : {300, 6000}) {
+    EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, 10});
+    const Positions coarse =
+        test::randomSphere(static_cast<Index>(hierarchy.levels.back().graph.size()), 3);
+    recorder({hierarchy.levels.size(), 0, EmbeddingStep::Start, 0, std::nullopt,
+              [&] { return coarse; }});
+    Positions expected = coarse;
+    for (std::size_t l = hierarchy.levels.size(); l-- > 0;) {
+      Positions finer = expected * hierarchy.levels[l].prolongation.transpose();
+      finer.colwise().normalize();
+      expected = finer;
+    }
+    const EmbeddingHistory history = recorder.take();
+    ASSERT_EQ(history.frames.size(), 1U);
+    for (std::size_t i = 0; i < history.vertices.size(); ++i)
+      EXPECT_LT(
+          (history.frames[0].sphere.col(static_cast<Index>(i)) - expected.col(history.vertices[i]))
+              .norm(),
+          1e-9);
+  }
+}
+
+TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
+  const Positions sphere = spiralSphere(6000);
+  const Graph graph = graphOfMesh(sphere, triangulateSphere(sphere).triangles);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  for (const Index vertices : {400, 900, 1500}) {
+    EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, 10});
+    const EmbeddingHistory history = recorder.take();
+    // No place of the sphere is further from the next node than some of their even distances.
+    const double even = std::sqrt(4.0 * test::kPi / static_cast<double>(history.vertices.size()));
+    for (Index i = 0; i < 6000; ++i) {
+      double nearest = 2.0;
+      for (const Index v : history.vertices)
+        nearest = std::min(nearest, (sphere.col(i) - sphere.col(v)).norm());
+      EXPECT_LT(nearest, 2.5 * even);
+    }
+  }
+}
+
+TEST(EmbeddingRecorder, TakesFewOfManyIterationsMostOfThemEarly) {
+  EmbeddingRecorder recorder(10, HistoryLimits{10, 1000});
+  Positions u = spiralSphere(10);
+  int copies = 0;
+  for (int i = 0; i <= 1600; ++i)
+    recorder({0, 10, EmbeddingStep::Iteration, i, 1.0, [&] {
+                ++copies;
+                u.col(0) = -u.col(0);
+                return u;
+              }});
+  const EmbeddingHistory history = recorder.take();
+  EXPECT_EQ(static_cast<int>(history.frames.size()), copies);
+  EXPECT_LT(copies, 45);
+  std::vector<int> first;
+  for (std::size_t f = 0; f < 13; ++f)
+    first.push_back(history.frames[f].iteration);
+  EXPECT_EQ(first, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16}));
+}
+
+TEST(EmbeddingRecorder, KeepsItsBoundsWhateverIsShown) {
+  EmbeddingRecorder recorder(10, HistoryLimits{10, 5});
+  Positions u = spiralSphere(10);
+  for (int i = 0; i < 1000; ++i)
+    recorder({0, 10, EmbeddingStep::Newton, 0, i * 1.0, [&] {
+                u.col(0) = -u.col(0);
+                return u;
+              }});
+  const EmbeddingHistory history = recorder.take();
+  ASSERT_EQ(history.frames.size(), 5U);
+  EXPECT_EQ(history.frames.front().residual, 0.0);
+  EXPECT_EQ(history.frames.back().residual, 999.0);
+  EXPECT_TRUE(recorder.take().frames.empty());
+}
+
+TEST(EmbeddingRecorder, RefusesLimitsOutOfRange) {
+  const auto make = [](Index vertices, int frames) {
+    EmbeddingRecorder(10, HistoryLimits{vertices, frames});
+  };
+  EXPECT_THROW(make(-1, 10), InvalidInput);
+  EXPECT_THROW(make((Index{1} << 24) + 1, 10), InvalidInput);
+  EXPECT_THROW(make(10, 1), InvalidInput);
+  EXPECT_THROW(make(10, 10001), InvalidInput);
+  EXPECT_NO_THROW(make(0, 2));
+}
+
+}  // namespace
+}  // namespace spherical_param
