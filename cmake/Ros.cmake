@@ -1,0 +1,84 @@
+# Which ROS the nodes are built for, in SPHERICAL_PARAM_ROS_VERSION: 1, 2 or none (empty).
+#
+# SPHERICAL_PARAM_BUILD_ROS: AUTO asks for it only where catkin or colcon build this project as a
+# package of ROS, and does without if its packages are missing; ON is told what is missing; OFF.
+set(SPHERICAL_PARAM_BUILD_ROS AUTO CACHE STRING "Build the nodes of ROS: ON, OFF or AUTO (by catkin and colcon)")
+set_property(CACHE SPHERICAL_PARAM_BUILD_ROS PROPERTY STRINGS AUTO ON OFF)
+set(SPHERICAL_PARAM_ROS_VERSION "")
+# message_generation first: its macros must be there when those of the others are found.
+set(ros1_packages message_generation diagnostic_updater dynamic_reconfigure geometry_msgs nodelet
+                  pcl_conversions pcl_msgs pluginlib roscpp sensor_msgs shape_msgs std_msgs
+                  visualization_msgs)
+set(ros2_packages diagnostic_msgs diagnostic_updater geometry_msgs pcl_conversions pcl_msgs rclcpp
+                  rcl_interfaces sensor_msgs shape_msgs std_msgs visualization_msgs)
+
+# The packages among those that follow that are not there. What they set is lost with the function.
+function(spherical_param_missing_packages result)
+  set(missing "")
+  foreach(package IN LISTS ARGN)
+    find_package(${package} QUIET)
+    if(NOT ${package}_FOUND)
+      list(APPEND missing ${package})
+    endif()
+  endforeach()
+  set(${result} "${missing}" PARENT_SCOPE)
+endfunction()
+
+# Not so inside another package, which has fetched the library, and is the one that ROS knows. In the
+# one build of plain catkin_make all packages are below its top project, which lists them.
+set(is_package_of_ros ${PROJECT_IS_TOP_LEVEL})
+get_filename_component(own_path ${PROJECT_SOURCE_DIR} REALPATH)
+foreach(path IN LISTS CATKIN_ORDERED_PACKAGE_PATHS)
+  get_filename_component(path ${path} REALPATH BASE_DIR ${CMAKE_SOURCE_DIR})
+  if(path STREQUAL own_path)
+    set(is_package_of_ros ON)
+  endif()
+endforeach()
+
+if(SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO" AND is_package_of_ros)
+  # What catkin_make, catkin_make_isolated and colcon's task for catkin give. For ament, colcon gives
+  # nothing but its mark in the environment.
+  if(DEFINED CATKIN_DEVEL_PREFIX OR DEFINED CATKIN_INSTALL_INTO_PREFIX_ROOT)
+    set(SPHERICAL_PARAM_ROS_VERSION 1)
+  elseif("$ENV{ROS_VERSION}" STREQUAL "2" AND DEFINED ENV{COLCON})
+    set(SPHERICAL_PARAM_ROS_VERSION 2)
+  endif()
+elseif(SPHERICAL_PARAM_BUILD_ROS AND NOT SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO")
+  if("$ENV{ROS_VERSION}" MATCHES "^[12]$")
+    set(SPHERICAL_PARAM_ROS_VERSION $ENV{ROS_VERSION})
+  else()
+    find_package(rclcpp QUIET)
+    if(rclcpp_FOUND)
+      set(SPHERICAL_PARAM_ROS_VERSION 2)
+    else()
+      set(SPHERICAL_PARAM_ROS_VERSION 1)
+    endif()
+  endif()
+endif()
+
+if(SPHERICAL_PARAM_ROS_VERSION AND NOT SPHERICAL_PARAM_BUILD_PCL)
+  if(NOT SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO")
+    message(FATAL_ERROR "The nodes of ROS need the PCL class: set SPHERICAL_PARAM_BUILD_PCL to ON, "
+      "or SPHERICAL_PARAM_BUILD_ROS to OFF")
+  endif()
+  message(STATUS "The nodes of ROS are not built: they need SPHERICAL_PARAM_BUILD_PCL")
+endif()
+
+set(SPHERICAL_PARAM_BUILD_ROS_NODES OFF)
+if(SPHERICAL_PARAM_ROS_VERSION AND SPHERICAL_PARAM_BUILD_PCL)
+  if(SPHERICAL_PARAM_ROS_VERSION EQUAL 1)
+    spherical_param_missing_packages(missing catkin ${ros1_packages})
+  else()
+    spherical_param_missing_packages(missing ${ros2_packages})
+  endif()
+  if(NOT missing)
+    set(SPHERICAL_PARAM_BUILD_ROS_NODES ON)
+  elseif(SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO")
+    list(JOIN missing " " missing)
+    message(STATUS "The nodes of ROS ${SPHERICAL_PARAM_ROS_VERSION} are not built; missing: ${missing}")
+  else()
+    list(JOIN missing " " missing)
+    message(FATAL_ERROR "The nodes of ROS ${SPHERICAL_PARAM_ROS_VERSION} need ${missing}: install "
+      "what the README's section \"In ROS\" names, or set SPHERICAL_PARAM_BUILD_ROS to OFF")
+  endif()
+endif()

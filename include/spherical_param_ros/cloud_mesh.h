@@ -1,0 +1,70 @@
+#pragma once
+
+#include "spherical_param_ros/parameters.h"
+
+#include <pcl/PCLHeader.h>
+#include <pcl/PCLPointCloud2.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spherical_param_ros {
+
+/// A closed mesh without any middleware's types. All are in the order of the vertices, which is
+/// that of the first points of the cloud at their positions.
+struct Mesh {
+  /// Header and every field of the cloud, one record a vertex; coordinates are the smoothed ones
+  /// where smoothing is asked for.
+  pcl::PCLPointCloud2 cloud;
+  std::vector<std::array<double, 3>> vertices;  ///< [unit of the cloud]
+  /// Indices of vertices, counter-clockwise from outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Red, green, blue, alpha; alpha is 255 for clouds without. Empty for clouds without colours.
+  std::vector<std::array<std::uint8_t, 4>> colors;
+};
+
+/// What became of a cloud.
+enum class Status {
+  Done,       ///< there is a mesh
+  Failed,     ///< the cloud cannot be meshed; `message` has cause and remedy
+  Cancelled,  ///< a newer cloud arrived, or the worker ended, while it was worked on
+  Dropped,    ///< newer clouds pushed it out of the queue, or the worker ended
+  Refused,    ///< a request that found too many others waiting, or the worker ended
+};
+
+/// The name of a status, in lower case.
+const char* nameOf(Status status);
+
+/// A mesh, or why there is none.
+struct Outcome {
+  Status status = Status::Failed;
+  std::string message;               ///< the verdict on the mesh, or "cause; remedy"
+  std::shared_ptr<const Mesh> mesh;  ///< of Status::Done
+  bool looks_closed = false;         ///< nothing speaks against a closed genus-0 surface
+  std::vector<std::string> warnings;
+  std::size_t points = 0;      ///< of the cloud
+  std::size_t ignored = 0;     ///< not finite
+  std::size_t outliers = 0;    ///< left out
+  std::size_t duplicates = 0;  ///< merged into an earlier point
+  std::size_t self_intersections = 0;
+  double seconds = 0.0;  ///< of the reconstruction, wall time
+};
+
+/// Meshes a cloud. Whatever is wrong with it is told in the outcome; nothing is thrown.
+///
+/// Coordinates in double precision are rounded to single precision only after the cloud was moved
+/// to the origin; the mesh has them as they were.
+///
+/// \param is_wanted asked every second or two at least, but not while outliers are told from the
+///                  others once their neighbours are found, nor while the statistical method looks
+///                  for them; false ends the work with
+///                  Status::Cancelled. May be empty.
+Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
+                  const std::function<bool()>& is_wanted);
+
+}  // namespace spherical_param_ros

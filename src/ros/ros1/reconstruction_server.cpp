@@ -1,0 +1,215 @@
+#include "ros1/reconstruction_server.h"
+
+#include "ros1/mesh_messages.h"
+
+#include <pcl_conversions/pcl_conversions.h>
+#include <pcl_msgs/PolygonMesh.h>
+#include <shape_msgs/Mesh.h>
+#include <visualization_msgs/Marker.h>
+
+#include <boost/any.hpp>
+#include <boost/make_shared.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace spherical_param_ros {
+namespace {
+
+using Config = pcl_spherical_param::SphericalParamConfig;
+
+/// Takes the parameters that are set on the server, before anything clamps or ignores them.
+Settings readSettings(const ros::NodeHandle& node) {
+  Settings settings;
+  for (const ParameterInfo& info : parameters()) {
+    XmlRpc::XmlRpcValue value;
+    if (!node.getParam(info.name, value))
+      continue;
+    switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      setParameter(settings, info.name, static_cast<bool>(value));
+      break;
+    case XmlRpc::XmlRpcValue::TypeInt:
+      setParameter(settings, info.name, static_cast<int>(value));
+      break;
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      setParameter(settings, info.name, static_cast<double>(value));
+      break;
+    case XmlRpc::XmlRpcValue::TypeString:
+      setParameter(settings, info.name, static_cast<std::string>(value));
+      break;
+    default:
+      throw ParameterError("parameter '" + info.name + "' is a list or a structure; set it to " +
+                           "a value such as " + textOf(info.default_value));
+    }
+  }
+  return settings;
+}
+
+Value valueOf(const boost::any& value) {
+  if (const auto* truth = boost::any_cast<bool>(&value))
+    return *truth;
+  if (const auto* integer = boost::any_cast<int>(&value))
+    return *integer;
+  if (const auto* number = boost::any_cast<double>(&value))
+    return *number;
+  return boost::any_cast<std::string>(value);
+}
+
+Settings settingsOf(const Config& config) {
+  Settings settings;
+  for (const auto& description : Config::__getParamDescriptions__()) {
+    boost::any value;
+    description->getValue(config, value);
+    setParameter(settings, description->name, valueOf(value));
+  }
+  return settings;
+}
+
+ReconstructionWorker::Cloud neutralCloud(const sensor_msgs::PointCloud2& message) {
+  auto cloud = std::make_shared<pcl::PCLPointCloud2>();
+  pcl_conversions::toPCL(message, *cloud);
+  return cloud;
+}
+
+/// The shutdown of older roscpp waits for services that are being called before it tells anyone
+/// else: a mesher that did not ask would keep the process until its mesh is done.
+Outcome meshUnlessShuttingDown(const pcl::PCLPointCloud2& cloud, const Settings& settings,
+                               const std::function<bool()>& is_wanted) {
+  return meshCloud(cloud, settings, [&] { return is_wanted() && !ros::isShuttingDown(); });
+}
+
+}  // namespace
+
+ReconstructionServer::ReconstructionServer(const ros::NodeHandle& node,
+                                           const ros::NodeHandle& private_node,
+                                           const std::string& name)
+    : private_node_(private_node), name_(name), diagnostics_(node, private_node, name) {
+  const Settings settings = readSettings(private_node_);
+  // Latched: RViz shows the last mesh also if it is started later.
+  mesh_publisher_ = private_node_.advertise<pcl_msgs::PolygonMesh>("mesh", 1, true);
+  shape_publisher_ = private_node_.advertise<shape_msgs::Mesh>("shape", 1, true);
+  marker_publisher_ = private_node_.advertise<visualization_msgs::Marker>("marker", 1, true);
+  worker_ = std::make_unique<ReconstructionWorker>(settings, meshUnlessShuttingDown);
+
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("reconstruction", this, &ReconstructionServer::diagnose);
+  timer_ = private_node_.createWallTimer(
+      ros::WallDuration(0.2), [this](const ros::WallTimerEvent&) { updateDiagnostics(); });
+
+  config_server_ = std::make_unique<dynamic_reconfigure::Server<Config>>(private_node_);
+  config_server_->setCallback(
+      [this](Config& config, std::uint32_t level) { onConfig(config, level); });
+
+  ros::NodeHandle request_node(private_node_);
+  request_node.setCallbackQueue(&request_queue_);
+  service_ = request_node.advertiseService("reconstruct", &ReconstructionServer::onRequest, this);
+  // A thread for the request that is worked on, one for each that waits, and one that refuses all
+  // others: they would pile up in the queue of ROS.
+  constexpr auto request_threads =
+      static_cast<std::uint32_t>(ReconstructionWorker::max_requests + 2);
+  request_spinner_ = std::make_unique<ros::AsyncSpinner>(request_threads, &request_queue_);
+  request_spinner_->start();
+  // The worker's queue is the one that drops, and counts: this one is emptied at once, and long
+  // enough for when the processors are busy.
+  subscriber_ = private_node_.subscribe("cloud", 100, &ReconstructionServer::onCloud, this);
+}
+
+ReconstructionServer::~ReconstructionServer() {
+  // A request that is being worked on ends with the worker, and only then the spinner can.
+  worker_->stop();
+  subscriber_.shutdown();
+  timer_.stop();
+  service_.shutdown();
+  request_spinner_->stop();
+}
+
+void ReconstructionServer::onCloud(const sensor_msgs::PointCloud2ConstPtr& message) {
+  const bool in_time = worker_->submit(
+      neutralCloud(*message),
+      [this, header = message->header](const Outcome& outcome) { publish(outcome, header); });
+  if (!in_time)
+    ROS_DEBUG_STREAM_THROTTLE_NAMED(5.0, name_, "Clouds come faster than they can be meshed.");
+}
+
+bool ReconstructionServer::onRequest(Request& request, Response& response) {
+  const Outcome outcome = worker_->process(neutralCloud(request.cloud));
+  response.success = static_cast<unsigned char>(outcome.status == Status::Done);
+  response.message = outcome.message;
+  if (outcome.mesh)
+    response.mesh = polygonMeshOf(*outcome.mesh, request.cloud.header);
+  else
+    ROS_WARN_STREAM_NAMED(name_, "A request cannot be answered with a mesh: " << outcome.message);
+  // false would keep the message from the caller.
+  return true;
+}
+
+void ReconstructionServer::onConfig(Config& config, std::uint32_t /*level*/) {
+  try {
+    worker_->setSettings(settingsOf(config));
+    config_ = config;
+  } catch (const ParameterError& error) {
+    ROS_WARN_STREAM_NAMED(name_, "The parameters stay as they are: " << error.what());
+    config = config_;
+  }
+}
+
+void ReconstructionServer::publish(const Outcome& outcome, const std_msgs::Header& header) {
+  if (outcome.status == Status::Failed)
+    ROS_WARN_STREAM_NAMED(name_, "A cloud of " << outcome.points << " points in frame '"
+                                               << header.frame_id
+                                               << "' cannot be meshed: " << outcome.message);
+  if (!outcome.mesh)
+    return;
+  for (const std::string& warning : outcome.warnings)
+    ROS_DEBUG_STREAM_NAMED(name_, warning);
+  // As shared pointers, which nodelets take without a copy.
+  mesh_publisher_.publish(
+      boost::make_shared<pcl_msgs::PolygonMesh>(polygonMeshOf(*outcome.mesh, header)));
+  shape_publisher_.publish(boost::make_shared<shape_msgs::Mesh>(shapeOf(*outcome.mesh)));
+  marker_publisher_.publish(
+      boost::make_shared<visualization_msgs::Marker>(markerOf(*outcome.mesh, header)));
+}
+
+void ReconstructionServer::updateDiagnostics() {
+  // The updater's own period is one of ROS's time, which may be simulated, and stand still.
+  const auto now = std::chrono::steady_clock::now();
+  if (now < next_diagnosis_)
+    return;
+  diagnostics_.force_update();
+  next_diagnosis_ = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                              std::chrono::duration<double>(diagnostics_.getPeriod()));
+}
+
+void ReconstructionServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  const Statistics statistics = worker_->statistics();
+  const Outcome& last = statistics.last;
+  const char* state = statistics.is_working ? "working" : "idle";
+  if (statistics.failed > failed_when_diagnosed_ || (statistics.has_last && !last.looks_closed)) {
+    status.summary(Level::WARN, last.status == Status::Failed ? "the last cloud could not be meshed"
+                                : statistics.failed > failed_when_diagnosed_
+                                    ? "a cloud could not be meshed"
+                                    : "the last cloud does not look like a closed surface");
+  } else {
+    status.summary(Level::OK, state);
+  }
+  failed_when_diagnosed_ = statistics.failed;
+  status.add("state", state);
+  status.add("last result", statistics.has_last ? nameOf(last.status) : "none");
+  status.add("last message", last.message);
+  status.add("last time [s]", last.seconds);
+  status.add("last cloud [points]", last.points);
+  status.add("last self-intersections", last.self_intersections);
+  status.add("received clouds", statistics.received);
+  status.add("done clouds", statistics.done);
+  status.add("failed clouds", statistics.failed);
+  status.add("dropped clouds", statistics.dropped);
+  status.add("cancelled clouds", statistics.cancelled);
+  status.add("refused requests", statistics.refused);
+  status.add("waiting clouds", statistics.queued);
+}
+
+}  // namespace spherical_param_ros

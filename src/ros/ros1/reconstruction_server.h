@@ -1,0 +1,63 @@
+#pragma once
+
+#include "spherical_param_ros/reconstruction_worker.h"
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <dynamic_reconfigure/server.h>
+#include <pcl_spherical_param/Reconstruct.h>
+#include <pcl_spherical_param/SphericalParamConfig.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/Header.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+namespace spherical_param_ros {
+
+/// What node and nodelet have in common: topics, service, parameters and diagnostics of a worker.
+class ReconstructionServer {
+public:
+  /// \throw ParameterError for a parameter that cannot be taken.
+  ReconstructionServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                       const std::string& name);
+  ~ReconstructionServer();
+
+  ReconstructionServer(const ReconstructionServer&) = delete;
+  ReconstructionServer& operator=(const ReconstructionServer&) = delete;
+
+private:
+  using Config = pcl_spherical_param::SphericalParamConfig;
+  using Request = pcl_spherical_param::Reconstruct::Request;
+  using Response = pcl_spherical_param::Reconstruct::Response;
+
+  void onCloud(const sensor_msgs::PointCloud2ConstPtr& message);
+  bool onRequest(Request& request, Response& response);
+  void onConfig(Config& config, std::uint32_t level);
+  void publish(const Outcome& outcome, const std_msgs::Header& header);
+  void updateDiagnostics();
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  ros::NodeHandle private_node_;
+  std::string name_;
+  ros::Publisher mesh_publisher_;
+  ros::Publisher shape_publisher_;
+  ros::Publisher marker_publisher_;
+  /// Ends before the publishers.
+  std::unique_ptr<ReconstructionWorker> worker_;
+  diagnostic_updater::Updater diagnostics_;
+  std::uint64_t failed_when_diagnosed_ = 0;
+  Config config_;  ///< in force
+  std::unique_ptr<dynamic_reconfigure::Server<Config>> config_server_;
+  ros::Subscriber subscriber_;
+  ros::WallTimer timer_;
+  std::chrono::steady_clock::time_point next_diagnosis_;
+  // Requests wait for their mesh: in threads of their own, so that nothing else waits for them.
+  ros::CallbackQueue request_queue_;
+  ros::ServiceServer service_;
+  std::unique_ptr<ros::AsyncSpinner> request_spinner_;
+};
+
+}  // namespace spherical_param_ros

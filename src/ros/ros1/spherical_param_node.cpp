@@ -1,0 +1,25 @@
+// Meshes clouds of a topic, or of a service. See the README, "In ROS".
+
+#include "ros1/reconstruction_server.h"
+
+#include <pcl/console/print.h>
+#include <ros/ros.h>
+
+#include <exception>
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "spherical_param");
+  // Failures are told by the node, and a cancellation is none.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  // Without one left, ROS would shut down before the last message.
+  const ros::NodeHandle node;
+  try {
+    const spherical_param_ros::ReconstructionServer server(node, ros::NodeHandle("~"),
+                                                           ros::this_node::getName());
+    ros::spin();
+  } catch (const std::exception& error) {
+    ROS_FATAL_STREAM("The node cannot run: " << error.what());
+    return 1;
+  }
+  return 0;
+}
