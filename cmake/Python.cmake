@@ -1,0 +1,33 @@
+# Whether the Python module is built, SPHERICAL_PARAM_BUILD_PYTHON_MODULE, and with which Python.
+set(SPHERICAL_PARAM_BUILD_PYTHON_MODULE OFF)
+if(SPHERICAL_PARAM_SANITIZE)
+  # A Python without sanitizers cannot load it.
+  if(NOT SPHERICAL_PARAM_BUILD_PYTHON STREQUAL "AUTO" AND SPHERICAL_PARAM_BUILD_PYTHON)
+    message(FATAL_ERROR "the Python module cannot be built with sanitizers: "
+                        "set SPHERICAL_PARAM_BUILD_PYTHON to OFF")
+  endif()
+elseif(SPHERICAL_PARAM_BUILD_PYTHON)
+  set(python_required "")
+  if(NOT SPHERICAL_PARAM_BUILD_PYTHON STREQUAL "AUTO")
+    set(python_required REQUIRED)
+  endif()
+  # That of the system, whose packages are those of the system, and not one that stands before it in
+  # the PATH.
+  if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(Python3_EXECUTABLE /usr/bin/python3)
+  endif()
+  find_package(Python3 3.9 ${python_required} COMPONENTS Interpreter Development.Module)
+  if(Python3_FOUND)
+    find_package(pybind11 2.10 ${python_required} CONFIG)
+  endif()
+  find_path(FLANN_INCLUDE_DIR flann/algorithms/kdtree_single_index.h)
+  if(python_required AND NOT FLANN_INCLUDE_DIR)
+    message(FATAL_ERROR "FLANN was not found: install libflann-dev")
+  endif()
+  if(Python3_FOUND AND pybind11_FOUND AND FLANN_INCLUDE_DIR)
+    set(SPHERICAL_PARAM_BUILD_PYTHON_MODULE ON)
+    message(STATUS "Python module: for ${Python3_EXECUTABLE} ${Python3_VERSION}")
+  else()
+    message(STATUS "Python module: not built, as Python's headers, pybind11 or FLANN are missing")
+  endif()
+endif()

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "spherical_param/errors.h"
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace spherical_param::python {
+
+/// Takes the core's reports of progress to Python: to the caller's function, if there is one, and
+/// to the handlers of signals, so that Ctrl-C ends long work. Hidden, as the types of pybind11 are.
+class [[gnu::visibility("hidden")]] Listener {
+public:
+  /// \param callback callable with (stage, fraction, iteration, residual), or None.
+  explicit Listener(pybind11::object callback) : callback_(std::move(callback)) {}
+
+  /// Called without the interpreter's lock; takes it where there is something to be told.
+  /// \return false to end the work: the function said so, or there is an exception.
+  bool tell(const char* stage, double fraction, int iteration = 0, double residual = 0.0);
+
+  /// Lets other Python threads run while `work` does. If it was cancelled by an exception in
+  /// Python, that is thrown on.
+  template <typename Work>
+  auto run(const Work& work) {
+    try {
+      const pybind11::gil_scoped_release others_may_run;
+      return work();
+    } catch (const Cancelled&) {
+      if (error_)
+        std::rethrow_exception(error_);
+      throw;
+    }
+  }
+
+  /// The same for a step without reports of its own.
+  void step(const char* stage, double fraction) {
+    if (!tell(stage, fraction))
+      throw Cancelled("cancelled by the progress callback");
+  }
+
+private:
+  pybind11::object callback_;
+  std::exception_ptr error_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace spherical_param::python

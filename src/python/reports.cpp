@@ -1,0 +1,207 @@
+#include "python/reports.h"
+
+#include "python/arrays.h"
+#include "python/names.h"
+
+#include <algorithm>
+
+namespace spherical_param::python {
+namespace {
+
+namespace py = pybind11;
+using py::literals::operator""_a;
+
+template <typename Items, typename Convert>
+py::list listOf(const Items& items, const Convert& convert) {
+  py::list list;
+  for (const auto& item : items)
+    list.append(convert(item));
+  return list;
+}
+
+py::list textsOf(const std::vector<std::string>& texts) {
+  return listOf(texts, [](const std::string& text) { return py::str(text); });
+}
+
+/// What was not asked for is empty in the core.
+template <typename Value>
+py::object orNone(const std::vector<Value>& values) {
+  return values.empty() ? py::object(py::none()) : py::object(toArray(values));
+}
+
+py::object toObject(const EmbeddingHistory& history) {
+  if (history.frames.empty())
+    return py::none();
+  return py::dict("vertices"_a = toArray(history.vertices),
+                  "frames"_a = listOf(history.frames, [](const HistoryFrame& frame) {
+                    return py::dict("level"_a = frame.level, "nodes"_a = frame.nodes,
+                                    "step"_a = nameOf(frame.step), "iteration"_a = frame.iteration,
+                                    "residual"_a =
+                                        frame.residual ? py::cast(*frame.residual) : py::none(),
+                                    "sphere"_a = toArray(frame.sphere));
+                  }));
+}
+
+py::dict toDict(const MeshTopology& topology) {
+  return py::dict("vertices"_a = topology.vertices, "edges"_a = topology.edges,
+                  "triangles"_a = topology.triangles, "closed"_a = topology.closed,
+                  "manifold"_a = topology.manifold(), "oriented"_a = topology.oriented,
+                  "components"_a = topology.components,
+                  "euler_characteristic"_a = topology.euler_characteristic,
+                  "genus"_a = topology.genus ? py::cast(*topology.genus) : py::none());
+}
+
+py::dict toDict(const MeshMeasures& measures) {
+  return py::dict("volume"_a = measures.volume, "area"_a = measures.area,
+                  "mean_edge_length"_a = measures.mean_edge_length,
+                  "box_min"_a = toArray(measures.box_min), "box_max"_a = toArray(measures.box_max),
+                  "centroid"_a = toArray(measures.centroid),
+                  "inertia"_a = toArray(measures.inertia));
+}
+
+py::dict toDict(const Bridge& bridge) {
+  return py::dict("start"_a = bridge.from, "end"_a = bridge.to, "length"_a = bridge.length);
+}
+
+py::dict toDict(const SurfaceDiagnosis& diagnosis) {
+  const py::list lids = listOf(diagnosis.lids, [](const Lid& lid) {
+    return py::dict("cause"_a = nameOf(lid.cause), "triangles"_a = lid.triangles,
+                    "area"_a = lid.area, "boundary_length"_a = lid.boundary_length,
+                    "diameter"_a = lid.diameter, "spacing"_a = lid.spacing,
+                    "center"_a = toArray(lid.center), "vertices"_a = toArray(lid.vertices));
+  });
+  const py::list handles = listOf(diagnosis.handles, [](const CollapsedHandle& handle) {
+    return py::dict("edges"_a = handle.edges, "size"_a = handle.size,
+                    "center"_a = toArray(handle.center), "vertices"_a = toArray(handle.vertices));
+  });
+  const py::list bridges = listOf(diagnosis.bridges, [](const PartBridge& bridge) {
+    return py::dict("points"_a = bridge.points, "other_points"_a = bridge.other_points,
+                    "gap"_a = bridge.gap, "spacing"_a = bridge.spacing,
+                    "center"_a = toArray(bridge.center), "vertices"_a = toArray(bridge.vertices));
+  });
+  return py::dict("kind"_a = nameOf(diagnosis.kind), "summary"_a = diagnosis.summary,
+                  "looks_closed_genus0"_a = diagnosis.looksClosedGenus0(),
+                  "openings"_a = diagnosis.openings(), "lids"_a = lids, "handles"_a = handles,
+                  "bridges"_a = bridges, "edges_outside_graph"_a = diagnosis.edges_outside_graph,
+                  "triangle_marks"_a = orNone(diagnosis.triangle_marks));
+}
+
+py::dict toDict(const GraphReport& graph) {
+  return py::dict("edges"_a = graph.edges, "components"_a = graph.components,
+                  "bridges"_a =
+                      listOf(graph.bridges, [](const Bridge& bridge) { return toDict(bridge); }),
+                  "without_tangent_plane"_a = toArray(graph.without_tangent_plane),
+                  "searched_again"_a = graph.searched_again, "uncertified"_a = graph.uncertified,
+                  "weak"_a = graph.weak);
+}
+
+py::dict toDict(const EmbeddingReport& embedding) {
+  const py::list levels = listOf(embedding.levels, [](const LevelReport& level) {
+    return py::dict("nodes"_a = level.nodes, "edges"_a = level.edges, "sweeps"_a = level.sweeps,
+                    "newton_iterations"_a = level.newton_iterations,
+                    "linear_iterations"_a = level.linear_iterations, "residual"_a = level.residual);
+  });
+  return py::dict("stop_reason"_a = nameOf(embedding.stop_reason),
+                  "iterations"_a = embedding.iterations, "residual"_a = embedding.residual,
+                  "residuals"_a = toArray(embedding.residuals),
+                  "centroid_norm"_a = embedding.centroid_norm,
+                  "fallback_start"_a = embedding.fallback_start, "levels"_a = levels,
+                  "starts"_a = embedding.starts, "collapsed_starts"_a = embedding.collapsed_starts,
+                  "added_barrier"_a = embedding.added_barrier, "energy"_a = embedding.energy);
+}
+
+py::dict toDict(const TriangulationReport& triangulation) {
+  return py::dict(
+      "hull_vertices"_a = triangulation.hull_vertices, "reinserted"_a = triangulation.reinserted,
+      "coincident"_a = triangulation.coincident, "hull_rejected"_a = triangulation.hull_rejected);
+}
+
+py::dict toDict(const OptimizationReport& optimization) {
+  const py::list phases = listOf(optimization.phases, [](const OptimizationPhase& phase) {
+    return py::dict("name"_a = phase.name, "tried"_a = phase.tried, "moves"_a = phase.moves,
+                    "energy_before"_a = phase.energy_before, "energy"_a = phase.energy,
+                    "self_intersections"_a =
+                        phase.self_intersections ? py::cast(*phase.self_intersections) : py::none(),
+                    "seconds"_a = phase.seconds);
+  });
+  return py::dict("phases"_a = phases, "energy"_a = optimization.energy,
+                  "rough"_a = optimization.rough, "noise_steps"_a = optimization.noise_steps,
+                  "alignment"_a = optimization.alignment, "unevenness"_a = optimization.unevenness);
+}
+
+py::dict toDict(const SmoothingReport& smoothing) {
+  return py::dict("max_displacement"_a = smoothing.max_displacement,
+                  "mean_displacement"_a = smoothing.mean_displacement,
+                  "rms_displacement"_a = smoothing.rms_displacement,
+                  "volume_before"_a = smoothing.volume_before,
+                  "volume_after"_a = smoothing.volume_after,
+                  "self_intersections"_a = smoothing.self_intersections);
+}
+
+py::dict toDict(const AttemptReport& attempt) {
+  return py::dict("description"_a = attempt.description,
+                  "self_intersections"_a = attempt.self_intersections, "energy"_a = attempt.energy,
+                  "seconds"_a = attempt.seconds, "chosen"_a = attempt.chosen);
+}
+
+py::dict toDict(const DistortionStatistics& statistics) {
+  return py::dict("mean"_a = statistics.mean, "p95"_a = statistics.p95, "max"_a = statistics.max);
+}
+
+}  // namespace
+
+py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
+                std::size_t points_given) {
+  std::vector<Index> vertex_of_input(points_given, -1);
+  for (std::size_t i = 0; i < input_of_kept.size(); ++i)
+    vertex_of_input[static_cast<std::size_t>(input_of_kept[i])] = result.vertex_of_input[i];
+  std::vector<Index> input_of_vertex(result.input_of_vertex.size());
+  std::transform(result.input_of_vertex.begin(), result.input_of_vertex.end(),
+                 input_of_vertex.begin(),
+                 [&](Index kept) { return input_of_kept[static_cast<std::size_t>(kept)]; });
+  py::dict dict("triangles"_a = toArray(result.triangles), "sphere"_a = toArray(result.sphere),
+                "vertex_of_input"_a = toArray(vertex_of_input),
+                "input_of_vertex"_a = toArray(input_of_vertex), "duplicates"_a = result.duplicates,
+                "ignored"_a = points_given - input_of_kept.size(),
+                "self_intersections"_a = toArray(result.self_intersections),
+                "smoothed"_a =
+                    result.smoothed.cols() > 0 ? py::object(toArray(result.smoothed)) : py::none(),
+                "edges_outside_graph"_a = result.edges_outside_graph);
+  dict["topology"] = toDict(result.topology);
+  dict["measures"] = toDict(result.measures);
+  dict["diagnosis"] = toDict(result.diagnosis);
+  dict["graph"] = toDict(result.graph);
+  dict["embedding"] = toDict(result.embedding);
+  dict["triangulation"] = toDict(result.triangulation);
+  dict["optimization"] = toDict(result.optimization);
+  dict["smoothing"] = toDict(result.smoothing);
+  dict["attempts"] =
+      listOf(result.attempts, [](const AttemptReport& attempt) { return toDict(attempt); });
+  py::dict stages;
+  for (const StageTime& stage : result.stages)
+    stages[py::str(stage.name)] = stage.seconds;
+  dict["stages"] = stages;
+  dict["history"] = toObject(result.history);
+  dict["vertex_residuals"] = orNone(result.vertex_residuals);
+  dict["warnings"] = textsOf(result.warnings);
+  return dict;
+}
+
+py::dict toDict(const MapDistortion& distortion) {
+  return py::dict("flipped_triangles"_a = distortion.flipped_triangles,
+                  "degenerate_triangles"_a = distortion.degenerate_triangles,
+                  "angle"_a = toDict(distortion.angle), "area"_a = toDict(distortion.area),
+                  "mean_angle_difference"_a = distortion.mean_angle_difference,
+                  "stretch_efficiency"_a = distortion.stretch_efficiency);
+}
+
+py::dict toDict(const SphereMap& map) {
+  return py::dict("sphere"_a = toArray(map.sphere), "distortion"_a = toDict(map.distortion),
+                  "before"_a = toDict(map.before),
+                  "levels"_a = listOf(map.levels, [](const SphereMapLevel& level) {
+                    return py::dict("vertices"_a = level.vertices, "sweeps"_a = level.sweeps,
+                                    "energy"_a = level.energy);
+                  }));
+}
+
+}  // namespace spherical_param::python

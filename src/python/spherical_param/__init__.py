@@ -1,0 +1,96 @@
+"""Closed genus-0 meshes of point clouds by spherical parameterisation.
+
+    >>> import numpy as np, spherical_param
+    >>> points = np.random.default_rng(1).normal(size=(1000, 3))
+    >>> points /= np.linalg.norm(points, axis=1, keepdims=True)
+    >>> mesh = spherical_param.reconstruct(points)
+    >>> mesh.triangles.shape
+    (1996, 3)
+
+``reconstruct`` makes of the points of an object without holes through it a closed, manifold
+triangle mesh through every point, and a map to the sphere. ``sphere_map`` makes that map one to one
+and of low distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it
+out in the plane. ``find_outliers`` finds points to leave out before.
+
+Arrays are NumPy's: points (n, 3) float64, triangles (m, 3) int32, counter-clockwise seen from
+outside. All functions let other Python threads run while they work, may be called from several
+threads at once, give the same bytes for the same input whatever the number of threads, and end with
+KeyboardInterrupt at Ctrl-C. Errors are ``InvalidInput``, a ValueError, ``ComputeError`` and
+``Cancelled``.
+"""
+
+from ._core import __version__
+from ._errors import Cancelled, ComputeError, InvalidInput
+from ._maps import (
+    Distortion,
+    Remeshed,
+    SphereMap,
+    SphereMapLevel,
+    Statistics,
+    TextureCoordinates,
+    measure_map_distortion,
+    remesh,
+    sphere_map,
+    texture_coordinates,
+)
+from ._reconstruction import (
+    Attempt,
+    Bridge,
+    Diagnosis,
+    Embedding,
+    EmbeddingLevel,
+    Graph,
+    Handle,
+    History,
+    HistoryFrame,
+    Lid,
+    Measures,
+    Optimization,
+    OptimizationPhase,
+    Outliers,
+    PartBridge,
+    Result,
+    Smoothing,
+    Topology,
+    Triangulation,
+    find_outliers,
+    reconstruct,
+)
+
+__all__ = [
+    "Attempt",
+    "Bridge",
+    "Cancelled",
+    "ComputeError",
+    "Diagnosis",
+    "Distortion",
+    "Embedding",
+    "EmbeddingLevel",
+    "Graph",
+    "Handle",
+    "History",
+    "HistoryFrame",
+    "InvalidInput",
+    "Lid",
+    "Measures",
+    "Optimization",
+    "OptimizationPhase",
+    "Outliers",
+    "PartBridge",
+    "Remeshed",
+    "Result",
+    "Smoothing",
+    "SphereMap",
+    "SphereMapLevel",
+    "Statistics",
+    "TextureCoordinates",
+    "Topology",
+    "Triangulation",
+    "__version__",
+    "find_outliers",
+    "measure_map_distortion",
+    "reconstruct",
+    "remesh",
+    "sphere_map",
+    "texture_coordinates",
+]

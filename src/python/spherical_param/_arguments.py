@@ -1,0 +1,159 @@
+"""What callers give: arrays and options are checked here, and made what the core takes."""
+
+from __future__ import annotations
+
+import operator
+import os
+from typing import Any, Callable, Optional, SupportsFloat, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._errors import InvalidInput
+
+#: Told (stage, fraction, iteration, residual); False ends the work.
+ProgressFunction = Callable[[str, float, int, float], object]
+
+FloatArray = NDArray[np.float64]
+IndexArray = NDArray[np.int32]
+
+_openmp_used = False
+_openmp_lost = False
+
+
+def _after_fork() -> None:
+    global _openmp_lost
+    _openmp_lost = _openmp_used
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
+
+
+def thread_count(threads: SupportsIndex) -> int:
+    """The threads to work with: of a forked process only one.
+
+    OpenMP's threads stay behind in the parent, and the child would wait for them forever. The
+    result does not depend on the number.
+    """
+    global _openmp_used
+    count = integer("threads", threads, 0, 1024)
+    if _openmp_lost:
+        return 1
+    _openmp_used = True
+    return count
+
+
+def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) -> NDArray[Any]:
+    if isinstance(value, np.ma.MaskedArray) and value.dtype.kind in "fiu":
+        # What is masked is not a point.
+        masked: Any = value
+        value = masked.astype(np.float64).filled(np.nan)
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(
+            f"{name} cannot be made an array ({error}); give {what} with rows of one length"
+        ) from error
+    if array.dtype.kind == "O":
+        # Such as rows of Fraction or Decimal; what is no number is told below.
+        try:
+            array = array.astype(np.float64)
+        except (TypeError, ValueError):
+            pass
+    if array.dtype.names is not None:
+        raise InvalidInput(
+            f"{name} is a structured array with the fields {', '.join(array.dtype.names)}; give "
+            "numpy.lib.recfunctions.structured_to_unstructured(array[['x', 'y', 'z']])"
+        )
+    if array.dtype.kind not in kinds:
+        raise InvalidInput(f"{name} is an array of {array.dtype}; give {what} of {remedy}")
+    if array.ndim != 2 or array.shape[1] != 3:
+        hint = ""
+        if array.ndim == 2 and array.shape[0] == 3:
+            hint = "; it looks transposed, give its .T"
+        elif array.ndim == 2 and array.shape[1] > 3:
+            hint = "; give its first three columns, [:, :3]"
+        else:
+            hint = f"; give {what} of shape (n, 3)"
+        raise InvalidInput(f"{name} has the shape {array.shape}, not (n, 3){hint}")
+    return array
+
+
+def positions(name: str, value: ArrayLike) -> FloatArray:
+    """(n, 3) float64 in C order: the caller's own array, if it is one."""
+    array = _numbers(name, value, "fiu", "an array", "real numbers, float64 best")
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def triangle_indices(name: str, value: ArrayLike) -> IndexArray:
+    """(m, 3) int32 in C order."""
+    array = _numbers(name, value, "iu", "an array", "integers, int32 best")
+    limits = np.iinfo(np.int32)
+    if array.size and (array.min() < limits.min or array.max() > limits.max):
+        raise InvalidInput(f"{name} has an index beyond 32 bits; give indices of the points")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def integer(
+    name: str, value: SupportsIndex, least: int = -(2**31), most: int = 2**31 - 1
+) -> int:
+    """An integer of a range; without one, of those that the core can take and judge."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise InvalidInput(f"{name} = {value!r} is no integer; give one") from None
+    if not least <= number <= most:
+        raise InvalidInput(f"{name} = {number} is out of range; use {least} to {most}")
+    return number
+
+
+def real(name: str, value: SupportsFloat) -> float:
+    """A number; the core judges its range."""
+    if isinstance(value, (str, bytes)):
+        raise InvalidInput(f"{name} = {value!r} is no number; give one")
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidInput(f"{name} = {value!r} is no number; give one") from None
+
+
+def text(name: str, value: str) -> str:
+    """The name of a choice; the core knows which there are."""
+    if not isinstance(value, str):
+        raise InvalidInput(f"{name} = {value!r} is no text; give the name of a choice")
+    return value
+
+
+def truth(name: str, value: bool) -> bool:
+    """A flag; what only counts as true, such as a text, is mostly a mistake."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InvalidInput(f"{name} = {value!r} is neither True nor False; give one of them")
+    return bool(value)
+
+
+def choice(name: str, value: str, choices: tuple[str, ...]) -> str:
+    """The name of a choice, told before the long work that comes before the core is asked."""
+    if text(name, value) not in choices:
+        known = ", ".join(repr(known) for known in choices)
+        raise InvalidInput(f"{name} = {value!r} is not known; use one of {known}")
+    return value
+
+
+def progress_function(progress: Optional[ProgressFunction]) -> Optional[ProgressFunction]:
+    """What the core may call: it ends its work for False alone."""
+    if progress is None:
+        return None
+    if not callable(progress):
+        raise InvalidInput(
+            f"progress = {progress!r} cannot be called; give a function of "
+            "(stage, fraction, iteration, residual)"
+        )
+    listener = progress
+
+    def tell(stage: str, fraction: float, iteration: int, residual: float) -> bool:
+        answer = listener(stage, fraction, iteration, residual)
+        return not (isinstance(answer, (bool, np.bool_)) and not answer)
+
+    return tell

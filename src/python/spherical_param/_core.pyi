@@ -1,0 +1,76 @@
+"""What of spherical_param is in C++; use the package's own functions."""
+
+from typing import Any, Callable, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+def reconstruct(
+    points: NDArray[np.float64],
+    *,
+    graph: str,
+    k: Optional[int],
+    solver: str,
+    weights: str,
+    exponent: float,
+    lambda_: float,
+    tolerance: Optional[float],
+    max_iterations: int,
+    stagnation_window: int,
+    starts: int,
+    seed: int,
+    hull: str,
+    optimization: str,
+    attempts: int,
+    smoothing_steps: int,
+    history: int,
+    details: bool,
+    threads: int,
+    progress: Optional[Callable[[str, float, int, float], object]],
+) -> dict[str, Any]: ...
+def find_outliers(
+    points: NDArray[np.float64],
+    *,
+    sigma: float,
+    k: int,
+    threads: int,
+    progress: Optional[Callable[[str, float, int, float], object]],
+) -> dict[str, Any]: ...
+def sphere_map(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    sphere: NDArray[np.float64],
+    *,
+    area_weight: float,
+    sweeps: int,
+    threads: int,
+    progress: Optional[Callable[[str, float, int, float], object]],
+) -> dict[str, Any]: ...
+def measure_map_distortion(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    sphere: NDArray[np.float64],
+    *,
+    threads: int,
+) -> dict[str, Any]: ...
+def remesh(
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    sphere: NDArray[np.float64],
+    *,
+    grid: str,
+    count: int,
+    fit: str,
+    seed: int,
+    threads: int,
+    progress: Optional[Callable[[str, float, int, float], object]],
+) -> dict[str, Any]: ...
+def texture_coordinates(
+    triangles: NDArray[np.int32],
+    sphere: NDArray[np.float64],
+    *,
+    chart: str,
+    margin: float,
+) -> dict[str, Any]: ...

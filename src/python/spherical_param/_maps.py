@@ -1,0 +1,387 @@
+"""What the map to the sphere is for: low distortion, new meshes, texture coordinates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arguments as arguments
+from . import _core
+from ._arguments import FloatArray, IndexArray, ProgressFunction
+from ._errors import InvalidInput
+from ._files import MeshExport
+from ._reconstruction import Result
+
+GridName = Literal["icosahedral", "octahedral", "even"]
+FitName = Literal["smooth", "linear"]
+ChartName = Literal["octahedral", "equirectangular", "cube"]
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """A quantity over the triangles of a mesh, each weighted by its area in space."""
+
+    mean: float
+    p95: float  #: the least value that 95 % of the area do not exceed
+    max: float
+
+
+@dataclass(frozen=True)
+class Distortion:
+    """How far a map from a mesh to the unit sphere is from an isometry."""
+
+    flipped_triangles: int  #: 0: the map is one to one (an exact test)
+    degenerate_triangles: int  #: without an area in space, no part of the statistics
+    angle: Statistics  #: ratio of singular values, 1: conformal
+    area: Statistics  #: ratio of the shares of area, or its inverse, >= 1; 1: equal areas
+    mean_angle_difference: float  #: of the corners [degree]
+    stretch_efficiency: float  #: of Praun and Hoppe (2003), in (0, 1]; 1: no stretch
+
+
+@dataclass(frozen=True)
+class SphereMapLevel:
+    """Work on one level of the hierarchy of meshes."""
+
+    vertices: int
+    sweeps: int
+    energy: float  #: mean per unit of area
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SphereMap:
+    """A mesh with a map to the unit sphere that is one to one."""
+
+    vertices: FloatArray  #: (v, 3) of the mesh [unit of the input]
+    triangles: IndexArray  #: (2v - 4, 3) of the mesh, outward
+    directions: FloatArray  #: (v, 3) unit vectors: the map
+    distortion: Distortion  #: of the map
+    before: Distortion  #: of the embedding that it was made from
+    levels: tuple[SphereMapLevel, ...]  #: finest first
+
+    def __repr__(self) -> str:
+        return (
+            f"<spherical_param.SphereMap: {len(self.vertices)} vertices, "
+            f"{self.distortion.flipped_triangles} flipped triangles, "
+            f"mean distortion of angles {self.distortion.angle.mean:.4g}, "
+            f"of areas {self.distortion.area.mean:.4g}>"
+        )
+
+
+def _distortion(fields: dict[str, Any]) -> Distortion:
+    fields["angle"] = Statistics(**fields["angle"])
+    fields["area"] = Statistics(**fields["area"])
+    return Distortion(**fields)
+
+
+def _mesh(
+    mesh: Union[Result, SphereMap, ArrayLike],
+    triangles: Optional[ArrayLike],
+    sphere: Optional[ArrayLike],
+) -> tuple[FloatArray, IndexArray, FloatArray]:
+    """Vertices, triangles and directions of what a function was given."""
+    if isinstance(mesh, (Result, SphereMap)):
+        if triangles is not None or sphere is not None:
+            raise InvalidInput(
+                f"triangles and sphere were given beside a {type(mesh).__name__}, which has its "
+                "own; leave them out"
+            )
+        if isinstance(mesh, SphereMap):
+            return mesh.vertices, mesh.triangles, mesh.directions
+        return mesh._export_points(), mesh.triangles, mesh.sphere
+    if triangles is None or sphere is None:
+        raise InvalidInput(
+            "points were given without triangles and sphere; give all three, or the Result of "
+            "reconstruct()"
+        )
+    return (
+        arguments.positions("points", mesh),
+        arguments.triangle_indices("triangles", triangles),
+        arguments.positions("sphere", sphere),
+    )
+
+
+def sphere_map(
+    mesh: Union[Result, SphereMap, ArrayLike],
+    triangles: Optional[ArrayLike] = None,
+    sphere: Optional[ArrayLike] = None,
+    *,
+    area_weight: SupportsFloat = 0.85,
+    sweeps: SupportsIndex = 15,
+    threads: SupportsIndex = 0,
+    progress: Optional[ProgressFunction] = None,
+) -> SphereMap:
+    """Make a map of low distortion from a mesh to the sphere: one to one, no triangle flipped.
+
+    Parameters
+    ----------
+    mesh : Result, SphereMap, or array-like (v, 3)
+        A mesh of ``reconstruct`` (its smoothed points, if it has them); or the points of one, with
+        ``triangles`` and ``sphere``.
+    triangles : array-like of integers, (2v - 4, 3)
+        Closed, manifold, oriented outward, of genus 0, in one piece, each point used.
+    sphere : array-like, (v, 3)
+        Unit vectors, the start. It gives the map its orientation in space, and may have flipped
+        triangles.
+    area_weight : float, 0 to 1
+        Of areas (1) against angles (0).
+    sweeps : int, 0 to 1000
+        Sweeps of each level, at most; 0: the map is only made valid.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it.
+    progress : callable(stage, fraction, iteration, residual)
+        As for ``reconstruct``; the stage is "map".
+
+    Raises
+    ------
+    InvalidInput
+        The mesh, the start or an option is not as said.
+    ComputeError, Cancelled, MemoryError, KeyboardInterrupt
+    """
+    points, indices, start = _mesh(mesh, triangles, sphere)
+    fields = _core.sphere_map(
+        points,
+        indices,
+        start,
+        area_weight=arguments.real("area_weight", area_weight),
+        sweeps=arguments.integer("sweeps", sweeps),
+        threads=arguments.thread_count(threads),
+        progress=arguments.progress_function(progress),
+    )
+    return SphereMap(
+        vertices=points.copy(),
+        triangles=indices.copy(),
+        directions=fields["sphere"],
+        distortion=_distortion(fields["distortion"]),
+        before=_distortion(fields["before"]),
+        levels=tuple(SphereMapLevel(**level) for level in fields["levels"]),
+    )
+
+
+def measure_map_distortion(
+    mesh: Union[Result, SphereMap, ArrayLike],
+    triangles: Optional[ArrayLike] = None,
+    sphere: Optional[ArrayLike] = None,
+    *,
+    threads: SupportsIndex = 0,
+) -> Distortion:
+    """Measure how far a map from a mesh to the unit sphere is from an isometry.
+
+    Parameters
+    ----------
+    mesh, triangles, sphere
+        As for ``sphere_map``; any triangles, and unit vectors. A ``Result`` has the embedding.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it.
+
+    Raises
+    ------
+    InvalidInput
+        Sizes do not match, an index is out of range, or a number is not finite.
+    """
+    points, indices, directions = _mesh(mesh, triangles, sphere)
+    return _distortion(
+        _core.measure_map_distortion(
+            points, indices, directions, threads=arguments.thread_count(threads)
+        )
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Remeshed(MeshExport):
+    """A surface that was sampled anew."""
+
+    vertices: FloatArray  #: (w, 3) [unit of the input]
+    triangles: IndexArray  #: (2w - 4, 3), outward; (0, 3) for an even cloud
+    normals: FloatArray  #: (w, 3) unit vectors, outward
+    directions: FloatArray  #: (w, 3) unit vectors: the map to the sphere
+    frequency: Optional[int]  #: parts of each edge of the grid's solid; None for an even cloud
+    self_intersections: IndexArray  #: (s, 2) pairs of triangles that intersect
+    self_intersections_before: int  #: before vertices were slid along the surface
+    moved: int  #: vertices that were slid
+    flipped_edges: int  #: edges that were flipped thereafter
+    source_triangle: IndexArray  #: (w,) triangle of ``map`` in which each direction lies
+    source_weights: FloatArray  #: (w, 3) barycentric coordinates in it
+    map: SphereMap  #: the surface that was sampled, with its map
+
+    def _export_normals(self) -> FloatArray:
+        return self.normals
+
+    def transfer(self, values: ArrayLike) -> FloatArray:
+        """Carry values, such as colours, from the vertices of ``map`` to these vertices.
+
+        Parameters
+        ----------
+        values : array-like, (v,) or (v, c)
+            For a ``Result`` that was made of coloured points: ``colors[result.input_of_vertex]``.
+
+        Returns
+        -------
+        (w,) or (w, c) float64, interpolated over the triangles of ``map``.
+
+        Raises
+        ------
+        InvalidInput
+            There is not one value, or one row, for each vertex of ``map``.
+        """
+        array = np.asarray(values)
+        if array.dtype.kind not in "biuf" or array.ndim not in (1, 2):
+            raise InvalidInput(
+                f"values have the type {array.dtype} and the shape {array.shape}; give real "
+                "numbers, (v,) or (v, c)"
+            )
+        if len(array) != len(self.map.vertices):
+            raise InvalidInput(
+                f"there are {len(array)} values for {len(self.map.vertices)} vertices; give one "
+                "for each vertex of map, such as colors[result.input_of_vertex]"
+            )
+        corners = array.astype(np.float64)[self.map.triangles[self.source_triangle]]
+        transferred: FloatArray = np.einsum("ij...,ij->i...", corners, self.source_weights)
+        return transferred
+
+    def __repr__(self) -> str:
+        return (
+            f"<spherical_param.Remeshed: {len(self.vertices)} vertices, "
+            f"{len(self.triangles)} triangles, {len(self.self_intersections)} self-intersections>"
+        )
+
+
+def remesh(
+    mesh: Union[Result, SphereMap, ArrayLike],
+    triangles: Optional[ArrayLike] = None,
+    sphere: Optional[ArrayLike] = None,
+    *,
+    grid: GridName = "icosahedral",
+    points: Optional[SupportsIndex] = None,
+    fit: FitName = "smooth",
+    area_weight: SupportsFloat = 0.5,
+    sweeps: SupportsIndex = 40,
+    seed: SupportsIndex = 1,
+    threads: SupportsIndex = 0,
+    progress: Optional[ProgressFunction] = None,
+) -> Remeshed:
+    """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
+
+    A mesh is closed, manifold, of genus 0, oriented outward. Where its triangles would intersect,
+    vertices slide along the surface, then edges are flipped; what is left is told.
+
+    Parameters
+    ----------
+    mesh, triangles, sphere
+        As for ``sphere_map``, which is called first; a ``SphereMap`` is taken as it is.
+    grid : {"icosahedral", "octahedral", "even"}
+        The triangles of a geodesic sphere or a subdivided octahedron, or an even cloud.
+    points : int
+        Number of points; a mesh takes the nearest that its grid can have. Up to 2**28, an even
+        cloud to 2**24. Default: as many as the mesh.
+    fit : {"smooth", "linear"}
+        The surface between the vertices: quadrics through them, or the triangles themselves.
+    area_weight : float, 0 to 1; sweeps : int, 0 to 1000
+        Of the map, as for ``sphere_map``; a grid likes one with less shear. Without effect on a
+        ``SphereMap``.
+    seed : int, 0 to 2**32 - 1
+        Of an even cloud.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it.
+    progress : callable(stage, fraction, iteration, residual)
+        As for ``reconstruct``; the stages are "map", "surface", "resample", "untangle" and
+        "verify". Within "surface", "resample" and "untangle" nothing is told.
+
+    Raises
+    ------
+    InvalidInput
+        The mesh, the start or an option is not as said.
+    ComputeError, Cancelled, MemoryError, KeyboardInterrupt
+    """
+    arguments.choice("grid", grid, get_args(GridName))
+    arguments.choice("fit", fit, get_args(FitName))
+    random_seed = arguments.integer("seed", seed, 0, 2**32 - 1)
+    count = None if points is None else arguments.integer("points", points)
+    most = 2**24 if grid == "even" else 2**28
+    least = 1 if grid == "even" else 4
+    if count is not None and not least <= count <= most:
+        raise InvalidInput(f"points = {count} is out of range; use {least} to {most}")
+    mapped = (
+        mesh
+        if isinstance(mesh, SphereMap) and triangles is None and sphere is None
+        else sphere_map(
+            mesh,
+            triangles,
+            sphere,
+            area_weight=area_weight,
+            sweeps=sweeps,
+            threads=threads,
+            progress=progress,
+        )
+    )
+    fields = _core.remesh(
+        *_mesh(mapped, None, None),
+        grid=grid,
+        count=len(mapped.vertices) if count is None else count,
+        fit=fit,
+        seed=random_seed,
+        threads=arguments.thread_count(threads),
+        progress=arguments.progress_function(progress),
+    )
+    return Remeshed(map=mapped, **fields)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TextureCoordinates:
+    """A mesh laid out in the unit square, cut where the layout is: no triangle wraps round."""
+
+    vertices: FloatArray  #: (w, 3) of the cut mesh; the first v are those of the mesh, in order
+    triangles: IndexArray  #: (m, 3) of the cut mesh, outward: the surface is what it was
+    coordinates: FloatArray  #: (t, 2) (u, v) in [0, 1], u to the right and v up
+    coordinate_triangles: IndexArray  #: (m, 3) rows of ``coordinates`` for each triangle
+    source_triangle: IndexArray  #: (m,) triangle of the mesh that each is a part of
+    source_vertices: IndexArray  #: (w, 3) vertices of the mesh between which each vertex lies
+    source_weights: FloatArray  #: (w, 3) their weights, >= 0, with sum 1
+
+    def __repr__(self) -> str:
+        return (
+            f"<spherical_param.TextureCoordinates: {len(self.triangles)} triangles, "
+            f"{len(self.coordinates)} coordinates>"
+        )
+
+
+def texture_coordinates(
+    mesh: Union[SphereMap, Remeshed],
+    *,
+    chart: ChartName = "octahedral",
+    margin: SupportsFloat = 1.0 / 64,
+) -> TextureCoordinates:
+    """Lay a mesh out in a chart of the sphere, for texture mapping.
+
+    Parameters
+    ----------
+    mesh : SphereMap or Remeshed
+        With a map that is one to one.
+    chart : {"octahedral", "equirectangular", "cube"}
+        Layout, for images of 1:1, 2:1 and 3:2.
+    margin : float, [0, 0.25)
+        Free space around each face of a cube map, as a share of its side.
+
+    Raises
+    ------
+    InvalidInput
+        A triangle is flipped on the sphere, or an option is not as said.
+    """
+    if not isinstance(mesh, (SphereMap, Remeshed)):
+        raise InvalidInput(
+            f"a {type(mesh).__name__} has no map to the sphere that is one to one; give the "
+            "SphereMap of sphere_map()"
+        )
+    fields = _core.texture_coordinates(
+        mesh.triangles,
+        mesh.directions,
+        chart=arguments.text("chart", chart),
+        margin=arguments.real("margin", margin),
+    )
+    corners = mesh.vertices[fields["source_vertices"]]
+    vertices = np.einsum("ijk,ij->ik", corners, fields["source_weights"])
+    # Exactly where they were.
+    vertices[: len(mesh.vertices)] = mesh.vertices
+    return TextureCoordinates(vertices=vertices, **fields)

@@ -1,0 +1,525 @@
+"""From points to a mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _arguments as arguments
+from . import _core
+from ._arguments import FloatArray, IndexArray, ProgressFunction
+from ._files import MeshExport
+
+GraphName = Literal["delaunay", "knn"]
+SolverName = Literal["multilevel", "iterative"]
+WeightsName = Literal["adaptive", "inverse", "uniform"]
+HullName = Literal["incremental", "qhull"]
+OptimizationName = Literal["full", "flips", "none"]
+
+
+@dataclass(frozen=True)
+class Topology:
+    """Combinatorial properties of the mesh, counted on its triangles."""
+
+    vertices: int  #: used by triangles
+    edges: int  #: undirected
+    triangles: int
+    closed: bool  #: no edge has just one triangle
+    manifold: bool  #: two triangles to each edge, one fan of them to each vertex
+    oriented: bool  #: the triangles of each edge traverse it in opposite directions
+    components: int
+    euler_characteristic: int  #: V - E + F
+    genus: Optional[int]  #: None unless closed, manifold and oriented
+
+
+@dataclass(frozen=True, eq=False)
+class Measures:
+    """Size, place and mass properties of the mesh and the solid that it encloses."""
+
+    volume: float  #: [cubed unit of the input]
+    area: float  #: [squared unit of the input]
+    mean_edge_length: float  #: [unit of the input]
+    box_min: FloatArray  #: (3,) corner of the box along the axes [unit of the input]
+    box_max: FloatArray  #: (3,) the opposite corner
+    centroid: FloatArray  #: (3,) centre of mass of the solid
+    inertia: FloatArray  #: (3, 3) of the solid at unit density about the centroid
+
+
+@dataclass(frozen=True, eq=False)
+class Lid:
+    """Triangles over a place that is wide, and without points: probably an opening."""
+
+    cause: str  #: "open", "handles" or "several_parts": what it is a trace of
+    triangles: int
+    area: float  #: [squared unit of the input]
+    boundary_length: float  #: of all its rims [unit of the input]
+    diameter: float  #: of the disc that area and boundary make [unit of the input]
+    spacing: float  #: distance of the points at its rim [unit of the input]
+    center: FloatArray  #: (3,)
+    vertices: IndexArray  #: (r,) of its rim, ascending, at most 64
+
+
+@dataclass(frozen=True, eq=False)
+class Handle:
+    """Neighbours along the surface that the mesh tears apart: probably a handle."""
+
+    edges: int  #: of the neighbour graph that are torn
+    size: float  #: diagonal of the box around them [unit of the input]
+    center: FloatArray  #: (3,)
+    vertices: IndexArray  #: (r,) their ends, ascending, at most 64
+
+
+@dataclass(frozen=True, eq=False)
+class PartBridge:
+    """Two parts of the cloud with a gap between them."""
+
+    points: int  #: of the smaller part
+    other_points: int  #: of the larger part
+    gap: float  #: [unit of the input]
+    spacing: float  #: distance of the points at its ends [unit of the input]
+    center: FloatArray  #: (3,)
+    vertices: IndexArray  #: (r,) the ends of its bridges, ascending, at most 64
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """Does the cloud look like a closed surface without handles? The mesh always is one."""
+
+    kind: str  #: "closed_genus0", "open", "handles", "several_parts" or "unclear"
+    summary: str  #: one sentence
+    looks_closed_genus0: bool
+    openings: int  #: lids that are a trace of nothing else
+    lids: tuple[Lid, ...]  #: by falling area
+    handles: tuple[Handle, ...]  #: by falling number of edges
+    bridges: tuple[PartBridge, ...]  #: by falling number of points
+    edges_outside_graph: float  #: share of edges between points that are no near neighbours
+    triangle_marks: Optional[NDArray[np.uint8]]
+    """(m,) with ``details``, for each triangle the sum of 1: intersects another, 2: part of a lid,
+    4: at the torn edges of a handle, 8: at a bridge between parts, 16: at an edge outside the
+    graph's 2-ring; else None"""
+
+
+@dataclass(frozen=True)
+class Bridge:
+    """An edge that was added to join two parts of the neighbour graph."""
+
+    start: int  #: vertex in one part
+    end: int  #: vertex in the other
+    length: float  #: [unit of the input]
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """Size of the neighbour graph, and what it took to connect it."""
+
+    edges: int
+    components: int  #: connected components before they were joined
+    bridges: tuple[Bridge, ...]
+    without_tangent_plane: IndexArray  #: (t,) vertices without a trustworthy tangent plane
+    searched_again: int  #: points for which more neighbours were asked
+    uncertified: int  #: points whose cell is not certified even so
+    weak: int  #: points that too few neighbours agreed with, repaired
+
+
+@dataclass(frozen=True)
+class EmbeddingLevel:
+    """Work on one level of the multilevel solver."""
+
+    nodes: int
+    edges: int
+    sweeps: int
+    newton_iterations: int
+    linear_iterations: int
+    residual: float  #: mean length of the tangential Laplacian at the end [radius]
+
+
+@dataclass(frozen=True, eq=False)
+class Embedding:
+    """How the embedding on the sphere ended."""
+
+    stop_reason: str  #: "converged", "iteration_limit", "stagnated", "collapsed", "unfinished"
+    iterations: int  #: steps made; of Newton's method for the multilevel solver
+    residual: float  #: mean tangential Laplacian [radius]
+    residuals: FloatArray  #: (i,) before each step and at the end [radius]
+    centroid_norm: float  #: length of the mean direction, in [0, 1]; 1: collapsed
+    fallback_start: bool  #: the iteration collapsed, and a start that did not was taken instead
+    levels: tuple[EmbeddingLevel, ...]  #: of the multilevel solver, the finest first
+    starts: int  #: of the coarsest level that were tried
+    collapsed_starts: int  #: of these, rejected
+    added_barrier: bool  #: all starts collapsed, and a barrier was added
+    energy: float
+
+
+@dataclass(frozen=True)
+class Triangulation:
+    """How the triangulation of the sphere came about."""
+
+    hull_vertices: int  #: points that it held as vertices by itself
+    reinserted: int  #: points that it left out, put back
+    coincident: int  #: of these, at exactly the position of another point
+    hull_rejected: bool  #: the hull could not be used, and all points were inserted one by one
+
+
+@dataclass(frozen=True)
+class OptimizationPhase:
+    """What one phase of the optimisation did."""
+
+    name: str
+    tried: int  #: vertices or parts that were taken out
+    moves: int  #: flips, or those taken out that stayed at another place
+    energy_before: float  #: in the phase's own terms [unit of the input]
+    energy: float
+    self_intersections: Optional[int]  #: at its end; None if not looked for
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Optimization:
+    """How the mesh was optimised on the points."""
+
+    phases: tuple[OptimizationPhase, ...]
+    energy: float  #: total absolute curvature and a penalty on needles [unit of the input]
+    rough: float  #: share of rough vertices after the first flips, in [0, 1]
+    noise_steps: int  #: of smoothing that it took because the cloud is noisy; 0: it is not
+    alignment: float  #: how far the sampling follows the curvature, in [-1, 1]
+    unevenness: float  #: relative deviation of the distances of a point's neighbours
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """The smoothed surface; all zero without ``smoothing_steps``."""
+
+    max_displacement: float  #: of a point [unit of the input]
+    mean_displacement: float
+    rms_displacement: float
+    volume_before: float  #: [cubed unit of the input]
+    volume_after: float
+    self_intersections: int  #: pairs of triangles, on the smoothed points
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One whole run, of ``attempts``."""
+
+    description: str  #: what is different from the first
+    self_intersections: int  #: pairs of triangles, on the points or the smoothed ones
+    energy: float
+    seconds: float
+    chosen: bool
+
+
+@dataclass(frozen=True, eq=False)
+class HistoryFrame:
+    """One state of the embedding on its way."""
+
+    level: int  #: that was worked on: 0 is the graph itself, 1 the next coarser
+    nodes: int  #: of that level
+    step: str  #: "start", "sweeps", "newton", "iteration" or "end"
+    iteration: int  #: steps of this kind that were made on this level
+    residual: Optional[float]  #: mean tangential Laplacian, where it is known [radius]
+    sphere: FloatArray  #: (h, 3) unit vectors, of the history's vertices
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """How the embedding unfolded, for some of the vertices."""
+
+    vertices: IndexArray  #: (h,) indices of vertices
+    frames: tuple[HistoryFrame, ...]  #: in the order of the work; the last is the embedding
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(MeshExport):
+    """A closed genus-0 mesh through all points, its map to the sphere, and their quality.
+
+    Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
+    ``input_of_vertex`` carry anything that points have, such as colours, to the vertices and back:
+    ``colors[mesh.input_of_vertex]``. What is written or given to other libraries has the smoothed
+    points, if there are any.
+    """
+
+    vertices: FloatArray  #: (v, 3) the points[input_of_vertex] [unit of the input]
+    triangles: IndexArray  #: (2v - 4, 3) counter-clockwise seen from outside
+    sphere: FloatArray  #: (v, 3) unit vectors: the embedding of each vertex
+    vertex_of_input: IndexArray  #: (n,) vertex of each input point; -1: not finite, ignored
+    input_of_vertex: IndexArray  #: (v,) first input point at that position
+    duplicates: int  #: points that repeat an earlier one
+    ignored: int  #: points that are not finite
+    self_intersections: IndexArray  #: (s, 2) pairs of triangles that intersect, exactly found
+    smoothed: Optional[FloatArray]  #: (v, 3) after ``smoothing_steps``; None without
+    edges_outside_graph: float  #: share of edges between points that are no near neighbours
+    topology: Topology  #: counted on ``triangles``
+    measures: Measures  #: of the mesh on the input's points
+    diagnosis: Diagnosis  #: does the cloud look like a closed genus-0 surface?
+    graph: Graph
+    embedding: Embedding
+    triangulation: Triangulation
+    optimization: Optimization
+    smoothing: Smoothing
+    attempts: tuple[Attempt, ...]  #: in the order of the work, at least one
+    stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
+    history: Optional[History]  #: how the embedding unfolded; None unless ``history`` asks for it
+    vertex_residuals: Optional[FloatArray]
+    """(v,) with ``details`` the length of the tangential Laplacian of ``sphere`` [radius]; else
+    None"""
+    warnings: tuple[str, ...]  #: one sentence each; empty if nothing is to be said
+
+    def _export_points(self) -> FloatArray:
+        return self.vertices if self.smoothed is None else self.smoothed
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume [cubed unit of the input]."""
+        return self.measures.volume
+
+    @property
+    def area(self) -> float:
+        """Area of the mesh [squared unit of the input]."""
+        return self.measures.area
+
+    @property
+    def converged(self) -> bool:
+        """Whether the embedding came to ``tolerance``; without one it is not asked for."""
+        return self.embedding.stop_reason == "converged"
+
+    @property
+    def residuals(self) -> FloatArray:
+        """(i,) mean tangential Laplacian before each step, and at the end [radius]."""
+        return self.embedding.residuals
+
+    def __repr__(self) -> str:
+        crossings = len(self.self_intersections)
+        return (
+            f"<spherical_param.Result: {len(self.vertices)} vertices, "
+            f"{len(self.triangles)} triangles, volume {self.volume:.6g}, area {self.area:.6g}, "
+            f"{crossings} self-intersection{'' if crossings == 1 else 's'}, "
+            f"{self.diagnosis.kind}>"
+        )
+
+
+def _result(fields: dict[str, Any], points: FloatArray) -> Result:
+    diagnosis = fields["diagnosis"]
+    diagnosis["lids"] = tuple(Lid(**lid) for lid in diagnosis["lids"])
+    diagnosis["handles"] = tuple(Handle(**handle) for handle in diagnosis["handles"])
+    diagnosis["bridges"] = tuple(PartBridge(**bridge) for bridge in diagnosis["bridges"])
+    graph = fields["graph"]
+    graph["bridges"] = tuple(Bridge(**bridge) for bridge in graph["bridges"])
+    embedding = fields["embedding"]
+    embedding["levels"] = tuple(EmbeddingLevel(**level) for level in embedding["levels"])
+    optimization = fields["optimization"]
+    optimization["phases"] = tuple(OptimizationPhase(**phase) for phase in optimization["phases"])
+    history = fields["history"]
+    if history is not None:
+        history["frames"] = tuple(HistoryFrame(**frame) for frame in history["frames"])
+        fields["history"] = History(**history)
+    fields.update(
+        topology=Topology(**fields["topology"]),
+        measures=Measures(**fields["measures"]),
+        diagnosis=Diagnosis(**diagnosis),
+        graph=Graph(**graph),
+        embedding=Embedding(**embedding),
+        triangulation=Triangulation(**fields["triangulation"]),
+        optimization=Optimization(**optimization),
+        smoothing=Smoothing(**fields["smoothing"]),
+        attempts=tuple(Attempt(**attempt) for attempt in fields["attempts"]),
+        warnings=tuple(fields["warnings"]),
+    )
+    return Result(vertices=points[fields["input_of_vertex"]], **fields)
+
+
+def reconstruct(
+    points: ArrayLike,
+    *,
+    graph: GraphName = "delaunay",
+    k: Optional[SupportsIndex] = None,
+    solver: SolverName = "multilevel",
+    weights: WeightsName = "adaptive",
+    exponent: SupportsFloat = 3.0,
+    lambda_: SupportsFloat = 0.5,
+    tolerance: Optional[SupportsFloat] = None,
+    max_iterations: SupportsIndex = 1600,
+    stagnation_window: SupportsIndex = 100,
+    starts: SupportsIndex = 2,
+    seed: SupportsIndex = 1,
+    hull: HullName = "incremental",
+    optimization: OptimizationName = "full",
+    attempts: SupportsIndex = 4,
+    smoothing_steps: SupportsIndex = 0,
+    history: SupportsIndex = 0,
+    details: bool = False,
+    threads: SupportsIndex = 0,
+    progress: Optional[ProgressFunction] = None,
+) -> Result:
+    """Mesh the points of an object without holes through it.
+
+    The mesh is closed, manifold, oriented outward, of genus 0 and in one piece, and every distinct
+    finite point is a vertex. No normals and no radius are needed, and the defaults need no tuning.
+
+    Parameters
+    ----------
+    points : array-like, (n, 3)
+        In any unit, any real type, worked on in double precision. At least 4 distinct finite points
+        that are not all in one plane. Points with a coordinate that is not finite (or masked) are
+        ignored, and counted.
+    graph : {"delaunay", "knn"}
+        Neighbours of each point: local Delaunay neighbourhoods, or the k nearest (the paper's).
+    k : int, 3 and up
+        Neighbours of each point. Default: 12 for "delaunay", 25 for "knn".
+    solver : {"multilevel", "iterative"}
+        How the graph is embedded on the sphere: coarse to fine, or by the paper's iteration.
+    weights : {"adaptive", "inverse", "uniform"}
+        Weights of the Laplacian (equations 2 to 4 of the paper).
+    exponent : float, (2, 16]
+        p of the energy of adaptive weights; multilevel solver.
+    lambda_ : float, (0, 1]
+        Damping of iterations and smoothing sweeps.
+    tolerance : float, >= 0
+        Mean tangential Laplacian at which the embedding has converged, in radii of the sphere.
+        Default: 1e-8 for the iterative solver; the multilevel solver ends with its sweeps.
+    max_iterations : int, >= 0
+        Of the iterative solver.
+    stagnation_window : int, 0 (never) or >= 2
+        Iterations over which the stagnation of the iterative solver is judged.
+    starts : int, 1 to 100
+        Starts of the coarsest level of the multilevel solver.
+    seed : int, 0 to 2**32 - 1
+        Of all that is random.
+    hull : {"incremental", "qhull"}
+        Triangulation of the sphere: exact and incremental, or by the convex hull of qhull.
+    optimization : {"full", "flips", "none"}
+        Of the mesh on the points.
+    attempts : int, 1 to 100
+        Whole runs, at most, while the mesh intersects itself although the cloud looks closed.
+    smoothing_steps : int, 0 to 10000
+        Steps of smoothing, into ``Result.smoothed``; the ``vertices`` stay where they are.
+    history : int, 0 to 2**24
+        Vertices whose way on the sphere is kept in ``Result.history``, at most; 0: none.
+    details : bool
+        Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it. In a forked process it is 1.
+    progress : callable(stage, fraction, iteration, residual)
+        Told, from the calling thread, how far the work is: ``stage`` is "neighbors", "graph",
+        "embedding", "triangulation", "optimization", "smoothing" or "check", ``fraction`` its share
+        in [0, 1]. If it returns False, the work ends with Cancelled; if it raises, with that.
+
+    Returns
+    -------
+    Result
+        Mesh, map to the sphere, and what tells how much to trust them: ``diagnosis``,
+        ``self_intersections`` and ``warnings``.
+
+    Raises
+    ------
+    InvalidInput
+        Points or an option are not as said. A subclass of ValueError.
+    ComputeError, Cancelled, MemoryError, KeyboardInterrupt
+
+    Notes
+    -----
+    No guarantees: the mesh may intersect itself, and a cloud with openings or handles is closed and
+    cut all the same; ``diagnosis`` tells. Below 2 KB of memory a point, 3 KB with a tolerance.
+    Ctrl-C and False of ``progress`` are noticed every second or two; the paper's own stages
+    ("iterative", "qhull") have longer silences.
+
+    Examples
+    --------
+    >>> mesh = reconstruct(points)  # doctest: +SKIP
+    >>> mesh.vertices, mesh.triangles  # doctest: +SKIP
+    """
+    array = arguments.positions("points", points)
+    fields = _core.reconstruct(
+        array,
+        graph=arguments.text("graph", graph),
+        k=None if k is None else arguments.integer("k", k, 3),
+        solver=arguments.text("solver", solver),
+        weights=arguments.text("weights", weights),
+        exponent=arguments.real("exponent", exponent),
+        lambda_=arguments.real("lambda_", lambda_),
+        tolerance=None if tolerance is None else arguments.real("tolerance", tolerance),
+        max_iterations=arguments.integer("max_iterations", max_iterations),
+        stagnation_window=arguments.integer("stagnation_window", stagnation_window),
+        starts=arguments.integer("starts", starts),
+        seed=arguments.integer("seed", seed, 0, 2**32 - 1),
+        hull=arguments.text("hull", hull),
+        optimization=arguments.text("optimization", optimization),
+        attempts=arguments.integer("attempts", attempts),
+        smoothing_steps=arguments.integer("smoothing_steps", smoothing_steps, 0, 10000),
+        history=arguments.integer("history", history, 0, 2**24),
+        details=arguments.truth("details", details),
+        threads=arguments.thread_count(threads),
+        progress=arguments.progress_function(progress),
+    )
+    return _result(fields, array)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Outliers:
+    """Points that do not belong to the surface of the others."""
+
+    indices: IndexArray  #: (o,) rows of the outliers, ascending, copies of them included
+    scores: FloatArray  #: (n,) how far each point is off its neighbours' surface; nan: not finite
+    threshold: float  #: scores above are outliers
+    rounds: int  #: passes over the points
+
+    @property
+    def inliers(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """(n,) True for all points that are no outliers: ``points[outliers.inliers]``."""
+        mask = np.ones(len(self.scores), dtype=np.bool_)
+        mask[self.indices] = False
+        return mask
+
+    def __repr__(self) -> str:
+        return (
+            f"<spherical_param.Outliers: {len(self.indices)} of {len(self.scores)} points, "
+            f"threshold {self.threshold:.4g}>"
+        )
+
+
+def find_outliers(
+    points: ArrayLike,
+    *,
+    sigma: SupportsFloat = 4.0,
+    k: SupportsIndex = 16,
+    threads: SupportsIndex = 0,
+    progress: Optional[ProgressFunction] = None,
+) -> Outliers:
+    """Find points that are off the surface of their neighbours (section 4.2 of the paper).
+
+    ``reconstruct`` makes a vertex of every point, outliers too: leave them out before, as in
+    ``reconstruct(points[find_outliers(points).inliers])``.
+
+    Parameters
+    ----------
+    points : array-like, (n, 3)
+        As for ``reconstruct``.
+    sigma : float, 0 to 1000
+        Outliers are further off than the mean by so many standard deviations.
+    k : int, 3 and up
+        Neighbours of each point that make its surface.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it.
+    progress : callable(stage, fraction, iteration, residual)
+        As for ``reconstruct``; the stages are "neighbors" and "outliers".
+
+    Raises
+    ------
+    InvalidInput, Cancelled, MemoryError, KeyboardInterrupt
+
+    Notes
+    -----
+    No guarantees: a group of outliers as dense as the surface is a surface of its own, and beyond
+    the tip of a thin limb an outlier may be in the plane of its neighbours.
+    """
+    return Outliers(
+        **_core.find_outliers(
+            arguments.positions("points", points),
+            sigma=arguments.real("sigma", sigma),
+            k=arguments.integer("k", k, 3),
+            threads=arguments.thread_count(threads),
+            progress=arguments.progress_function(progress),
+        )
+    )

@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# Tests of the Python package that need more packages: its wheel in an environment of its own, and
+# its types. What the module does is tested by tools/test.sh.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=tools/common/test_steps.sh
+. tools/common/test_steps.sh
+
+python=/usr/bin/python3
+work="$(mktemp -d)"
+trap 'rm -rf "$work"' EXIT
+
+strictly_typed() {
+  MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
+    --cache-dir "$work/mypy" -p spherical_param &&
+    MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
+      --cache-dir "$work/mypy" src/python/examples/*.py
+}
+
+# What users get wrong must be told by mypy, or the types would be worth nothing.
+wrong_use_is_told() {
+  cat >"$work/wrong.py" <<'END'
+import spherical_param
+
+mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
+mesh.polygons
+text: str = mesh.volume
+END
+  MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
+    --cache-dir "$work/mypy" "$work/wrong.py" >"$work/wrong.log" && return 1
+  cat "$work/wrong.log"
+  [ "$(grep -c '^[^ ]*wrong.py:[345]: error' "$work/wrong.log")" -eq 3 ]
+}
+
+stub_is_that_of_the_extension() {
+  (cd "$work" && PYTHONPATH="$OLDPWD/build/release/python" stubtest \
+    --mypy-config-file "$OLDPWD/pyproject.toml" spherical_param._core)
+}
+
+wheel_builds() {
+  CMAKE_BUILD_PARALLEL_LEVEL="$jobs" \
+    CMAKE_ARGS="-DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON" \
+    "$python" -m pip wheel . --no-build-isolation --no-deps --no-index -w "$work/wheels"
+}
+
+wheel_holds_what_it_must() {
+  local list name
+  list="$("$python" -m zipfile -l "$(echo "$work"/wheels/spherical_param-*-linux_*.whl)")"
+  echo "$list"
+  for name in __init__.py py.typed _core.pyi '_core\..*\.so'; do
+    grep -q "^spherical_param/$name " <<<"$list" || return 1
+  done
+  grep -q '^spherical_param-.*\.dist-info/LICENSE ' <<<"$list" &&
+    ! grep -q -E 'CMake|\.cpp|\.a ' <<<"$list"
+}
+
+wheel_installs() {
+  "$python" -m venv --system-site-packages --without-pip "$work/venv" &&
+    "$python" -m pip --python "$work/venv/bin/python" install --no-index --no-deps \
+      "$work"/wheels/*.whl &&
+    "$work/venv/bin/python" -c '
+from importlib.metadata import metadata
+import spherical_param
+found = metadata("spherical-param")
+assert found["Version"] == spherical_param.__version__, found["Version"]
+assert found["License"] == "BSD-3-Clause" and found["Requires-Python"] == ">=3.9"
+assert "Pcl" not in found["Requires-Dist"] and "numpy" in found["Requires-Dist"]
+'
+}
+
+# All the tests of the module once more, of that in the environment.
+wheel_works() {
+  (cd test/python && unset PYTHONPATH && PYTHONDONTWRITEBYTECODE=1 \
+    "$work/venv/bin/python" -m unittest test_maps test_package test_reconstruct)
+}
+
+wheel_needs_no_folder_of_the_build() {
+  local module
+  module="$(echo "$work"/venv/lib/python3*/site-packages/spherical_param/_core*.so)"
+  readelf -d "$module"
+  ! readelf -d "$module" | grep -q -E 'RPATH|RUNPATH|libspherical_param|libpcl' &&
+    ! ldd "$module" | grep "not found" && ! grep -q "$PWD" "$module"
+}
+
+open3d_has_the_same_mesh() {
+  PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_package.py -v \
+    Conversions.test_open3d_has_the_same_mesh
+}
+
+source_distribution_builds() {
+  "$python" -c '
+import sys
+from setuptools import build_meta
+print(build_meta.build_sdist(sys.argv[1]))' "$work/sdist" &&
+    tar -C "$work" -xzf "$work"/sdist/spherical-param-*.tar.gz &&
+    cmake -S "$(echo "$work"/spherical-param-*/)" -B "$work/build" -G Ninja \
+      -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_PYTHON=ON &&
+    # All sources are there: what the builds before compiled shows that they do.
+    cmake --build "$work/build" --target spherical_param_python -- -n | grep . >/dev/null
+}
+
+need_packages python
+if check "python: module" build_release spherical_param_python; then
+  check "python: strictly typed" strictly_typed || true
+  check "python: wrong use is told by its types" wrong_use_is_told || true
+  check "python: stub is that of the extension" stub_is_that_of_the_extension || true
+fi
+if run "python: Open3D" tools/setup.sh open3d; then
+  check "python: Open3D has the same mesh" open3d_has_the_same_mesh || true
+else
+  skip "python: Open3D has the same mesh" "python3-open3d cannot be had"
+fi
+if ! "$python" -c 'import trimesh' 2>/dev/null; then
+  skip "python: trimesh has the same mesh" "Debian 12 has no trimesh, and it is not installed"
+fi
+if check "wheel: builds" wheel_builds; then
+  check "wheel: holds what it must" wheel_holds_what_it_must || true
+  if check "wheel: installs" wheel_installs; then
+    check "wheel: works" wheel_works || true
+    check "wheel: needs no folder of the build" wheel_needs_no_folder_of_the_build || true
+  fi
+fi
+check "source distribution: can be configured" source_distribution_builds || true
+finish
