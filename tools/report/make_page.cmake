@@ -1,0 +1,128 @@
+# Builds the page of -report and the source that holds its bytes. Run by tools/report.cmake:
+#   MODE          EMPTY, GIVEN (PAGE is the page) or BUILD
+#   REQUIRED      AUTO: what fails leaves an empty page and no STAMP
+cmake_minimum_required(VERSION 3.21)
+
+# As std::string: a literal is limited to 64 KB by the standard, a list of numbers is slow to
+# compile. Bytes as they are, whatever they mean in C++.
+function(write_source page)
+  set(parts "")
+  if(page)
+    file(READ "${page}" hex HEX)
+    string(LENGTH "${hex}" size)
+    set(at 0)
+    while(at LESS size)
+      string(SUBSTRING "${hex}" ${at} 32000 part)
+      string(REGEX REPLACE "(..)" "\\\\x\\1" part "${part}")
+      math(EXPR bytes "(${size} - ${at}) / 2")
+      if(bytes GREATER 16000)
+        set(bytes 16000)
+      endif()
+      string(APPEND parts "    std::string_view(\"${part}\", ${bytes}),\n")
+      math(EXPR at "${at} + 32000")
+    endwhile()
+  endif()
+  set(text "// Made from the page of -report by make_page.cmake.\n#include <string_view>\n")
+  if(parts)
+    string(APPEND text "#include <string>\n\nnamespace {\n\n"
+      "constexpr std::string_view parts[] = {\n"
+      "${parts}};\n\nstd::string joined() {\n  std::string page;\n"
+      "  for (const std::string_view part : parts) page += part;\n  return page;\n}\n\n"
+      "}  // namespace\n")
+  endif()
+  string(APPEND text "\nnamespace spherical_param::tools {\n\nstd::string_view reportPage();\n\n"
+    "std::string_view reportPage() {\n")
+  if(parts)
+    string(APPEND text "  static const std::string page = joined();\n  return page;\n")
+  else()
+    string(APPEND text "  return {};\n")
+  endif()
+  string(APPEND text "}\n\n}  // namespace spherical_param::tools\n")
+  # Not touched if it is the same: no need to compile it again.
+  file(CONFIGURE OUTPUT "${SOURCE}" CONTENT "${text}" @ONLY)
+endfunction()
+
+function(check_page page)
+  file(READ "${page}" hex HEX)
+  string(HEX "<!--DATA-->" marker)
+  string(REGEX MATCHALL "${marker}" found "${hex}")
+  list(LENGTH found count)
+  if(NOT count EQUAL 1)
+    message(FATAL_ERROR
+      "${page} is no page of -report: it needs <!--DATA--> once, not ${count} times")
+  endif()
+endfunction()
+
+# Runs a command of the build; the cause of a failure comes into `failure`.
+macro(step what)
+  if(NOT failure)
+    execute_process(COMMAND ${ARGN}
+      WORKING_DIRECTORY "${work}"
+      RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
+    if(NOT code EQUAL 0)
+      set(failure "${what} failed (${code})")
+      set(failure_output "${out}")
+    endif()
+  endif()
+endmacro()
+
+file(MAKE_DIRECTORY "${BUILD_FOLDER}")
+if(MODE STREQUAL "EMPTY")
+  write_source("")
+  file(REMOVE "${BUILD_FOLDER}/third-party.txt" "${BUILD_FOLDER}/report_page.html")
+elseif(MODE STREQUAL "GIVEN")
+  check_page("${PAGE}")
+  file(READ "${PAGE}" text)
+  if(NOT text MATCHES "<pre id=\"three-license\">([^<]*)</pre>")
+    message(FATAL_ERROR "${PAGE} is no page of -report: it holds no licence of three.js")
+  endif()
+  file(WRITE "${BUILD_FOLDER}/third-party.txt"
+    "The page of -report holds three.js (https://threejs.org).\n\n${CMAKE_MATCH_1}\n")
+  configure_file("${PAGE}" "${BUILD_FOLDER}/report_page.html" COPYONLY)
+  write_source("${PAGE}")
+else()
+  # npm writes beside package.json: into a copy, never into the sources.
+  set(work "${BUILD_FOLDER}/work")
+  set(page "${BUILD_FOLDER}/report_page.html")
+  file(SHA256 "${FOLDER}/package-lock.json" modules_wanted)
+  set(modules_have "")
+  if(EXISTS "${work}/modules.txt")
+    file(READ "${work}/modules.txt" modules_have)
+  endif()
+  if(NODE_MODULES)
+    set(modules_wanted "${NODE_MODULES}")
+  endif()
+  if(NOT modules_have STREQUAL modules_wanted)
+    file(REMOVE_RECURSE "${work}")
+  endif()
+  file(REMOVE_RECURSE "${work}/src")
+  file(COPY "${FOLDER}/" DESTINATION "${work}" PATTERN node_modules EXCLUDE)
+  set(failure "")
+  if(NOT EXISTS "${work}/modules.txt")
+    if(NODE_MODULES)
+      file(CREATE_LINK "${NODE_MODULES}" "${work}/node_modules" SYMBOLIC)
+    else()
+      # Without network it should fail soon.
+      step("npm ci" "${NPM}" ci --ignore-scripts --no-audit --no-fund --no-update-notifier
+        --prefer-offline --fetch-retries=1 --fetch-retry-mintimeout=1000
+        --fetch-retry-maxtimeout=5000 --fetch-timeout=60000)
+    endif()
+    if(NOT failure)
+      file(WRITE "${work}/modules.txt" "${modules_wanted}")
+    endif()
+  endif()
+  step("bundling" "${NODE}" build.mjs "${page}" "${BUILD_FOLDER}/third-party.txt")
+  if(failure)
+    file(REMOVE "${page}" "${BUILD_FOLDER}/third-party.txt")
+    if(NOT REQUIRED STREQUAL "AUTO")
+      message(FATAL_ERROR "The page of -report could not be built: ${failure}\n${failure_output}")
+    endif()
+    message(STATUS "The tools are built without -report: ${failure}; the next build tries again")
+    file(WRITE "${BUILD_FOLDER}/failure.txt" "${failure_output}")
+    write_source("")
+    return()
+  endif()
+  check_page("${page}")
+  write_source("${page}")
+endif()
+file(TOUCH "${STAMP}")
