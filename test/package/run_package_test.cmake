@@ -1,6 +1,8 @@
 # Installs a build into a prefix, moves the prefix, and builds and runs foreign projects against it.
-#   cmake -DBUILD_DIR= -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DLIBDIR=
-#         -DCOMPONENTS="core;pcl" [-DPKG_CONFIG=] -P run_package_test.cmake
+#   cmake -DBUILD_DIR= -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DLIBDIR= -DVERSION=
+#         -DCOMPONENTS="core;core_dev;license" or more [-DPKG_CONFIG=] [-DPREFIX=]
+#         -P run_package_test.cmake
+# With PREFIX, an installation that there is already.
 cmake_minimum_required(VERSION 3.21)
 
 # run(<what> <command>...): fails the test with the command's output if the command fails.
@@ -13,17 +15,22 @@ function(run what)
   set(output "${out}" PARENT_SCOPE)
 endfunction()
 
-set(prefix ${WORK_DIR}/moved)
 file(REMOVE_RECURSE ${WORK_DIR})
-foreach(component IN LISTS COMPONENTS)
-  run("installation of ${component}" ${CMAKE_COMMAND} --install ${BUILD_DIR}
-      --prefix ${WORK_DIR}/installed --component ${component})
-endforeach()
-# Whoever packs or copies an installation must get a working one.
-file(RENAME ${WORK_DIR}/installed ${prefix})
+set(wanted include/spherical_param/version.h share/pcl_spherical_param/package.xml)
+if(PREFIX)
+  set(prefix ${PREFIX})
+else()
+  set(prefix ${WORK_DIR}/moved)
+  foreach(component IN LISTS COMPONENTS)
+    run("installation of ${component}" ${CMAKE_COMMAND} --install ${BUILD_DIR}
+        --prefix ${WORK_DIR}/installed --component ${component})
+  endforeach()
+  # Whoever packs or copies an installation must get a working one.
+  file(RENAME ${WORK_DIR}/installed ${prefix})
+  list(APPEND wanted share/doc/pcl_spherical_param/LICENSE)
+endif()
 
-foreach(file include/spherical_param/version.h share/pcl_spherical_param/package.xml
-             share/doc/pcl_spherical_param/LICENSE)
+foreach(file IN LISTS wanted)
   if(NOT EXISTS ${prefix}/${file})
     message(FATAL_ERROR "${file} is not installed")
   endif()
@@ -54,6 +61,23 @@ if("pcl" IN_LIST COMPONENTS)
   run("program that uses the PCL class" ${WORK_DIR}/pcl/consumer)
 endif()
 
+# Later versions, and another one where it must be exact, are seen but not taken.
+string(REGEX MATCH "^([0-9]+)\\.([0-9]+)" minor "${VERSION}")
+math(EXPR next_minor "${CMAKE_MATCH_2} + 1")
+math(EXPR next_major "${CMAKE_MATCH_1} + 1")
+file(WRITE ${WORK_DIR}/versions/CMakeLists.txt "
+cmake_minimum_required(VERSION 3.21)
+project(versions LANGUAGES CXX)
+foreach(version ${CMAKE_MATCH_1}.${next_minor} ${next_major}.0 \"${minor}.99;EXACT\")
+  find_package(pcl_spherical_param \${version} QUIET COMPONENTS core)
+  if(pcl_spherical_param_FOUND OR NOT pcl_spherical_param_CONSIDERED_VERSIONS STREQUAL ${VERSION})
+    message(FATAL_ERROR \"wanted \${version}, seen: '\${pcl_spherical_param_CONSIDERED_VERSIONS}'\")
+  endif()
+endforeach()
+")
+run("refusal of other versions" ${CMAKE_COMMAND} ${settings}
+    -S ${WORK_DIR}/versions -B ${WORK_DIR}/versions/build)
+
 # A component that does not exist, or is not installed, must be told.
 file(WRITE ${WORK_DIR}/absent/CMakeLists.txt
   "cmake_minimum_required(VERSION 3.21)\nproject(absent LANGUAGES CXX)\n"
@@ -80,7 +104,20 @@ if(PKG_CONFIG)
         ${SOURCE_DIR}/test/package/consumer_${which}/main.cpp -o ${WORK_DIR}/${which}_by_pkg_config
         ${flags})
     run("program compiled with pkg-config ${name}" ${WORK_DIR}/${which}_by_pkg_config)
+    run("version of ${name}" ${PKG_CONFIG} --modversion ${name})
+    if(NOT output STREQUAL "${VERSION}\n")
+      message(FATAL_ERROR "pkg-config says that ${name} has version ${output}")
+    endif()
   endforeach()
+  # What static libraries of ours leave to the final link comes with --static, whatever was built.
+  run("pkg-config --static" ${PKG_CONFIG} --static --libs --cflags spherical_param_core)
+  if(NOT output MATCHES "-lspherical_param_core .*-lqhull_r")
+    message(FATAL_ERROR "pkg-config --static does not link qhull: ${output}")
+  endif()
+  separate_arguments(flags UNIX_COMMAND "${output}")
+  run("compilation with pkg-config --static" ${CXX} -std=c++17
+      ${SOURCE_DIR}/test/package/consumer_core/main.cpp -o ${WORK_DIR}/static_by_pkg_config ${flags})
+  run("program compiled with pkg-config --static" ${WORK_DIR}/static_by_pkg_config)
 endif()
 
 file(REMOVE_RECURSE ${WORK_DIR})
