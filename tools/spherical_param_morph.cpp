@@ -69,24 +69,23 @@ const Names<SurfaceFit> fit_names = {
     {"smooth", SurfaceFit::Smooth},
 };
 
-std::vector<OptionInfo> optionTable() {
-  std::vector<OptionInfo> table = {
-      {"frames", "N", "meshes, those of both ends among them, 2 to 10000 (20)"},
-      {"pairs", "FILE", "points that become one: two numbers from 0, or six coordinates a line"},
-      {"align", "NAME", "of the spheres: none, or the best of all rotations: rotation (rotation)"},
-      {"connectivity", "NAME", "all vertices of both meshes, or resampled (all)"},
-      {"samples", "N", "vertices of resampled, about, 12 to 16777216 (40962)"},
-      {"fit", "NAME", "between vertices: linear or smooth (linear; resampled: smooth)"},
-      {"match", "", "move and scale the second object to the place and the area of the first"},
-      {"check", "", "count the self-intersections of all frames"},
-  };
-  for (const auto& options : {productOptions(), outputOptions()}) {
-    table.insert(table.end(), options.begin(), options.end());
-  }
-  return table;
-}
+const std::vector<OptionInfo> own_options = {
+    {"frames", "N", "meshes, those of both ends among them, 2 to 10000 (20)"},
+    {"pairs", "FILE", "points that become one: two numbers from 0, or six coordinates a line"},
+    {"align", "NAME", "of the spheres: none, or the best of all rotations: rotation (rotation)"},
+    {"connectivity", "NAME", "all vertices of both meshes, or resampled (all)"},
+    {"samples", "N", "vertices of resampled, about, 12 to 16777216 (40962)"},
+    {"fit", "NAME", "between vertices: linear or smooth (linear; resampled: smooth)"},
+    {"match", "", "move and scale the second object to the place and the area of the first"},
+    {"check", "", "count the self-intersections of all frames"},
+};
+const std::vector<OptionInfo> option_table =
+    joined({own_options, productOptions(), outputOptions()});
 
-const std::vector<OptionInfo> option_table = optionTable();
+/// What each does, and the words after the tool's name.
+const std::vector<std::pair<std::string, std::string>> example_table = {
+    {"Twenty meshes from one scan to another", "scan.ply other.ply morph.ply"},
+};
 
 std::string helpText() {
   return "Usage: " + tool_name +
@@ -98,7 +97,8 @@ std::string helpText() {
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets; those of\n"
          "the meshes and the map hold for both clouds):\n" +
-         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -347,17 +347,12 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
 void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, Morph& morph,
            std::vector<std::unique_ptr<OutputFile>>& files, Console& console) {
   console.begin("write");
-  TriangleMesh mesh;
+  PointData vertices;
   const auto count = static_cast<std::size_t>(morph.result.first.cols());
-  mesh.vertices.points.resize(count);
-  mesh.triangles.reserve(static_cast<std::size_t>(morph.result.triangles.cols()));
-  for (Eigen::Index t = 0; t < morph.result.triangles.cols(); ++t) {
-    const auto triangle = morph.result.triangles.col(t);
-    mesh.triangles.push_back({triangle[0], triangle[1], triangle[2]});
-  }
+  vertices.points.resize(count);
   if (morph.hasColors()) {
-    mesh.vertices.colors.resize(count);
-    mesh.vertices.has_alpha = clouds[0].cloud.data.has_alpha || clouds[1].cloud.data.has_alpha;
+    vertices.colors.resize(count);
+    vertices.has_alpha = clouds[0].cloud.data.has_alpha || clouds[1].cloud.data.has_alpha;
   }
   for (std::size_t frame = 0; frame < settings.frames.size(); ++frame) {
     const double t = timeOf(settings, frame);
@@ -365,20 +360,21 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
     for (std::size_t i = 0; i < count; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
       const Eigen::Vector3f point = positions.col(column).cast<float>();
-      mesh.vertices.points[i] = {point.x(), point.y(), point.z()};
+      vertices.points[i] = {point.x(), point.y(), point.z()};
       if (morph.hasColors()) {
         const Eigen::Vector4d color =
             (1.0 - t) * morph.colors[0].col(column) + t * morph.colors[1].col(column);
         for (std::size_t channel = 0; channel < 4; ++channel) {
           // To the nearest.
           const double value = color[static_cast<Eigen::Index>(channel)] + 0.5;
-          mesh.vertices.colors[i][channel] =
+          vertices.colors[i][channel] =
               static_cast<std::uint8_t>(std::min(std::max(value, 0.0), 255.0));
         }
       }
     }
     files.push_back(std::make_unique<OutputFile>(settings.frames[frame]));
-    writeMesh(*files.back(), mesh, settings.format, settings.report.encoding);
+    writeMesh(*files.back(), MeshView(vertices, morph.result.triangles), settings.format,
+              settings.report.encoding);
     files.back()->finish();
     console.update(t, "");
   }
@@ -496,31 +492,17 @@ void run(const std::vector<std::string>& words) {
   if (!settings.pairs.empty()) {
     morph.pairs = readPointPairs(settings.pairs, clouds[0].cloud, clouds[1].cloud);
   }
-  const auto fail = [](const std::exception& error) {
-    return libraryFailure("cannot morph", error, "this should not happen: please report it");
-  };
-  try {
+  runLibrary("cannot morph", kReportIt, [&] {
     makeMorph(settings, clouds, morph, console);
     if (settings.check) {
       checkFrames(settings, morph, console);
     }
-  } catch (const spherical_param::InvalidInput& error) {
-    throw fail(error);
-  } catch (const spherical_param::ComputeError& error) {
-    throw fail(error);
-  }
+  });
   std::vector<std::unique_ptr<OutputFile>> files;
   store(settings, clouds, morph, files, console);
-
-  // Nothing gets its name before everything is stored, the report included.
-  if (!settings.report.json.empty()) {
-    storeReport(settings.report, report(settings, clouds, morph), files);
-  }
-  printVerdict(clouds, morph, console);
-  console.flush();
-  for (const auto& file : files) {
-    file->commit();
-  }
+  publish(
+      settings.report, files, console, [&] { return report(settings, clouds, morph); },
+      [&] { printVerdict(clouds, morph, console); });
 }
 
 }  // namespace

@@ -1,16 +1,21 @@
 // pcl_spherical_param_reconstruction: meshes the point cloud of a file.
 
+#include "common/batch.h"
 #include "common/cloud_reconstruction.h"
 #include "common/command_line.h"
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
+#include "common/foreign_options.h"
+#include "common/html_report.h"
 #include "common/json_report.h"
+#include "common/memory_need.h"
 #include "common/mesh_writer.h"
 #include "common/names.h"
 #include "common/output_file.h"
 #include "common/output_options.h"
 #include "common/reconstruction_options.h"
+#include "common/report_page.h"
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "spherical_param/version.h"
@@ -18,9 +23,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -37,24 +44,36 @@ using spherical_param::SurfaceKind;
 
 const std::string tool_name = "pcl_spherical_param_reconstruction";
 
-std::vector<OptionInfo> optionTable() {
-  std::vector<OptionInfo> table = reconstructionOptions();
-  table.push_back({"sphere", "FILE", "write the points on the sphere with the same triangles"});
-  const std::vector<OptionInfo> further = outputOptions();
-  table.insert(table.end(), further.begin(), further.end());
-  return table;
-}
+const std::vector<OptionInfo> option_table =
+    joined({reconstructionOptions(),
+            {{"sphere", "FILE", "write the points on the sphere with the same triangles"}},
+            htmlReportOptions(),
+            outputOptions(),
+            batchOptions()});
 
-const std::vector<OptionInfo> option_table = optionTable();
+/// What each does, and the words after the tool's name.
+const std::vector<std::pair<std::string, std::string>> example_table = {
+    {"A mesh through all points of a scan", "scan.ply mesh.ply"},
+    {"With its map to the sphere and a page to look at",
+     "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
+    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers 4 -smooth 5"},
+    {"Of many scans; the same line again does those that are missing",
+     "scan.ply other.ply -output 'meshes/{name}.ply' -jsonl meshes.jsonl -resume"},
+};
 
 std::string helpText() {
-  return "Usage: " + tool_name +
-         " input output [options]\n\n"
+  return "Usage: " + tool_name + " input output [options]\n       " + tool_name +
+         " inputs... -output PATTERN [options]\n\n"
          "Meshes the points of an object without holes through it into a closed surface.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         describeOptions(option_table) +
+         "\nMany inputs: files and directories. In PATTERN, and in the files of other options,\n"
+         "{name} stands for the input's name without extension, {ext} for its extension,\n"
+         "{dir} for its directory, {index} or {index:4} for its place in the list.\n\n" +
+         describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done, 1 failed (of many: one or more), 2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -64,6 +83,8 @@ struct Settings {
   FileFormat output_format = FileFormat::Ply;
   std::string sphere;  ///< empty: not wanted
   FileFormat sphere_format = FileFormat::Ply;
+  std::string page;     ///< empty: not wanted
+  std::string command;  ///< that does the same again
   OutputSettings report;
   ReconstructionSettings reconstruction;
 };
@@ -88,14 +109,24 @@ const Names<StopReason> stop_reason_names = {
     {"unfinished", StopReason::Unfinished},
 };
 
-/// Which of two files is the input: the first, unless its format can only be written and that of
-/// the second only be read. Where both are possible, nothing is guessed, as the output is lost.
+/// Which of two files is the input: the first, unless the second can only be that. Nothing is
+/// guessed where the first may be a scan, as that would be lost. \throw UsageError
 bool isSwapped(const std::string& first, const std::string& second) {
   const std::optional<FileFormat> output = formatOf(first);
   const std::optional<FileFormat> input = formatOf(second);
-  return output && input && !isUsable(*output, FileUse::ReadCloud) &&
-         isUsable(*output, FileUse::WriteMesh) && isUsable(*input, FileUse::ReadCloud) &&
-         !isUsable(*input, FileUse::WriteMesh);
+  if (!output || !input || !isUsable(*output, FileUse::WriteMesh) ||
+      !isUsable(*input, FileUse::ReadCloud) || isUsable(*input, FileUse::WriteMesh)) {
+    return false;
+  }
+  std::error_code error;
+  if (isUsable(*output, FileUse::ReadCloud) && std::filesystem::exists(first, error)) {
+    throw UsageError(inQuotes(second) + " has an extension that no meshes are written to, and " +
+                         inQuotes(first) + " is there",
+                     "put the input first: " + tool_name + " input output; the output is one of " +
+                         extensionsFor(FileUse::WriteMesh));
+  }
+  // Of two files that are both missing, the message is about the second's extension.
+  return !isUsable(*output, FileUse::ReadCloud) || std::filesystem::exists(second, error);
 }
 
 Settings parseSettings(const CommandLine& command_line) {
@@ -104,7 +135,10 @@ Settings parseSettings(const CommandLine& command_line) {
     throw UsageError(files.empty()       ? "there is no input file"
                      : files.size() == 1 ? "there is no output file"
                                          : "there is one file too many: " + inQuotes(files[2]),
-                     "run '" + tool_name + " input output [options]', -h shows the options");
+                     "run '" + tool_name +
+                         (files.size() < 3 ? " input output [options]'"
+                                           : " inputs... -output meshes/{name}.ply [options]'") +
+                         ", -h shows the options");
   }
   if (isSwapped(files[0], files[1])) {
     std::swap(files[0], files[1]);
@@ -121,6 +155,12 @@ Settings parseSettings(const CommandLine& command_line) {
   }
   settings.report = parseOutputOptions(command_line);
   settings.reconstruction = parseReconstructionOptions(command_line);
+  settings.page = parseHtmlReport(command_line);
+  if (!settings.page.empty()) {
+    keepForHtmlReport(settings.reconstruction);
+    settings.command = repeatedCommand(tool_name, command_line, option_table,
+                                       {settings.input, settings.output}, settings.reconstruction);
+  }
   return settings;
 }
 
@@ -129,6 +169,9 @@ std::vector<std::string> outputsOf(const Settings& settings) {
   std::vector<std::string> outputs = {settings.output};
   if (!settings.sphere.empty()) {
     outputs.push_back(settings.sphere);
+  }
+  if (!settings.page.empty()) {
+    outputs.push_back(settings.page);
   }
   addReport(settings.report, outputs);
   return outputs;
@@ -141,6 +184,9 @@ void printParameters(const Settings& settings, Console& console) {
   if (!settings.sphere.empty()) {
     console.entry("sphere", oneLine(settings.sphere));
   }
+  if (!settings.page.empty()) {
+    console.entry("report", oneLine(settings.page));
+  }
   if (!settings.report.json.empty()) {
     console.entry("json", oneLine(settings.report.json));
   }
@@ -150,6 +196,7 @@ void printParameters(const Settings& settings, Console& console) {
 Json optionsToJson(const Settings& settings) {
   Json json = reconstructionOptionsToJson(settings.reconstruction);
   json["sphere"] = settings.sphere.empty() ? Json(nullptr) : Json(settings.sphere);
+  json["report"] = settings.page.empty() ? Json(nullptr) : Json(settings.page);
   addToJson(settings.report, json);
   return json;
 }
@@ -593,9 +640,32 @@ void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Co
   }
 }
 
+/// Meshes each of many inputs.
+void runBatch(const CommandLine& command_line) {
+  const ReconstructionSettings reconstruction = parseReconstructionOptions(command_line);
+  // Each input would only tell the same of it.
+  parseHtmlReport(command_line);
+  BatchTool tool;
+  tool.name = tool_name;
+  tool.memory_need = [&reconstruction](const std::string& input) {
+    return memoryNeed(pointCountOf(input).value_or(0), reconstruction);
+  };
+  tool.check_output = [](const std::string& option, const std::string& file) {
+    if (option == "output" || option == "sphere") {
+      requireFormat(file, FileUse::WriteMesh);
+    }
+  };
+  spherical_param::tools::runBatch(tool, command_line);
+}
+
 void run(const std::vector<std::string>& words) {
-  const CommandLine command_line(words, option_table);
+  const CommandLine command_line(words, joined({option_table, foreignOptions()}));
   if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+    return;
+  }
+  const std::vector<std::string> notes = notesOnForeignOptions(command_line);
+  if (isBatch(command_line)) {
+    runBatch(command_line);
     return;
   }
   const Settings settings = parseSettings(command_line);
@@ -603,8 +673,14 @@ void run(const std::vector<std::string>& words) {
 
   Console console(settings.report.printsText());
   printParameters(settings, console);
+  for (const std::string& note : notes) {
+    console.entry("note", note);
+  }
   StagePlan stages = reconstructionStages(settings.reconstruction);
   stages.emplace_back("write", 2.0);
+  if (!settings.page.empty()) {
+    stages.emplace_back("report", 3.0);
+  }
   console.plan(stages);
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, console, cloud);
@@ -626,16 +702,18 @@ void run(const std::vector<std::string>& words) {
     file->finish();
   }
   cloud.stages.push_back({"write", console.end("")});
-
-  // Nothing gets its name before everything is stored, the report included.
-  if (!settings.report.json.empty()) {
-    storeReport(settings.report, report(settings, cloud), files);
+  if (!settings.page.empty()) {
+    console.begin("report");
+    files.push_back(std::make_unique<OutputFile>(settings.page));
+    writeHtmlReport(*files.back(), reportPage(),
+                    {tool_name, settings.command, report(settings, cloud), &cloud,
+                     settings.reconstruction.options.threads});
+    files.back()->finish();
+    cloud.stages.push_back({"report", console.end("")});
   }
-  printVerdict(settings, cloud, console);
-  console.flush();
-  for (const auto& file : files) {
-    file->commit();
-  }
+  publish(
+      settings.report, files, console, [&] { return report(settings, cloud); },
+      [&] { printVerdict(settings, cloud, console); });
 }
 
 }  // namespace

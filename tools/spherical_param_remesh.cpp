@@ -28,6 +28,8 @@
 #include "spherical_param/spherical_harmonics.h"
 #include "spherical_param/version.h"
 
+#include <pcl/surface/spherical_param_remesh.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -73,34 +75,30 @@ constexpr int longest_side = 16385;
 constexpr std::int64_t most_even_points = std::int64_t{1} << 24;
 constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
 
-/// Triangles of a grid are as long and thin as the map makes them, and cut across folds of the
-/// surface then: angles count more than for other uses of the map.
+/// Those of the call in C++.
 spherical_param::SphereMapOptions mapDefaults() {
-  spherical_param::SphereMapOptions options;
-  options.area_weight = 0.5;
-  options.sweeps = 40;
-  return options;
+  return pcl::SphericalParamRemeshOptions().map;
 }
 
-std::vector<OptionInfo> optionTable() {
-  std::vector<OptionInfo> table = {
-      {"grid", "NAME", "icosahedral or octahedral: meshes; even: a cloud (icosahedral)"},
-      {"points", "N",
-       "number of points, of meshes the nearest possible (as the mesh of the cloud)"},
-      {"side", "N", "pixels along the sides of a geometry image, odd (as -points says)"},
-      {"fit", "NAME", "surface between the points of the cloud: linear or smooth (smooth)"},
-      {"sphere", "FILE", "write the points on the sphere with the same triangles"},
-      {"harmonics", "FILE", "write coefficients of spherical harmonics of the shape, as JSON"},
-      {"series", "", "output the surface of that series"},
-      {"degree", "L", "degree of the series, up to 512 (32)"},
-  };
-  for (const auto& options : {productOptions(mapDefaults()), outputOptions()}) {
-    table.insert(table.end(), options.begin(), options.end());
-  }
-  return table;
-}
+const std::vector<OptionInfo> own_options = {
+    {"grid", "NAME", "icosahedral or octahedral: meshes; even: a cloud (icosahedral)"},
+    {"points", "N", "number of points, of meshes the nearest possible (as the mesh of the cloud)"},
+    {"side", "N", "pixels along the sides of a geometry image, odd (as -points says)"},
+    {"fit", "NAME", "surface between the points of the cloud: linear or smooth (smooth)"},
+    {"sphere", "FILE", "write the points on the sphere with the same triangles"},
+    {"harmonics", "FILE", "write coefficients of spherical harmonics of the shape, as JSON"},
+    {"series", "", "output the surface of that series"},
+    {"degree", "L", "degree of the series, up to 512 (32)"},
+};
+const std::vector<OptionInfo> option_table =
+    joined({own_options, productOptions(mapDefaults()), outputOptions()});
 
-const std::vector<OptionInfo> option_table = optionTable();
+/// What each does, and the words after the tool's name.
+const std::vector<std::pair<std::string, std::string>> example_table = {
+    {"A mesh of even triangles on an icosahedral grid", "scan.ply even.ply -points 2562"},
+    {"A geometry image", "scan.ply geometry.tif"},
+    {"A mesh of that image", "geometry.tif mesh.ply"},
+};
 
 std::string helpText() {
   return "Usage: " + tool_name +
@@ -113,7 +111,8 @@ std::string helpText() {
          "\n          with -grid even a cloud: " + extensionsFor(FileUse::WriteCloud) +
          "\n          a geometry image: .tif .tiff"
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -668,18 +667,13 @@ std::vector<Point> toPoints(const Positions& positions) {
   return points;
 }
 
-TriangleMesh toMesh(const Output& output, const MappedCloud& mapped) {
-  TriangleMesh mesh;
-  mesh.vertices.points = toPoints(output.mesh.points);
-  mesh.vertices.normals = toPoints(output.mesh.normals);
-  mesh.vertices.colors = output.colors;
-  mesh.vertices.has_alpha = mapped.cloud.data.has_alpha;
-  mesh.triangles.reserve(static_cast<std::size_t>(output.mesh.triangles.cols()));
-  for (Eigen::Index t = 0; t < output.mesh.triangles.cols(); ++t) {
-    const auto triangle = output.mesh.triangles.col(t);
-    mesh.triangles.push_back({triangle[0], triangle[1], triangle[2]});
-  }
-  return mesh;
+PointData toVertices(const Output& output, const MappedCloud& mapped) {
+  PointData vertices;
+  vertices.points = toPoints(output.mesh.points);
+  vertices.normals = toPoints(output.mesh.normals);
+  vertices.colors = output.colors;
+  vertices.has_alpha = mapped.cloud.data.has_alpha;
+  return vertices;
 }
 
 /// Stores all files but the report, none of them under its name yet.
@@ -693,11 +687,12 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
   if (settings.writes_image) {
     writeGeometryImage(*files.back(), output.image, update);
   } else {
-    const TriangleMesh mesh = toMesh(output, mapped);
+    const PointData vertices = toVertices(output, mapped);
+    const MeshView mesh(vertices, output.mesh.triangles);
     writeMesh(*files.back(), mesh, settings.output_format, settings.report.encoding, update);
     if (!settings.sphere.empty()) {
       files.push_back(std::make_unique<OutputFile>(settings.sphere));
-      MeshView sphere(mesh);
+      MeshView sphere = mesh;
       sphere.leaveOutNormals();
       sphere.moveTo(output.mesh.directions);
       writeMesh(*files.back(), sphere, settings.sphere_format, settings.report.encoding,
@@ -728,33 +723,18 @@ void run(const std::vector<std::string>& words) {
   console.plan(stagesOf(settings));
   MappedCloud mapped;
   Output output;
-  const auto fail = [&settings](const std::exception& error) {
-    return libraryFailure("cannot remesh " + inQuotes(settings.input), error,
-                          "this should not happen: please report it");
-  };
-  try {
+  runLibrary("cannot remesh " + inQuotes(settings.input), kReportIt, [&] {
     if (settings.reads_image) {
       makeFromImage(settings, output, console);
     } else {
       makeFromCloud(settings, mapped, output, console);
     }
     verify(settings, mapped, output, console);
-  } catch (const spherical_param::InvalidInput& error) {
-    throw fail(error);
-  } catch (const spherical_param::ComputeError& error) {
-    throw fail(error);
-  }
+  });
   std::vector<std::unique_ptr<OutputFile>> files = store(settings, mapped, output, console);
-
-  // Nothing gets its name before everything is stored, the report included.
-  if (!settings.report.json.empty()) {
-    storeReport(settings.report, report(settings, mapped, output), files);
-  }
-  printVerdict(settings, mapped, output, console);
-  console.flush();
-  for (const auto& file : files) {
-    file->commit();
-  }
+  publish(
+      settings.report, files, console, [&] { return report(settings, mapped, output); },
+      [&] { printVerdict(settings, mapped, output, console); });
 }
 
 }  // namespace

@@ -39,6 +39,13 @@ const std::vector<OptionInfo> option_table = {
     {"list", "", "list the shapes and presets"},
 };
 
+/// What each does, and the words after the tool's name.
+const std::vector<std::pair<std::string, std::string>> example_table = {
+    {"A scan of a hand to try the other tools on", "hand scan.ply"},
+    {"A noisy one of another size, and the surface that it comes from",
+     "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
+};
+
 std::string helpText() {
   return "Usage: " + tool_name +
          " SHAPE output [options]\n\n"
@@ -46,7 +53,8 @@ std::string helpText() {
          "  SHAPE:  a shape or preset, see -list\n  output: " +
          extensionsFor(FileUse::WriteCloud) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
 std::string listText() {

@@ -59,21 +59,21 @@ const Names<TextureFormat> format_names = {
 /// Squares along a quarter of a great circle where a cloud has no colours.
 constexpr int usual_cells = 8;
 
-std::vector<OptionInfo> optionTable() {
-  std::vector<OptionInfo> table = {
-      {"chart", "NAME", "equirectangular, octahedral or cube (octahedral)"},
-      {"size", "N", "height of the image, 16 to 16384 pixels (1024)"},
-      {"gutter", "N", "pixels around the triangles that are painted too, up to 256 (8)"},
-      {"checker", "N", "a checkerboard of N squares to a quarter circle instead of colours"},
-      {"image", "FILE", "image beside .obj and .ply, .png (as the output)"},
-  };
-  for (const auto& options : {productOptions(), outputOptions()}) {
-    table.insert(table.end(), options.begin(), options.end());
-  }
-  return table;
-}
+const std::vector<OptionInfo> own_options = {
+    {"chart", "NAME", "equirectangular, octahedral or cube (octahedral)"},
+    {"size", "N", "height of the image, 16 to 16384 pixels (1024)"},
+    {"gutter", "N", "pixels around the triangles that are painted too, up to 256 (8)"},
+    {"checker", "N", "a checkerboard of N squares to a quarter circle instead of colours"},
+    {"image", "FILE", "image beside .obj and .ply, .png (as the output)"},
+};
+const std::vector<OptionInfo> option_table =
+    joined({own_options, productOptions(), outputOptions()});
 
-const std::vector<OptionInfo> option_table = optionTable();
+/// What each does, and the words after the tool's name.
+const std::vector<std::pair<std::string, std::string>> example_table = {
+    {"A file with the colours of the scan in a texture", "scan.ply textured.glb"},
+    {"A checkerboard, which shows the map", "scan.ply checker.glb -checker 16"},
+};
 
 std::string helpText() {
   return "Usage: " + tool_name +
@@ -85,7 +85,8 @@ std::string helpText() {
          "\n  output: .glb, with the image in it; .obj, with .mtl and .png beside it; .ply, with "
          ".png\n"
          "\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -388,28 +389,12 @@ void run(const std::vector<std::string>& words) {
   console.plan(stagesOf(settings));
   MappedCloud mapped;
   Output output;
-  const auto fail = [&settings](const std::exception& error) {
-    return libraryFailure("cannot texture " + inQuotes(settings.input), error,
-                          "this should not happen: please report it");
-  };
-  try {
-    make(settings, mapped, output, console);
-  } catch (const spherical_param::InvalidInput& error) {
-    throw fail(error);
-  } catch (const spherical_param::ComputeError& error) {
-    throw fail(error);
-  }
+  runLibrary("cannot texture " + inQuotes(settings.input), kReportIt,
+             [&] { make(settings, mapped, output, console); });
   std::vector<std::unique_ptr<OutputFile>> files = store(settings, mapped, output, console);
-
-  // Nothing gets its name before everything is stored, the report included.
-  if (!settings.report.json.empty()) {
-    storeReport(settings.report, report(settings, mapped, output), files);
-  }
-  printVerdict(settings, mapped, output, console);
-  console.flush();
-  for (const auto& file : files) {
-    file->commit();
-  }
+  publish(
+      settings.report, files, console, [&] { return report(settings, mapped, output); },
+      [&] { printVerdict(settings, mapped, output, console); });
 }
 
 }  // namespace

@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uid_t nobody = 65534;
-constexpr unsigned time_limit = 60;  // [s]
 
 /// The file must exist: a missing device is not to be replaced by a file of that name.
 void redirect(const std::string& path, int descriptor) {
@@ -47,10 +46,17 @@ void redirect(const std::string& path, int descriptor) {
   if (chdir(options.directory.c_str()) != 0) {
     _exit(126);
   }
+  if (!options.standard_input.empty()) {
+    const int file = open(options.standard_input.c_str(), O_RDONLY);
+    if (file < 0 || dup2(file, STDIN_FILENO) < 0) {
+      _exit(126);
+    }
+    close(file);
+  }
   if (options.unprivileged && geteuid() == 0 && setuid(nobody) != 0) {
     _exit(126);
   }
-  alarm(time_limit);
+  alarm(options.time_limit);
   execv(program.c_str(), arguments.data());
   _exit(127);
 }
@@ -146,6 +152,9 @@ RunResult run(const std::string& program, const std::vector<std::string>& argume
   }
 
   RunResult result;
+  if (options.meanwhile) {
+    options.meanwhile(child);
+  }
   if (options.terminal) {
     result.output = readTerminal(terminal);
     close(terminal);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct RunOptions {
   std::string standard_output;          ///< file or device for the standard output; empty: captured
   bool terminal = false;                ///< the standard output is a terminal
   int signal_when_temporary = 0;        ///< signal to send as soon as a temporary file is there
+  unsigned time_limit = 60;             ///< [s]
+  std::string standard_input;           ///< file for the standard input; empty: that of the test
+  std::function<void(int)> meanwhile;   ///< given the process id while the tool runs
 };
 
 /// What came of it.
@@ -47,7 +51,7 @@ struct RunResult {
   std::vector<std::string> errorLines() const;
 };
 
-/// Runs a program and waits for its end, for at most a minute.
+/// Runs a program and waits for its end.
 RunResult run(const std::string& program, const std::vector<std::string>& arguments,
               const RunOptions& options);
 

@@ -58,6 +58,15 @@ const char* BlockReader::take(std::size_t count) {
   return bytes;
 }
 
+std::string_view BlockReader::takeSome() {
+  if (begin_ == buffer_.size()) {
+    refill();
+  }
+  const std::string_view bytes = std::string_view(buffer_).substr(begin_);
+  begin_ = buffer_.size();
+  return bytes;
+}
+
 bool BlockReader::skip(std::uint64_t count) {
   while (count > 0) {
     const std::uint64_t step = std::min<std::uint64_t>(count, block_size);

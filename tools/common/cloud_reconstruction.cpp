@@ -53,24 +53,7 @@ void reconstruct(const std::string& path, const ReconstructionSettings& settings
   cloud->is_dense = false;
 
   const Options& options = settings.options;
-  reconstruction.setGraphMethod(options.graph);
-  reconstruction.setKSearch(neighborsToSearch(options));
-  reconstruction.setSolver(options.solver);
-  reconstruction.setWeights(options.weights);
-  reconstruction.setExponent(options.exponent);
-  if (options.tolerance) {
-    reconstruction.setTolerance(*options.tolerance);
-  }
-  reconstruction.setLambda(options.lambda);
-  reconstruction.setMaximumIterations(options.max_iterations);
-  reconstruction.setStagnationWindow(options.stagnation_window);
-  reconstruction.setStarts(options.starts);
-  reconstruction.setSeed(options.seed);
-  reconstruction.setTriangulationMethod(options.hull);
-  reconstruction.setOptimization(options.optimization);
-  reconstruction.setAttempts(options.attempts);
-  reconstruction.setSmoothingSteps(options.smoothing_steps);
-  reconstruction.setNumberOfThreads(static_cast<unsigned>(options.threads));
+  reconstruction.setOptions(options);
   std::string stage;
   std::string detail;
   reconstruction.setProgressCallback([&](const Progress& progress) {

@@ -95,6 +95,14 @@ std::string CommandLine::value(const std::string& option, const std::string& fal
   return found == values_.end() ? fallback : found->second;
 }
 
+std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables) {
+  std::vector<OptionInfo> all;
+  for (const std::vector<OptionInfo>& table : tables) {
+    all.insert(all.end(), table.begin(), table.end());
+  }
+  return all;
+}
+
 std::string describeOptions(const std::vector<OptionInfo>& options) {
   std::vector<OptionInfo> listed = options;
   for (OptionInfo& option : commonOptions()) {
@@ -109,6 +117,15 @@ std::string describeOptions(const std::vector<OptionInfo>& options) {
     const std::string left =
         "  -" + option.name + (option.argument.empty() ? "" : " " + option.argument);
     text += left + std::string(width + 6 - left.size(), ' ') + option.help + "\n";
+  }
+  return text;
+}
+
+std::string describeExamples(const std::string& tool,
+                             const std::vector<std::pair<std::string, std::string>>& examples) {
+  std::string text = "Examples:\n";
+  for (const auto& [remark, words] : examples) {
+    text += "  " + remark + "\n    " + tool + " " + words + "\n";
   }
   return text;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -25,6 +27,8 @@ public:
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   /// The option's value, or the fallback if it was not given.
   std::string value(const std::string& option, const std::string& fallback) const;
+  /// All options that were given, with their values; those of switches are empty.
+  const std::map<std::string, std::string>& values() const { return values_; }
   /// The words that belong to no option, in their order.
   const std::vector<std::string>& others() const { return others_; }
 
@@ -36,7 +40,15 @@ private:
   std::vector<std::string> others_;
 };
 
+/// Tables of options one after the other.
+std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables);
+
 /// The lines of a help text that list the options, with -h and -version.
 std::string describeOptions(const std::vector<OptionInfo>& options);
+
+/// The lines of a help text with examples: of each what it does, and the words after the tool's
+/// name.
+std::string describeExamples(const std::string& tool,
+                             const std::vector<std::pair<std::string, std::string>>& examples);
 
 }  // namespace spherical_param::tools

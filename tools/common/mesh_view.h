@@ -23,6 +23,12 @@ public:
         corners_(mesh.triangles.empty() ? nullptr : mesh.triangles.front().data()),
         has_normals_(!mesh.vertices.normals.empty()) {}
 
+  /// Triangles over all points; without any, a plain cloud.
+  MeshView(const PointData& data, const Triangles& triangles)
+      : data_(&data), vertex_count_(data.points.size()),
+        triangle_count_(static_cast<std::size_t>(triangles.cols())), corners_(triangles.data()),
+        has_normals_(!data.normals.empty()) {}
+
   /// Triangles over some of the points.
   ///
   /// \param indices of the vertices in `data`; the triangles have their places in here.

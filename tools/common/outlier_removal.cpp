@@ -24,6 +24,8 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 /// Neighbours in each list of findOutliers(): so many more than it uses step in for outliers.
 constexpr int list_size = 32;
+/// Some milliseconds of search.
+constexpr std::size_t points_between_questions = 1024;
 /// Neighbours of pcl::StatisticalOutlierRemoval.
 constexpr int statistical_neighbors = 16;
 
@@ -46,7 +48,8 @@ Cloud::Ptr scaledCloud(const Positions& points) {
   return cloud;
 }
 
-NeighborLists nearestNeighbors(const Cloud::Ptr& cloud) {
+/// \throw Unwanted
+NeighborLists nearestNeighbors(const Cloud::Ptr& cloud, const std::function<bool()>& is_wanted) {
   pcl::search::KdTree<pcl::PointXYZ> tree(false);
   tree.setInputCloud(cloud);
   NeighborLists lists;
@@ -54,6 +57,8 @@ NeighborLists nearestNeighbors(const Cloud::Ptr& cloud) {
   pcl::Indices found;
   std::vector<float> distances;
   for (const pcl::PointXYZ& point : *cloud) {
+    if (is_wanted && lists.offsets.size() % points_between_questions == 0 && !is_wanted())
+      throw Unwanted();
     // One more, since a point is its own neighbour.
     tree.nearestKSearch(point, list_size + 1, found, distances);
     lists.indices.insert(lists.indices.end(), found.begin(), found.end());
@@ -77,7 +82,8 @@ std::vector<Index> statisticalOutliers(const Cloud::Ptr& cloud, double sigma) {
 }  // namespace
 
 OutlierRemoval findOutlierPoints(const std::vector<Point>& points, OutlierMethod method,
-                                 double sigma, int threads) {
+                                 double sigma, int threads,
+                                 const std::function<bool()>& is_wanted) {
   std::vector<int> finite;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (isFinite(points[i])) {
@@ -102,7 +108,7 @@ OutlierRemoval findOutlierPoints(const std::vector<Point>& points, OutlierMethod
       OutlierOptions options;
       options.sigma = sigma;
       options.threads = threads;
-      const Outliers found = findOutliers(vertices, nearestNeighbors(cloud), options);
+      const Outliers found = findOutliers(vertices, nearestNeighbors(cloud, is_wanted), options);
       outliers = found.indices;
       removal.threshold = found.threshold;
     } else {

@@ -3,7 +3,9 @@
 #include "common/point_data.h"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -23,11 +25,21 @@ struct OutlierRemoval {
       threshold;  ///< of the scores that were compared; PCL keeps its own to itself
 };
 
+/// Whoever asked for the outliers does not want them any more.
+class Unwanted : public std::runtime_error {
+public:
+  Unwanted() : std::runtime_error("the outliers are not wanted any more") {}
+};
+
 /// Finds the outliers among the finite points.
 ///
 /// \param sigma   further off than the mean by so many standard deviations; [0, 1000].
 /// \param threads 0: as many as OpenMP would use.
+/// \param is_wanted asked now and then while neighbours are searched for the paper's method; may be
+///                  empty.
+/// \throw Unwanted as soon as is_wanted is seen to be false.
 OutlierRemoval findOutlierPoints(const std::vector<Point>& points, OutlierMethod method,
-                                 double sigma, int threads);
+                                 double sigma, int threads,
+                                 const std::function<bool()>& is_wanted = {});
 
 }  // namespace spherical_param::tools

@@ -53,19 +53,21 @@ void checkOutputs(const std::vector<std::string>& inputs, const std::vector<std:
   }
 }
 
-void storeReport(const OutputSettings& settings, const Json& report,
-                 std::vector<std::unique_ptr<OutputFile>>& files) {
-  if (settings.json.empty()) {
-    return;
-  }
-  const std::string text = textOf(report);
+void publish(const OutputSettings& settings, std::vector<std::unique_ptr<OutputFile>>& files,
+             Console& console, const std::function<Json()>& make_report,
+             const std::function<void()>& print_verdict) {
   if (settings.jsonToStandardOutput()) {
-    printAll(text);
-    return;
+    printAll(textOf(make_report()));
+  } else if (!settings.json.empty()) {
+    files.push_back(std::make_unique<OutputFile>(settings.json));
+    files.back()->write(textOf(make_report()));
+    files.back()->finish();
   }
-  files.push_back(std::make_unique<OutputFile>(settings.json));
-  files.back()->write(text);
-  files.back()->finish();
+  print_verdict();
+  console.flush();
+  for (const auto& file : files) {
+    file->commit();
+  }
 }
 
 }  // namespace spherical_param::tools

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "common/command_line.h"
+#include "common/console.h"
 #include "common/json_report.h"
 #include "common/mesh_writer.h"
 #include "common/output_file.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,9 +40,13 @@ void addReport(const OutputSettings& settings, std::vector<std::string>& outputs
 /// output, or that cannot be written. \throw UsageError, Failure.
 void checkOutputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-/// Prints the report, or stores it as one more of the files, which is not committed yet.
-/// \throw Failure
-void storeReport(const OutputSettings& settings, const Json& report,
-                 std::vector<std::unique_ptr<OutputFile>>& files);
+/// Gives all files their names, once everything is stored and printed, the report included.
+///
+/// \param files        finished, but not committed.
+/// \param make_report   called if a report is wanted.
+/// \param print_verdict prints the last lines on the console. \throw Failure
+void publish(const OutputSettings& settings, std::vector<std::unique_ptr<OutputFile>>& files,
+             Console& console, const std::function<Json()>& make_report,
+             const std::function<void()>& print_verdict);
 
 }  // namespace spherical_param::tools

@@ -111,18 +111,10 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
     console.update(share, "");
     return true;
   };
-  const auto fail = [&path](const std::exception& error) {
-    return libraryFailure("cannot map " + inQuotes(path) + " to the sphere", error,
-                          "try another -seed");
-  };
-  try {
+  runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
     mapped.map =
         computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.result().sphere, options);
-  } catch (const InvalidInput& error) {
-    throw fail(error);
-  } catch (const ComputeError& error) {
-    throw fail(error);
-  }
+  });
   mapped.cloud.stages.push_back({"map", console.end("")});
 }
 

@@ -7,27 +7,46 @@
 #include "common/text.h"
 #include "spherical_param/version.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <mutex>
 #include <new>
 #include <thread>
+#include <utility>
 
 namespace spherical_param::tools {
 namespace {
 
-/// Waits for a signal, cleans up, and ends as the signal would have, so that the caller sees what
-/// happened.
-void endBySignal(const sigset_t& signals) {
-  int signal_number = 0;
-  if (sigwait(&signals, &signal_number) != 0) {
-    return;
+/// Who is told of signals.
+struct Watch {
+  std::mutex mutex;
+  std::function<void(int)> told;
+};
+
+/// Never destroyed: the thread that waits for signals may need it until the very end.
+Watch& watch() {
+  static Watch& instance = *new Watch;
+  return instance;
+}
+
+/// Waits for signals.
+void waitForSignals(const sigset_t& signals) {
+  for (;;) {
+    int signal_number = 0;
+    if (sigwait(&signals, &signal_number) != 0) {
+      return;
+    }
+    const std::lock_guard<std::mutex> lock(watch().mutex);
+    if (!watch().told) {
+      endBySignal(signal_number);
+    }
+    watch().told(signal_number);
   }
-  removeTemporaryFiles([&] {
-    std::signal(signal_number, SIG_DFL);
-    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-    std::raise(signal_number);
-  });
 }
 
 /// Leaves the signals that end a program to a thread of their own: a handler could interrupt the
@@ -44,7 +63,7 @@ void handleSignals() {
     }
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::thread([signals] { endBySignal(signals); }).detach();
+  std::thread([signals] { waitForSignals(signals); }).detach();
   // A closed pipe or a size limit is an error of the write like any other.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -57,10 +76,45 @@ int report(const std::string& tool, const ToolError& error) {
   return static_cast<int>(error.exitCode());
 }
 
+/// A standard stream that the caller has closed stays so, but no file gets its number: what is
+/// meant for the terminal would be written into a mesh.
+void occupyStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) == -1) {
+      // The lowest number that is free; the wrong way round, so that its use still fails.
+      [[maybe_unused]] const int opened =
+          open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+  }
+}
+
 }  // namespace
+
+SignalWatch::SignalWatch(std::function<void(int)> told) {
+  const std::lock_guard<std::mutex> lock(watch().mutex);
+  watch().told = std::move(told);
+}
+
+SignalWatch::~SignalWatch() {
+  const std::lock_guard<std::mutex> lock(watch().mutex);
+  watch().told = nullptr;
+}
+
+void endBySignal(int signal_number) {
+  removeTemporaryFiles([signal_number] {
+    std::signal(signal_number, SIG_DFL);
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, signal_number);
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    std::raise(signal_number);
+  });
+  std::abort();
+}
 
 int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(const std::vector<std::string>&)>& body) {
+  occupyStandardStreams();
   handleSignals();
   silenceLibraryConsoles();
   try {

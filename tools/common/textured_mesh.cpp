@@ -3,6 +3,7 @@
 #include "common/errors.h"
 #include "common/json_report.h"
 #include "common/record_writer.h"
+#include "spherical_param/mesh_measures.h"
 #include "spherical_param/version.h"
 
 #include <Eigen/Geometry>
@@ -22,20 +23,6 @@ namespace {
 Point toPoint(const Eigen::Vector3d& value) {
   return {static_cast<float>(value.x()), static_cast<float>(value.y()),
           static_cast<float>(value.z())};
-}
-
-/// Normals at the vertices of a mesh, weighted by area.
-Positions vertexNormals(const Positions& points, const Triangles& triangles) {
-  Positions normals = Positions::Zero(3, points.cols());
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3d a = points.col(triangles(0, t));
-    const Eigen::Vector3d normal =
-        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      normals.col(triangles(k, t)) += normal;
-    }
-  }
-  return normals;
 }
 
 std::array<Index, 3> toArray(const Eigen::Matrix<Index, 3, 1>& triangle) {
@@ -85,7 +72,7 @@ TexturedMesh makeTexturedMesh(const TextureAtlas& atlas, const Positions& points
                               const Triangles& triangles) {
   TexturedMesh mesh;
   const Eigen::MatrixXd at_vertices = atCutVertices(atlas, points);
-  const Eigen::MatrixXd normals = atCutVertices(atlas, vertexNormals(points, triangles));
+  const Eigen::MatrixXd normals = atCutVertices(atlas, areaWeightedNormals(points, triangles));
   mesh.points.reserve(atlas.vertices.size());
   mesh.normals.reserve(atlas.vertices.size());
   for (Eigen::Index v = 0; v < at_vertices.cols(); ++v) {

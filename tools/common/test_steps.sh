@@ -1,0 +1,154 @@
+# Steps of test scripts and their count. To be sourced, after cd to the project's root.
+#
+# shellcheck shell=bash
+
+# Nothing here asks questions; a tool that tried to must not hang.
+exec </dev/null
+jobs="$(nproc)"
+logs=build/test-logs
+mkdir -p "$logs"
+passed=0
+failed=0
+skipped=0
+
+# What was compiled with the same settings in another folder of the tree is not compiled again.
+use_compiler_cache() {
+  if command -v ccache >/dev/null; then
+    export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}" CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=yes
+  fi
+}
+use_compiler_cache
+
+report() { # <result> <seconds> <step>
+  printf '%-6s %5ss  %s\n' "$1" "$2" "$3"
+}
+
+# run <step> <command>...: runs it with its output in a log, which is shown if it fails.
+run() {
+  local step="$1" log="$logs/${1//[^A-Za-z0-9]/_}.log" start="$SECONDS"
+  shift
+  if "$@" >"$log" 2>&1; then
+    report ok "$((SECONDS - start))" "$step"
+    return 0
+  fi
+  report FAILED "$((SECONDS - start))" "$step"
+  tail -n 40 "$log" | sed 's/^/    /'
+  return 1
+}
+
+# check <step> <command>...: a step that counts as one test.
+check() {
+  if run "$@"; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    return 1
+  fi
+}
+
+# tests <step> <folder> <ctest option>...: counts each test; a run without tests is a failure.
+tests() {
+  local step="$1" folder="$2" junit good=yes total bad
+  junit="$PWD/$logs/${1//[^A-Za-z0-9]/_}.xml"
+  shift 2
+  rm -f "$junit"
+  run "$step" ctest --test-dir "$folder" --no-tests=error --output-on-failure -j "$jobs" \
+    --output-junit "$junit" "$@" || good=no
+  total="$(junit_number tests "$junit")"
+  # A skipped or disabled test is one that did not show what it should.
+  bad=$(($(junit_number failures "$junit") + $(junit_number skipped "$junit") + \
+    $(junit_number disabled "$junit")))
+  if [ "$good" = no ] && [ "$bad" -eq 0 ]; then
+    bad=1
+    [ "$total" -gt 0 ] || total=1
+  fi
+  passed=$((passed + total - bad))
+  failed=$((failed + bad))
+}
+
+# variant_tests <step> <preset> <folder> <ctest option>...: as tests(), of a build that differs from
+# the first one by its compiler's settings only. Not run again if all passed and no program, library
+# or file of the tests changed since.
+variant_tests() {
+  local step="$1" preset="$2" folder="$3" stamp key count
+  shift 3
+  stamp="build/$preset/tests-passed"
+  key="$( (
+    echo "$@"
+    find "build/$preset" -type f \( -path '*/bin/*' -o -name '*.so*' \) -print0 | sort -z |
+      xargs -0 sha256sum
+    files 'test/*' 'cmake/*' | xargs sha256sum
+  ) | sha256sum | cut -d' ' -f1)"
+  if [ -f "$stamp" ] && read -r count <"$stamp" && [ "${count#"$key "}" != "$count" ]; then
+    count="${count#"$key "}"
+    passed=$((passed + count))
+    report ok 0 "$step ($count, unchanged)"
+    return 0
+  fi
+  rm -f "$stamp"
+  local failed_before="$failed" passed_before="$passed"
+  tests "$step" "$folder" "$@"
+  if [ "$failed" -eq "$failed_before" ]; then
+    echo "$key $((passed - passed_before))" >"$stamp"
+  fi
+}
+
+junit_number() { # <attribute> <file>
+  local number=""
+  if [ -f "$2" ]; then
+    number="$(sed -n "1,20s/^.*[[:space:]]$1=\"\([0-9]*\)\".*$/\1/p" "$2" | head -n 1)"
+  fi
+  echo "${number:-0}"
+}
+
+# The files of the project that match a pattern, with or without git.
+files() {
+  if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+    git ls-files -co --exclude-standard -- "$@" | while read -r file; do
+      [ ! -e "$file" ] || printf '%s\n' "$file"
+    done
+  else
+    local pattern
+    for pattern in "$@"; do
+      find . -path './build*' -prune -o -type f -path "./$pattern" -print | sed 's|^\./||'
+    done
+  fi | sort -u
+}
+
+# build_release [target...]: what all scripts test. With the flags of the packages, so that these are
+# what was tested, and compiled once. Of the benchmarks' peers only PCL: the others are not in the
+# list of packages, and take minutes.
+build_release() {
+  cmake --preset release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
+    -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON \
+    -DCMAKE_DISABLE_FIND_PACKAGE_Open3D=ON &&
+    cmake --build build/release -j "$jobs" ${1:+--target "$@"} -- -k 0
+}
+
+# skip <step> <reason>: a step that cannot be made here; loud, and counted.
+skip() {
+  skipped=$((skipped + 1))
+  report SKIP 0 "$1: $2"
+}
+
+# need_packages <name>: installs those of tools/packages-<name>.txt. Where they cannot be had, the
+# script ends, with one step skipped.
+need_packages() {
+  local log="$logs/packages-$1.log"
+  if tools/setup.sh "$1" >"$log" 2>&1; then
+    use_compiler_cache
+    return 0
+  fi
+  tail -n 5 "$log" | sed 's/^/    /'
+  skip "all of $(basename "$0")" "packages of tools/packages-$1.txt cannot be had, see above"
+  finish
+}
+
+# Ends the script: the last line says how many tests and other steps passed, failed, were skipped.
+finish() {
+  echo "$SECONDS seconds; logs are in $logs"
+  echo "$passed $failed $skipped" >"$logs/$(basename "$0" .sh).counts"
+  echo "$passed passed, $failed failed, $skipped skipped"
+  exit $((failed > 0))
+}
