@@ -7,6 +7,12 @@ if(NOT TARGET Qhull::qhull_r)
   message(FATAL_ERROR "qhull (libqhull_r) was not found: install libqhull-dev")
 endif()
 
+# FLANN's headers use lz4 on some systems without saying so.
+find_library(LZ4_LIBRARY lz4)
+
+if(NOT SPHERICAL_PARAM_BUILD_PCL)
+  return()
+endif()
 set(spherical_param_pcl_components common kdtree search)
 if(SPHERICAL_PARAM_BUILD_TOOLS)
   list(APPEND spherical_param_pcl_components filters io)

@@ -1,11 +1,18 @@
 # Installation: libraries, headers, CMake package with the components core and pcl, pkg-config
 # files, package.xml. Nothing that is installed holds a path of the build machine, except those
 # that PCL's own package puts into its targets.
+#
+# The components of the installation: core and pcl are what programs need to run, core_dev and
+# pcl_dev what is needed to build them. cmake/Packaging.cmake makes packages of them.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcl_spherical_param)
 
 # One export set and install component for each: who asks for core only must not need PCL.
-foreach(component core pcl)
+set(spherical_param_components core)
+if(SPHERICAL_PARAM_BUILD_PCL)
+  list(APPEND spherical_param_components pcl)
+endif()
+foreach(component IN LISTS spherical_param_components)
   if(component STREQUAL "core")
     set(target spherical_param_core)
     set(header_dir spherical_param)
@@ -14,21 +21,22 @@ foreach(component core pcl)
     set(header_dir pcl)
   endif()
   install(TARGETS ${target} EXPORT pcl_spherical_param_${component}
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}_dev
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
+            NAMELINK_COMPONENT ${component}_dev
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
   install(EXPORT pcl_spherical_param_${component}
     NAMESPACE pcl_spherical_param::
     FILE pcl_spherical_param-${component}-targets.cmake
     DESTINATION ${package_dir}
-    COMPONENT ${component})
+    COMPONENT ${component}_dev)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/${header_dir}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-    COMPONENT ${component}
+    COMPONENT ${component}_dev
     FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/include/spherical_param/version.h
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spherical_param COMPONENT core)
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/spherical_param COMPONENT core_dev)
 
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/pcl_spherical_paramConfig.cmake.in
@@ -42,10 +50,10 @@ write_basic_package_version_file(
 install(FILES
   ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfig.cmake
   ${PROJECT_BINARY_DIR}/package/pcl_spherical_paramConfigVersion.cmake
-  DESTINATION ${package_dir} COMPONENT core)
+  DESTINATION ${package_dir} COMPONENT core_dev)
 
 install(FILES ${PROJECT_SOURCE_DIR}/cmake/qhull.cmake
-  DESTINATION ${package_dir} RENAME pcl_spherical_param-qhull.cmake COMPONENT core)
+  DESTINATION ${package_dir} RENAME pcl_spherical_param-qhull.cmake COMPONENT core_dev)
 
 # pkg-config: the prefix is told from where the file lies, so that the tree may be moved.
 foreach(kind LIB INCLUDE)
@@ -77,7 +85,7 @@ else()
   set(PKGCONFIG_CORE_LIBS " ${PKGCONFIG_CORE_PRIVATE_LIBS}")
   set(PKGCONFIG_CORE_PRIVATE_LIBS "")
 endif()
-foreach(component core pcl)
+foreach(component IN LISTS spherical_param_components)
   if(component STREQUAL "core")
     set(name spherical_param_core)
   else()
@@ -86,10 +94,10 @@ foreach(component core pcl)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/${name}.pc.in
                  ${PROJECT_BINARY_DIR}/package/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/package/${name}.pc
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${component})
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${component}_dev)
 endforeach()
 
 install(FILES ${PROJECT_SOURCE_DIR}/package.xml
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/pcl_spherical_param COMPONENT core)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/pcl_spherical_param COMPONENT core_dev)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
-  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core)
+  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT license)

@@ -6,17 +6,21 @@
 #                         that answer questions and change nothing: point_set.h, mesh_topology.h,
 #                         self_intersection.h
 #   reconstruct           every stage
-#   pcl/surface           reconstruct.h, the stages' headers, PCL without I/O; its k-d tree FLANN
+#   search                types.h, FLANN: the k-d tree of the PCL class and the Python module
+#   pcl/surface           reconstruct.h, the stages' headers, PCL without I/O; its k-d tree search
+#   python                everything of the core in public, its threads, search, pybind11
+#   src/ros               reconstruct.h, the PCL class, PCL's messages; src/ros/ros1 and ros2 alone
+#                         know ROS
 #   tools                 everything of ours but private helpers, pcl/filters, pcl/io,
-#                         Boost.Program_options
+#                         Boost.Program_options, zlib
 #
 # A header of ours that is in none of the lists below is a violation as well: say where it belongs.
 cmake_minimum_required(VERSION 3.21)
 
 # In the order of the pipeline.
-set(stages point_set outliers neighbor_graph graph_hierarchy sphere_embedding sphere_triangulation
-           mesh_topology mesh_measures self_intersection mesh_optimization surface_diagnosis
-           smoothing sphere_map sphere_surface resampling
+set(stages point_set outliers neighbor_graph graph_hierarchy sphere_embedding embedding_history
+           sphere_triangulation mesh_topology mesh_measures self_intersection mesh_optimization
+           surface_diagnosis smoothing sphere_map sphere_surface resampling
            spherical_harmonics texture_atlas morphing)
 
 # Sources of a stage besides the one of its name: part, then stage.
@@ -96,7 +100,22 @@ function(allowed_includes result file)
     set(allowed ${of_eigen_and_std} "omp\\.h" ${ours_any} "pcl/[A-Za-z0-9_]+\\.h"
                 "pcl/(common|console|impl|kdtree|search|surface)/(impl/)?[a-z_]+\\.(h|hpp)")
     if(file STREQUAL "src/pcl/spherical_param_kd_tree.cpp")
-      list(APPEND allowed "flann/([a-z_]+/)?[a-z_]+\\.h")
+      list(APPEND allowed "search/[a-z_]+\\.h")
+    endif()
+  elseif(file MATCHES "^src/search/")
+    set(allowed ${of_eigen_and_std} "spherical_param/types\\.h" "flann/([a-z_]+/)?[a-z_]+\\.h")
+  elseif(file MATCHES "^src/python/")
+    set(allowed ${of_eigen_and_std} "spherical_param/[a-z_]+\\.h" "python/[a-z_]+\\.h"
+                "pybind11/[a-z0-9_]+\\.h")
+    if(file STREQUAL "src/python/neighbor_search.cpp")
+      list(APPEND allowed "core/parallel\\.h" "search/[a-z_]+\\.h")
+    endif()
+  elseif(file MATCHES "^(include/spherical_param_ros|src/ros)/")
+    set(allowed ${of_eigen_and_std} ${ours_any} "spherical_param_ros/[a-z_]+\\.h"
+                "common/outlier_removal\\.h" "pcl/[A-Za-z0-9_]+\\.h")
+    if(file MATCHES "^src/ros/ros[12]/")
+      # The messages that are generated from our own, and the nodes' helpers.
+      list(APPEND allowed "[a-z_]+/[A-Za-z0-9_/]+\\.(h|hpp)" "ros[12]/[a-z_]+\\.h")
     endif()
   elseif(file STREQUAL "tools/render_views.cpp")
     set(allowed ${of_eigen_and_std} "vtk[A-Za-z0-9]+\\.h" "X11/Xlib\\.h")
@@ -108,6 +127,9 @@ function(allowed_includes result file)
     if(file MATCHES "^tools/common/")
       # Formats that pcl/io does not read, and the messages of those that it does.
       list(APPEND allowed "vtk[A-Za-z0-9]+\\.h")
+    endif()
+    if(file STREQUAL "tools/common/packed_array.cpp")
+      list(APPEND allowed "zlib\\.h")
     endif()
   elseif(file MATCHES "^test/(core|reference)/")
     # The core's tests, and what they compare it with, must build and run without PCL.
