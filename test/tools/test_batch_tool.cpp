@@ -290,10 +290,11 @@ TEST(BatchTool, ResumeRunsOnlyWhatIsMissingOrChanged) {
 
 /// So many that they are not all done before a signal arrives.
 constexpr int many_clouds = 20;
+constexpr int points_of_many = is_sanitized ? 700 : 3000;
 
 TEST(BatchTool, KilledInTheMiddleItResumes) {
   const TemporaryDirectory directory;
-  writeClouds(directory, many_clouds, 3000);
+  writeClouds(directory, many_clouds, points_of_many);
   const std::vector<std::string> arguments = {"in",      "-output", "out/{name}.ply", "-jsonl",
                                               "r.jsonl", "-resume", "-jobs",          "2"};
   std::map<int, std::string> children;
@@ -344,7 +345,7 @@ TEST(BatchTool, KilledInTheMiddleItResumes) {
 TEST(BatchTool, ASignalEndsItInGoodOrder) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TemporaryDirectory directory;
-    writeClouds(directory, many_clouds, 3000);
+    writeClouds(directory, many_clouds, points_of_many);
     RunOptions options;
     options.meanwhile = [&](int process) {
       while ((records(directory.file("r.jsonl")).size() < 2 || childrenOf(process).empty()) &&
@@ -465,6 +466,9 @@ TEST(BatchTool, NeedsAreBoundsWithWhatElseIsAskedFor) {
   }
 }
 
+// Clang's sanitizer of virtual calls opens a pipe to look at the object's memory, and calls the
+// object invalid if it gets none.
+#ifndef SPHERICAL_PARAM_SANITIZED
 TEST(BatchTool, AStartThatFailsIsTriedAgainWhenAnotherHasEnded) {
   const TemporaryDirectory directory;
   writeClouds(directory, 12, 1500);
@@ -484,6 +488,7 @@ TEST(BatchTool, AStartThatFailsIsTriedAgainWhenAnotherHasEnded) {
     EXPECT_EQ(records(directory.file(name)).size(), 12U) << limit;
   }
 }
+#endif
 
 TEST(BatchTool, ItWorksWithStandardStreamsClosed) {
   const TemporaryDirectory directory;
