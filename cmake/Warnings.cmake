@@ -12,4 +12,15 @@ function(spherical_param_compile_options target)
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PRIVATE -fsanitize=${SPHERICAL_PARAM_SANITIZE})
   endif()
+  if(SPHERICAL_PARAM_FUZZERS)
+    # What libFuzzer is guided by. Comparisons are not traced: arithmetic would become twice as slow.
+    target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,pc-table)
+  endif()
+endfunction()
+
+# A program of libFuzzer, if SPHERICAL_PARAM_FUZZERS.
+function(spherical_param_add_fuzzer target)
+  add_executable(${target} ${ARGN})
+  spherical_param_compile_options(${target})
+  target_link_options(${target} PRIVATE -fsanitize=fuzzer)
 endfunction()

@@ -21,13 +21,6 @@ esac
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
 
-configure_and_build() { # <preset> [target...]
-  local preset="$1"
-  shift
-  cmake --preset "$preset" &&
-    cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} -- -k 0
-}
-
 formatted() {
   files '*.h' '*.hpp' '*.cpp' | xargs -r clang-format --dry-run --Werror
 }

@@ -126,6 +126,14 @@ build_release() {
     cmake --build build/release -j "$jobs" ${1:+--target "$@"} -- -k 0
 }
 
+# configure_and_build <preset> [target...]
+configure_and_build() {
+  local preset="$1"
+  shift
+  cmake --preset "$preset" &&
+    cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} -- -k 0
+}
+
 # skip <step> <reason>: a step that cannot be made here; loud, and counted.
 skip() {
   skipped=$((skipped + 1))
