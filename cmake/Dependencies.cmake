@@ -1,14 +1,35 @@
 # Everything that the project builds against. The VTK-free parts of PCL for the library, the rest
-# for tools and tests only.
-find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+# for tools and tests only. README.md lists the bounds of their versions.
+include(${PROJECT_SOURCE_DIR}/cmake/RequireVersion.cmake)
+find_package(Eigen3 QUIET NO_MODULE)
+if(NOT TARGET Eigen3::Eigen)
+  message(FATAL_ERROR "Eigen was not found: install libeigen3-dev")
+endif()
+spherical_param_require_version(Eigen "${Eigen3_VERSION}" 3.3 libeigen3-dev 4)
 find_package(OpenMP COMPONENTS CXX)
+if(OpenMP_CXX_FOUND)
+  spherical_param_require_version(OpenMP "${OpenMP_CXX_VERSION}" 3.0 "compiler")
+endif()
 include(${PROJECT_SOURCE_DIR}/cmake/qhull.cmake)
 if(NOT TARGET Qhull::qhull_r)
   message(FATAL_ERROR "qhull (libqhull_r) was not found: install libqhull-dev")
 endif()
+# The first with the reentrant library is 2015.0, alias 7.0; installed alone, it tells no version.
+set(SPHERICAL_PARAM_QHULL_VERSION "${Qhull_VERSION}")
+spherical_param_require_version(qhull "${SPHERICAL_PARAM_QHULL_VERSION}" 7.0 libqhull-dev)
 
 # FLANN's headers use lz4 on some systems without saying so.
 find_library(LZ4_LIBRARY lz4)
+find_path(SPHERICAL_PARAM_LZ4_INCLUDE_DIR lz4.h)
+find_path(SPHERICAL_PARAM_FLANN_INCLUDE_DIR flann/algorithms/kdtree_single_index.h)
+mark_as_advanced(SPHERICAL_PARAM_LZ4_INCLUDE_DIR SPHERICAL_PARAM_FLANN_INCLUDE_DIR)
+spherical_param_version_of_header(lz4_version "${SPHERICAL_PARAM_LZ4_INCLUDE_DIR}/lz4.h"
+  LZ4_VERSION_MAJOR LZ4_VERSION_MINOR LZ4_VERSION_RELEASE)
+spherical_param_require_version(lz4 "${lz4_version}" 1.8 liblz4-dev)
+set(SPHERICAL_PARAM_FLANN_HEADER ${SPHERICAL_PARAM_FLANN_INCLUDE_DIR}/flann/config.h)
+spherical_param_version_of_header(SPHERICAL_PARAM_FLANN_VERSION "${SPHERICAL_PARAM_FLANN_HEADER}"
+  FLANN_VERSION_)
+spherical_param_require_version(FLANN "${SPHERICAL_PARAM_FLANN_VERSION}" 1.9 libflann-dev)
 
 if(NOT SPHERICAL_PARAM_BUILD_PCL)
   return()
@@ -20,7 +41,12 @@ endif()
 if(SPHERICAL_PARAM_BUILD_TESTS)
   list(APPEND spherical_param_pcl_components octree)
 endif()
-find_package(PCL 1.12 REQUIRED COMPONENTS ${spherical_param_pcl_components})
+find_package(PCL REQUIRED COMPONENTS ${spherical_param_pcl_components})
+spherical_param_require_version(PCL "${PCL_VERSION}" 1.12 libpcl-dev 2)
+# What PCL brings, of which the tools use parts.
+if(SPHERICAL_PARAM_BUILD_TOOLS)
+  spherical_param_require_version(VTK "${VTK_VERSION}" 9.0 libvtk9-dev)
+endif()
 
 # Older PCL gives plain library targets and variables, newer PCL namespaced targets.
 function(spherical_param_link_pcl target visibility)
