@@ -5,6 +5,7 @@
 #
 #   tools/torture.sh            everything: hours
 #   tools/torture.sh --quick    a minute's worth of each, which CI runs
+#   --models FOLDER             with either: also the models of a folder, .ply
 #
 # The last lines are a table of what was tried, injected, found and lost; it is in
 # build/torture/table.md, too. Logs are in build/test-logs.
@@ -12,14 +13,21 @@ set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 quick=()
-case "${1:-}" in
-"") ;;
---quick) quick=(--quick) ;;
-*)
-  sed -n -e '3,10s/^# \{0,1\}//p' tools/torture.sh
-  exit 2
-  ;;
-esac
+models=()
+while [ $# -gt 0 ]; do
+  case "$1" in
+  --quick) quick=(--quick) ;;
+  --models)
+    models=(--models "$(realpath -e "${2:?a folder is missing}")")
+    shift
+    ;;
+  *)
+    sed -n -e '3,11s/^# \{0,1\}//p' tools/torture.sh
+    exit 2
+    ;;
+  esac
+  shift
+done
 
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
@@ -54,6 +62,20 @@ table() {
 # --- faults --------------------------------------------------------------------------------------
 
 # --- threads -------------------------------------------------------------------------------------
+
+bin=build/release/bin
+if check "threads: build" build_release torture_threads_pcl torture_soak \
+  torture_meshes; then
+  part "threads: together as alone" "$bin/torture_threads_pcl" "${quick[@]}" || true
+  part "threads: soak" "$bin/torture_soak" "${quick[@]}" || true
+  part "threads: determinism" "$bin/torture_meshes" "${quick[@]}" "${models[@]}" || true
+fi
+if check "threads: build with the thread sanitizer" configure_and_build tsan torture_threads; then
+  part "threads: thread sanitizer" build/tsan/bin/torture_threads "${quick[@]}" || true
+fi
+if [ ${#quick[@]} -eq 0 ]; then
+  part "threads: gcc and clang" test/torture/threads/compare_builds.py --build "${models[@]}" || true
+fi
 
 # --- end -----------------------------------------------------------------------------------------
 
