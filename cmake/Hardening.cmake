@@ -1,7 +1,17 @@
 # The flags that Debian wants in its packages: those of dpkg-buildflags where it is, the same ones
 # by hand elsewhere. Without -g and -O2, which the build type says, and without the folder of the
-# build, which no file of a package must tell.
-option(SPHERICAL_PARAM_HARDENING "Compile and link as Debian's packages are" OFF)
+# build, which no file of a package must tell; and without link-time optimisation, which some
+# distributions put among them.
+#
+# On for whoever builds this project to use it: the tools read files from anywhere. Not for another
+# project's build, which has its own flags; nor without optimisation, on which the checked calls of
+# the C library depend; nor with sanitizers, which do the same and more.
+set(hardening_default OFF)
+if(PROJECT_IS_TOP_LEVEL AND NOT SPHERICAL_PARAM_SANITIZE
+   AND CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo|MinSizeRel)$")
+  set(hardening_default ON)
+endif()
+option(SPHERICAL_PARAM_HARDENING "Compile and link as Debian's packages are" ${hardening_default})
 if(SPHERICAL_PARAM_HARDENING)
   set(hardening_compile "-fstack-protector-strong -Wformat -Werror=format-security")
   set(hardening_preprocess "-Wdate-time -D_FORTIFY_SOURCE=2")
@@ -22,8 +32,13 @@ if(SPHERICAL_PARAM_HARDENING)
     endforeach()
   endif()
   separate_arguments(hardening_flags UNIX_COMMAND "${hardening_compile} ${hardening_preprocess}")
-  list(FILTER hardening_flags EXCLUDE REGEX "^(-g|-O[0-9]|-f[a-z]+-prefix-map=.*)$")
+  list(FILTER hardening_flags EXCLUDE REGEX
+    "^(-g|-O[0-9]|-f[a-z]+-prefix-map=.*|-f(fat-)?lto(-objects|=.*)?)$")
   separate_arguments(hardening_link UNIX_COMMAND "${hardening_link}")
+  list(FILTER hardening_link EXCLUDE REGEX "^-f(fat-)?lto(-objects|=.*)?$")
+  # The compiler's default may be programs that are not position-independent.
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES CXX)
   add_compile_options(${hardening_flags})
   add_link_options(${hardening_link})
 endif()
