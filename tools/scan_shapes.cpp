@@ -254,18 +254,21 @@ private:
   double rounding_;
 };
 
-/// Torus around the z axis.
+/// Torus around a parallel of the z axis.
 class Torus {
 public:
-  Torus(double radius, double tube_radius) : radius_(radius), tube_radius_(tube_radius) {}
+  Torus(const Vec& centre, double radius, double tube_radius)
+      : centre_(centre), radius_(radius), tube_radius_(tube_radius) {}
 
   Field operator()(const Vec& p) const {
-    const double length = std::sqrt(p.x * p.x + p.y * p.y);
+    const Vec offset = p - centre_;
+    const double length = std::sqrt(offset.x * offset.x + offset.y * offset.y);
     const double scale = length > 0.0 ? radius_ / length : 0.0;
-    return tubeField(p, {scale * p.x, scale * p.y, 0.0}, tube_radius_);
+    return tubeField(offset, {scale * offset.x, scale * offset.y, 0.0}, tube_radius_);
   }
 
 private:
+  Vec centre_;
   double radius_, tube_radius_;
 };
 
@@ -372,9 +375,10 @@ private:
 /// All there is to know about a shape.
 struct Surface {
   Solid solid;
-  std::vector<Vec> inside;     ///< a point inside each component, whose +x ray leaves it once
-  double coarsest_step = 0.0;  ///< largest step of a lattice that does not miss a feature
-  std::optional<double> rim;   ///< an open surface ends at this z
+  std::vector<Vec> inside;          ///< a point inside each component, whose +x ray leaves it once
+  double coarsest_step = 0.0;       ///< largest step of a lattice that does not miss a feature
+  std::optional<double> rim;        ///< an open surface ends at this z
+  std::vector<Primitive> openings;  ///< what lies in them was not scanned
 };
 
 // ---------------------------------------------------------------------------------------------
@@ -405,7 +409,7 @@ Surface makeHead() {
       .add(RoundCone({0.256, -0.036, -0.165}, 0.022, {0.256, 0.036, -0.165}, 0.022), 0.02)
       .add(Bumps{{-0.20, 0.0, 0.27}, 0.44, 0.095, 0.034})  // hair
       .add(Bumps{{0.0, 0.0, -0.05}, 0.60, 0.080, 0.005});  // skin
-  return {std::move(solid), {{0.0, 0.0, 0.0}}, 1.0 / 48.0, std::nullopt};
+  return {std::move(solid), {{0.0, 0.0, 0.0}}, 1.0 / 48.0, std::nullopt, {}};
 }
 
 Surface makeBird() {
@@ -428,7 +432,7 @@ Surface makeBird() {
              0.02)                                                                  // leg
         .add(Ellipsoid({0.06, side * 0.09, -0.345}, {0.080, 0.040, 0.022}), 0.02);  // foot
   }
-  return {std::move(solid), {{0.0, 0.0, -0.08}}, 1.0 / 48.0, std::nullopt};
+  return {std::move(solid), {{0.0, 0.0, -0.08}}, 1.0 / 48.0, std::nullopt, {}};
 }
 
 Surface makeHand() {
@@ -452,7 +456,7 @@ Surface makeHand() {
       .add(Ellipsoid({-0.10, -0.03, -0.19}, {0.07, 0.05, 0.11}), 0.04)            // thumb's ball
       .add(Ellipsoid({0.11, -0.03, -0.19}, {0.055, 0.045, 0.10}), 0.04)           // heel
       .add(RoundCone({0.0, 0.0, -0.26}, 0.085, {0.0, 0.0, -0.45}, 0.080), 0.08);  // wrist
-  return {std::move(solid), {{0.0, 0.0, -0.1}}, 1.0 / 48.0, std::nullopt};
+  return {std::move(solid), {{0.0, 0.0, -0.1}}, 1.0 / 48.0, std::nullopt, {}};
 }
 
 Surface makeAnimal() {
@@ -479,7 +483,7 @@ Surface makeAnimal() {
         .add(RoundCone({-0.25, side * 0.095, -0.40}, 0.040, {-0.21, side * 0.095, -0.41}, 0.032),
              0.01);
   }
-  return {std::move(solid), {{0.0, 0.0, 0.03}}, 1.0 / 48.0, std::nullopt};
+  return {std::move(solid), {{0.0, 0.0, 0.03}}, 1.0 / 48.0, std::nullopt, {}};
 }
 
 Surface makeStar() {
@@ -491,7 +495,7 @@ Surface makeStar() {
     for (const double other : {-golden, golden})
       for (const Vec& vertex : {Vec{0.0, one, other}, Vec{other, 0.0, one}, Vec{one, other, 0.0}})
         solid.add(RoundCone({}, 0.14, 0.53 * normalized(vertex), 0.013), 0.03);
-  return {std::move(solid), {Vec{}}, 1.0 / 72.0, std::nullopt};
+  return {std::move(solid), {Vec{}}, 1.0 / 72.0, std::nullopt, {}};
 }
 
 Surface makeSnake() {
@@ -524,14 +528,48 @@ Surface makeSnake() {
       .add(ArcTube({neck.x - bend, bend, top}, unit_x, unit_z, bend, tube, ArcTube::Span::Quarter),
            0.0)
       .add(Ellipsoid({neck.x - bend - 0.06, bend, top + bend - 0.01}, {0.12, 0.085, 0.058}), 0.03);
-  return {std::move(solid), {tail}, 1.0 / 48.0, std::nullopt};
+  return {std::move(solid), {tail}, 1.0 / 48.0, std::nullopt, {}};
+}
+
+/// A rabbit, with openings as a scan has them where the scanner did not come.
+Surface makeHoled() {
+  Solid solid;
+  solid
+      .add(Ellipsoid({-0.06, 0.0, -0.12}, {0.30, 0.22, 0.23}), 0.0)            // body
+      .add(RoundCone({0.14, 0.0, 0.02}, 0.13, {0.23, 0.0, 0.14}, 0.12), 0.08)  // neck
+      .add(Ellipsoid({0.29, 0.0, 0.15}, {0.14, 0.11, 0.11}), 0.05)             // head
+      .add(sphere({-0.38, 0.0, -0.10}, 0.07), 0.04)                            // tail
+      .carve(sphere({0.12, 0.0, -0.40}, 0.05), 0.05);                          // between the feet
+  for (const double side : {-1.0, 1.0})
+    solid.add(RoundCone({0.22, side * 0.055, 0.23}, 0.035, {0.13, side * 0.09, 0.46}, 0.028), 0.03)
+        .add(RoundCone({0.10, side * 0.11, -0.24}, 0.06, {0.20, side * 0.12, -0.32}, 0.045), 0.04);
+  Surface holed{std::move(solid), {{-0.06, 0.0, -0.12}}, 1.0 / 48.0, std::nullopt, {}};
+  holed.openings = {sphere({-0.10, 0.0, -0.35}, 0.13), sphere({-0.12, 0.0, 0.11}, 0.12),
+                    sphere({-0.10, 0.215, -0.12}, 0.12), sphere({-0.10, -0.215, -0.12}, 0.115)};
+  return holed;
+}
+
+/// A room from within: floor, ceiling and walls around a cupboard, a bed, a table block and a lamp.
+/// The solid is the air, so that "outside" is behind the walls.
+Surface makeRoom() {
+  Solid air;
+  air.add(RoundedBox(Vec{}, {0.50, 0.36, 0.23}, 0.025), 0.0)
+      .carve(RoundedBox({-0.44, 0.29, -0.10}, {0.10, 0.09, 0.20}, 0.02), 0.02)     // cupboard
+      .carve(RoundedBox({-0.20, -0.29, -0.20}, {0.17, 0.085, 0.09}, 0.03), 0.02)   // bed
+      .carve(RoundedBox({0.22, 0.06, -0.20}, {0.11, 0.08, 0.11}, 0.02), 0.02)      // table
+      .carve(RoundCone({0.10, 0.0, 0.25}, 0.03, {0.10, 0.0, 0.14}, 0.055), 0.02);  // lamp
+  Surface room{std::move(air), {{0.0, 0.0, 0.0}}, 1.0 / 72.0, std::nullopt, {}};
+  // A doorway and a window.
+  room.openings = {RoundedBox({0.28, -0.36, -0.07}, {0.11, 0.07, 0.21}, 0.02),
+                   RoundedBox({0.50, 0.16, 0.03}, {0.07, 0.12, 0.11}, 0.02)};
+  return room;
 }
 
 Surface makeSurface(Shape shape) {
   const auto whole = [](const Primitive& primitive, const Vec& inside) {
     Solid solid;
     solid.add(primitive, 0.0);
-    return Surface{std::move(solid), {inside}, 1.0 / 40.0, std::nullopt};
+    return Surface{std::move(solid), {inside}, 1.0 / 40.0, std::nullopt, {}};
   };
   switch (shape) {
   case Shape::Sphere:
@@ -559,7 +597,7 @@ Surface makeSurface(Shape shape) {
   case Shape::Plate:
     return whole(RoundedBox(Vec{}, {0.5, 0.35, 0.045}, 0.04), Vec{});
   case Shape::Torus:
-    return whole(Torus(0.36, 0.14), {0.36, 0.0, 0.0});
+    return whole(Torus(Vec{}, 0.36, 0.14), {0.36, 0.0, 0.0});
   case Shape::Bowl: {
     Surface bowl = whole(sphere(Vec{}, 0.5), Vec{});
     bowl.rim = 0.15;
@@ -571,6 +609,15 @@ Surface makeSurface(Shape shape) {
     pair.inside.push_back({0.3, 0.0, 0.0});
     return pair;
   }
+  case Shape::DoubleTorus: {
+    Surface eight = whole(Torus({0.23, 0.0, 0.0}, 0.19, 0.08), {0.42, 0.0, 0.0});
+    eight.solid.add(Torus({-0.23, 0.0, 0.0}, 0.19, 0.08), 0.04);
+    return eight;
+  }
+  case Shape::Holed:
+    return makeHoled();
+  case Shape::Room:
+    return makeRoom();
   }
   throw InvalidInput("makeSurface: not a shape; take one of allShapes()");
 }
@@ -787,15 +834,46 @@ void relax(const Surface& surface, Mesh& mesh) {
   }
 }
 
-/// Cuts off what lies above a height.
-Mesh cutAt(const Surface& surface, const Mesh& mesh, double height) {
-  Mesh cut;
+/// What lies above a height.
+struct Above {
+  double height = 0.0;
+
+  bool has(const Vec& p) const { return p.z >= height; }
+  /// Where the border lies between two points, as a share of their distance.
+  double crossing(const Vec& a, const Vec& b) const { return (height - a.z) / (b.z - a.z); }
+  /// Moves a point near the border onto it.
+  void put(Vec& p) const { p.z = height; }
+};
+
+/// What lies within a primitive.
+struct Within {
+  const Primitive& primitive;
+
+  Field field(const Vec& p) const {
+    return std::visit([&](const auto& shape) { return shape(p); }, primitive);
+  }
+  bool has(const Vec& p) const { return field(p).value <= 0.0; }
+  double crossing(const Vec& a, const Vec& b) const {
+    const double at_a = field(a).value;
+    return at_a / (at_a - field(b).value);
+  }
+  void put(Vec& p) const { p = p + stepToSurface(field(p)); }
+};
+
+/// Takes a part of a mesh away.
+template <typename Part>
+Mesh cut(const Surface& surface, const Mesh& mesh, const Part& part) {
+  Mesh rest;
   std::vector<Index> kept(mesh.vertices.size(), -1);
   std::unordered_map<std::uint64_t, Index> on_edge;
   const auto position = [&](Index i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
+  std::vector<bool> stays;
+  stays.reserve(mesh.vertices.size());
+  for (const Vec& vertex : mesh.vertices)
+    stays.push_back(!part.has(vertex));
   const auto append = [&](const Vec& p) {
-    cut.vertices.push_back(p);
-    return static_cast<Index>(cut.vertices.size() - 1);
+    rest.vertices.push_back(p);
+    return static_cast<Index>(rest.vertices.size() - 1);
   };
   const auto keep = [&](Index i) {
     Index& index = kept[static_cast<std::size_t>(i)];
@@ -803,17 +881,17 @@ Mesh cutAt(const Surface& surface, const Mesh& mesh, double height) {
       index = append(position(i));
     return index;
   };
-  const auto crossing = [&](Index below, Index above) {
+  const auto crossing = [&](Index inner, Index outer) {
     const auto [entry, is_new] = on_edge.try_emplace(
-        static_cast<std::uint64_t>(below) << 32 | static_cast<std::uint64_t>(above), Index{0});
+        static_cast<std::uint64_t>(inner) << 32 | static_cast<std::uint64_t>(outer), Index{0});
     if (is_new) {
-      const Vec a = position(below);
-      const Vec b = position(above);
-      Vec p = a + (height - a.z) / (b.z - a.z) * (b - a);
-      // On the surface and in the plane: alternating projections.
+      const Vec a = position(inner);
+      const Vec b = position(outer);
+      Vec p = a + part.crossing(a, b) * (b - a);
+      // On the surface and on the border: alternating projections.
       for (int i = 0; i < 20; ++i) {
         projectOnSurface(surface, p);
-        p.z = height;
+        part.put(p);
       }
       entry->second = append(p);
     }
@@ -824,17 +902,26 @@ Mesh cutAt(const Surface& surface, const Mesh& mesh, double height) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = triangle[i];
       const Index b = triangle[(i + 1) % 3];
-      const bool a_below = position(a).z < height;
-      const bool b_below = position(b).z < height;
-      if (a_below)
+      const bool a_stays = stays[static_cast<std::size_t>(a)];
+      const bool b_stays = stays[static_cast<std::size_t>(b)];
+      if (a_stays)
         polygon.push_back(keep(a));
-      if (a_below != b_below)
-        polygon.push_back(a_below ? crossing(a, b) : crossing(b, a));
+      if (a_stays != b_stays)
+        polygon.push_back(a_stays ? crossing(a, b) : crossing(b, a));
     }
     for (std::size_t i = 2; i < polygon.size(); ++i)
-      cut.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+      rest.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
   }
-  return cut;
+  return rest;
+}
+
+/// A mesh without what was not scanned.
+Mesh withOpenings(const Surface& surface, Mesh mesh) {
+  if (surface.rim)
+    mesh = cut(surface, mesh, Above{*surface.rim});
+  for (const Primitive& opening : surface.openings)
+    mesh = cut(surface, mesh, Within{opening});
+  return mesh;
 }
 
 /// Mesh of a surface by a lattice of a given step, relaxed by so many sweeps.
@@ -844,7 +931,7 @@ Mesh meshSurface(const Surface& surface, double step, int sweeps) {
     vertex = vertex + stepToSurface(surface.solid(vertex));
   for (int sweep = 0; sweep < sweeps; ++sweep)
     relax(surface, mesh);
-  return surface.rim ? cutAt(surface, mesh, *surface.rim) : mesh;
+  return withOpenings(surface, std::move(mesh));
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -1064,6 +1151,9 @@ const std::vector<ShapeInfo>& allShapes() {
       {Shape::Torus, "torus", "a torus (genus 1)", false},
       {Shape::Bowl, "bowl", "a shell without its lid (open)", false},
       {Shape::Pair, "pair", "two spheres apart (two pieces)", false},
+      {Shape::DoubleTorus, "double_torus", "two tori grown together (genus 2)", false},
+      {Shape::Holed, "holed", "a rabbit with four openings (open)", false},
+      {Shape::Room, "room", "a room from within, with a door and a window (open)", false},
   };
   return shapes;
 }

@@ -25,7 +25,10 @@ enum class Shape {
   Plate,
   Torus,
   Bowl,
-  Pair
+  Pair,
+  DoubleTorus,
+  Holed,
+  Room
 };
 
 /// One entry of the list of shapes.
@@ -89,7 +92,8 @@ struct TruthMesh {
 Scan generateScan(const ScanOptions& options);
 
 /// Triangulates a shape finely. The mesh is manifold and oriented; it is closed, in one piece and
-/// of genus 0 for the shapes of genus 0, and has one boundary loop for the bowl.
+/// of genus 0 for the shapes of genus 0, and has a boundary loop for each opening: one for the
+/// bowl, four for the holed shape, two for the room.
 ///
 /// \param triangle_count about how many triangles are wanted, 1 ... 20,000,000. A shape with fine
 ///        features gets as many as it needs to be meshed correctly, if that is more.

@@ -138,6 +138,29 @@ Topology topologyOf(const TruthMesh& mesh) {
   return topology;
 }
 
+std::size_t openingsOf(Shape shape) {
+  return shape == Shape::Bowl ? 1u : shape == Shape::Holed ? 4u : shape == Shape::Room ? 2u : 0u;
+}
+
+// The vertices along each boundary.
+std::vector<std::vector<Index>> boundaryLoops(const TruthMesh& mesh) {
+  const auto directed = directedEdges(mesh);
+  std::map<Index, Index> next;
+  for (const auto& entry : directed)
+    if (directed.count({entry.first.second, entry.first.first}) == 0) {
+      EXPECT_TRUE(next.emplace(entry.first).second) << "boundaries touch";
+    }
+  std::vector<std::vector<Index>> loops;
+  while (!next.empty()) {
+    loops.emplace_back();
+    for (auto at = next.begin(); at != next.end(); at = next.find(loops.back().back())) {
+      loops.back().push_back(at->second);
+      next.erase(at);
+    }
+  }
+  return loops;
+}
+
 std::size_t distinctFloats(const Positions& points) {
   std::set<std::array<float, 3>> distinct;
   for (const Point& p : toPoints(points))
@@ -165,8 +188,8 @@ TEST(ScanShapes, ListsEveryShapeOnceAndFindsItByName) {
     ASSERT_TRUE(found.has_value());
     EXPECT_EQ(found->shape, info.shape);
   }
-  EXPECT_EQ(names.size(), 13u);
-  EXPECT_EQ(shapes.size(), 13u);
+  EXPECT_EQ(names.size(), 16u);
+  EXPECT_EQ(shapes.size(), 16u);
   EXPECT_EQ(genus_zero, 10u);
   EXPECT_FALSE(findShape("Sphere").has_value());
   EXPECT_FALSE(findShape("").has_value());
@@ -310,16 +333,43 @@ TEST_P(EveryShape, ReferenceMeshHasTheTopologyOfTheShape) {
   EXPECT_TRUE(topology.manifold_and_oriented);
   EXPECT_TRUE(topology.uses_all_vertices);
   EXPECT_EQ(topology.components, shape == Shape::Pair ? 2u : 1u);
-  EXPECT_EQ(topology.boundary_edges > 0, shape == Shape::Bowl);
-  // V - E + F: 2 for each sphere, 0 for a torus, 1 for a disc.
-  const long euler = shape == Shape::Torus  ? 0
-                     : shape == Shape::Bowl ? 1
-                     : shape == Shape::Pair ? 4
-                                            : 2;
+  const std::size_t openings = openingsOf(shape);
+  EXPECT_EQ(topology.boundary_edges > 0, openings > 0);
+  EXPECT_EQ(boundaryLoops(commonMesh(shape)).size(), openings);
+  // V - E + F: 2 for each sphere, 2 less for each handle, 1 less for each opening.
+  const long euler = shape == Shape::Torus         ? 0
+                     : shape == Shape::DoubleTorus ? -2
+                     : shape == Shape::Pair        ? 4
+                                                   : 2 - static_cast<long>(openings);
   EXPECT_EQ(topology.euler, euler);
-  if (shape != Shape::Bowl) {
+  if (openings == 0) {
     EXPECT_GT(signedVolume(commonMesh(shape)), 0.0);
   }
+}
+
+TEST(ScanShapes, OpeningsAreWhereTheyWereCut) {
+  // The rims of the rabbit's lie on the balls that they were cut with, those of the room on boxes.
+  const std::array<std::pair<Vector3d, double>, 4> balls = {{{{-0.10, 0.0, -0.35}, 0.13},
+                                                             {{-0.12, 0.0, 0.11}, 0.12},
+                                                             {{-0.10, 0.215, -0.12}, 0.12},
+                                                             {{-0.10, -0.215, -0.12}, 0.115}}};
+  const TruthMesh& holed = commonMesh(Shape::Holed);
+  std::set<std::size_t> seen;
+  for (const std::vector<Index>& loop : boundaryLoops(holed)) {
+    const auto nearest =
+        std::min_element(balls.begin(), balls.end(), [&](const auto& a, const auto& b) {
+          const Vector3d p = holed.vertices.col(loop.front());
+          return (p - a.first).norm() - a.second < (p - b.first).norm() - b.second;
+        });
+    seen.insert(static_cast<std::size_t>(nearest - balls.begin()));
+    for (const Index v : loop)
+      EXPECT_NEAR((Vector3d(holed.vertices.col(v)) - nearest->first).norm(), nearest->second, 1e-6);
+  }
+  EXPECT_EQ(seen.size(), 4u);
+  for (Eigen::Index i = 0; i < commonScan(Shape::Holed).points.cols(); ++i)
+    for (const auto& [center, radius] : balls)
+      // The chords of the rim are within its ball by less than the mesh's step squared.
+      EXPECT_GT((Vector3d(commonScan(Shape::Holed).points.col(i)) - center).norm(), radius - 2e-3);
 }
 
 TEST(ScanShapes, ReferenceMeshHasAboutTheTrianglesAskedFor) {
