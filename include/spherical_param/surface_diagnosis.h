@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ struct DiagnosisOptions {
   int handle_steps = 8;
   /// The least gap between parts [distance of the points at the gap]; > 0.
   double part_gap = 4.0;
-  /// At most so many vertices are listed of each finding.
+  /// At most so many vertices are listed of each finding; Lid::loops are complete all the same.
   std::size_t max_vertices = 64;
   int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   bool mark_triangles = false;  ///< fill SurfaceDiagnosis::triangle_marks
@@ -56,6 +57,10 @@ struct Lid {
   double spacing = 0.0;   ///< distance of the points at its rim [unit of the input]
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centroid of its triangles
   std::vector<Index> vertices;                       ///< of its rim, ascending
+  /// Its boundary: closed loops of vertices that are joined by edges of the mesh, the last to the
+  /// first, with the lid on the left seen from outside. Complete whatever max_vertices is; the
+  /// longest first, each from its lowest vertex. Several where the lid has more than one rim.
+  std::vector<std::vector<Index>> loops;
 };
 
 /// Neighbours in the graph, along the surface, that the mesh tears apart.
@@ -84,6 +89,9 @@ struct SurfaceDiagnosis {
   std::vector<PartBridge> bridges;               ///< by falling number of points
   /// Share of the mesh's edges that join points more than two steps apart in the graph, in [0, 1].
   double edges_outside_graph = 0.0;
+  /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
+  /// none where that was not needed, as neighbours are nowhere torn apart, or cannot be told.
+  std::optional<int> genus;
   std::string summary;  ///< one sentence
   /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless
   /// DiagnosisOptions::mark_triangles asks for it.

@@ -309,8 +309,13 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
     bridge.to = vertex(bridge.to);
   }
   renumber_all(result.graph.without_tangent_plane);
-  for (Lid& lid : result.diagnosis.lids)
+  for (Lid& lid : result.diagnosis.lids) {
     renumber_all(lid.vertices);
+    for (std::vector<Index>& loop : lid.loops) {
+      std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
+      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    }
+  }
   for (CollapsedHandle& handle : result.diagnosis.handles)
     renumber_all(handle.vertices);
   for (PartBridge& bridge : result.diagnosis.bridges)

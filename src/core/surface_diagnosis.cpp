@@ -3,6 +3,7 @@
 #include "spherical_param/errors.h"
 
 #include "core/corner_table.h"
+#include "core/graph_cycles.h"
 #include "core/parallel.h"
 #include "core/union_find.h"
 
@@ -16,6 +17,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,6 +70,12 @@ constexpr std::size_t kLeastTornEdges = 12;
 /// closed shapes with noise of half the distance of neighbours less still; noise twice as strong
 /// has 0.11 and more, and the torus 0.28 and more as long as its mesh is folded.
 constexpr double kFolded = 0.1;
+
+/// Where the mesh tells nothing, openings are sought by their rims: at so many neighbours of each
+/// other the mean direction to the neighbours is at least so long. An opening of 8 spacings has 25
+/// points around.
+constexpr double kOneSidedInGraph = 0.4;
+constexpr std::size_t kLeastRim = 20;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -267,6 +275,7 @@ double quantile(std::vector<double> values, double share) {
 
 /// Connected triangles around edges that leave the graph, grown across long edges.
 struct Region {
+  Index number = 0;  ///< of RegionSearch
   std::vector<Index> triangles;
   std::vector<Index> rim;  ///< vertices of its boundary, ascending
   double area = 0.0;
@@ -313,14 +322,66 @@ public:
     for (const Side& side : outside)
       if (region_[at(side.triangle)] < 0) {
         regions.push_back(grownFrom(side.triangle, static_cast<Index>(regions.size())));
-        measure(regions.back(), static_cast<Index>(regions.size() - 1));
+        measure(regions.back());
       }
     return regions;
   }
 
+  /// The boundary of a region that was found, with the region on its left seen from outside: each
+  /// loop from its lowest vertex, the longest first.
+  std::vector<std::vector<Index>> loopsOf(const Region& region) const {
+    std::set<std::pair<Index, Index>> left;  // sides, by triangle and corner
+    for (const Index t : region.triangles)
+      for (Index k = 0; k < 3; ++k)
+        if (isBoundary(t, k, region.number))
+          left.emplace(t, k);
+    std::vector<std::pair<double, std::vector<Index>>> measured;
+    while (!left.empty()) {
+      auto& [length, loop] = measured.emplace_back();
+      for (auto side = left.begin(); side != left.end();) {
+        const auto [t, k] = *side;
+        left.erase(side);
+        loop.push_back(surface_.vertex(t, k));
+        length += surface_.distance(surface_.vertex(t, k), surface_.vertex(t, k + 1));
+        side = left.find(nextBoundary(t, k, region.number));
+      }
+      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    }
+    std::sort(measured.begin(), measured.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first > b.first : a.second < b.second;
+    });
+    std::vector<std::vector<Index>> loops;
+    loops.reserve(measured.size());
+    for (auto& each : measured)
+      loops.push_back(std::move(each.second));
+    return loops;
+  }
+
 private:
+  bool isBoundary(Index t, Index k, Index number) const {
+    const Index other = surface_.beyond(t, k);
+    return other < 0 || region_[at(other)] != number;
+  }
+
+  /// The side of the boundary that follows side k of triangle t there: the first around the vertex
+  /// between them, within the region, so that loops through a vertex that several fans of the
+  /// region share do not cross.
+  std::pair<Index, Index> nextBoundary(Index t, Index k, Index number) const {
+    const Index around = surface_.vertex(t, k + 1);
+    k = (k + 1) % 3;
+    // In no closed manifold there are as many steps around a vertex.
+    for (std::size_t step = 0; step < triangle_count_ && !isBoundary(t, k, number); ++step) {
+      t = surface_.beyond(t, k);
+      k = 0;
+      while (surface_.vertex(t, k) != around)
+        ++k;
+    }
+    return {t, k};
+  }
+
   Region grownFrom(Index seed, Index number) {
     Region region;
+    region.number = number;
     region.triangles.push_back(seed);
     region_[at(seed)] = number;
     for (std::size_t i = 0; i < region.triangles.size(); ++i)
@@ -338,7 +399,7 @@ private:
     return region;
   }
 
-  void measure(Region& region, Index number) {
+  void measure(Region& region) {
     std::vector<double> around;
     for (const Index t : region.triangles) {
       const double area = surface_.normal(t).norm() / 2.0;
@@ -349,7 +410,7 @@ private:
            surface_.point(surface_.vertex(t, 2)));
       for (Index k = 0; k < 3; ++k) {
         const Index other = surface_.beyond(t, k);
-        if (other < 0 || region_[at(other)] == number)
+        if (other < 0 || region_[at(other)] == region.number)
           continue;
         region.boundary_length +=
             surface_.distance(surface_.vertex(t, k), surface_.vertex(t, k + 1));
@@ -574,6 +635,42 @@ std::vector<CollapsedHandle> handlesOf(const Surface& surface, const std::vector
   return result;
 }
 
+/// Whether the graph has the rim of an opening.
+bool hasRim(const Surface& surface, std::size_t n) {
+  std::vector<char> one_sided(n, 0);
+  for (std::size_t v = 0; v < n; ++v) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int count = 0;
+    surface.forEachNeighbor(static_cast<Index>(v), [&](Index w, double length) {
+      sum += (surface.point(w) - surface.point(static_cast<Index>(v))) / length;
+      ++count;
+    });
+    one_sided[v] = sum.norm() >= kOneSidedInGraph * count ? 1 : 0;
+  }
+  internal::UnionFind rims(n);
+  for (std::size_t v = 0; v < n; ++v)
+    surface.forEachNeighbor(static_cast<Index>(v), [&](Index w, double) {
+      if (one_sided[v] != 0 && one_sided[at(w)] != 0)
+        rims.unite(static_cast<Index>(v), w);
+    });
+  std::vector<std::size_t> sizes(n, 0);
+  for (std::size_t v = 0; v < n; ++v)
+    if (one_sided[v] != 0)
+      ++sizes[at(rims.find(static_cast<Index>(v)))];
+  return *std::max_element(sizes.begin(), sizes.end()) >= kLeastRim;
+}
+
+/// Handles of a surface with so many openings, by the cycles of its graph. A number that depends on
+/// how wide a gap in the graph has to be is none of the surface.
+std::optional<int> genusOf(const Graph& graph, std::size_t openings) {
+  const std::optional<int> narrow = internal::countCycles(graph, 2);
+  const std::optional<int> wide = narrow ? internal::countCycles(graph, 3) : std::nullopt;
+  if (!wide || *narrow != *wide)
+    return std::nullopt;
+  const int of_handles = *wide - (openings > 1 ? static_cast<int>(openings) - 1 : 0);
+  return of_handles >= 0 && of_handles % 2 == 0 ? std::optional(of_handles / 2) : std::nullopt;
+}
+
 /// The parts of a graph without the bridges between them.
 class Parts {
 public:
@@ -745,13 +842,20 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
         std::to_string(joint.points) + " and " + counted(joint.other_points, "point") + ", " +
         number(joint.gap) + " apart " + place(joint.center));
   }
+  const bool has_handles = diagnosis.genus && *diagnosis.genus > 0;
   if (diagnosis.edges_outside_graph > kFolded)
-    add("strong noise, a folded mesh or a surface with handles: " +
+    add((has_handles
+             ? "a surface with " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle") +
+                   ", over which the mesh is folded: "
+         : diagnosis.genus ? "strong noise or a folded mesh: "
+                           : "strong noise, a folded mesh or a surface with handles: ") +
         number(100.0 * diagnosis.edges_outside_graph) +
         " % of the mesh's edges join points that are not near each other in the cloud");
   if (!diagnosis.handles.empty()) {
     const CollapsedHandle& handle = diagnosis.handles.front();
-    add("a surface with handles, cut in " + counted(diagnosis.handles.size(), "place") + ": " +
+    add("a surface with " +
+        (has_handles ? counted(static_cast<std::size_t>(*diagnosis.genus), "handle") : "handles") +
+        ", cut in " + counted(diagnosis.handles.size(), "place") + ": " +
         counted(handle.edges, "pair") + " of neighbours torn apart within " + number(handle.size) +
         " " + place(handle.center));
   }
@@ -786,12 +890,15 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   const std::vector<Side>& outside = difference.sides;
   result.edges_outside_graph =
       static_cast<double>(outside.size()) / (1.5 * static_cast<double>(triangle_count));
-  std::vector<Region> regions = RegionSearch(surface, triangle_count).run(outside);
+  RegionSearch search(surface, triangle_count);
+  std::vector<Region> regions = search.run(outside);
   const auto lids_end =
       std::stable_partition(regions.begin(), regions.end(), [&](const Region& region) {
         return region.isWide(options.lid_diameter);
       });
-  const auto lid_count = static_cast<std::size_t>(lids_end - regions.begin());
+  const bool is_folded = result.edges_outside_graph > kFolded;
+  // What is folded leaves the graph everywhere: that is no lid.
+  const auto lid_count = is_folded ? 0 : static_cast<std::size_t>(lids_end - regions.begin());
 
   // Only graphs with bridges may be in parts.
   std::optional<Parts> parts;
@@ -800,10 +907,21 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
     result.bridges = partsOf(surface, bridge_edges, *parts, options.part_gap);
   }
   // What is folded, or was squeezed through a bridge, is torn without handles as well.
-  if (result.edges_outside_graph <= kFolded && result.bridges.empty())
+  if (!is_folded && result.bridges.empty())
     result.handles =
         handlesOf(surface, tornEdges(surface, difference.edges, regions, lid_count, triangle_count,
                                      bridge_edges, graph.size(), options.handle_steps));
+  if (!result.handles.empty()) {
+    const auto openings =
+        std::count_if(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(lid_count),
+                      [](const Region& region) { return region.isOpening(); });
+    result.genus = genusOf(graph, static_cast<std::size_t>(openings));
+    // Without handles, neighbours are torn apart where the mesh is folded.
+    if (result.genus == 0)
+      result.handles.clear();
+  } else if (is_folded && result.bridges.empty() && !hasRim(surface, graph.size())) {
+    result.genus = genusOf(graph, 0);
+  }
   std::optional<TriangleMarker> marker;
   if (options.mark_triangles)
     marker.emplace(surface, triangle_count);
@@ -814,7 +932,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
     if (cause)
       result.lids.push_back({*cause, region.triangles.size(), region.area, region.boundary_length,
                              region.diameter, region.spacing, region.center,
-                             someOf(region.rim, options.max_vertices)});
+                             someOf(region.rim, options.max_vertices), search.loopsOf(region)});
     if (cause && marker)
       marker->mark(region.triangles, TriangleMarks::lid);
   }
@@ -835,10 +953,10 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
 
   if (!result.bridges.empty())
     result.kind = SurfaceKind::SeveralParts;
-  else if (result.edges_outside_graph > kFolded)
-    result.kind = SurfaceKind::Unclear;
-  else if (!result.handles.empty())
+  else if (!result.handles.empty() || result.genus.value_or(0) > 0)
     result.kind = SurfaceKind::Handles;
+  else if (is_folded)
+    result.kind = SurfaceKind::Unclear;
   else if (result.openings() > 0)
     result.kind = SurfaceKind::Open;
   result.summary = summaryOf(result);

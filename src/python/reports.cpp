@@ -68,7 +68,9 @@ py::dict toDict(const SurfaceDiagnosis& diagnosis) {
     return py::dict("cause"_a = nameOf(lid.cause), "triangles"_a = lid.triangles,
                     "area"_a = lid.area, "boundary_length"_a = lid.boundary_length,
                     "diameter"_a = lid.diameter, "spacing"_a = lid.spacing,
-                    "center"_a = toArray(lid.center), "vertices"_a = toArray(lid.vertices));
+                    "center"_a = toArray(lid.center), "vertices"_a = toArray(lid.vertices),
+                    "loops"_a = listOf(
+                        lid.loops, [](const std::vector<Index>& loop) { return toArray(loop); }));
   });
   const py::list handles = listOf(diagnosis.handles, [](const CollapsedHandle& handle) {
     return py::dict("edges"_a = handle.edges, "size"_a = handle.size,
@@ -80,6 +82,7 @@ py::dict toDict(const SurfaceDiagnosis& diagnosis) {
                     "center"_a = toArray(bridge.center), "vertices"_a = toArray(bridge.vertices));
   });
   return py::dict("kind"_a = nameOf(diagnosis.kind), "summary"_a = diagnosis.summary,
+                  "genus"_a = diagnosis.genus ? py::cast(*diagnosis.genus) : py::none(),
                   "looks_closed_genus0"_a = diagnosis.looksClosedGenus0(),
                   "openings"_a = diagnosis.openings(), "lids"_a = lids, "handles"_a = handles,
                   "bridges"_a = bridges, "edges_outside_graph"_a = diagnosis.edges_outside_graph,

@@ -1,5 +1,6 @@
 #include "spherical_param/surface_diagnosis.h"
 
+#include "core/graph_cycles.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/sphere_triangulation.h"
@@ -7,7 +8,11 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <set>
 
 namespace spherical_param {
 namespace {
@@ -93,6 +98,43 @@ TEST(SurfaceDiagnosis, UnevenSamplingRaisesNoAlarm) {
   expectClosed(starShaped(even, Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal() * even));
 }
 
+/// Whether the loops of a lid are closed paths along edges of the mesh, each from its lowest
+/// vertex, that have together the lid's boundary length and its rim.
+void expectLoopsOfBoundary(const Scene& scene, const Lid& lid) {
+  std::set<std::array<Index, 2>> edges;
+  for (Eigen::Index t = 0; t < scene.triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k)
+      edges.insert({scene.triangles(k, t), scene.triangles((k + 1) % 3, t)});
+  double total = 0.0;
+  double last = std::numeric_limits<double>::infinity();
+  std::set<Index> rim;
+  for (const std::vector<Index>& loop : lid.loops) {
+    ASSERT_GE(loop.size(), 3U);
+    EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
+    double length = 0.0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Index a = loop[i];
+      const Index b = loop[(i + 1) % loop.size()];
+      EXPECT_EQ(edges.count({a, b}), 1U) << a << " " << b;
+      length += (scene.points.col(a) - scene.points.col(b)).norm();
+      rim.insert(a);
+    }
+    EXPECT_LE(length, last * (1.0 + 1e-12));
+    total += last = length;
+  }
+  EXPECT_NEAR(total, lid.boundary_length, 1e-12 * total);
+  EXPECT_EQ(std::vector<Index>(rim.begin(), rim.end()), lid.vertices);
+}
+
+/// Sum of the cross products along a loop: twice the area that it goes around, along the normal.
+Eigen::Vector3d doubledArea(const Positions& points, const std::vector<Index>& loop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    sum += Eigen::Vector3d(points.col(loop[i]))
+               .cross(Eigen::Vector3d(points.col(loop[(i + 1) % loop.size()])));
+  return sum;
+}
+
 TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
   for (const Index n : {800, 2000}) {
     const double spacing = sphereSpacing(n);
@@ -115,6 +157,12 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
       EXPECT_NEAR(lid.spacing, spacing, 0.3 * spacing);
       EXPECT_LT((lid.center - height * Eigen::Vector3d::UnitX()).norm(), spacing);
       EXPECT_GE(lid.triangles, lid.vertices.size() - 2);
+      expectLoopsOfBoundary(scene, lid);
+      ASSERT_EQ(lid.loops.size(), 1U);
+      // Seen from outside, the loop goes around counter-clockwise.
+      const Eigen::Vector3d doubled = doubledArea(open, lid.loops.front());
+      EXPECT_GT(doubled.x(), 0.0);
+      EXPECT_NEAR(doubled.norm() / 2.0, lid.area, 0.1 * lid.area);
       for (const Index v : lid.vertices) {
         const Eigen::Vector3d p = open.col(v);
         EXPECT_LT(p.x(), height);
@@ -122,6 +170,24 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
       }
     }
   }
+}
+
+TEST(SurfaceDiagnosis, LidAroundAnIslandHasTwoLoops) {
+  // A wide ring without points around a cap: the mesh bridges it all around.
+  const Positions open = filtered(
+      spiralSphere(3000), [](const Eigen::Vector3d& p) { return p.x() < 0.75 || p.x() > 0.97; });
+  Scene scene = starShaped(open, open);
+  // As one part, as if a few points had joined the cap to the rest.
+  scene.graph.bridges.clear();
+  DiagnosisOptions options;
+  options.max_vertices = 100000;
+  const SurfaceDiagnosis diagnosis = diagnose(scene, options);
+  ASSERT_EQ(diagnosis.lids.size(), 1U) << diagnosis.summary;
+  const Lid& lid = diagnosis.lids.front();
+  expectLoopsOfBoundary(scene, lid);
+  ASSERT_EQ(lid.loops.size(), 2U);
+  EXPECT_GT(doubledArea(open, lid.loops[0]).x(), 0.0);
+  EXPECT_LT(doubledArea(open, lid.loops[1]).x(), 0.0);
 }
 
 TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
@@ -136,6 +202,8 @@ TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
   EXPECT_LT(diagnosis.lids[1].center.y(), -0.8);
   EXPECT_GT(diagnosis.lids[2].center.x(), 0.85);
   EXPECT_NE(diagnosis.summary.find("3 openings"), std::string::npos) << diagnosis.summary;
+  for (const Lid& lid : diagnosis.lids)
+    EXPECT_EQ(lid.loops.size(), 1U);
   EXPECT_EQ(diagnosis.summary, summaryOf(diagnosis));
 }
 
@@ -209,6 +277,89 @@ TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
       EXPECT_NEAR(lid.area, kPi * tube_radius * tube_radius, 0.1);
     }
   }
+}
+
+TEST(SurfaceDiagnosis, HandlesAreCountedByTheCyclesOfTheGraph) {
+  const CutTorus torus = cutTorus(60, 24, 0.4);
+  for (const int reach : {1, 2, 3}) {
+    const auto cycles = [reach](const Graph& graph) {
+      return internal::countCycles(graph, reach).value_or(-1);
+    };
+    EXPECT_EQ(cycles(torus.scene.graph.graph), 2) << reach;
+    const Positions sphere = spiralSphere(1500);
+    const Triangles hull = triangulateSphere(sphere, TriangulationMethod::Incremental).triangles;
+    EXPECT_EQ(cycles(graphOfMesh(sphere, hull)), 0) << reach;
+    // Without the triangles around one point, at both poles, at a third place: openings.
+    Triangles open = hull;
+    int openings = 0;
+    for (const Eigen::Vector3d& center :
+         {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, 0.0, -1.0),
+          Eigen::Vector3d(1.0, 0.0, 0.0)}) {
+      Eigen::Index kept = 0;
+      for (Eigen::Index t = 0; t < open.cols(); ++t) {
+        bool far = true;
+        for (int k = 0; k < 3; ++k)
+          far = far && (Eigen::Vector3d(sphere.col(open(k, t))) - center).norm() > 0.3;
+        if (far)
+          open.col(kept++) = open.col(t);
+      }
+      open.conservativeResize(3, kept);
+      EXPECT_EQ(cycles(graphOfMesh(sphere, open)), openings++) << reach;
+    }
+  }
+  const SurfaceDiagnosis diagnosis = diagnose(torus.scene);
+  ASSERT_TRUE(diagnosis.genus);
+  EXPECT_EQ(*diagnosis.genus, 1);
+  EXPECT_NE(diagnosis.summary.find("a surface with 1 handle, cut in 1 place"), std::string::npos)
+      << diagnosis.summary;
+  // All points each other's neighbours but for a few: no surface at all.
+  std::mt19937 random(5);
+  Graph chaos;
+  std::vector<std::set<Index>> rows(400);
+  for (std::size_t v = 0; v < rows.size(); ++v)
+    for (int i = 0; i < 3; ++i) {
+      const std::size_t w = random() % rows.size();
+      if (w != v) {
+        rows[v].insert(static_cast<Index>(w));
+        rows[w].insert(static_cast<Index>(v));
+      }
+    }
+  for (const std::set<Index>& row : rows) {
+    chaos.neighbors.insert(chaos.neighbors.end(), row.begin(), row.end());
+    chaos.lengths.insert(chaos.lengths.end(), row.size(), 1.0);
+    chaos.offsets.push_back(chaos.neighbors.size());
+  }
+  EXPECT_FALSE(internal::countCycles(chaos, 1));
+}
+
+TEST(SurfaceDiagnosis, HandlesAreToldUnderAFoldedMeshUnlessThereIsAnOpening) {
+  const auto folded = [](const Scene& scene) {
+    Scene result = scene;
+    std::mt19937 random(3);
+    std::vector<Index> shuffled(static_cast<std::size_t>(scene.points.cols()));
+    std::iota(shuffled.begin(), shuffled.end(), Index{0});
+    std::shuffle(shuffled.begin(), shuffled.end(), random);
+    result.triangles =
+        scene.triangles.unaryExpr([&](Index v) { return shuffled[static_cast<std::size_t>(v)]; })
+            .eval();
+    return diagnose(result);
+  };
+  const SurfaceDiagnosis torus = folded(cutTorus(60, 24, 0.4).scene);
+  EXPECT_EQ(torus.kind, SurfaceKind::Handles) << torus.summary;
+  ASSERT_TRUE(torus.genus);
+  EXPECT_EQ(*torus.genus, 1);
+  EXPECT_TRUE(torus.lids.empty() && torus.handles.empty());
+  const Positions ball = spiralSphere(1000);
+  const SurfaceDiagnosis sphere = folded(starShaped(ball, ball));
+  EXPECT_EQ(sphere.kind, SurfaceKind::Unclear) << sphere.summary;
+  ASSERT_TRUE(sphere.genus);
+  EXPECT_EQ(*sphere.genus, 0);
+  // Three openings have as many cycles as a handle.
+  const Positions open = filtered(
+      ball, [](const Eigen::Vector3d& p) { return p.x() < 0.9 && p.y() > -0.9 && p.z() > -0.9; });
+  const SurfaceDiagnosis opened = folded(starShaped(open, open));
+  EXPECT_EQ(opened.kind, SurfaceKind::Unclear) << opened.summary;
+  EXPECT_FALSE(opened.genus);
 }
 
 TEST(SurfaceDiagnosis, CutOfFewerPointsThanAnErrorOfTheGraphIsNoHandle) {
@@ -363,6 +514,7 @@ TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
   const Lid& b = diagnosis.lids.front();
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.vertices, b.vertices);
+  EXPECT_EQ(a.loops, b.loops);
   // The shift costs a factor of 1e4 of the digits.
   EXPECT_NEAR(b.area, scale * scale * a.area, 1e-16);
   EXPECT_NEAR(b.diameter, scale * a.diameter, 1e-13);
@@ -379,6 +531,8 @@ TEST(SurfaceDiagnosis, OptionsDecideWhatIsFoundAndListed) {
   ASSERT_EQ(few.lids.size(), 1U);
   EXPECT_EQ(few.lids.front().vertices.size(), 7U);
   EXPECT_TRUE(std::is_sorted(few.lids.front().vertices.begin(), few.lids.front().vertices.end()));
+  ASSERT_EQ(few.lids.front().loops.size(), 1U);
+  EXPECT_GT(few.lids.front().loops.front().size(), 7U);
   options.lid_diameter = 1.1 * few.lids.front().diameter / few.lids.front().spacing;
   EXPECT_TRUE(diagnose(scene, options).looksClosedGenus0());
 }
@@ -411,7 +565,22 @@ TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
   };
   const SurfaceDiagnosis one = run(1);
   EXPECT_FALSE(one.lids.empty());
-  EXPECT_FALSE(one.handles.empty());
+  // Neighbours are torn apart, but the graph has no cycle that a handle would have.
+  EXPECT_EQ(one.genus.value_or(-1), 0);
+  EXPECT_TRUE(one.handles.empty());
+  const CutTorus torus = cutTorus(400, 150, 0.4);
+  for (const int threads : {2, 3, 8}) {
+    DiagnosisOptions options;
+    options.threads = 1;
+    const SurfaceDiagnosis alone = diagnose(torus.scene, options);
+    ASSERT_EQ(alone.handles.size(), 1U);
+    options.threads = threads;
+    const SurfaceDiagnosis several = diagnose(torus.scene, options);
+    EXPECT_EQ(several.summary, alone.summary);
+    ASSERT_EQ(several.handles.size(), 1U);
+    EXPECT_EQ(several.handles[0].edges, alone.handles[0].edges);
+    EXPECT_EQ(several.handles[0].vertices, alone.handles[0].vertices);
+  }
   for (const int threads : {2, 3, 8}) {
     const SurfaceDiagnosis several = run(threads);
     EXPECT_EQ(several.summary, one.summary);
@@ -420,12 +589,9 @@ TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
     for (std::size_t i = 0; i < one.lids.size(); ++i) {
       EXPECT_EQ(several.lids[i].area, one.lids[i].area);
       EXPECT_EQ(several.lids[i].vertices, one.lids[i].vertices);
+      EXPECT_EQ(several.lids[i].loops, one.lids[i].loops);
     }
-    ASSERT_EQ(several.handles.size(), one.handles.size());
-    for (std::size_t i = 0; i < one.handles.size(); ++i) {
-      EXPECT_EQ(several.handles[i].edges, one.handles[i].edges);
-      EXPECT_EQ(several.handles[i].vertices, one.handles[i].vertices);
-    }
+    EXPECT_TRUE(several.handles.empty());
   }
 }
 

@@ -60,6 +60,9 @@ class Lid:
     spacing: float  #: distance of the points at its rim [unit of the input]
     center: FloatArray  #: (3,)
     vertices: IndexArray  #: (r,) of its rim, ascending, at most 64
+    loops: tuple[IndexArray, ...]
+    """(l,) each: its boundary as closed loops of vertices that the mesh's edges join, with the lid
+    on the left seen from outside; all of it, the longest first, each from its lowest vertex"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +99,9 @@ class Diagnosis:
     handles: tuple[Handle, ...]  #: by falling number of edges
     bridges: tuple[PartBridge, ...]  #: by falling number of points
     edges_outside_graph: float  #: share of edges between points that are no near neighbours
+    genus: Optional[int]
+    """Handles of the surface, counted by the cycles of the neighbour graph; None where that was not
+    needed, or cannot be told"""
     triangle_marks: Optional[NDArray[np.uint8]]
     """(m,) with ``details``, for each triangle the sum of 1: intersects another, 2: part of a lid,
     4: at the torn edges of a handle, 8: at a bridge between parts, 16: at an edge outside the

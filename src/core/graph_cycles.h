@@ -1,0 +1,20 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <optional>
+
+namespace spherical_param::internal {
+
+/// Number of independent closed ways along the edges of a graph that can neither be shrunk to a
+/// point nor moved into each other, where whoever is `reach` steps away is a neighbour and whoever
+/// are neighbours of each other in threes span a triangle: the first Betti number over two elements
+/// of the clique complex of the graph's power. Ways around 3 x reach points or fewer do not count.
+/// A closed surface has two for each handle; one with b openings wider than that b - 1 more.
+///
+/// \param reach at least 1.
+/// \return none if too many are in question at a time: there is no surface to be seen.
+/// Cost: O(n) for a surface.
+std::optional<int> countCycles(const Graph& graph, int reach);
+
+}  // namespace spherical_param::internal
