@@ -124,11 +124,17 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// \throw InvalidInput for sizes that disagree, no triangles, an index or an option out of range.
 /// Cost: O(n) where nothing is wrong.
 ///
-/// Handles are sought where the mesh is not folded and there is one part only.
+/// Handles are sought where there is one part only: by neighbours that the mesh tears apart, where
+/// it is not folded, and then counted by the cycles of the graph, which do not depend on the mesh.
+/// Torn neighbours in a graph without such cycles are no handle. Where the mesh is folded, as it is
+/// over most handles of many points, the cycles alone are asked, unless there is the rim of an
+/// opening.
 ///
 /// Not guaranteed: openings of less than some 8 spacings and handles of less than some 9 points
 /// around are not told from uneven sampling. A place without points in the middle of dense ones is
-/// a lid, also where it is flat and nothing is missing. Where the mesh is folded, little is told.
+/// a lid, also where it is flat and nothing is missing. Where the mesh is folded, no lids are told.
+/// Where noise is as large as the spacing, cycles are not counted: SurfaceDiagnosis::genus is
+/// unset. One handle may be cut in several places.
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
                                  const DiagnosisOptions& options = {});
