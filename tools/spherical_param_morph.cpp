@@ -98,7 +98,8 @@ std::string helpText() {
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets; those of\n"
          "the meshes and the map hold for both clouds):\n" +
          describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         "\nExit code: 0 done, also with warnings; 1 failed, or with -strict done with warnings;\n"
+         "2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -443,6 +444,16 @@ Json report(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
   return json;
 }
 
+/// What there is to be said about the pairs.
+std::vector<std::string> warningsOf(const Morph& morph) {
+  std::vector<std::string> warnings;
+  for (const LostPair& lost : morph.lost) {
+    warnings.push_back("the pair of line " + std::to_string(lost.pair.line) +
+                       " is impossible: " + lost.reason);
+  }
+  return warnings;
+}
+
 void printVerdict(const std::array<MappedCloud, 2>& clouds, const Morph& morph, Console& console) {
   for (const MappedCloud& mapped : clouds) {
     printMap(mapped, console);
@@ -458,9 +469,8 @@ void printVerdict(const std::array<MappedCloud, 2>& clouds, const Morph& morph, 
     console.entry("pairs", std::to_string(morph.pairs.size() - morph.lost.size()) + " of " +
                                std::to_string(morph.pairs.size()) + " honoured");
   }
-  for (const LostPair& lost : morph.lost) {
-    console.entry("warning", "the pair of line " + std::to_string(lost.pair.line) +
-                                 " is impossible: " + oneLine(lost.reason));
+  for (const std::string& warning : warningsOf(morph)) {
+    console.entry("warning", oneLine(warning));
   }
 }
 
@@ -503,6 +513,11 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, clouds, morph); },
       [&] { printVerdict(clouds, morph, console); });
+  for (std::size_t side = 0; side < 2; ++side) {
+    requireNoWarnings(settings.product.reconstruction, settings.inputs[side],
+                      warningsOf(clouds[side].cloud));
+  }
+  requireNoWarnings(settings.product.reconstruction, settings.pairs, warningsOf(morph));
 }
 
 }  // namespace

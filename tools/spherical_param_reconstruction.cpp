@@ -56,6 +56,8 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A mesh through all points of a scan", "scan.ply mesh.ply"},
     {"With its map to the sphere and a page to look at",
      "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
+    {"A failure, unless the scan is a closed surface and nothing else is wrong",
+     "scan.ply mesh.ply -strict"},
     {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers 4 -smooth 5"},
     {"Of many scans; the same line again does those that are missing",
      "scan.ply other.ply -output 'meshes/{name}.ply' -jsonl meshes.jsonl -resume"},
@@ -73,7 +75,8 @@ std::string helpText() {
          "{name} stands for the input's name without extension, {ext} for its extension,\n"
          "{dir} for its directory, {index} or {index:4} for its place in the list.\n\n" +
          describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, 1 failed (of many: one or more), 2 wrong usage.\n";
+         "\nExit code: 0 done, also with warnings; 1 failed, or with -strict done with warnings\n"
+         "(of many: one or more); 2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -356,12 +359,22 @@ Json smoothingToJson(const Settings& settings, const spherical_param::SmoothingR
           {"self_intersections", smoothing.self_intersections}};
 }
 
+Json loopsToJson(const Reconstruction& reconstruction,
+                 const std::vector<std::vector<Index>>& loops) {
+  Json json = Json::array();
+  for (const std::vector<Index>& loop : loops) {
+    json.push_back(inputIndices(reconstruction, loop));
+  }
+  return json;
+}
+
 Json diagnosisToJson(const Reconstruction& reconstruction) {
   const spherical_param::SurfaceDiagnosis& diagnosis = reconstruction.getDiagnosis();
   Json json;
   json["kind"] = nameOf(diagnosis.kind, surface_names);
   json["looks_closed_genus0"] = diagnosis.looksClosedGenus0();
   json["summary"] = diagnosis.summary;
+  json["genus"] = diagnosis.genus ? Json(*diagnosis.genus) : Json(nullptr);
   json["lids"] = Json::array();
   for (const spherical_param::Lid& lid : diagnosis.lids) {
     json["lids"].push_back({{"cause", nameOf(lid.cause, surface_names)},
@@ -371,7 +384,8 @@ Json diagnosisToJson(const Reconstruction& reconstruction) {
                             {"triangles", lid.triangles},
                             {"area", lid.area},
                             {"boundary_length", lid.boundary_length},
-                            {"vertices", inputIndices(reconstruction, lid.vertices)}});
+                            {"vertices", inputIndices(reconstruction, lid.vertices)},
+                            {"loops", loopsToJson(reconstruction, lid.loops)}});
   }
   json["handles"] = Json::array();
   for (const spherical_param::CollapsedHandle& handle : diagnosis.handles) {
@@ -714,6 +728,7 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, cloud); },
       [&] { printVerdict(settings, cloud, console); });
+  requireNoWarnings(settings.reconstruction, settings.input, warningsOf(cloud));
 }
 
 }  // namespace

@@ -112,7 +112,8 @@ std::string helpText() {
          "\n          a geometry image: .tif .tiff"
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
          describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         "\nExit code: 0 done, also with warnings; 1 failed, or with -strict done with warnings;\n"
+         "2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -155,7 +156,7 @@ void checkCombination(const CommandLine& command_line, const Settings& settings)
     for (const OptionInfo& option : option_table) {
       const bool has_a_say = option.name == "sphere" || option.name == "json" ||
                              option.name == "ascii" || option.name == "quiet" ||
-                             option.name == "threads";
+                             option.name == "threads" || option.name == "strict";
       if (!has_a_say) {
         refuse(command_line, option.name, "a geometry image as input", "a cloud");
       }
@@ -318,6 +319,7 @@ Json optionsToJson(const Settings& settings) {
   json["series"] = settings.series;
   json["degree"] = unless(!settings.needsHarmonics(), settings.degree);
   if (from_image) {
+    json["strict"] = settings.product.reconstruction.strict;
     json["threads"] = settings.threads();
   } else {
     const Json product = productOptionsToJson(settings.product);
@@ -735,6 +737,8 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, mapped, output); },
       [&] { printVerdict(settings, mapped, output, console); });
+  requireNoWarnings(settings.product.reconstruction, settings.input,
+                    warningsOf(settings, mapped, output));
 }
 
 }  // namespace

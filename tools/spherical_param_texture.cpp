@@ -86,7 +86,8 @@ std::string helpText() {
          ".png\n"
          "\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
          describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
+         "\nExit code: 0 done, also with warnings; 1 failed, or with -strict done with warnings;\n"
+         "2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -395,6 +396,7 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, mapped, output); },
       [&] { printVerdict(settings, mapped, output, console); });
+  requireNoWarnings(settings.product.reconstruction, settings.input, warningsOf(settings, mapped));
 }
 
 }  // namespace

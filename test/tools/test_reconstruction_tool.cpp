@@ -996,7 +996,7 @@ TEST_F(ReconstructionTool, HelpAndVersionSucceed) {
          {"-graph NAME", "-k N", "-solver NAME", "-weights NAME", "-exponent X", "-tolerance X",
           "-lambda X", "-iterations N", "-stagnation N", "-starts N", "-seed N", "-hull NAME",
           "-optimize NAME", "-attempts N", "-smooth N", "-outliers SIGMA", "-outlier-method NAME",
-          "-threads N"}) {
+          "-strict", "-threads N"}) {
       EXPECT_NE(result.output.find(std::string("\n  ") + line), std::string::npos) << line;
     }
   }
@@ -1203,6 +1203,65 @@ TEST_F(QualityOfTheMesh, TwoPartsAreFoundWithTheGapBetweenThem) {
   // Spheres of radius 0.2 at x = -0.3 and 0.3: a gap of 0.2 around the origin.
   EXPECT_NEAR(bridge["size"].get<double>(), 0.2, 0.02);
   EXPECT_LT(vectorOf(bridge["location"]).norm(), 0.05);
+}
+
+TEST_F(QualityOfTheMesh, LoopsOfALidArePathsAlongTheMeshWithItsLength) {
+  scan({"holed", "scan.ply", "-points", "3000"});
+  const json report = reportOf({"scan.ply", "out.ply"});
+  const json& diagnosis = report["diagnosis"];
+  EXPECT_EQ(diagnosis["kind"], "open");
+  EXPECT_TRUE(diagnosis["genus"].is_null());
+  ASSERT_EQ(diagnosis["lids"].size(), 4U);
+  // All points are vertices, in their order.
+  const Mesh mesh = meshFile("out.ply");
+  const spherical_param::Positions points = positionsOf(mesh);
+  const auto corners = cornersOfEdges(mesh);
+  for (const json& lid : diagnosis["lids"]) {
+    ASSERT_EQ(lid["loops"].size(), 1U);
+    const auto loop = lid["loops"][0].get<std::vector<int>>();
+    double length = 0.0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int next = loop[(i + 1) % loop.size()];
+      EXPECT_EQ(corners.count({loop[i], next}), 1U);
+      length += (points.col(loop[i]) - points.col(next)).norm();
+    }
+    EXPECT_NEAR(length, lid["boundary_length"].get<double>(), 1e-9);
+  }
+}
+
+TEST_F(QualityOfTheMesh, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
+  scan({"holed", "scan.ply", "-points", "2000"});
+  const RunResult lax = runTool(directory, {"scan.ply", "lax.ply", "-quiet"});
+  EXPECT_EQ(lax.exit_code, 0);
+  EXPECT_EQ(lax.errors, "");
+  const RunResult strict = runTool(directory, {"scan.ply", "out.ply", "-strict", "-quiet",
+                                               "-sphere", "sphere.ply", "-json", "report.json"});
+  EXPECT_EQ(strict.exit_code, 1);
+  const std::vector<std::string> lines = strict.errorLines();
+  ASSERT_EQ(lines.size(), 2U) << strict.errors;
+  EXPECT_NE(lines[0].find("4 openings"), std::string::npos) << lines[0];
+  EXPECT_EQ(lines[1].rfind("  remedy: the files were made all the same", 0), 0U) << lines[1];
+  EXPECT_EQ(tool_test::readFile(directory.file("out.ply")),
+            tool_test::readFile(directory.file("lax.ply")));
+  EXPECT_EQ(directory.listing().count("sphere.ply"), 1U);
+  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
+  EXPECT_EQ(report["options"]["strict"], true);
+  // Every warning is in the message.
+  for (const json& warning : report["warnings"]) {
+    EXPECT_NE(lines[0].find(warning.get<std::string>()), std::string::npos) << warning;
+  }
+  // Where there is none, nothing changes.
+  const RunResult clean = runTool(directory, {"in.ply", "out.ply", "-strict", "-quiet"});
+  EXPECT_EQ(clean.exit_code, 0) << clean.errors;
+  EXPECT_EQ(clean.output + clean.errors, "");
+}
+
+TEST_F(QualityOfTheMesh, HandlesAreCounted) {
+  scan({"double_torus", "scan.ply", "-points", "3000"});
+  const json diagnosis = reportOf({"scan.ply", "out.ply"})["diagnosis"];
+  EXPECT_EQ(diagnosis["kind"], "handles");
+  EXPECT_EQ(diagnosis["genus"], 2);
+  EXPECT_NE(diagnosis["summary"].get<std::string>().find("2 handles"), std::string::npos);
 }
 
 TEST_F(QualityOfTheMesh, AHandleIsFound) {

@@ -174,6 +174,8 @@ std::vector<OptionInfo> reconstructionOptions() {
       {"smooth", "N", "smooth the points that are written, steps, up to 10000; keeps normals (0)"},
       {"outliers", "SIGMA", "leave out points so many deviations off the others, up to 1000 (off)"},
       {"outlier-method", "NAME", "with outliers: paper or statistical (paper)"},
+      {"strict", "",
+       "end with exit code 1 if there is any warning; the files are made all the same"},
       {"threads", "N", "threads, 0: as many as there are processors (0)"},
   };
 }
@@ -189,6 +191,7 @@ ReconstructionSettings parseReconstructionOptions(const CommandLine& command_lin
         parseName("outlier-method", command_line.value("outlier-method", ""), outlier_names);
   }
   settings.options = parseOptions(command_line);
+  settings.strict = command_line.has("strict");
   return settings;
 }
 
@@ -225,6 +228,9 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
     console.entry("outliers", formatted(*settings.outlier_sigma, 6) + " (" +
                                   nameOf(settings.outlier_method, outlier_names) + ")");
   }
+  if (settings.strict) {
+    console.entry("strict", "warnings are a failure");
+  }
   console.entry("threads", std::to_string(options.threads));
 }
 
@@ -252,8 +258,26 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   json["outliers"] = settings.outlier_sigma ? Json(*settings.outlier_sigma) : Json(nullptr);
   json["outlier_method"] =
       unless(!settings.outlier_sigma, nameOf(settings.outlier_method, outlier_names));
+  json["strict"] = settings.strict;
   json["threads"] = options.threads;
   return json;
+}
+
+const std::string files_are_made = "the files were made all the same";
+
+void requireNoWarnings(const ReconstructionSettings& settings, const std::string& input,
+                       const std::vector<std::string>& warnings) {
+  if (!settings.strict || warnings.empty()) {
+    return;
+  }
+  std::string cause = inQuotes(input) + ": ";
+  if (warnings.size() > 1) {
+    cause += std::to_string(warnings.size()) + " warnings: ";
+  }
+  for (std::size_t i = 0; i < warnings.size(); ++i) {
+    cause += (i > 0 ? " " : "") + warnings[i];
+  }
+  throw Failure(cause, files_are_made + ": look at them, and leave -strict out if they will do");
 }
 
 bool isIterative(const Options& options) {

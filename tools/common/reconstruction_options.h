@@ -8,6 +8,7 @@
 #include "spherical_param/reconstruct.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -23,7 +24,8 @@ extern const Names<OutlierMethod> outlier_names;
 struct ReconstructionSettings {
   std::optional<double> outlier_sigma;  ///< none: outliers are not looked for
   OutlierMethod outlier_method = OutlierMethod::Paper;
-  Options options;  ///< the number of threads is never 0
+  Options options;      ///< the number of threads is never 0
+  bool strict = false;  ///< warnings are a failure, see requireNoWarnings()
 };
 
 /// The lines of the options of the reconstruction, from -graph to -threads.
@@ -37,6 +39,17 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
 
 /// What is in force; what has no say with the chosen methods is null.
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings);
+
+/// How the remedy begins that requireNoWarnings() gives: unlike other failures, this one comes
+/// after all files were made.
+extern const std::string files_are_made;
+
+/// With -strict, ends the tool with exit code 1 if there is a warning. To be called last: whoever
+/// asks for a failure still wants to look at what was made. \throw Failure
+///
+/// \param input whose warnings they are.
+void requireNoWarnings(const ReconstructionSettings& settings, const std::string& input,
+                       const std::vector<std::string>& warnings);
 
 /// Tells whether the solver is the paper's.
 bool isIterative(const Options& options);
