@@ -752,6 +752,37 @@ TEST(BatchTool, AScanThatIsNamedLikeAnOutputIsNotOverwritten) {
   EXPECT_EQ(runTool(directory, arguments).exit_code, 2);
 }
 
+TEST(BatchTool, StrictInputsWithWarningsFailAndTheirMeshesAreThere) {
+  const TemporaryDirectory directory;
+  writeClouds(directory, 2, 120);
+  // A point twice is a warning.
+  writeFile(directory.file("in/c01.xyz"),
+            readFile(directory.file("in/c01.xyz")) + readFile(directory.file("in/c01.xyz")));
+  const std::vector<std::string> words = {
+      "in", "-output", "in/{name}_mesh.ply", "-strict", "-jsonl", "r.jsonl", "-resume"};
+  const RunResult result = runTool(directory, words);
+  EXPECT_EQ(result.exit_code, 1);
+  auto found = recordsByInput(directory.file("r.jsonl"));
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found["in/c00.xyz"]["status"], "done");
+  const json& failed = found["in/c01.xyz"];
+  EXPECT_EQ(failed["status"], "failed");
+  EXPECT_EQ(failed["exit_code"], 1);
+  EXPECT_EQ(failed["vertices"], 120);
+  EXPECT_EQ(failed["warnings"].size(), 1U);
+  EXPECT_NE(failed["cause"].get<std::string>().find("120 points repeat"), std::string::npos);
+  EXPECT_EQ(failed["files"][0]["bytes"], fs::file_size(directory.file("in/c01_mesh.ply")));
+  // The next run takes neither mesh for a scan, and tries again what failed.
+  EXPECT_EQ(runTool(directory, words).exit_code, 1);
+  std::vector<std::string> again;
+  for (const json& record : records(directory.file("r.jsonl"))) {
+    again.push_back(record["input"].get<std::string>());
+  }
+  EXPECT_EQ(std::count(again.begin(), again.end(), "in/c00.xyz"), 1);
+  EXPECT_EQ(std::count(again.begin(), again.end(), "in/c01.xyz"), 2);
+  EXPECT_EQ(again.size(), 3U);
+}
+
 TEST(BatchTool, NumberedOutputsBesideTheirInputsAreNoInputsOfTheNextRun) {
   const TemporaryDirectory directory;
   writeClouds(directory, 2, 100);

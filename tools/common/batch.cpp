@@ -12,6 +12,7 @@
 #include "common/name_pattern.h"
 #include "common/numbers.h"
 #include "common/output_file.h"
+#include "common/reconstruction_options.h"
 #include "common/record_log.h"
 #include "common/run_tool.h"
 #include "common/text.h"
@@ -100,7 +101,8 @@ struct Job {
   int signal = 0;
   std::string cause;
   std::string remedy;
-  Json result;  ///< the members of its report that are kept; null: there is none
+  bool made = false;  ///< its files are there: it is done, or failed by -strict alone
+  Json result;        ///< the members of its report that are kept; null: there is none
 };
 
 bool isOneOf(const std::string& option, const char* const* begin, const char* const* end) {
@@ -269,7 +271,8 @@ std::size_t leaveOutOutputs(std::vector<BatchInput>& inputs, const Patterns& pat
   std::set<std::tuple<std::string, std::uint64_t, std::int64_t>> made;
   for (const Json& record : readRecords(settings.jsonl)) {
     const Json files = record.value("files", Json());
-    if (record.value("status", Json()) != "done" || !files.is_array()) {
+    // Those of what failed have no size, unless they were made all the same.
+    if (!files.is_array()) {
       continue;
     }
     for (const Json& file : files) {
@@ -671,8 +674,12 @@ void Batch::ended(std::size_t number, const ChildResult& result) {
   } else if (result.exit_code != 0) {
     setState(job, JobState::Failed);
     readMessage(tool_.name, result.errors, job);
+    job.made = job.remedy.compare(0, files_are_made.size(), files_are_made) == 0;
   } else {
     setState(job, JobState::Done);
+    job.made = true;
+  }
+  if (job.made) {
     job.result = resultOf(reportOf(job, result.output));
     const Json peak = job.result.is_object() ? job.result["peak_memory_bytes"] : Json(nullptr);
     if (peak.is_number()) {
@@ -708,8 +715,7 @@ Json Batch::recordOf(const Job& job) const {
   record["input_mtime_ns"] = job.input_state ? Json(job.input_state->time) : Json(nullptr);
   record["files"] = Json::array();
   for (const OutputName& output : job.outputs) {
-    const std::optional<FileState> state =
-        job.state == JobState::Done ? stateOf(output.path) : std::nullopt;
+    const std::optional<FileState> state = job.made ? stateOf(output.path) : std::nullopt;
     record["files"].push_back({{"option", output.option},
                                {"path", output.path},
                                {"bytes", state ? Json(state->bytes) : Json(nullptr)},
