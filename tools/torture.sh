@@ -58,6 +58,10 @@ table() {
 # --- shapes --------------------------------------------------------------------------------------
 
 # --- surfaces ------------------------------------------------------------------------------------
+if check "surfaces: build" build_release torture_surfaces; then
+  part "surfaces: not spheres, and closed ones" build/release/bin/torture_surfaces "${quick[@]}" ||
+    true
+fi
 
 # --- faults --------------------------------------------------------------------------------------
 
