@@ -866,6 +866,9 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
     add("a surface with " + counted(openings, "opening") +
         (openings == 1 ? ": lid of " : ": largest lid of ") + counted(lid->triangles, "triangle") +
         ", area " + number(lid->area) + ", about " + number(lid->diameter) + " across, " +
+        (lid->loops.empty() ? std::string()
+                            : "rim of " + counted(lid->loops.front().size(), "point") + ", " +
+                                  number(lid->boundary_length) + " long, ") +
         place(lid->center));
   }
   return text.empty() ? "Looks like a closed genus-0 surface." : text + ".";

@@ -159,6 +159,10 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
       EXPECT_GE(lid.triangles, lid.vertices.size() - 2);
       expectLoopsOfBoundary(scene, lid);
       ASSERT_EQ(lid.loops.size(), 1U);
+      EXPECT_NE(
+          diagnosis.summary.find("rim of " + std::to_string(lid.loops.front().size()) + " points"),
+          std::string::npos)
+          << diagnosis.summary;
       // Seen from outside, the loop goes around counter-clockwise.
       const Eigen::Vector3d doubled = doubledArea(open, lid.loops.front());
       EXPECT_GT(doubled.x(), 0.0);
