@@ -57,6 +57,10 @@ table() {
 
 # --- shapes --------------------------------------------------------------------------------------
 
+if check "shapes: build" build_release torture_shapes; then
+  part "shapes" build/release/bin/torture_shapes "${quick[@]}" || true
+fi
+
 # --- surfaces ------------------------------------------------------------------------------------
 if check "surfaces: build" build_release torture_surfaces; then
   part "surfaces: not spheres, and closed ones" build/release/bin/torture_surfaces "${quick[@]}" ||
