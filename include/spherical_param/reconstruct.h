@@ -221,8 +221,9 @@ void checkOptions(const Options& options);
 /// optimisation on the points -> check.
 ///
 /// \param points 3 x n, finite, at least 4 distinct points that are not all in one plane, no
-///               coordinate beyond 1e100. Differences below 1e-90 of the cloud's extent keep the
-///               topology sound, but not the geometry.
+///               coordinate beyond 1e100. Any differences keep the topology sound; below 1e-90 of
+///               the cloud's extent what is told of self-intersections is no longer exact, and the
+///               geometry is arbitrary far sooner: see doc/numbers.md.
 /// \param lists  n neighbour lists, e.g. the k nearest of each point; unsorted, with or without the
 ///               point itself. Those of points that repeat an earlier point may be empty.
 /// \param options the defaults need no tuning.
