@@ -44,22 +44,6 @@ Positions sphereWithDisc(double radius, const Eigen::Vector3d& offset = Eigen::V
   return result;
 }
 
-TEST(Numbers, AClusterIsMeshedSoundlyHoweverSmallAndSaidToBeFoldedWhereItIs) {
-  for (const double radius : {1e-2, 1e-8, 1e-16, 1e-30, 1e-120, 1e-200, 1e-300, 1e-320}) {
-    const Positions points = sphereWithDisc(radius);
-    const Result result = meshOf(points);
-    EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(points.cols()))) << radius;
-    EXPECT_EQ(result.vertexCount(), static_cast<std::size_t>(points.cols())) << radius;
-    if (radius == 1e-2) {
-      EXPECT_TRUE(result.self_intersections.empty());
-    }
-    EXPECT_EQ(result.warnings.empty() ||
-                  result.warnings.back().find("intersect") == std::string::npos,
-              result.self_intersections.empty())
-        << radius;
-  }
-}
-
 TEST(Numbers, PointsThatTheCoordinatesCannotTellApartAreDuplicates) {
   const Positions points = sphereWithDisc(1e-12, Eigen::Vector3d(0.0, 0.0, 1e7));
   const Result result = meshOf(points);
