@@ -29,16 +29,18 @@ DistinctPoints findDistinctPoints(const Positions& points);
 /// neighbours in the processor's cache.
 ///
 /// \param points 3 x n, finite.
-/// \return a permutation of 0 ... n - 1. Cost: O(n log n).
+/// \return a permutation of 0 ... n - 1.
+/// \throw InvalidInput if a coordinate is not finite. Cost: O(n log n).
 std::vector<Index> spatialOrder(const Positions& points);
 
 /// Tells whether all points lie exactly in one plane (or line, or point), in exact arithmetic on
 /// the given doubles: a cloud that is flat but for rounding is not coplanar.
 ///
-/// \param points 3 x n, finite. The largest coordinate difference should be between 1e-90 and
-/// \return whether they do.
-/// 1e90: beyond that, products underflow or overflow (reconstruct() scales before it asks).
-/// Cost: O(n).
+/// \param points 3 x n, finite, of any magnitude.
+/// \return whether they do; so do fewer than four.
+/// \throw InvalidInput if a coordinate of four points and more is not finite.
+/// Cost: O(n); a hundred times as much where coordinates other than 0 are below 1e-80 or above 1e80
+/// and all points lie in one plane, or nearly all.
 bool areCoplanar(const Positions& points);
 
 /// @}

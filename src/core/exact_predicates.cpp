@@ -1,8 +1,11 @@
 #include "core/exact_predicates.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 // Theorem and lemma numbers are those of Shewchuk (1997), see the header.
 
@@ -141,7 +144,103 @@ Expansion<16> squaredNorm(const Expansion<2>& x, const Expansion<2>& y) {
   return sum(product(x, x), product(y, y), 1.0);
 }
 
+/// An integer of any size, a multiple of the least positive double: digits to the base 2^24, lowest
+/// first. All are in [0, 2^24) but the last, which has the sign.
+class WideInteger {
+public:
+  explicit WideInteger(double x) {
+    int exponent = 0;
+    const double mantissa = std::frexp(x, &exponent);
+    // The bits of x begin at `position` above those of the least double.
+    constexpr int digits_of_mantissa = 53;
+    constexpr int least_exponent = -1074;
+    const int position = std::max(exponent - digits_of_mantissa - least_exponent, 0);
+    auto bits = static_cast<std::int64_t>(
+        std::ldexp(mantissa, std::min(digits_of_mantissa, exponent - least_exponent)));
+    digits_.assign(static_cast<std::size_t>(position / kBits), 0);
+    // Shifted digit by digit, so that nothing overflows.
+    const std::int64_t factor = std::int64_t{1} << (position % kBits);
+    for (; bits != 0; bits /= kBase)
+      digits_.push_back(bits % kBase * factor);
+    carry();
+  }
+
+  WideInteger operator-(const WideInteger& other) const {
+    WideInteger result = *this;
+    result.digits_.resize(std::max(digits_.size(), other.digits_.size()), 0);
+    for (std::size_t i = 0; i < other.digits_.size(); ++i)
+      result.digits_[i] -= other.digits_[i];
+    result.carry();
+    return result;
+  }
+  WideInteger operator+(const WideInteger& other) const {
+    return *this - (WideInteger(0.0) - other);
+  }
+  WideInteger operator*(const WideInteger& other) const {
+    // Sums stay below 2^63: the shorter factor has fewer than 2^9 digits of 24 bits.
+    WideInteger result(0.0);
+    result.digits_.assign(digits_.size() + other.digits_.size(), 0);
+    for (std::size_t i = 0; i < digits_.size(); ++i)
+      for (std::size_t k = 0; k < other.digits_.size(); ++k)
+        result.digits_[i + k] += digits_[i] * other.digits_[k];
+    result.carry();
+    return result;
+  }
+  int sign() const {
+    if (digits_.empty())
+      return 0;
+    return digits_.back() < 0 ? -1 : 1;
+  }
+
+private:
+  static constexpr int kBits = 24;
+  static constexpr std::int64_t kBase = std::int64_t{1} << kBits;
+
+  void carry() {
+    std::int64_t over = 0;
+    for (std::int64_t& digit : digits_) {
+      const std::int64_t sum = digit + over;
+      over = sum / kBase - (sum % kBase < 0 ? 1 : 0);
+      digit = sum - over * kBase;
+    }
+    while (over < -1 || over > 0) {
+      const std::int64_t next = over / kBase - (over % kBase < 0 ? 1 : 0);
+      digits_.push_back(over - next * kBase);
+      over = next;
+    }
+    if (over < 0)
+      digits_.push_back(over);
+    while (!digits_.empty() && digits_.back() == 0)
+      digits_.pop_back();
+  }
+
+  std::vector<std::int64_t> digits_;
+};
+
 }  // namespace
+
+int anyRangeOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                          const Eigen::Vector2d& c) {
+  const auto difference_of = [](double x, double y) { return WideInteger(x) - WideInteger(y); };
+  return (difference_of(a.x(), c.x()) * difference_of(b.y(), c.y()) -
+          difference_of(a.y(), c.y()) * difference_of(b.x(), c.x()))
+      .sign();
+}
+
+int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                          const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+  const auto row = [&](const Eigen::Vector3d& p) {
+    return std::array<WideInteger, 3>{WideInteger(p.x()) - WideInteger(a.x()),
+                                      WideInteger(p.y()) - WideInteger(a.y()),
+                                      WideInteger(p.z()) - WideInteger(a.z())};
+  };
+  const auto u = row(b);
+  const auto v = row(c);
+  const auto w = row(d);
+  return (u[2] * (v[0] * w[1] - w[0] * v[1]) + v[2] * (w[0] * u[1] - u[0] * w[1]) +
+          w[2] * (u[0] * v[1] - v[0] * u[1]))
+      .sign();
+}
 
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                        const Eigen::Vector2d& c) {

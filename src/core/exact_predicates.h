@@ -19,6 +19,12 @@ int exactOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
 int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                   const Eigen::Vector2d& d);
 
+/// The same for all finite doubles, whatever their magnitudes: in integers. Slow.
+int anyRangeOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                          const Eigen::Vector2d& c);
+int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                          const Eigen::Vector3d& c, const Eigen::Vector3d& d);
+
 /// Half a unit in the last place of 1.
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 

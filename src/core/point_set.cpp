@@ -23,11 +23,45 @@ std::uint64_t mix(std::uint64_t hash, double coordinate) {
   return internal::splitmix64(hash ^ bits);
 }
 
-bool areCollinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  return internal::orientation2d(a.head<2>(), b.head<2>(), c.head<2>()) == 0 &&
-         internal::orientation2d(a.tail<2>(), b.tail<2>(), c.tail<2>()) == 0 &&
-         internal::orientation2d({a.x(), a.z()}, {b.x(), b.z()}, {c.x(), c.z()}) == 0;
+/// Whether products of three differences of such coordinates, and their rounding errors, are
+/// numbers of full precision.
+bool areProductsInRange(const Positions& points) {
+  constexpr double least = 1e-80;
+  constexpr double largest = 1e80;
+  return points
+             .unaryExpr([](double x) {
+               return x == 0.0 || (std::abs(x) >= least && std::abs(x) <= largest) ? 1.0 : 0.0;
+             })
+             .minCoeff() > 0.0;
 }
+
+/// The predicates for points of which is known whether products are in range.
+class Orientations {
+public:
+  explicit Orientations(bool are_products_in_range) : is_plain_(are_products_in_range) {}
+
+  bool areCoplanar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                   const Eigen::Vector3d& d) const {
+    return (is_plain_ ? internal::orientation3d(a, b, c, d)
+                      : internal::anyRangeOrientation3d(a, b, c, d)) == 0;
+  }
+  bool areCollinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                    const Eigen::Vector3d& c) const {
+    return areCollinearInPlane(a.head<2>(), b.head<2>(), c.head<2>()) &&
+           areCollinearInPlane(a.tail<2>(), b.tail<2>(), c.tail<2>()) &&
+           areCollinearInPlane(Eigen::Vector2d(a.x(), a.z()), Eigen::Vector2d(b.x(), b.z()),
+                               Eigen::Vector2d(c.x(), c.z()));
+  }
+
+private:
+  bool areCollinearInPlane(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                           const Eigen::Vector2d& c) const {
+    return (is_plain_ ? internal::orientation2d(a, b, c)
+                      : internal::anyRangeOrientation2d(a, b, c)) == 0;
+  }
+
+  bool is_plain_;
+};
 
 }  // namespace
 
@@ -64,6 +98,8 @@ DistinctPoints findDistinctPoints(const Positions& points) {
 }
 
 std::vector<Index> spatialOrder(const Positions& points) {
+  if (!points.allFinite())
+    throw InvalidInput("spatialOrder: a coordinate is not finite; remove such points first");
   return internal::mortonOrder(points);
 }
 
@@ -71,6 +107,8 @@ bool areCoplanar(const Positions& points) {
   const Eigen::Index n = points.cols();
   if (n < 4)
     return true;
+  if (!points.allFinite())
+    throw InvalidInput("areCoplanar: a coordinate is not finite; remove such points first");
   // A far-apart triangle makes the plain evaluation of the predicate decide nearly always.
   const Eigen::Vector3d a = points.col(0);
   Eigen::Index second = 0;
@@ -85,17 +123,18 @@ bool areCoplanar(const Positions& points) {
       third = i;
     }
   }
-  if (areCollinear(a, b, points.col(third))) {
+  const Orientations orientations(areProductsInRange(points));
+  if (orientations.areCollinear(a, b, points.col(third))) {
     // Rounding may have hidden a point beside the line.
     third = 0;
-    while (third < n && areCollinear(a, b, points.col(third)))
+    while (third < n && orientations.areCollinear(a, b, points.col(third)))
       ++third;
     if (third == n)
       return true;
   }
   const Eigen::Vector3d c = points.col(third);
   for (Eigen::Index i = 0; i < n; ++i)
-    if (internal::orientation3d(a, b, c, points.col(i)) != 0)
+    if (!orientations.areCoplanar(a, b, c, points.col(i)))
       return false;
   return true;
 }

@@ -1,6 +1,7 @@
 #include "spherical_param/reconstruct.h"
 
 #include "core/neighbor_lists.h"
+#include "core/option_checks.h"
 #include "core/ordered_points.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/point_set.h"
@@ -797,7 +798,8 @@ Nodes checkedNodes(const Positions& points, const Options& options, StageLog& lo
   if (count < 4)
     throw InvalidInput("reconstruct: at least 4 distinct finite points are needed, but there are " +
                        std::to_string(count));
-  if (areCoplanar(nodes.points))
+  // As given: next to far larger ones, the least coordinates vanish when they are scaled.
+  if (areCoplanar(points))
     throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
                        "outside of it");
   return nodes;
@@ -850,6 +852,10 @@ int neighborsToSearch(const Options& options) {
 }
 
 void checkOptions(const Options& options) {
+  internal::checkEnum("reconstruct: graph", options.graph, GraphMethod::LocalDelaunay);
+  internal::checkEnum("reconstruct: solver", options.solver, EmbeddingMethod::Multilevel);
+  internal::checkEnum("reconstruct: hull", options.hull, TriangulationMethod::Incremental);
+  internal::checkEnum("reconstruct: optimization", options.optimization, OptimizationMethod::Full);
   // The stages check the ranges, k first and the others without a graph to work on.
   buildNeighborGraph(Positions(3, 0), NeighborLists(), {neighborsToSearch(options)});
   buildLocalDelaunayGraph(Positions(3, 0), NeighborLists(), localDelaunayOptions(options));

@@ -189,5 +189,35 @@ TEST(ExactPredicates, FilterAgreesWithTheExactEvaluation) {
   }
 }
 
+// In integers of any size there is the same sign, also far outside of the range of products.
+TEST(ExactPredicates, IntegersOfAnySizeAgreeAtEveryScale) {
+  std::mt19937_64 random(9);
+  std::uniform_int_distribution<int> few(-2, 2);
+  std::uniform_real_distribution<double> real(-2.0, 2.0);
+  for (int i = 0; i < 2000; ++i) {
+    const auto point = [&] {
+      return i % 2 == 0 ? Vector3d(few(random), few(random), few(random))
+                        : Vector3d(real(random), real(random), real(random));
+    };
+    const Vector3d a = point();
+    const Vector3d b = point();
+    const Vector3d c = point();
+    const Vector3d d = i % 3 == 0 ? Vector3d(a + 2.0 * (b - a) - (c - a)) : point();
+    const int flat = orientation2d(a.head<2>(), b.head<2>(), c.head<2>());
+    const int solid = orientation3d(a, b, c, d);
+    // Powers of two do no harm to the numbers: the lowest bits stay above those of denormals.
+    for (const int exponent : {0, -900, 1000}) {
+      const auto scaled = [&](const Vector3d& p) {
+        return Vector3d(p.unaryExpr([&](double x) { return std::ldexp(x, exponent); }));
+      };
+      const Vector3d sa = scaled(a);
+      const Vector3d sb = scaled(b);
+      const Vector3d sc = scaled(c);
+      ASSERT_EQ(anyRangeOrientation2d(sa.head<2>(), sb.head<2>(), sc.head<2>()), flat);
+      ASSERT_EQ(anyRangeOrientation3d(sa, sb, sc, scaled(d)), solid);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::internal

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <initializer_list>
 #include <limits>
 
 namespace spherical_param {
@@ -89,6 +91,40 @@ TEST(PointSet, LinesAndPointsAreCoplanar) {
   EXPECT_TRUE(areCoplanar(line));
   line(1, 20) = std::nextafter(line(1, 20), 100.0);
   EXPECT_FALSE(areCoplanar(line));
+}
+
+// Products of differences leave the range of double: plain evaluation sees planes that are none.
+TEST(PointSet, PlanesAreFoundExactlyWhateverTheMagnitudes) {
+  const double d = std::numeric_limits<double>::denorm_min();
+  const double m = std::numeric_limits<double>::max();
+  const auto are_coplanar = [](std::initializer_list<Eigen::Vector3d> places) {
+    Positions points(3, static_cast<Eigen::Index>(places.size()));
+    Eigen::Index i = 0;
+    for (const Eigen::Vector3d& place : places)
+      points.col(i++) = place;
+    return areCoplanar(points);
+  };
+  for (const double tiny : {1e-100, 1e-120, 1e-200, d}) {
+    EXPECT_FALSE(are_coplanar({{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}, {0, 0, 1}})) << tiny;
+    EXPECT_FALSE(are_coplanar({{0, 0, 0}, {tiny, 0, 0}, {0, tiny, 0}, {0, 0, tiny}})) << tiny;
+    EXPECT_FALSE(are_coplanar({{0, 0, 0}, {1, 1, 1}, {tiny, 0, 0}, {0, tiny, 0}})) << tiny;
+    EXPECT_FALSE(are_coplanar({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, tiny}, {0, tiny, 1}}));
+    EXPECT_TRUE(are_coplanar({{0, 0, 0}, {1, 1, 1}, {tiny, tiny, 0}, {3, 3, tiny}})) << tiny;
+    EXPECT_TRUE(are_coplanar({{tiny, 0, 0}, {tiny, 1, 0}, {tiny, 0, 1}, {tiny, m, -m}})) << tiny;
+    EXPECT_TRUE(are_coplanar({{0, 0, 0}, {tiny, tiny, tiny}, {1, 1, 1}, {m, m, m}})) << tiny;
+  }
+  EXPECT_FALSE(are_coplanar({{m, 0, 0}, {-m, 0, 0}, {0, m, 0}, {0, 0, d}}));
+  EXPECT_FALSE(are_coplanar({{m, m, m}, {-m, -m, -m}, {m, -m, m}, {m, -m, -m}}));
+  EXPECT_TRUE(are_coplanar({{m, m, m}, {-m, m, -m}, {m, -m, m}, {-m, -m, -m}}));
+}
+
+TEST(PointSet, CoplanarityAndOrderOfNonFinitePointsAreInvalidInput) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Positions points = test::randomSphere(5, 1);
+    points(1, 3) = bad;
+    EXPECT_THROW(areCoplanar(points), InvalidInput);
+    EXPECT_THROW(spatialOrder(points), InvalidInput);
+  }
 }
 
 TEST(SpatialOrder, HoldsEveryPointOnceAndNeighborsNearEachOther) {

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "spherical_param/errors.h"
+
+#include <string>
+
+namespace spherical_param::internal {
+
+/// Refuses what was cast to an enumeration, and is none of its values, which count from 0.
+///
+/// \param what the public function and its option, for the message.
+template <typename Enum>
+void checkEnum(const char* what, Enum value, Enum last) {
+  const auto number = static_cast<long long>(value);
+  if (number < 0 || number > static_cast<long long>(last))
+    throw InvalidInput(std::string(what) + " = " + std::to_string(number) +
+                       " names nothing; use a value of its type");
+}
+
+}  // namespace spherical_param::internal
