@@ -69,6 +69,7 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 ///
 /// \param points 3 x n; \param triangles 3 x m, indices in [0, n).
 /// \return the volume, of less than nothing if the triangles are oriented inward.
+/// \throw InvalidInput for an index out of range.
 double signedVolume(const Positions& points, const Triangles& triangles);
 
 /// Sum of the areas of the triangles [squared unit of the input].
@@ -76,6 +77,7 @@ double signedVolume(const Positions& points, const Triangles& triangles);
 /// \param points 3 x n
 /// \param triangles 3 x m, indices in [0, n).
 /// \return the sum.
+/// \throw InvalidInput for an index out of range.
 double surfaceArea(const Positions& points, const Triangles& triangles);
 
 /// Turns every triangle over.

@@ -1,5 +1,6 @@
 #include "spherical_param/graph_hierarchy.h"
 
+#include "core/graph_checks.h"
 #include "core/members.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -355,10 +356,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& o
     throw InvalidInput("buildGraphHierarchy: threads = " + std::to_string(options.threads) +
                        " is out of range; use 0 (all) to " +
                        std::to_string(internal::kMostThreads));
-  if (graph.neighbors.size() != graph.offsets.back() ||
-      graph.lengths.size() != graph.neighbors.size())
-    throw InvalidInput("buildGraphHierarchy: the graph's arrays differ in length; use a graph from "
-                       "buildNeighborGraph()");
+  internal::checkGraph("buildGraphHierarchy", graph);
   GraphHierarchy hierarchy;
   const Graph* finest = &graph;
   const auto is_dense = [](const Graph& level) {

@@ -3,6 +3,7 @@
 #include "core/component_tree.h"
 #include "core/graph_building.h"
 #include "core/neighbor_lists.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "spherical_param/errors.h"
@@ -526,6 +527,8 @@ std::vector<Bridge> joinParts(const Positions& points, const Stars& stars,
 
 void checkOptions(const LocalDelaunayOptions& options) {
   const std::string function = "buildLocalDelaunayGraph: ";
+  internal::checkEnum("buildLocalDelaunayGraph: agreement", options.agreement,
+                      StarAgreement::Either);
   if (options.tangent_neighbors < 3)
     throw InvalidInput(function + "tangent_neighbors = " +
                        std::to_string(options.tangent_neighbors) + " is too small; use 3 or more");

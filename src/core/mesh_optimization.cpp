@@ -1,6 +1,8 @@
 #include "spherical_param/mesh_optimization.h"
 
+#include "core/graph_checks.h"
 #include "core/mesh_optimizer.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/sampling_analysis.h"
@@ -101,6 +103,7 @@ SurfaceEnergy energyOf(Bend bend, double mu) {
 
 void checkInput(const Positions& points, const Triangles& triangles, const Graph& graph) {
   const auto n = static_cast<std::size_t>(points.cols());
+  internal::checkGraph("optimizeMesh", graph);
   if (graph.size() != n)
     throw InvalidInput("optimizeMesh: " + std::to_string(n) + " points, but a graph of " +
                        std::to_string(graph.size()) + " nodes; they must be the same");
@@ -444,6 +447,7 @@ private:
 
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
                               const Graph& graph, const OptimizationOptions& options) {
+  internal::checkEnum("optimizeMesh: method", options.method, OptimizationMethod::Full);
   if (options.threads < 0 || options.threads > internal::kMostThreads)
     throw InvalidInput("optimizeMesh: threads = " + std::to_string(options.threads) +
                        " is out of range; use 0 (all) to " +

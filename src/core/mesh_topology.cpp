@@ -280,6 +280,7 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 double signedVolume(const Positions& points, const Triangles& triangles) {
   if (triangles.cols() == 0)
     return 0.0;
+  internal::checkTriangles("signedVolume", triangles, points.cols());
   // About a point of the mesh, so that a far origin costs no digits.
   const Eigen::Vector3d origin = points.col(triangles(0, 0));
   double sum = 0.0;
@@ -293,6 +294,7 @@ double signedVolume(const Positions& points, const Triangles& triangles) {
 }
 
 double surfaceArea(const Positions& points, const Triangles& triangles) {
+  internal::checkTriangles("surfaceArea", triangles, points.cols());
   double sum = 0.0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     const Eigen::Vector3d a = points.col(triangles(0, t));

@@ -1,6 +1,7 @@
 #include "spherical_param/morphing.h"
 
 #include "core/exact_predicates.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/rotation_search.h"
@@ -39,6 +40,8 @@ constexpr double kSameVertex = 0.1;
 }
 
 void checkOptions(const MorphOptions& options) {
+  internal::checkEnum("morphSurfaces: connectivity", options.connectivity,
+                      MorphConnectivity::Resampled);
   if (options.samples < kLeastSamples || options.samples > kMostSamples)
     fail("samples = " + std::to_string(options.samples) + " is out of range; use " +
          std::to_string(kLeastSamples) + " to " + std::to_string(kMostSamples));
@@ -344,6 +347,10 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
 Positions inBetween(const MorphResult& morph, double t) {
   if (!std::isfinite(t))
     throw InvalidInput("inBetween: t = " + std::to_string(t) + " is not finite; use 0 to 1");
+  if (morph.first.cols() != morph.second.cols())
+    throw InvalidInput("inBetween: " + std::to_string(morph.first.cols()) + " and " +
+                       std::to_string(morph.second.cols()) +
+                       " vertices; use what morphSurfaces() returned");
   if (t == 0.0)
     return morph.first;
   if (t == 1.0)

@@ -2,7 +2,9 @@
 
 #include "core/embedding_energy.h"
 #include "core/embedding_newton.h"
+#include "core/graph_checks.h"
 #include "core/multigrid.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/planar_start.h"
 #include "core/progress.h"
@@ -61,15 +63,22 @@ constexpr double kPassesOfSolution = 60.0;
 void checkInput(const Graph& graph, const GraphHierarchy& hierarchy,
                 const MultilevelOptions& options) {
   const auto fail = [](const std::string& what) { throw InvalidInput("embedMultilevel: " + what); };
-  if (graph.neighbors.size() != graph.offsets.back() ||
-      graph.lengths.size() != graph.neighbors.size())
-    fail("the graph's arrays differ in length; use a graph from buildNeighborGraph()");
+  internal::checkGraph("embedMultilevel", graph);
   std::size_t finer = graph.size();
   for (const HierarchyLevel& level : hierarchy.levels) {
-    if (level.aggregate_of.size() != finer || level.seeds.size() != level.graph.size())
+    internal::checkGraph("embedMultilevel", level.graph);
+    const auto are_below = [](const std::vector<Index>& indices, std::size_t end) {
+      return std::all_of(indices.begin(), indices.end(),
+                         [&](Index i) { return i >= 0 && static_cast<std::size_t>(i) < end; });
+    };
+    if (level.aggregate_of.size() != finer || level.seeds.size() != level.graph.size() ||
+        !are_below(level.aggregate_of, level.graph.size()) || !are_below(level.seeds, finer) ||
+        static_cast<std::size_t>(level.prolongation.rows()) != finer ||
+        static_cast<std::size_t>(level.prolongation.cols()) != level.graph.size())
       fail("the hierarchy is not that of the graph; use buildGraphHierarchy() on it");
     finer = level.graph.size();
   }
+  internal::checkEnum("embedMultilevel: weights", options.weights, EdgeWeights::Adaptive);
   if (!(options.exponent > 2.0 && options.exponent <= 16.0))
     fail("exponent = " + std::to_string(options.exponent) + " is out of range; use (2, 16]");
   if (!(options.lambda > 0.0 && options.lambda <= 1.0))

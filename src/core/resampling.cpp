@@ -3,6 +3,7 @@
 #include "core/bit_mixing.h"
 #include "core/corner_table.h"
 #include "core/exact_predicates.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/sample_elimination.h"
 #include "core/sphere_mesh.h"
@@ -409,6 +410,7 @@ int gridFrequency(SphereGrid grid, std::size_t vertices) {
 
 std::size_t gridVertices(SphereGrid grid, int frequency) {
   const std::size_t factor = factorOf(grid);
+  internal::checkEnum("gridVertices: grid", grid, SphereGrid::Octahedral);
   const auto f = static_cast<std::size_t>(std::max(frequency, 0));
   if (frequency < 1 || f * f > (kMostVertices - 2) / factor)
     throw InvalidInput("gridVertices: frequency = " + std::to_string(frequency) +

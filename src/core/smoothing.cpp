@@ -1,5 +1,6 @@
 #include "spherical_param/smoothing.h"
 
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "spherical_param/errors.h"
 
@@ -36,6 +37,7 @@ double muOf(const SmoothingOptions& options) {
 }
 
 void checkOptions(const SmoothingOptions& options) {
+  internal::checkEnum("smoothSurface: method", options.method, SmoothingMethod::Biharmonic);
   if (options.steps < 0 || options.steps > kMostSteps)
     fail("steps = " + std::to_string(options.steps) + " is out of range; use 0 (no change) to " +
          std::to_string(kMostSteps));

@@ -2,6 +2,8 @@
 
 #include "spherical_param/errors.h"
 
+#include "core/graph_checks.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/sleeping_barrier.h"
 #include "core/space_filling_curve.h"
@@ -39,14 +41,13 @@ constexpr double kCollapsedRadius = 0.01;
 
 void checkInput(const Graph& graph, const Positions& start, const EmbeddingOptions& options) {
   const auto fail = [](const std::string& what) { throw InvalidInput("embedOnSphere: " + what); };
+  internal::checkGraph("embedOnSphere", graph);
   if (static_cast<std::size_t>(start.cols()) != graph.size())
     fail(std::to_string(start.cols()) + " start positions for a graph of " +
          std::to_string(graph.size()) + " nodes; give one for each");
-  if (graph.neighbors.size() != graph.offsets.back() ||
-      graph.lengths.size() != graph.neighbors.size())
-    fail("the graph's arrays differ in length; use a graph from buildNeighborGraph()");
   if (!start.allFinite())
     fail("a start position is not finite; remove such points first");
+  internal::checkEnum("embedOnSphere: weights", options.weights, EdgeWeights::Adaptive);
   if (!(options.lambda > 0.0 && options.lambda <= 1.0))
     fail("lambda = " + std::to_string(options.lambda) + " is out of range; use (0, 1]");
   if (options.max_iterations < 0)
@@ -329,6 +330,8 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
 
 std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
                                                EdgeWeights weights, double exponent) {
+  internal::checkEnum("tangentialLaplacianLengths: weights", weights, EdgeWeights::Adaptive);
+  internal::checkGraph("tangentialLaplacianLengths", graph);
   if (static_cast<std::size_t>(directions.cols()) != graph.size())
     throw InvalidInput("tangentialLaplacianLengths: " + std::to_string(directions.cols()) +
                        " directions for a graph of " + std::to_string(graph.size()) +

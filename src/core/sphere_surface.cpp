@@ -2,6 +2,7 @@
 
 #include "core/corner_table.h"
 #include "core/exact_predicates.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 #include "core/sphere_locator.h"
 #include "core/vertex_normals.h"
@@ -182,6 +183,7 @@ struct SphereSurface::Data {
 
 SphereSurface::SphereSurface(const Positions& points, const Triangles& triangles,
                              const Positions& sphere, const SphereSurfaceOptions& options) {
+  internal::checkEnum("SphereSurface: fit", options.fit, SurfaceFit::Smooth);
   checkInput(points, triangles, sphere, options.threads);
   data_ = std::make_unique<const Data>(points, triangles, sphere, options);
 }

@@ -1,6 +1,7 @@
 #include "spherical_param/sphere_triangulation.h"
 
 #include "core/incremental_delaunay.h"
+#include "core/option_checks.h"
 #include "core/progress.h"
 #include "core/space_filling_curve.h"
 #include "core/sphere_mesh.h"
@@ -357,6 +358,8 @@ SphereTriangulation triangulateIncrementally(const Positions& directions,
 
 SphereTriangulation triangulateSphere(const Positions& directions,
                                       const TriangulationOptions& options) {
+  internal::checkEnum("triangulateSphere: method", options.method,
+                      TriangulationMethod::Incremental);
   checkInput(directions);
   const internal::ShareReport report = internal::cancellable(options.progress, "triangulateSphere");
   SphereTriangulation result = options.method == TriangulationMethod::Qhull

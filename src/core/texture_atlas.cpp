@@ -4,6 +4,7 @@
 #include "spherical_param/mesh_topology.h"
 
 #include "core/exact_predicates.h"
+#include "core/option_checks.h"
 #include "core/sphere_cutting.h"
 
 #include <Eigen/Geometry>
@@ -315,6 +316,7 @@ private:
 };
 
 void checkOptions(const TextureAtlasOptions& options, const std::string& function) {
+  internal::checkEnum((function + ": chart").c_str(), options.chart, SphereChart::CubeMap);
   if (!(options.margin >= 0.0 && options.margin < 0.25))
     throw InvalidInput(function + ": margin is " + std::to_string(options.margin) +
                        "; give a share of the side of a face in [0, 0.25)");
@@ -392,6 +394,10 @@ TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& spher
 
 Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& values) {
   Index last = -1;
+  for (const CutVertex& vertex : atlas.vertices)
+    if (*std::min_element(vertex.vertices.begin(), vertex.vertices.end()) < 0)
+      throw InvalidInput("atCutVertices: the atlas names a vertex below 0; use one that "
+                         "makeTextureAtlas() made");
   for (const CutVertex& vertex : atlas.vertices)
     last = std::max(last, *std::max_element(vertex.vertices.begin(), vertex.vertices.end()));
   if (values.cols() != last + 1)

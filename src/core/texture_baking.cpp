@@ -2,7 +2,9 @@
 
 #include "spherical_param/errors.h"
 
+#include "core/corner_table.h"
 #include "core/exact_predicates.h"
+#include "core/option_checks.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -39,6 +41,20 @@ void checkOptions(const std::string& function, const BakeOptions& options) {
   check("height", options.height, 16, 16384);
   check("gutter", options.gutter, 0, 256);
   check("threads", options.threads, 0, internal::kMostThreads);
+}
+
+/// Refuses what no makeTextureAtlas() made.
+void checkAtlas(const char* function, const TextureAtlas& atlas) {
+  internal::checkEnum((std::string(function) + ": chart").c_str(), atlas.chart,
+                      SphereChart::CubeMap);
+  internal::checkTriangles(function, atlas.triangles,
+                           static_cast<Eigen::Index>(atlas.vertices.size()));
+  internal::checkTriangles(function, atlas.coordinate_triangles, atlas.coordinates.cols());
+  if (atlas.triangles.cols() != atlas.coordinate_triangles.cols() ||
+      !(atlas.coordinates.array() >= 0.0 && atlas.coordinates.array() <= 1.0).all())
+    throw InvalidInput(std::string(function) +
+                       ": the atlas has no place in [0, 1] for each corner of its triangles; use "
+                       "one that makeTextureAtlas() made");
 }
 
 using Color = std::array<std::uint8_t, 3>;
@@ -243,6 +259,7 @@ TextureImage bakeColors(const TextureAtlas& atlas,
                         const Eigen::Matrix<double, 3, Eigen::Dynamic>& colors,
                         const BakeOptions& options) {
   checkOptions("bakeColors", options);
+  checkAtlas("bakeColors", atlas);
   if (!(colors.array() >= 0.0 && colors.array() <= 255.0).all())
     throw InvalidInput("bakeColors: a colour is out of range or not finite; give channels from 0 "
                        "to 255");
@@ -265,6 +282,7 @@ TextureImage bakeColors(const TextureAtlas& atlas,
 TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere, int cells,
                               const BakeOptions& options) {
   checkOptions("bakeCheckerboard", options);
+  checkAtlas("bakeCheckerboard", atlas);
   if (cells < 1 || cells > 4096)
     throw InvalidInput("bakeCheckerboard: cells is " + std::to_string(cells) +
                        "; give a number from 1 to 4096");
