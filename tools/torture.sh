@@ -55,6 +55,14 @@ table() {
 
 # --- core ----------------------------------------------------------------------------------------
 
+core_fuzzers() {
+  configure_and_build asan fuzz_reconstruct fuzz_stages >"$work/core-build.log" 2>&1 ||
+    { tail -n 40 "$work/core-build.log"; return 1; }
+  mkdir -p "$work/core"
+  test/torture/core/run_fuzzers.sh build/asan/bin "$work/core" "${quick[@]}"
+}
+part "core: fuzzed calls" core_fuzzers || true
+
 # --- shapes --------------------------------------------------------------------------------------
 
 if check "shapes: build" build_release torture_shapes; then
