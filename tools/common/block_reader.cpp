@@ -13,6 +13,7 @@ namespace spherical_param::tools {
 namespace {
 
 constexpr std::size_t block_size = std::size_t{1} << 20;
+constexpr std::size_t smallest_block = std::size_t{1} << 12;
 
 }  // namespace
 
@@ -34,8 +35,11 @@ bool BlockReader::refill() {
   buffer_.erase(0, begin_);
   begin_ = 0;
   const std::size_t kept = buffer_.size();
-  buffer_.resize(kept + block_size);
-  const std::size_t count = std::fread(buffer_.data() + kept, 1, block_size, file_.get());
+  // No more than there is, or a little, should the file grow.
+  const auto wanted = static_cast<std::size_t>(std::clamp<std::uint64_t>(
+      file_size_ - std::min(file_size_, position_), smallest_block, block_size));
+  buffer_.resize(kept + wanted);
+  const std::size_t count = std::fread(buffer_.data() + kept, 1, wanted, file_.get());
   buffer_.resize(kept + count);
   if (std::ferror(file_.get()) != 0) {
     failReading(path_, systemMessage(errno), "check the disk that holds the file");

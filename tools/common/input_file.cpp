@@ -5,6 +5,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -42,6 +43,10 @@ std::string readBeginning(const std::string& path, std::size_t size) {
                                                              std::fclose);
   if (!file) {
     failReading(path, systemMessage(errno), "check the rights of the file");
+  }
+  struct stat status {};
+  if (fstat(fileno(file.get()), &status) == 0 && S_ISREG(status.st_mode)) {
+    size = std::min(size, static_cast<std::size_t>(status.st_size));
   }
   std::string content(size, '\0');
   content.resize(std::fread(content.data(), 1, size, file.get()));
