@@ -52,6 +52,12 @@ bool endsWithLine(int descriptor) {
   return pread(descriptor, &last, 1, status.st_size - 1) != 1 || last == '\n';
 }
 
+/// What is nested deeper is no record of ours, and would end the program as soon as it is copied.
+bool isShallow(int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
+  constexpr int deepest = 64;
+  return depth <= deepest;
+}
+
 /// Keeps others from adding to a file. Where the file system has no locks, lines are still written
 /// at once.
 class FileLock {
@@ -119,7 +125,7 @@ std::vector<Json> readRecords(const std::string& path) {
     failReading(path, systemMessage(errno), "check the rights of the file");
   }
   for (std::string line; std::getline(lines, line);) {
-    Json record = Json::parse(line, nullptr, false);
+    Json record = Json::parse(line, isShallow, false);
     if (record.is_object()) {
       records.push_back(std::move(record));
     }
