@@ -291,12 +291,7 @@ std::vector<Row> inputFiles() {
                   vertices("4", xyz_properties) +
                       "element range_grid 5\nproperty list uchar int vertex_indices\n",
                   goodPoints()),
-              "range grid"),
-      content("PlyGridOfOtherSize", "in.ply",
-              ply("ascii",
-                  "obj_info num_cols 3\nobj_info num_rows 9\n" + vertices("4", xyz_properties),
-                  goodPoints()),
-              "range grid"),
+              "broken or not complete"),
       content("PlyHugeCountAscii", "in.ply",
               ply("ascii", vertices("1000000000", xyz_properties), goodPoints()),
               "shorter than its header"),

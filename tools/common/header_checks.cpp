@@ -74,29 +74,6 @@ void addField(RecordField field, RecordLayout& layout) {
   layout.fields.push_back(std::move(field));
 }
 
-/// Checks lines of numbers: PCL's readers take missing ones for 0, and words for NaN.
-/// \param body_begin where the first line begins; \param skipped lines before those to be checked.
-void checkNumberLines(const std::string& path, std::uint64_t file_size, std::size_t body_begin,
-                      std::int64_t skipped, std::int64_t line_count, std::size_t numbers_per_line) {
-  const std::string content = readBeginning(path, file_size);
-  Lines lines(content);
-  for (std::int64_t found = 0; found < skipped + line_count;) {
-    if (!lines.next()) {
-      failContent(path, "it has fewer points than its header says");
-    }
-    const auto& words = lines.words();
-    if (lines.position() <= body_begin || words.empty() || found++ < skipped) {
-      continue;
-    }
-    if (words.size() < numbers_per_line ||
-        !std::all_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(numbers_per_line),
-                     [](std::string_view word) { return toReal(word).has_value(); })) {
-      failContent(path, "line " + std::to_string(lines.number()) + " has no " +
-                            std::to_string(numbers_per_line) + " numbers");
-    }
-  }
-}
-
 }  // namespace
 
 RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
@@ -187,10 +164,8 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   if (storage == "ascii") {
     // A value needs a digit and a separator, the last one no separator.
     requireBytes(path, 2.0 * point_count * values_per_point - 1.0, body);
-    layout.known = true;
   } else if (storage == "binary") {
     requireBytes(path, point_count * bytes_per_point, body);
-    layout.known = true;
     layout.storage = RecordStorage::LittleEndian;
   } else if (storage == "binary_compressed") {
     requireBytes(path, 8.0, body);
@@ -203,10 +178,18 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
     if (static_cast<double>(sizes[1]) != point_count * stored_bytes_per_point) {
       failContent(path, "its compressed data does not hold the points of its header");
     }
+    // Three bytes stand for 264 at most.
+    if (static_cast<double>(sizes[1]) > 88.0 * static_cast<double>(sizes[0])) {
+      failContent(path, "its compressed data is too short for the points of its header");
+    }
+    layout.storage = RecordStorage::Packed;
+    layout.packed_size = sizes[0];
+    // The body begins behind both sizes.
+    layout.body = sizeof sizes;
   } else {
     failContent(path, "its data is stored as " + inQuotes(storage));
   }
-  layout.body = lines.position();
+  layout.body += lines.position();
   layout.body_line = lines.number();
   layout.points = static_cast<std::uint64_t>(points);
   return layout;
@@ -237,6 +220,10 @@ double plyTypeSize(std::string_view type) {
   return found == sizes.end() ? 0.0 : found->second;
 }
 
+bool isRealPlyType(std::string_view type) {
+  return type == "float" || type == "float32" || type == "double" || type == "float64";
+}
+
 PlyProperty parsePlyProperty(const std::string& path, const std::vector<std::string_view>& words) {
   PlyProperty property;
   property.list = words.size() > 1 && words[1] == "list";
@@ -245,7 +232,8 @@ PlyProperty parsePlyProperty(const std::string& path, const std::vector<std::str
     failContent(path, "its header has a broken property");
   }
   for (std::size_t w = property.list ? 2 : 1; w + 1 < expected; ++w) {
-    if (plyTypeSize(words[w]) == 0.0) {
+    const bool real_length = property.list && w == 2 && isRealPlyType(words[w]);
+    if (plyTypeSize(words[w]) == 0.0 || real_length) {
       failContent(path, "its header has the unknown type " + inQuotes(words[w]));
     }
   }
@@ -255,7 +243,8 @@ PlyProperty parsePlyProperty(const std::string& path, const std::vector<std::str
   return property;
 }
 
-/// PCL's reader takes the three colours for one packed number: they must be bytes, and in order.
+/// PCL's reader takes the three colours for one packed number: files whose colours it and others
+/// would tell apart in different ways are refused.
 void checkPlyColors(const std::string& path, const PlyElement& vertex) {
   for (const std::string prefix : {"", "diffuse_"}) {
     std::array<std::size_t, 3> places{};
@@ -299,9 +288,7 @@ void checkPlyVertex(const std::string& path, const PlyElement& vertex) {
       failContent(path, "its vertices have the property " + inQuotes(property.name) + " twice");
     }
     const bool coordinate = property.name == "x" || property.name == "y" || property.name == "z";
-    const bool real = property.type == "float" || property.type == "float32" ||
-                      property.type == "double" || property.type == "float64";
-    if (coordinate && !real) {
+    if (coordinate && !isRealPlyType(property.type)) {
       failReading(path, "its coordinates are whole numbers", "save it with float coordinates");
     }
   }
@@ -364,17 +351,12 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   bool ascii = false;
   bool big_endian = false;
   bool format_known = false;
-  std::int64_t grid_size = 0;
   for (;;) {
     if (!lines.next()) {
       failContent(path, "its header has no end");
     }
     const auto& words = lines.words();
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
-      if (words.size() == 3 && words[0] == "obj_info" &&
-          (words[1] == "num_cols" || words[1] == "num_rows")) {
-        grid_size = (grid_size == 0 ? 1 : grid_size) * requireCount(path, words[2], "rows");
-      }
       continue;
     }
     if (words[0] == "end_header") {
@@ -398,15 +380,11 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   }
 
   int vertex_elements = 0;
-  std::int64_t vertex_count = 0;
   double needed = 0.0;
   for (const PlyElement& element : elements) {
     if (element.name == "vertex") {
       ++vertex_elements;
       checkPlyVertex(path, element);
-      vertex_count = element.count;
-    } else if (element.name == "range_grid") {
-      grid_size = element.count;
     }
     double bytes = 0.0;
     for (const PlyProperty& property : element.properties) {
@@ -418,26 +396,13 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   if (vertex_elements != 1) {
     failContent(path, "it has no vertices");
   }
-  // PCL spreads the vertices over the cells of the grid, without a look at the limits of either.
-  if (grid_size != 0 && grid_size != vertex_count) {
-    failReading(path, "it is a range grid", "save its points as a plain cloud");
-  }
   requireBytes(path, needed - (ascii ? 1.0 : 0.0), file_size - lines.position());
   RecordLayout layout = toLayout(elements);
-  layout.known = grid_size == 0;
   layout.storage = ascii        ? RecordStorage::Text
                    : big_endian ? RecordStorage::BigEndian
                                 : RecordStorage::LittleEndian;
   layout.body = lines.position();
   layout.body_line = lines.number();
-  if (ascii && !layout.known) {
-    std::uint64_t before = 0;
-    for (const SkippedElement& element : layout.before) {
-      before += element.count;
-    }
-    checkNumberLines(path, file_size, lines.position(), static_cast<std::int64_t>(before),
-                     vertex_count, layout.columns);
-  }
   return layout;
 }
 

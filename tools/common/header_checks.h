@@ -7,15 +7,14 @@
 
 namespace spherical_param::tools {
 
-// The readers of PCL and VTK trust the header of a file: they reserve memory for as many points as
-// it claims, and follow sizes out of their arrays. So the header is compared with the file first.
-// Our own reader of records relies on that as well.
+// The header of a file is compared with its size before anything is read: memory is reserved for as
+// many points as it claims.
 
 /// Checks the header of a PCD file. \return where its points are. \throw Failure.
 RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size);
 
-/// Checks the header of a PLY file, also for properties that PCL's reader would put in the wrong
-/// place. \return where its points are. \throw Failure.
+/// Checks the header of a PLY file, also for colours that other programs take for something else.
+/// \return where its points are. \throw Failure.
 RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size);
 
 /// Checks a legacy VTK file. \return the number of points that it declares. \throw Failure.

@@ -7,7 +7,8 @@
 
 namespace spherical_param::tools {
 
-enum class RecordStorage { Text, LittleEndian, BigEndian };
+/// Packed: little endian as well, but all values of one field after those of another, by LZF.
+enum class RecordStorage { Text, LittleEndian, BigEndian, Packed };
 
 /// One property of the points of a file.
 struct RecordField {
@@ -31,13 +32,13 @@ struct SkippedElement {
 
 /// Where a file has its points, as its header says.
 struct RecordLayout {
-  bool known = false;  ///< false: they are packed or shuffled, which only PCL's reader knows
   RecordStorage storage = RecordStorage::Text;
-  std::uint64_t body = 0;       ///< bytes before the first record
-  std::size_t body_line = 0;    ///< lines before the first record
-  std::uint64_t points = 0;     ///< number of them
-  std::size_t record_size = 0;  ///< bytes of a point
-  std::size_t columns = 0;      ///< numbers on a line of text
+  std::uint64_t body = 0;         ///< bytes before the first record
+  std::size_t body_line = 0;      ///< lines before the first record
+  std::uint64_t points = 0;       ///< number of them
+  std::size_t record_size = 0;    ///< bytes of a point
+  std::size_t columns = 0;        ///< numbers on a line of text
+  std::uint64_t packed_size = 0;  ///< bytes of the file, if they are packed
   std::vector<RecordField> fields;
   std::vector<SkippedElement> before;  ///< the points
   std::vector<SkippedElement> after;   ///< the points

@@ -1,6 +1,7 @@
 #include "common/record_reader.h"
 
 #include "common/input_file.h"
+#include "common/lzf.h"
 #include "common/numbers.h"
 #include "common/text.h"
 
@@ -9,6 +10,7 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -109,11 +111,11 @@ public:
       return field != nullptr && field->type == 'U' && field->size == 1 && field->count == 1;
     };
     for (const std::string prefix : {"", "diffuse_"}) {
-      if (channels_[0] == nullptr && is_byte(findField(layout.fields, prefix + "red"))) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          static const std::array<const char*, 3> names = {"red", "green", "blue"};
-          channels_[c] = findField(layout.fields, prefix + names[c]);
-        }
+      const std::array<const RecordField*, 3> found = {findField(layout.fields, prefix + "red"),
+                                                       findField(layout.fields, prefix + "green"),
+                                                       findField(layout.fields, prefix + "blue")};
+      if (channels_[0] == nullptr && std::all_of(found.begin(), found.end(), is_byte)) {
+        std::copy(found.begin(), found.end(), channels_.begin());
       }
     }
     if (channels_[0] != nullptr) {
@@ -163,6 +165,9 @@ public:
     for (const SkippedElement& element : layout_.before) {
       isText() ? skipLines(element.count) : skipBytes(element);
     }
+    if (isPacked()) {
+      unpack();
+    }
     PointData data = readPoints();
     for (const SkippedElement& element : layout_.after) {
       isText() ? skipWords(element) : skipBytes(element);
@@ -172,6 +177,7 @@ public:
 
 private:
   bool isText() const { return layout_.storage == RecordStorage::Text; }
+  bool isPacked() const { return layout_.storage == RecordStorage::Packed; }
 
   PointData readPoints() {
     const auto coordinates = findReals(layout_.fields, {"x", "y", "z"});
@@ -204,11 +210,43 @@ private:
   }
 
   void readBytes(Record& record) {
-    const char* const bytes = reader_.take(layout_.record_size);
+    const char* const bytes = isPacked() ? gathered() : reader_.take(layout_.record_size);
     if (bytes == nullptr) {
       failBroken(path_);
     }
     record.setBytes(bytes);
+  }
+
+  void unpack() {
+    std::size_t size = 0;
+    const auto count = static_cast<std::size_t>(layout_.points);
+    for (const RecordField& field : layout_.fields) {
+      size += isPadding(field) ? 0 : count * field.size * field.count;
+    }
+    std::optional<std::string> bytes = unpackLzf(reader_, layout_.packed_size, size);
+    if (!bytes) {
+      failBroken(path_);
+    }
+    unpacked_ = std::move(*bytes);
+    gathered_.assign(layout_.record_size, '\0');
+  }
+
+  /// PCL leaves these fields out of what it packs.
+  static bool isPadding(const RecordField& field) { return field.name == "_"; }
+
+  /// The next record, from the columns that were unpacked.
+  const char* gathered() {
+    const auto count = static_cast<std::size_t>(layout_.points);
+    std::size_t column = 0;
+    for (const RecordField& field : layout_.fields) {
+      if (!isPadding(field)) {
+        const std::size_t size = field.size * field.count;
+        std::memcpy(&gathered_[field.offset], &unpacked_[column + next_record_ * size], size);
+        column += count * size;
+      }
+    }
+    ++next_record_;
+    return gathered_.data();
   }
 
   /// The words of the next line that has any.
@@ -253,6 +291,9 @@ private:
 
   /// Behind the points, nobody cares which line a word is on.
   void skipWords(const SkippedElement& element) {
+    if (element.properties.empty()) {
+      return;
+    }
     const auto next_word = [this] {
       if (next_word_ >= words_.size()) {
         next_word_ = 0;
@@ -284,6 +325,9 @@ private:
   }
 
   void skipBytes(const SkippedElement& element) {
+    if (element.properties.empty()) {
+      return;  // however many there are
+    }
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (const SkippedElement::Property& property : element.properties) {
         std::uint64_t values = 1;
@@ -313,6 +357,9 @@ private:
   std::vector<std::string_view> words_;
   std::size_t next_word_ = 0;
   bool behind_points_ = false;
+  std::string unpacked_;  ///< all values of a field, then those of the next
+  std::string gathered_;  ///< those of one point
+  std::size_t next_record_ = 0;
 };
 
 }  // namespace
