@@ -53,6 +53,11 @@ table() {
 
 # --- readers -------------------------------------------------------------------------------------
 
+if check "readers: build" configure_and_build asan reader_fuzzers; then
+  part "readers: fuzz" test/torture/readers/run_fuzzers.py "${quick[@]}" \
+    build/asan/bin "$work/readers" || true
+fi
+
 # --- core ----------------------------------------------------------------------------------------
 
 core_fuzzers() {
