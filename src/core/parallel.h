@@ -4,7 +4,9 @@
 #include "spherical_param/types.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <exception>
 #include <vector>
 
 #ifdef _OPENMP
@@ -45,18 +47,49 @@ inline int threadCount([[maybe_unused]] int requested, [[maybe_unused]] std::siz
   return 1;
 }
 
-/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. The work must
-/// not throw.
+/// Carries an exception, such as that there is no memory, out of a parallel region: one that left
+/// it by itself would end the program, even where there is but one thread.
+class ExceptionCarrier {
+public:
+  /// Does a part of the work, unless another part has thrown.
+  template <typename Work>
+  void run(const Work& work) {
+    if (has_failed_.load(std::memory_order_relaxed))
+      return;
+    try {
+      work();
+    } catch (...) {
+      if (!has_failed_.exchange(true))
+        error_ = std::current_exception();
+    }
+  }
+
+  /// Throws what one of the parts has thrown. To be called after the region.
+  void rethrow() const {
+    if (error_)
+      std::rethrow_exception(error_);
+  }
+
+private:
+  std::atomic<bool> has_failed_{false};
+  std::exception_ptr error_;
+};
+
+/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. What one of them
+/// throws ends the work; blocks that others have begun are done.
 template <typename Work>
 void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
   const auto blocks = static_cast<std::ptrdiff_t>((count + kBlockSize - 1) / kBlockSize);
+  ExceptionCarrier carrier;
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
 #endif
   for (std::ptrdiff_t b = 0; b < blocks; ++b) {
     const auto block = static_cast<std::size_t>(b);
-    work(block, block * kBlockSize, std::min(count, (block + 1) * kBlockSize));
+    carrier.run(
+        [&] { work(block, block * kBlockSize, std::min(count, (block + 1) * kBlockSize)); });
   }
+  carrier.rethrow();
 }
 
 /// The same in a few dozen parallel regions, if there is someone to tell of the share that is done
@@ -96,9 +129,11 @@ void forEachItem(std::size_t count, int threads, const Work& work) {
 }
 
 /// Calls work(thread, i) for each i in [0, count), where thread < threads, each a long task of its
-/// own. The calling thread is number 0 and has the first task. The work must not throw.
+/// own. The calling thread is number 0 and has the first task. What one throws ends the work; tasks
+/// that others have begun are done.
 template <typename Work>
 void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
+  ExceptionCarrier carrier;
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
 #endif
@@ -108,8 +143,9 @@ void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& wo
 #else
     const std::size_t thread = 0;
 #endif
-    work(thread, static_cast<std::size_t>(i));
+    carrier.run([&] { work(thread, static_cast<std::size_t>(i)); });
   }
+  carrier.rethrow();
 }
 
 /// The sum of term(begin, end) over the blocks of [0, count), in their order.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -64,6 +65,27 @@ TEST(Parallel, WhatAReportThrowsEndsTheWork) {
       std::runtime_error);
   EXPECT_EQ(std::count(done.begin(), done.end(), 1),
             static_cast<std::ptrdiff_t>(2 * kReportedItems));
+}
+
+TEST(Parallel, WhatTheWorkThrowsIsPassedOn) {
+  for (const int threads : {1, 3}) {
+    EXPECT_THROW(forEachItem(100 * kBlockSize, threads,
+                             [](std::size_t, std::size_t i) {
+                               if (i == 7 * kBlockSize || i == 70 * kBlockSize)
+                                 throw std::bad_alloc();
+                             }),
+                 std::bad_alloc);
+    EXPECT_THROW(forEachTask(7, threads,
+                             [](std::size_t, std::size_t i) {
+                               if (i >= 2)
+                                 throw std::runtime_error("enough");
+                             }),
+                 std::runtime_error);
+    // And the next one works.
+    std::vector<char> done(3 * kBlockSize, 0);
+    forEachItem(done.size(), threads, [&](std::size_t, std::size_t i) { done[i] = 1; });
+    EXPECT_EQ(std::count(done.begin(), done.end(), 1), static_cast<std::ptrdiff_t>(done.size()));
+  }
 }
 
 TEST(Parallel, ReportsChangeNoSum) {
