@@ -7,8 +7,7 @@ namespace detail {
 
 namespace {
 
-/// Queries that one thread has answered at a time: FLANN opens a parallel region for each call,
-/// which takes longer than a query.
+/// Queries that one thread has answered at a time, with the same scratch memory.
 constexpr std::size_t queries_at_a_time = 512;
 
 }  // namespace

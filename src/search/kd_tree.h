@@ -4,9 +4,71 @@
 
 #include <flann/algorithms/kdtree_single_index.h>
 #include <flann/util/matrix.h>
+#include <flann/util/result_set.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <new>
+#include <stdexcept>
 #include <vector>
+
+namespace spherical_param::internal {
+
+/// Squared distance in space. With a distance of our own the tree is none of those in PCL's
+/// libraries, which open a parallel region in each query and would take the place of ours.
+template <typename Scalar>
+struct SquaredDistance {
+  using is_kdtree_distance = bool;
+  using ElementType = Scalar;
+  using ResultType = Scalar;
+
+  template <typename A, typename B>
+  Scalar operator()(A a, B b, std::size_t /*dimensions*/, Scalar /*worst*/ = -1) const {
+    const Scalar x = a[0] - b[0];
+    const Scalar y = a[1] - b[1];
+    const Scalar z = a[2] - b[2];
+    return x * x + y * y + z * z;
+  }
+  Scalar accum_dist(Scalar a, Scalar b, int /*axis*/) const { return (a - b) * (a - b); }
+};
+
+/// A node of FLANN's tree, which says so where there is no memory for it: FLANN's own would be
+/// written to nowhere. Their memory is that of the tree, and goes with it.
+template <typename Scalar, typename Node>
+struct KdTreeNode {
+  int left;     ///< of the points of a leaf, the first, then the end
+  int right;    ///<
+  int divfeat;  ///< axis of the cut
+  Scalar divlow;
+  Scalar divhigh;
+  Node* child1;
+  Node* child2;
+
+  static void* operator new(std::size_t size, flann::PooledAllocator& pool) {
+    void* const memory = pool.allocateMemory(static_cast<int>(size));
+    if (memory == nullptr)
+      throw std::bad_alloc();
+    return memory;
+  }
+  static void operator delete(void* /*node*/, flann::PooledAllocator& /*pool*/) {}
+
+  /// Needed by functions of FLANN that nobody calls.
+  template <typename Archive>
+  void serialize(Archive& /*archive*/) {
+    throw std::logic_error("a tree is never stored");
+  }
+};
+
+}  // namespace spherical_param::internal
+
+namespace flann {
+template <>
+struct KDTreeSingleIndex<spherical_param::internal::SquaredDistance<float>>::Node
+    : spherical_param::internal::KdTreeNode<float, Node> {};
+template <>
+struct KDTreeSingleIndex<spherical_param::internal::SquaredDistance<double>>::Node
+    : spherical_param::internal::KdTreeNode<double, Node> {};
+}  // namespace flann
 
 namespace spherical_param::internal {
 
@@ -33,41 +95,26 @@ public:
   /// Writes the nearest points of each query, the point itself among them: `neighbors` for each, at
   /// most size(), one after the other. For many queries at a time, from several threads if wanted.
   void find(const Index* queries, std::size_t count, std::size_t neighbors, Index* found) const {
-    std::vector<Scalar> of_queries(3 * count);
-    for (std::size_t i = 0; i < count; ++i)
-      Eigen::Matrix<Scalar, 3, 1>::Map(of_queries.data() + 3 * i) = coordinates_.col(queries[i]);
-    std::vector<Scalar> distances(neighbors * count);
-    flann::Matrix<int> rows(found, count, neighbors);
-    flann::Matrix<Scalar> distance_rows(distances.data(), count, neighbors);
-    flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED);
-    parameters.cores = 1;
-    parameters.use_heap = flann::FLANN_False;
-    index_.knnSearch(flann::Matrix<Scalar>(of_queries.data(), count, 3), rows, distance_rows,
-                     neighbors, parameters);
+    const flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED);
+    // One by one: FLANN's own loop is a parallel region, which no exception may leave.
+    flann::KNNSimpleResultSet<Scalar> nearest(neighbors);
+    std::vector<std::size_t> points(neighbors);
+    std::vector<Scalar> distances(neighbors);
+    for (std::size_t i = 0; i < count; ++i) {
+      nearest.clear();
+      index_.findNeighbors(nearest, coordinates_.col(queries[i]).data(), parameters);
+      const std::size_t size = std::min(nearest.size(), neighbors);
+      nearest.copy(points.data(), distances.data(), size, true);
+      for (std::size_t k = 0; k < size; ++k)
+        found[i * neighbors + k] = static_cast<Index>(points[k]);
+    }
   }
 
 private:
-  /// Squared distance in space. With a distance of our own the tree is none of those in PCL's
-  /// libraries, which open a parallel region in each query and would take the place of ours.
-  struct SquaredDistance {
-    using is_kdtree_distance = bool;
-    using ElementType = Scalar;
-    using ResultType = Scalar;
-
-    template <typename A, typename B>
-    Scalar operator()(A a, B b, std::size_t /*dimensions*/, Scalar /*worst*/ = -1) const {
-      const Scalar x = a[0] - b[0];
-      const Scalar y = a[1] - b[1];
-      const Scalar z = a[2] - b[2];
-      return x * x + y * y + z * z;
-    }
-    Scalar accum_dist(Scalar a, Scalar b, int /*axis*/) const { return (a - b) * (a - b); }
-  };
-
   static constexpr int kLeafSize = 15;  ///< as in PCL
 
   Eigen::Matrix<Scalar, 3, Eigen::Dynamic> coordinates_;
-  flann::KDTreeSingleIndex<SquaredDistance> index_;
+  flann::KDTreeSingleIndex<SquaredDistance<Scalar>> index_;
 };
 
 }  // namespace spherical_param::internal
