@@ -17,8 +17,8 @@ bool remesh(const spherical_param::Positions& points, const spherical_param::Tri
             const spherical_param::Positions& sphere, const SphericalParamRemeshOptions& options,
             pcl::PolygonMesh& output) {
   pcl::PolygonMesh mesh;
-  mesh.header = output.header;
   const bool is_done = runCore("remeshSphericalParam", [&] {
+    mesh.header = output.header;
     // The grid itself would take as many as it can have.
     constexpr std::size_t most_points = std::size_t{1} << 29;
     if (options.points > most_points)

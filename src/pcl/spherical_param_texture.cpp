@@ -37,9 +37,9 @@ bool textureMesh(const spherical_param::Positions& points,
                  const SphericalParamTextureOptions& options, pcl::TextureMesh& output,
                  spherical_param::TextureImage& image) {
   pcl::TextureMesh mesh;
-  mesh.header = output.header;
   spherical_param::TextureImage texture;
   const bool is_done = runCore("textureSphericalParam", [&] {
+    mesh.header = output.header;
     const spherical_param::TextureAtlas atlas =
         spherical_param::makeTextureAtlas(triangles, sphere, options.atlas);
     texture = colors.cols() > 0 ? spherical_param::bakeColors(atlas, colors, options.bake)

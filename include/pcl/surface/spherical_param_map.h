@@ -32,9 +32,13 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
 namespace detail {
 
 /** \brief Calls a piece of work that uses the core. Whatever exception it throws is told by
- * PCL_ERROR as one of a function.
+ * PCL_ERROR as one of a function. Needs no memory itself.
  * \return false after an exception */
-PCL_EXPORTS bool runCore(const std::string& function, const std::function<void()>& work);
+PCL_EXPORTS bool runCore(const char* function, const std::function<void()>& work);
+template <typename Work>
+bool runCore(const char* function, const Work& work) {
+  return runCore(function, std::function<void()>(std::cref(work)));
+}
 
 /** \brief Maps a mesh to the sphere; a failure is told as one of computeSphericalParamMap().
  * \return false after a failure, with an empty map */

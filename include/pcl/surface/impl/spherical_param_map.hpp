@@ -16,7 +16,9 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
   // It has told why.
   if (!reconstruction.getErrorMessage().empty())
     return false;
+  spherical_param::SphereMapOptions with_threads;
   const bool has_points = detail::runCore("computeSphericalParamMap", [&] {
+    with_threads = options;
     if (result.smoothed.cols() > 0) {
       points = result.smoothed;
       return;
@@ -30,7 +32,6 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
           static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
     }
   });
-  spherical_param::SphereMapOptions with_threads = options;
   if (with_threads.threads == 0)
     with_threads.threads = static_cast<int>(reconstruction.getNumberOfThreads());
   if (has_points && detail::mapMesh(points, result, with_threads, map))

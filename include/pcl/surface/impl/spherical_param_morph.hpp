@@ -34,14 +34,15 @@ bool morphSphericalParam(SphericalParamReconstruction<PointInT>& first,
   output.clear();
   if (impossible != nullptr)
     impossible->clear();
-  if (!detail::areFrames(frames))
+  SphericalParamMorphOptions with_threads;
+  if (!detail::areFrames(frames) ||
+      !detail::runCore("morphSphericalParam", [&] { with_threads = options; }))
     return false;
   detail::MappedMesh first_mesh;
   detail::MappedMesh second_mesh;
   if (!detail::mapForMorph(first, options.map, first_mesh) ||
       !detail::mapForMorph(second, options.map, second_mesh))
     return false;
-  SphericalParamMorphOptions with_threads = options;
   if (with_threads.morph.threads == 0)
     with_threads.morph.threads = static_cast<int>(first.getNumberOfThreads());
   return detail::morph(first_mesh, first.getResult().triangles, second_mesh,

@@ -34,12 +34,28 @@ struct ProgressCallbackFailure {
 };
 
 /** \brief The core's messages begin with the name of the function; ours has its own. */
-inline std::string withoutFunctionName(const std::string& message) {
-  std::size_t end = 0;
-  while (end < message.size() && std::isalnum(static_cast<unsigned char>(message[end])) != 0)
+inline const char* withoutFunctionName(const char* message) {
+  const char* end = message;
+  while (std::isalnum(static_cast<unsigned char>(*end)) != 0)
     ++end;
-  return end > 0 && message.compare(end, 2, ": ") == 0 ? message.substr(end + 2) : message;
+  return end > message && end[0] == ':' && end[1] == ' ' ? end + 2 : message;
 }
+
+/** \brief Keeps a message in words that need no memory, if there is none for the message. */
+inline void setMessage(std::string& message, const char* text) noexcept {
+  try {
+    message = text;
+  } catch (...) {
+    message = "out of memory";
+  }
+}
+
+/** \brief Gives an output the header of the cloud, if it has one. */
+inline void setHeader(pcl::PolygonMesh& output, const pcl::PCLHeader& header) {
+  output.header = header;
+}
+template <typename Output>
+void setHeader(Output& /*output*/, const pcl::PCLHeader& /*header*/) {}
 
 /** \brief Which numbers a search object returns that was filled with a subset of a cloud: PCL 1.13
  * has both, e.g. KdTree the one and FlannSearch the other. */
@@ -235,8 +251,6 @@ SphericalParamReconstruction<PointInT>::SphericalParamReconstruction() {
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct(pcl::PolygonMesh& output) {
   run(output);
-  if (input_)
-    output.header = input_->header;
 }
 
 template <typename PointInT>
@@ -345,17 +359,19 @@ void SphericalParamReconstruction<PointInT>::run(Output& output) {
     if (!initialized || (fake_indices_ && indices_->size() != input_->size()))
       throw std::bad_alloc();
     performReconstruction(output);
+    detail::setHeader(output, input_->header);
   } catch (const detail::ProgressCallbackFailure& error) {
     callback_error = error.cause;
-    failure = "the progress callback threw an exception";
+    detail::setMessage(failure, "the progress callback threw an exception");
   } catch (const std::bad_alloc&) {
-    failure = "out of memory; mesh a subset of the points (setIndices) or lower k (setKSearch)";
+    detail::setMessage(
+        failure, "out of memory; mesh a subset of the points (setIndices) or lower k (setKSearch)");
   } catch (const std::exception& error) {
-    failure = detail::withoutFunctionName(error.what());
+    detail::setMessage(failure, detail::withoutFunctionName(error.what()));
     if (failure.empty())
-      failure = "an exception without a message";
+      detail::setMessage(failure, "an exception without a message");
   } catch (...) {
-    failure = "an unknown exception, probably of the search object";
+    detail::setMessage(failure, "an unknown exception, probably of the search object");
   }
   if (initialized)
     deinitCompute();
@@ -367,6 +383,12 @@ void SphericalParamReconstruction<PointInT>::run(Output& output) {
 
   output = Output();
   clearResults();
+  try {
+    if (input_)
+      detail::setHeader(output, input_->header);
+  } catch (const std::bad_alloc&) {
+    // There is a failure to be told already.
+  }
   error_message_ = std::move(failure);
   if (callback_error)
     std::rethrow_exception(callback_error);

@@ -9,13 +9,16 @@ template <typename PointInT>
 bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,
                           pcl::PolygonMesh& output, const SphericalParamRemeshOptions& options) {
   output = pcl::PolygonMesh();
-  if (reconstruction.getInputCloud())
-    output.header = reconstruction.getInputCloud()->header;
+  SphericalParamRemeshOptions with_threads;
+  const bool is_ready = detail::runCore("remeshSphericalParam", [&] {
+    with_threads = options;
+    if (reconstruction.getInputCloud())
+      output.header = reconstruction.getInputCloud()->header;
+  });
   spherical_param::Positions points;
   spherical_param::SphereMap map;
-  if (!computeSphericalParamMap(reconstruction, points, map, options.map))
+  if (!is_ready || !computeSphericalParamMap(reconstruction, points, map, options.map))
     return false;
-  SphericalParamRemeshOptions with_threads = options;
   if (with_threads.map.threads == 0)
     with_threads.map.threads = static_cast<int>(reconstruction.getNumberOfThreads());
   return detail::remesh(points, reconstruction.getResult().triangles, map.sphere, with_threads,

@@ -32,11 +32,15 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
                            const SphericalParamTextureOptions& options) {
   output = pcl::TextureMesh();
   image = spherical_param::TextureImage();
-  if (reconstruction.getInputCloud())
-    output.header = reconstruction.getInputCloud()->header;
+  SphericalParamTextureOptions with_threads;
+  const bool is_ready = detail::runCore("textureSphericalParam", [&] {
+    with_threads = options;
+    if (reconstruction.getInputCloud())
+      output.header = reconstruction.getInputCloud()->header;
+  });
   spherical_param::Positions points;
   spherical_param::SphereMap map;
-  if (!computeSphericalParamMap(reconstruction, points, map, options.map))
+  if (!is_ready || !computeSphericalParamMap(reconstruction, points, map, options.map))
     return false;
   spherical_param::Positions colors;
   const bool has_colors = detail::runCore("textureSphericalParam", [&] {
@@ -51,7 +55,6 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
             detail::colorOf(cloud[static_cast<std::size_t>(vertices[i])]);
     }
   });
-  SphericalParamTextureOptions with_threads = options;
   if (with_threads.bake.threads == 0)
     with_threads.bake.threads = static_cast<int>(reconstruction.getNumberOfThreads());
   return has_colors && detail::textureMesh(points, reconstruction.getResult().triangles, map.sphere,
