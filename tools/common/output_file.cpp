@@ -42,7 +42,13 @@ Registry& registry() {
 std::string resolveLinks(const std::string& path) {
   std::error_code error;
   // Of a relative path that does not exist, weakly_canonical() alone would leave "./" or not.
-  const fs::path resolved = fs::weakly_canonical(fs::absolute(path, error), error);
+  fs::path current = fs::absolute(path, error);
+  // Nor does it follow a link to a file that is not there yet.
+  constexpr int most_links = 40;
+  for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(current, error)); ++i) {
+    current = current.parent_path() / fs::read_symlink(current, error);
+  }
+  const fs::path resolved = fs::weakly_canonical(current, error);
   return error ? path : resolved.string();
 }
 
@@ -169,6 +175,8 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(resolveLi
     }
     return;
   }
+  // What a run that was killed has left here goes with a later one.
+  removeAbandonedFiles(directoryOf(target_));
   // The name does not grow with the file's, which may be as long as a name can be.
   std::string pattern = directoryOf(target_) + "/" + temporaryPrefix(getpid()) + "XXXXXX";
   const std::lock_guard<std::mutex> lock(registry().mutex);
