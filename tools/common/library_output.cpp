@@ -21,6 +21,9 @@ void flushAll() {
 
 int replaceByNull(int descriptor) {
   const int saved = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
+  if (saved < 0) {
+    return saved;  // better what a library prints than nothing ever after
+  }
   const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (null >= 0) {
     dup2(null, descriptor);

@@ -10,12 +10,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <new>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -69,6 +71,31 @@ void handleSignals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+constexpr const char* no_memory = "not enough memory";
+constexpr const char* fewer_points = "use fewer points or a smaller -k";
+
+/// Prints a failure; needs no memory.
+int print(const char* tool, const char* cause, const char* remedy) noexcept {
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool, cause, remedy);
+  return static_cast<int>(ExitCode::Failed);
+}
+
+/// The tool that works, if one does.
+std::atomic<const char*> working_tool{nullptr};
+
+/// OpenMP's runtime prints what it lacks and ends the program where it cannot start a thread.
+void endedByLibrary() {
+  const char* const tool = working_tool.exchange(nullptr);
+  if (tool == nullptr) {
+    return;
+  }
+  removeTemporaryFiles([] {});
+  print(tool, "a library has ended the program",
+        "allow more memory or processes, or give -threads 1");
+  std::_Exit(static_cast<int>(ExitCode::Failed));
+}
+
 int report(const std::string& tool, const ToolError& error) {
   std::fflush(stdout);
   std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool.c_str(), oneLine(error.what()).c_str(),
@@ -115,17 +142,34 @@ void endBySignal(int signal_number) {
 int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(const std::vector<std::string>&)>& body) {
   occupyStandardStreams();
-  handleSignals();
-  silenceLibraryConsoles();
+  std::atexit(endedByLibrary);
+  // Whatever comes of it, the end is ours.
+  const auto finished = [](int exit_code) {
+    working_tool = nullptr;
+    return exit_code;
+  };
   try {
-    body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
-    return static_cast<int>(ExitCode::Done);
-  } catch (const ToolError& error) {
-    return report(tool, error);
+    try {
+      handleSignals();
+      silenceLibraryConsoles();
+      working_tool = tool.c_str();
+      body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+      return finished(static_cast<int>(ExitCode::Done));
+    } catch (const ToolError& error) {
+      return finished(report(tool, error));
+    } catch (const std::bad_alloc&) {
+      return finished(print(tool.c_str(), no_memory, fewer_points));
+    } catch (const std::system_error& error) {
+      return finished(
+          report(tool, Failure("the system refuses a resource: " + std::string(error.what()),
+                               "allow more memory or processes")));
+    } catch (const std::exception& error) {
+      return finished(
+          report(tool, Failure(error.what(), "this should not happen: please report it")));
+    }
   } catch (const std::bad_alloc&) {
-    return report(tool, Failure("not enough memory", "use fewer points or a smaller -k"));
-  } catch (const std::exception& error) {
-    return report(tool, Failure(error.what(), "this should not happen: please report it"));
+    // Not even enough for the message.
+    return finished(print(tool.c_str(), no_memory, fewer_points));
   }
 }
 
