@@ -82,6 +82,15 @@ fi
 
 # --- faults --------------------------------------------------------------------------------------
 
+if run "build of the faults" build_release torture_allocation pcl_spherical_param_reconstruction \
+  pcl_spherical_param_remesh pcl_spherical_param_morph pcl_spherical_param_texture \
+  pcl_spherical_param_scan; then
+  part "faults: allocations" build/release/bin/torture_allocation "${quick[@]}" || true
+  part "faults: files and signals" test/torture/faults/torture_files.py "${quick[@]}" || true
+else
+  failed=$((failed + 1))
+fi
+
 # --- threads -------------------------------------------------------------------------------------
 
 bin=build/release/bin
