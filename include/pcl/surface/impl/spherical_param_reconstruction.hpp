@@ -392,7 +392,12 @@ void SphericalParamReconstruction<PointInT>::run(Output& output) {
   error_message_ = std::move(failure);
   if (callback_error)
     std::rethrow_exception(callback_error);
-  PCL_ERROR("[pcl::%s::reconstruct] %s\n", getClassName().c_str(), error_message_.c_str());
+  try {
+    PCL_ERROR("[pcl::%s::reconstruct] %s\n", getClassName().c_str(), error_message_.c_str());
+  } catch (const std::bad_alloc&) {
+    // Not even for the name of the class.
+    PCL_ERROR("[pcl::SphericalParamReconstruction::reconstruct] %s\n", error_message_.c_str());
+  }
 }
 
 template <typename PointInT>
