@@ -69,8 +69,10 @@ class Ended:
         self.errors = errors
 
     def told(self):
-        """A line of cause, and one of remedy."""
-        lines = [line for line in self.errors.decode(errors="replace").split("\n") if line]
+        """A line of cause, and one of remedy. OpenMP's runtime prints one of its own before it ends
+        the program, which nobody can keep it from."""
+        lines = [line for line in self.errors.decode(errors="replace").split("\n")
+                 if line and not line.startswith("libgomp: ")]
         return len(lines) == 2 and PREFIX in lines[0] and lines[1].startswith("  remedy: ")
 
     def __str__(self):
