@@ -52,7 +52,15 @@ bool fails(const void* caller) {
       (state.counted > state.first && !state.all_after))
     return false;
   state.looking = true;
-  const bool hopeless = isHopeless(caller);
+  bool hopeless = isHopeless(caller);
+  // A search object of PCL's own queries FLANN in a parallel region, which no exception may leave.
+  std::array<void*, 8> callers{};
+  const int depth = backtrace(callers.data(), static_cast<int>(callers.size()));
+  for (int i = 0; i < depth && !hopeless; ++i) {
+    Dl_info info{};
+    hopeless = dladdr(callers[static_cast<std::size_t>(i)], &info) != 0 &&
+               info.dli_fname != nullptr && std::strstr(info.dli_fname, "/libpcl_kdtree") != nullptr;
+  }
   if (!hopeless && state.failed++ == 0)
     state.place.depth =
         backtrace(state.place.frames.data(), static_cast<int>(state.place.frames.size()));
