@@ -8,11 +8,26 @@ if(SPHERICAL_PARAM_COVERAGE)
   if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     message(FATAL_ERROR "SPHERICAL_PARAM_COVERAGE needs clang: use the preset coverage")
   endif()
-  # Tests, too: of an inline function they share the copy that runs. Counts of threads must add up,
-  # because some are differences of others.
-  add_compile_options(-fprofile-instr-generate -fcoverage-mapping -fprofile-update=atomic)
-  add_link_options(-fprofile-instr-generate)
+  if(NOT BUILD_SHARED_LIBS)
+    message(FATAL_ERROR "SPHERICAL_PARAM_COVERAGE needs BUILD_SHARED_LIBS")
+  endif()
 endif()
+
+# Counts what runs of a library. To be called for it by src.
+function(spherical_param_count_coverage target)
+  if(NOT SPHERICAL_PARAM_COVERAGE)
+    return()
+  endif()
+  # Only what is ours: Eigen's functions would take most of the time. Counts of threads must add up,
+  # because some are differences of others. Of inline functions, the copies of the library must run
+  # and not those of the tests, which count nothing.
+  set(list ${PROJECT_BINARY_DIR}/counted_sources.txt)
+  file(CONFIGURE OUTPUT ${list} CONTENT
+    "[clang]\nsrc:*/src/core/*\nsrc:*/include/spherical_param/*\n")
+  target_compile_options(${target} PRIVATE -fprofile-instr-generate -fcoverage-mapping
+    -fprofile-update=atomic -fprofile-list=${list})
+  target_link_options(${target} PRIVATE -fprofile-instr-generate -Wl,-Bsymbolic-functions)
+endfunction()
 
 # After the tests' own targets.
 function(spherical_param_add_coverage_target)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs tests that clang has instrumented, and checks how much of the core they reach.
+"""Runs tests of a library that clang has instrumented, and checks how much of it they reach.
 
 Prints lines and branches of each file of src/core and include/spherical_param. Exits with 1 if a
 test fails, or if the share over all files is below one that is asked for. A line or branch counts
@@ -7,6 +7,7 @@ as reached if an instance of its template is; a branch is an outcome, true or fa
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -28,30 +29,46 @@ def parse_arguments():
     parser.add_argument("--lines", type=float, default=0.0, help="least share [%%]")
     parser.add_argument("--branches", type=float, default=0.0, help="least share [%%]")
     parser.add_argument("--html", help="folder for the sources with their counts")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="tests at once")
     parser.add_argument("--missed", action="store_true", help="list what is not reached, too")
     parser.add_argument("--reuse", action="store_true", help="the counts of the last run")
     return parser.parse_args()
+
+
+def run_shard(arguments, test, shard):
+    """Runs one of `arguments.jobs` parts of a program's tests; whether they passed."""
+    # One file for each library (%m) and process. Tests ask for several threads where it matters;
+    # elsewhere threads would wait for each other, and for the counts.
+    environment = dict(
+        os.environ,
+        LLVM_PROFILE_FILE=str(arguments.work / "%m-%p.profraw"),
+        GTEST_TOTAL_SHARDS=str(arguments.jobs),
+        GTEST_SHARD_INDEX=str(shard),
+        OMP_NUM_THREADS="1",
+        OMP_WAIT_POLICY="passive",
+    )
+    name = pathlib.Path(test).name
+    log = arguments.work / f"{name}-{shard}.log"
+    with open(log, "w", encoding="utf-8") as output:
+        result = subprocess.run(
+            [test], env=environment, stdout=output, stderr=subprocess.STDOUT, check=False
+        )
+    text = log.read_text(encoding="utf-8", errors="replace")
+    if result.returncode == 0:
+        print(f"{name}, part {shard + 1}: {text.splitlines()[-1]}", flush=True)
+        return True
+    print("".join(line for line in text.splitlines(True) if "FAILED" in line))
+    print(f"{name}: exit code {result.returncode}, see {log}", flush=True)
+    return False
 
 
 def count(arguments, merged):
     """Runs the tests, and merges what they count."""
     shutil.rmtree(arguments.work, ignore_errors=True)
     arguments.work.mkdir(parents=True)
-    # One file for each library and program (%m), also if several run at once.
-    environment = dict(os.environ, LLVM_PROFILE_FILE=str(arguments.work / "%m-%p.profraw"))
-    passed = True
-    for test in arguments.tests:
-        log = arguments.work / (pathlib.Path(test).name + ".log")
-        with open(log, "w", encoding="utf-8") as output:
-            result = subprocess.run(
-                [test], env=environment, stdout=output, stderr=subprocess.STDOUT, check=False
-            )
-        text = log.read_text(encoding="utf-8", errors="replace")
-        print(f"{pathlib.Path(test).name}: {' '.join(text.splitlines()[-1:])}")
-        if result.returncode != 0:
-            print("".join(line for line in text.splitlines(True) if "FAILED" in line))
-            print(f"exit code {result.returncode}, see {log}")
-            passed = False
+    runs = [(test, shard) for test in arguments.tests for shard in range(arguments.jobs)]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        passed = all(list(pool.map(lambda run: run_shard(arguments, *run), runs)))
     raw = sorted(str(file) for file in arguments.work.glob("*.profraw"))
     subprocess.run([arguments.profdata, "merge", "-sparse", "-o", merged, *raw], check=True)
     for file in raw:
@@ -59,17 +76,11 @@ def count(arguments, merged):
     return passed
 
 
-def objects_of(arguments):
-    """The arguments of llvm-cov that say what was compiled."""
-    others = [argument for test in arguments.tests for argument in ("-object", test)]
-    return [arguments.library, *others]
-
-
 def export(arguments, merged):
     """What llvm-cov tells of each file in the folders."""
     folders = [str(arguments.source / folder) for folder in FOLDERS]
     output = subprocess.run(
-        [arguments.cov, "export", f"-instr-profile={merged}", *objects_of(arguments), *folders],
+        [arguments.cov, "export", f"-instr-profile={merged}", arguments.library, *folders],
         stdout=subprocess.PIPE,
         check=True,
     ).stdout
@@ -159,7 +170,7 @@ def main():
                 "-show-instantiations=false",
                 f"-output-dir={arguments.html}",
                 f"-instr-profile={merged}",
-                *objects_of(arguments),
+                arguments.library,
                 *folders,
             ],
             check=True,
