@@ -127,6 +127,32 @@ TEST(PointSet, CoplanarityAndOrderOfNonFinitePointsAreInvalidInput) {
   }
 }
 
+// Products of three coordinates underflow here; the plane is that of the doubles all the same.
+TEST(PointSet, PlanesOfTinyDifferencesAreFoundExactly) {
+  for (const double tiny : {0x1p-300, 0x1p-365, 0x1p-660, 0x1p-1000, 0x1p-1074}) {
+    Positions points(3, 5);
+    points << 0, 1, 0, 0, 0.5,    //
+        0, 0, tiny, 0, 3 * tiny,  //
+        0, 0, 0, tiny, 0;
+    EXPECT_FALSE(areCoplanar(points)) << tiny;
+    points(2, 3) = 0.0;
+    EXPECT_TRUE(areCoplanar(points)) << tiny;
+    // The plane z = x + y, which no axis hides.
+    points << 0, 1, 0, 7 * tiny, tiny,   //
+        0, 0, tiny, 2 * tiny, 3 * tiny,  //
+        0, 1, tiny, 9 * tiny, 4 * tiny;
+    EXPECT_TRUE(areCoplanar(points)) << tiny;
+    points(2, 4) = 5 * tiny;
+    EXPECT_FALSE(areCoplanar(points)) << tiny;
+    // All of it so small, or large.
+    points << 0, tiny, 0, 0, tiny,  //
+        0, 0, tiny, 0, tiny,        //
+        0, 0, 0, tiny, tiny;
+    EXPECT_FALSE(areCoplanar(points)) << tiny;
+    EXPECT_FALSE(areCoplanar(points / tiny * 1e250)) << tiny;
+  }
+}
+
 TEST(SpatialOrder, HoldsEveryPointOnceAndNeighborsNearEachOther) {
   const Positions points = test::randomSphere(5000, 3);
   const std::vector<Index> order = spatialOrder(points);
