@@ -147,6 +147,11 @@ if(NOT sbom_architecture)
   set(sbom_architecture ${CMAKE_SYSTEM_PROCESSOR})
 endif()
 foreach(component IN LISTS sbom_components)
+  # Static libraries are for those who build.
+  set(sbom_component ${component})
+  if(NOT BUILD_SHARED_LIBS AND NOT component STREQUAL "tools")
+    set(sbom_component ${component}_dev)
+  endif()
   install(CODE "
     set(sbom_prefix \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
     set(sbom \"${CMAKE_INSTALL_DOCDIR}/${component}-${sbom_architecture}.spdx.json\")
@@ -159,5 +164,5 @@ foreach(component IN LISTS sbom_components)
       message(FATAL_ERROR \"the software bill of materials could not be made\")
     endif()
     list(APPEND CMAKE_INSTALL_MANIFEST_FILES \"\${CMAKE_INSTALL_PREFIX}/\${sbom}\")"
-    COMPONENT ${component})
+    COMPONENT ${sbom_component})
 endforeach()

@@ -98,7 +98,7 @@ std::string helpText() {
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets; those of\n"
          "the meshes and the map hold for both clouds):\n" +
          describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, also with warnings; 1 failed, or with -strict done with warnings;\n"
+         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also warnings),\n"
          "2 wrong usage.\n";
 }
 

@@ -75,8 +75,8 @@ std::string helpText() {
          "{name} stands for the input's name without extension, {ext} for its extension,\n"
          "{dir} for its directory, {index} or {index:4} for its place in the list.\n\n" +
          describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done, also with warnings; 1 failed, or with -strict done with warnings\n"
-         "(of many: one or more); 2 wrong usage.\n";
+         "\nExit code: 0 done (also with warnings), 1 failed (of many: one or more; with\n"
+         "-strict also warnings), 2 wrong usage.\n";
 }
 
 /// What the user asked for.

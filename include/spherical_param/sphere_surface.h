@@ -76,7 +76,7 @@ public:
 
   /// The triangle that holds a direction, the same for directions of any length > 0. On an edge or
   /// at a corner one of the triangles that share it. O(log v), typically.
-  /// \param direction of any length > 0.
+  /// \param direction of any length > 0; coordinates below 1e-100 of the largest count as 0.
   /// \return the triangle, and where in it.
   /// \throw InvalidInput for a direction that is zero or not finite.
   SphereLocation locate(const Eigen::Vector3d& direction) const;

@@ -36,12 +36,16 @@ Vector3d unitVector(const Vector3d& direction) {
   return direction.stableNormalized();
 }
 
-/// The direction with a largest coordinate of 1/2 to 1, exactly the same.
+/// The direction with a largest coordinate of 1/2 to 1, exactly the same, but that coordinates
+/// whose products would underflow, so that no triangle might hold it, are 0.
 Vector3d scaled(const Vector3d& direction) {
+  constexpr double least = 1e-100;
   int exponent = 0;
   std::frexp(direction.cwiseAbs().maxCoeff(), &exponent);
-  return {std::ldexp(direction.x(), -exponent), std::ldexp(direction.y(), -exponent),
-          std::ldexp(direction.z(), -exponent)};
+  return direction.unaryExpr([exponent](double coordinate) {
+    const double x = std::ldexp(coordinate, -exponent);
+    return std::abs(x) < least ? 0.0 : x;
+  });
 }
 
 }  // namespace

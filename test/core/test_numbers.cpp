@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -54,6 +56,64 @@ TEST(Numbers, PointsThatTheCoordinatesCannotTellApartAreDuplicates) {
   EXPECT_EQ(merged.duplicates, 29U);
   EXPECT_TRUE(isSphereOverAll(merged.triangles, static_cast<Index>(merged.vertexCount())));
   EXPECT_NE(merged.warnings.front().find("repeat an earlier point"), std::string::npos);
+}
+
+TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
+  const Positions points = sphereWithDisc(0.1);
+  const Result result = meshOf(points);
+  ASSERT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(points.cols())));
+  EXPECT_TRUE(result.self_intersections.empty());
+  const Eigen::Vector3d center(0.0, 0.0, -1.0);
+  for (Eigen::Index t = 0; t < result.triangles.cols(); ++t) {
+    const Eigen::Vector3d a = points.col(result.triangles(0, t)) - center;
+    const Eigen::Vector3d b = points.col(result.triangles(1, t)) - center;
+    const Eigen::Vector3d c = points.col(result.triangles(2, t)) - center;
+    EXPECT_GT(a.dot(b.cross(c)), 0.0) << "triangle " << t << " does not face outward";
+  }
+}
+
+TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndTheRestIsSaid) {
+  for (const double radius : {1e-5, 1e-12, 1e-20}) {
+    const Positions points = sphereWithDisc(radius);
+    const Result result = meshOf(points);
+    EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(points.cols()))) << radius;
+    EXPECT_EQ(result.duplicates, 0U) << radius;
+    EXPECT_EQ(result.triangulation.coincident, 0) << radius;
+    EXPECT_FALSE(result.self_intersections.empty()) << radius;
+    EXPECT_FALSE(result.warnings.empty()) << radius;
+  }
+}
+
+/// Rings of 7 points around the origin, each smaller than the last, on a sphere of radius 1.
+Positions ringsDownTo(double least) {
+  std::vector<Eigen::Vector3d> points;
+  const Positions sphere = spiralSphere(150);
+  const Eigen::Vector3d touched(0.0, 0.0, 1.0);
+  for (Eigen::Index i = 0; i < sphere.cols(); ++i)
+    if ((sphere.col(i) - touched).norm() > 0.25)
+      points.emplace_back(sphere.col(i) - touched);
+  points.emplace_back(0.0, 0.0, 0.0);
+  constexpr double shrinking = 0.45;
+  double turn = 0.0;
+  for (double r = 0.15; r > least; r *= shrinking, turn += 0.5)
+    for (int i = 0; i < 7; ++i) {
+      const double angle = 2.0 * test::kPi * (i + turn) / 7.0;
+      points.emplace_back(r * std::cos(angle), r * std::sin(angle),
+                          -r * r / (1.0 + std::sqrt(1.0 - r * r)));
+    }
+  Positions result(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    result.col(static_cast<Eigen::Index>(i)) = points[i];
+  return result;
+}
+
+TEST(Numbers, WhereDensityGrowsStepByStepTheMeshIsTrueDownTo1em5) {
+  for (const double least : {1e-2, 1e-5}) {
+    const Positions points = ringsDownTo(least);
+    const Result result = meshOf(points);
+    EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(points.cols()))) << least;
+    EXPECT_TRUE(result.self_intersections.empty()) << least;
+  }
 }
 
 TEST(Numbers, TheMeshIsThatOfAnyExtentDownToDenormalNumbers) {

@@ -283,7 +283,7 @@ TEST(OptionExtremes, MapsAnswerOrNameTheOption) {
         [&](const SphereSurfaceOptions& o) {
           const SphereSurface made(points, mapped.triangles, mapped.sphere, o);
           made.evaluate(Eigen::Vector3d(kTiny, 0.0, 0.0));
-          made.evaluate(Eigen::Vector3d(1e100, -1e100, 3e99));
+          made.evaluate(Eigen::Vector3d(kHuge, -kHuge, kTiny));
         };
     EXPECT_VALUES(SphereSurfaceOptions(), fit, 2, make);
     EXPECT_RANGE(SphereSurfaceOptions(), threads, make, kThreads, kNoThreads);
@@ -616,7 +616,8 @@ TEST(ProgressCallback, EndsOneOfSeveralThreadsAlone) {
       return i % 3 != 2 || ++calls <= 9;
     };
     try {
-      return i % 3 == 0 && areSame(work(callback), plain) && is_from_caller ? 1 : 0;
+      const bool is_right = areSame(work(callback), plain);
+      return i % 3 == 0 && is_right && is_from_caller ? 1 : 0;
     } catch (const CallersFault& fault) {
       return i % 3 == 1 && fault.number == static_cast<int>(i) && is_from_caller ? 1 : 0;
     } catch (const Cancelled&) {

@@ -531,7 +531,7 @@ TEST(BatchTool, ASignalIsHeardWhileNothingCanRun) {
   EXPECT_LT(records(directory.file("r.jsonl")).size(), std::size_t{count});
 }
 
-TEST(BatchTool, ResumeRemovesWhatKilledRunsLeft) {
+TEST(BatchTool, LaterRunsRemoveWhatKilledOnesLeft) {
   const TemporaryDirectory directory;
   writeClouds(directory, 1, 100);
   std::array<char, 64> host{};
@@ -542,17 +542,22 @@ TEST(BatchTool, ResumeRemovesWhatKilledRunsLeft) {
   const std::string ended = prefix + "999999999.abcdef";
   const std::string running = prefix + std::to_string(getpid()) + ".abcdef";
   const std::string recent = prefix + "999999999.ghijkl";
-  for (const std::string& file : {ended, running, recent}) {
+  const auto leave = [&](const std::string& file, bool is_old) {
     writeFile(directory.file(file), "half");
-    if (file != recent) {
+    if (is_old) {
       fs::last_write_time(directory.file(file),
                           fs::file_time_type::clock::now() - std::chrono::hours(1));
     }
-  }
+  };
+  leave(ended, true);
+  leave(running, true);
+  leave(recent, false);
   const std::vector<std::string> arguments = {"in", "-output", "out/{name}.ply", "-jsonl",
                                               "r.jsonl"};
   EXPECT_EQ(runTool(directory, arguments).exit_code, 0);
-  EXPECT_TRUE(fs::exists(directory.file(ended)));
+  EXPECT_FALSE(fs::exists(directory.file(ended)));
+  // Also if nothing is left to be made.
+  leave(ended, true);
   std::vector<std::string> resumed = arguments;
   resumed.emplace_back("-resume");
   EXPECT_EQ(runTool(directory, resumed).exit_code, 0);
