@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -23,7 +24,12 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-PowerEdges powerOf(const Graph& graph, int reach) {
+/// Neighbours that a node of the power has, on average, of which no more is asked: at a reach of 3
+/// it has some 40 on a surface. Memory and time would grow with their number and its square.
+constexpr std::size_t kMostNeighbors = 64;
+
+/// None if there are too many.
+std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
   PowerEdges power;
   std::vector<Index> seen_from(graph.size(), -1);
   std::vector<Index> disc;
@@ -45,6 +51,8 @@ PowerEdges powerOf(const Graph& graph, int reach) {
     std::sort(power.neighbors.begin() + static_cast<std::ptrdiff_t>(power.offsets.back()),
               power.neighbors.end());
     power.offsets.push_back(power.neighbors.size());
+    if (power.neighbors.size() > kMostNeighbors * graph.size())
+      return std::nullopt;
   }
   power.edges.resize(power.neighbors.size());
   // Each row meets its lower neighbours in their order: the next free entry of theirs is its own.
@@ -179,8 +187,8 @@ private:
 }  // namespace
 
 std::optional<int> countCycles(const Graph& graph, int reach) {
-  const PowerEdges power = powerOf(graph, reach);
-  return Cocycles(power).count();
+  const std::optional<PowerEdges> power = powerOf(graph, reach);
+  return power ? Cocycles(*power).count() : std::nullopt;
 }
 
 }  // namespace spherical_param::internal

@@ -13,8 +13,10 @@ namespace spherical_param::internal {
 /// A closed surface has two for each handle; one with b openings wider than that b - 1 more.
 ///
 /// \param reach at least 1.
-/// \return none if too many are in question at a time: there is no surface to be seen.
-/// Cost: O(n) for a surface.
+/// \return none if too many are in question at a time, or if the power has more than 64 neighbours
+/// a
+///         node, on average: there is no surface to be seen.
+/// Cost: O(n) for a surface, below 1.2 KB of memory a node.
 std::optional<int> countCycles(const Graph& graph, int reach);
 
 }  // namespace spherical_param::internal
