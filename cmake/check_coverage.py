@@ -50,8 +50,15 @@ def run_shard(arguments, test, shard):
     name = pathlib.Path(test).name
     log = arguments.work / f"{name}-{shard}.log"
     with open(log, "w", encoding="utf-8") as output:
+        # On one processor: several would wait for each other at every count.
+        processors = sorted(os.sched_getaffinity(0))
         result = subprocess.run(
-            [test], env=environment, stdout=output, stderr=subprocess.STDOUT, check=False
+            [test],
+            env=environment,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            check=False,
+            preexec_fn=lambda: os.sched_setaffinity(0, {processors[shard % len(processors)]}),
         )
     text = log.read_text(encoding="utf-8", errors="replace")
     if result.returncode == 0:
