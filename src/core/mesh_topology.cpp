@@ -306,7 +306,8 @@ double surfaceArea(const Positions& points, const Triangles& triangles) {
 }
 
 void flipOrientation(Triangles& triangles) {
-  triangles.row(1).swap(triangles.row(2));
+  if (triangles.cols() > 0)  // else there is no row to point at
+    triangles.row(1).swap(triangles.row(2));
 }
 
 }  // namespace spherical_param

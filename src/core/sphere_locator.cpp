@@ -28,14 +28,6 @@ int sideOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return orientation3d(Vector3d::Zero(), a, b, c);
 }
 
-/// The direction itself if it is of unit length, up to rounding: a vertex stays that vertex.
-Vector3d unitVector(const Vector3d& direction) {
-  constexpr double tolerance = 1e-9;
-  if (std::abs(direction.squaredNorm() - 1.0) <= tolerance)
-    return direction;
-  return direction.stableNormalized();
-}
-
 /// The direction with a largest coordinate of 1/2 to 1, exactly the same, but that coordinates
 /// whose products would underflow, so that no triangle might hold it, are 0.
 Vector3d scaled(const Vector3d& direction) {
@@ -46,6 +38,14 @@ Vector3d scaled(const Vector3d& direction) {
     const double x = std::ldexp(coordinate, -exponent);
     return std::abs(x) < least ? 0.0 : x;
   });
+}
+
+/// The direction itself if it is of unit length, up to rounding: a vertex stays that vertex.
+Vector3d unitVector(const Vector3d& direction) {
+  constexpr double tolerance = 1e-9;
+  if (std::abs(direction.squaredNorm() - 1.0) <= tolerance)
+    return direction;
+  return scaled(direction).normalized();
 }
 
 }  // namespace

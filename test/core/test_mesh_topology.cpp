@@ -217,6 +217,12 @@ TEST(MeshTopology, SameForAnyNumberOfThreads) {
     expectSameTopology(checkTopology(triangles, order.size(), {threads}), one);
 }
 
+TEST(MeshTopology, NoTrianglesMayBeTurned) {
+  Triangles none(3, 0);
+  flipOrientation(none);  // once an offset to a null pointer, found by a fuzzer
+  EXPECT_EQ(none.cols(), 0);
+}
+
 TEST(MeshTopology, VolumeAndAreaOfATetrahedron) {
   Positions points(3, 4);
   points << 0, 1, 0, 0,  //

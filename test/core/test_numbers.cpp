@@ -5,6 +5,7 @@
 #include "helpers.h"
 #include "spherical_param/errors.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -69,7 +69,7 @@ Options someOptions(Choice& choice, std::size_t points) {
   options.seed = static_cast<std::uint32_t>(choice.one(1000000));
   options.details = choice.chance(20);
   if (choice.chance(10))
-    options.history.vertices = 1 + static_cast<std::size_t>(choice.one(500));
+    options.history.vertices = 1 + choice.one(500);
   return options;
 }
 
