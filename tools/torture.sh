@@ -36,6 +36,10 @@ work="$PWD/build/torture"
 rm -rf "$work"
 mkdir -p "$work"
 : >"$work/rows"
+export UBSAN_OPTIONS=print_stacktrace=1
+# Clang's OpenMP does not give back what it has for each thread.
+echo 'leak:libomp' >"$logs/leaks-of-others"
+export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
 
 # part <step> <command>...: a step whose output has rows of the table.
 part() {
@@ -105,6 +109,13 @@ if check "threads: build with the thread sanitizer" configure_and_build tsan tor
 fi
 if [ ${#quick[@]} -eq 0 ]; then
   part "threads: gcc and clang" test/torture/threads/compare_builds.py --build "${models[@]}" || true
+fi
+
+# --- sanitizers ----------------------------------------------------------------------------------
+
+# The tests that tools/test.sh leaves out, too.
+if [ ${#quick[@]} -eq 0 ] && check "sanitizers: build" configure_and_build asan; then
+  tests "sanitizers: all tests" build/asan -E '^(Layering|Benchmark|test_shapes_are_meshed)'
 fi
 
 # --- end -----------------------------------------------------------------------------------------
