@@ -50,7 +50,7 @@ def run_shard(arguments, test, shard):
     name = pathlib.Path(test).name
     log = arguments.work / f"{name}-{shard}.log"
     with open(log, "w", encoding="utf-8") as output:
-        # On one processor: several would wait for each other at every count.
+        # On one processor, since counts are not atomic.
         processors = sorted(os.sched_getaffinity(0))
         result = subprocess.run(
             [test],

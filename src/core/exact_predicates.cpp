@@ -1,5 +1,7 @@
 #include "core/exact_predicates.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -240,6 +242,45 @@ int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return (u[2] * (v[0] * w[1] - w[0] * v[1]) + v[2] * (w[0] * u[1] - u[0] * w[1]) +
           w[2] * (u[0] * v[1] - v[0] * u[1]))
       .sign();
+}
+
+int volumeSign(const Positions& points, const Triangles& triangles) {
+  const Eigen::Index count = triangles.cols();
+  if (count == 0)
+    return 0;
+  const auto corner = [&](Eigen::Index t, int k) { return points.col(triangles(k, t)); };
+  // About a point of the mesh, so that a far origin costs no digits.
+  const Eigen::Vector3d origin = corner(0, 0);
+  double sum = 0.0;
+  double magnitude = 0.0;
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const Eigen::Vector3d a = corner(t, 0) - origin;
+    const Eigen::Vector3d b = corner(t, 1) - origin;
+    const Eigen::Vector3d c = corner(t, 2) - origin;
+    sum += a.dot(b.cross(c));
+    magnitude +=
+        a.cwiseAbs().dot(Eigen::Vector3d(std::abs(b.y() * c.z()) + std::abs(b.z() * c.y()),
+                                         std::abs(b.z() * c.x()) + std::abs(b.x() * c.z()),
+                                         std::abs(b.x() * c.y()) + std::abs(b.y() * c.x())));
+  }
+  // A term has some 8 roundings, then each sum one of at most the magnitude of all before it.
+  const double bound = (static_cast<double>(count) + 16.0) * 2.0 * kUnitRoundoff * magnitude;
+  if (std::abs(sum) > bound && magnitude > 1e-200 && magnitude < 1e200)
+    return sum < 0.0 ? -1 : 1;
+  // Around any origin a closed mesh has the same volume; around 0 nothing is subtracted.
+  WideInteger exact(0.0);
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const auto wide = [&](int k) {
+      const Eigen::Vector3d p = corner(t, k);
+      return std::array<WideInteger, 3>{WideInteger(p.x()), WideInteger(p.y()), WideInteger(p.z())};
+    };
+    const auto a = wide(0);
+    const auto b = wide(1);
+    const auto c = wide(2);
+    exact = exact + a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+            a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return exact.sign();
 }
 
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,

@@ -1,5 +1,6 @@
 #include "spherical_param/reconstruct.h"
 
+#include "core/exact_predicates.h"
 #include "core/neighbor_lists.h"
 #include "core/option_checks.h"
 #include "core/ordered_points.h"
@@ -657,7 +658,7 @@ Attempt runAttempt(const Plan& plan, NeighborGraph graph, const Positions& point
     attempt.triangulation = {triangulation.hull_vertices, triangulation.reinserted,
                              triangulation.coincident, triangulation.hull_rejected};
     attempt.triangles = std::move(triangulation.triangles);
-    if (signedVolume(points, attempt.triangles) < 0.0) {
+    if (internal::volumeSign(points, attempt.triangles) < 0) {
       // The embedding is a mirror image: turn mesh and sphere inside out together, so that the
       // triangles face outward on both.
       turnInsideOut(attempt);
@@ -735,11 +736,10 @@ Attempts runAttempts(NeighborGraph graph, const Nodes& nodes, const FindNeighbor
 void takeOver(Attempts& attempts, const Positions& points, const Options& options, StageLog& log,
               Result& result) {
   Attempt& best = attempts.best;
-  result.measures = measureMesh(points, best.triangles, {options.threads});
-  if (result.measures.volume < 0.0) {
+  // Exactly: of a cloud that is nearly flat the measured volume may be all rounding.
+  if (internal::volumeSign(points, best.triangles) < 0)
     turnInsideOut(best);
-    result.measures = measureMesh(points, best.triangles, {options.threads});
-  }
+  result.measures = measureMesh(points, best.triangles, {options.threads});
   result.self_intersections = std::move(best.optimization.self_intersections);
   if (best.smoothed.cols() > 0)
     result.self_intersections = findIntersections(points, best.triangles, options.threads,
