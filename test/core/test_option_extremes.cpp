@@ -436,9 +436,9 @@ bool areSame(const Outcome& a, const Outcome& b) {
   return a.first == b.first && a.second == b.second;
 }
 
-/// Throws, and cancels, at every call of the callback: what comes out is that, and the next call
-/// works as the first one did.
-void expectEndsAtEveryCall(const Work& work) {
+/// Throws, and cancels, at every call of the callback, or at some `most` of them where one takes
+/// long: what comes out is that, and the next call works as the first one did.
+void expectEndsAtEveryCall(const Work& work, int most = std::numeric_limits<int>::max()) {
   const Outcome plain = work({});
   int calls = 0;
   const auto caller = std::this_thread::get_id();
@@ -448,7 +448,8 @@ void expectEndsAtEveryCall(const Work& work) {
                         return true;
                       })));
   ASSERT_GT(calls, 0);
-  for (int k = 0; k < calls; ++k)
+  const int step = 1 + (calls - 1) / most;
+  for (int k = 0; k < calls; k += step)
     for (const bool throws : {true, false}) {
       int seen = 0;
       const Callback at_k = [&](double) {
@@ -588,16 +589,18 @@ TEST(ProgressCallback, EndsMapsAndMorphsAtEveryCall) {
   const SphereSurface from(points, mapped.triangles, mapped.sphere);
   const SphereSurface to(other.points, other.triangles, other.sphere);
   for (const auto connectivity : {MorphConnectivity::AllVertices, MorphConnectivity::Resampled})
-    expectEndsAtEveryCall([&](const Callback& callback) {
-      MorphOptions options;
-      options.connectivity = connectivity;
-      options.samples = 100;
-      options.align = connectivity == MorphConnectivity::AllVertices;
-      options.pairs = {{0, 0}, {7, 20}};
-      options.progress = callback;
-      const MorphResult result = morphSurfaces(from, to, options);
-      return Outcome(result.triangles, result.second);
-    });
+    expectEndsAtEveryCall(
+        [&](const Callback& callback) {
+          MorphOptions options;
+          options.connectivity = connectivity;
+          options.samples = 100;
+          options.align = connectivity == MorphConnectivity::AllVertices;
+          options.pairs = {{0, 0}, {7, 20}};
+          options.progress = callback;
+          const MorphResult result = morphSurfaces(from, to, options);
+          return Outcome(result.triangles, result.second);
+        },
+        8);
 }
 
 TEST(ProgressCallback, EndsOneOfSeveralThreadsAlone) {
