@@ -262,7 +262,8 @@ void fuzzEmbedding(Bytes& bytes, const Positions& points, Watch& watch) {
   if (watch.listens())
     options.progress = [&](double share, double) { return watch(share); };
   const MultilevelEmbedding result = embedMultilevel(graph, hierarchy, options);
-  if (result.stop_reason != StopReason::Collapsed && result.directions.cols() != points.cols())
+  if (result.stop_reason != StopReason::Collapsed &&
+      result.directions.cols() != static_cast<Eigen::Index>(graph.size()))
     finding("not a direction for each node");
 }
 

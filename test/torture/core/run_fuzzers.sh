@@ -11,10 +11,13 @@ programs="$1"
 work="$2"
 shift 2
 seconds=900
-seed=0 # another one each time, which the log tells
+seed=0 # another one each time, which the log tells; with --quick 1
 while [ $# -gt 0 ]; do
   case "$1" in
-  --quick) seconds=25 ;;
+  --quick)
+    seconds=25
+    seed=1
+    ;;
   --seed)
     seed="$2"
     shift
