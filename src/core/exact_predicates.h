@@ -27,8 +27,9 @@ int anyRangeOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
 int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                           const Eigen::Vector3d& c, const Eigen::Vector3d& d);
 
-/// The sign of the volume that a closed mesh encloses, exact: 1 if its triangles face outward. Plain
-/// arithmetic decides nearly always; where it cannot, in integers, some 20 us for each triangle.
+/// The sign of the volume that a closed mesh encloses, exact: 1 if its triangles face outward.
+/// Plain arithmetic decides nearly always; where it cannot, in integers, some 20 us for each
+/// triangle.
 ///
 /// \param points    3 x n, finite.
 /// \param triangles 3 x m, closed.
