@@ -144,7 +144,8 @@ double MeshOptimizer::flipGain(Index t, int k, double floor) const {
   after += edge(c, a, cad, ca);
   after += edge(a, d, cad, ad);
   after += edge(d, b, cdb, db);
-  return before - after;
+  // Beyond the range of double the difference is no number, and no gain.
+  return before - after > floor ? before - after : floor;
 }
 
 void MeshOptimizer::queueFlip(Index t, int k) {

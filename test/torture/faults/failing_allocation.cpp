@@ -59,7 +59,8 @@ bool fails(const void* caller) {
   for (int i = 0; i < depth && !hopeless; ++i) {
     Dl_info info{};
     hopeless = dladdr(callers[static_cast<std::size_t>(i)], &info) != 0 &&
-               info.dli_fname != nullptr && std::strstr(info.dli_fname, "/libpcl_kdtree") != nullptr;
+               info.dli_fname != nullptr &&
+               std::strstr(info.dli_fname, "/libpcl_kdtree") != nullptr;
   }
   if (!hopeless && state.failed++ == 0)
     state.place.depth =
