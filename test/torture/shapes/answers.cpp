@@ -240,27 +240,6 @@ void tryCore(const Positions& points, Options options, Choice& choice, Answer& a
   }
 }
 
-void setOptions(const Options& options, pcl::SphericalParamReconstruction<pcl::PointXYZ>& mesher) {
-  mesher.setGraphMethod(options.graph);
-  mesher.setSolver(options.solver);
-  mesher.setTriangulationMethod(options.hull);
-  mesher.setWeights(options.weights);
-  mesher.setOptimization(options.optimization);
-  if (options.k)
-    mesher.setKSearch(*options.k);
-  mesher.setExponent(options.exponent);
-  if (options.tolerance)
-    mesher.setTolerance(*options.tolerance);
-  mesher.setSmoothingSteps(options.smoothing_steps);
-  mesher.setMaximumIterations(options.max_iterations);
-  mesher.setStagnationWindow(options.stagnation_window);
-  mesher.setLambda(options.lambda);
-  mesher.setStarts(options.starts);
-  mesher.setAttempts(options.attempts);
-  mesher.setSeed(options.seed);
-  mesher.setHistory(options.history);
-}
-
 bool samePolygons(const std::vector<pcl::Vertices>& a, const std::vector<pcl::Vertices>& b) {
   return std::equal(
       a.begin(), a.end(), b.begin(), b.end(),
@@ -295,7 +274,7 @@ void tryPcl(const Positions& points, const Options& options, Choice& choice, Ans
   const std::size_t ignored = cloud->size() - used.size();
 
   pcl::SphericalParamReconstruction<pcl::PointXYZ> mesher;
-  setOptions(options, mesher);
+  mesher.setOptions(options);
   mesher.setNumberOfThreads(1);
   mesher.setInputCloud(cloud);
   std::vector<pcl::Vertices> polygons;
