@@ -52,8 +52,8 @@ struct HierarchyOptions {
 ///         any number of threads, and, up
 ///         to ties and rounding, for a moved, turned, scaled or renumbered cloud. A graph of many
 ///         neighbours a node, far from planar, is coarsened whatever its size.
-/// \throw InvalidInput for options out of range or a graph whose arrays do not fit;
-/// Cancelled.
+/// \throw InvalidInput for options out of range, a graph whose arrays do not fit, or a length that
+///        is negative or not finite; Cancelled.
 /// Cost: O(n log n).
 GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& options = {});
 

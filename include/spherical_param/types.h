@@ -38,7 +38,9 @@ struct NeighborLists {
 struct Graph {
   std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `neighbors` and `lengths`
   std::vector<Index> neighbors;         ///< 2 x edges entries
-  std::vector<double> lengths;  ///< Euclidean length of each entry's edge [unit of the input], > 0
+  /// Euclidean length of each entry's edge [unit of the input]: finite and > 0, or 0 where that is
+  /// what it is rounded to. What needs a graph throws InvalidInput for others.
+  std::vector<double> lengths;
 
   /// Number of nodes. \return n
   std::size_t size() const { return offsets.size() - 1; }

@@ -240,9 +240,10 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
           continue;
         if (shortest[other] == infinity)
           touched.push_back(static_cast<Index>(other));
-        // The sum of the distances first: the same bits from both sides of the edge.
+        // The sum of the distances first: the same bits from both sides of the edge. It stays a
+        // length where it is beyond the range of double.
         const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
-        shortest[other] = std::min(shortest[other], length);
+        shortest[other] = std::min({shortest[other], length, std::numeric_limits<double>::max()});
       }
     });
     std::sort(touched.begin(), touched.end());

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <map>
@@ -255,6 +256,37 @@ TEST(GraphHierarchy, LengthsWhoseSumsOverflowDoNotHang) {
   Graph graph = sphereGraph(randomSphere(100, 1));
   std::fill(graph.lengths.begin(), graph.lengths.end(), 5e307);
   EXPECT_EQ(buildGraphHierarchy(graph, {50, 1}).levels.size(), 1U);
+}
+
+TEST(GraphHierarchy, PathsBeyondTheRangeOfDoubleStayLengths) {
+  Graph graph = sphereGraph(randomSphere(2000, 1));
+  std::fill(graph.lengths.begin(), graph.lengths.end(), std::numeric_limits<double>::max());
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {20, 1});
+  EXPECT_GT(hierarchy.levels.size(), 2U);
+  for (const HierarchyLevel& level : hierarchy.levels) {
+    for (std::size_t i = 0; i < level.graph.size(); ++i) {
+      const auto begin =
+          level.graph.neighbors.begin() + static_cast<std::ptrdiff_t>(level.graph.offsets[i]);
+      const auto end =
+          level.graph.neighbors.begin() + static_cast<std::ptrdiff_t>(level.graph.offsets[i + 1]);
+      EXPECT_NE(begin, end);
+      EXPECT_TRUE(std::is_sorted(begin, end));
+      EXPECT_EQ(std::adjacent_find(begin, end), end);
+    }
+    for (const double length : level.graph.lengths)
+      EXPECT_TRUE(std::isfinite(length));
+    EXPECT_TRUE(level.prolongation.coeffs().isFinite().all());
+  }
+}
+
+TEST(GraphHierarchy, RefusesLengthsThatAreNone) {
+  // Paths over negative ones would get shorter for ever.
+  for (const double wrong : {-1.0, -std::numeric_limits<double>::min(),
+                             std::numeric_limits<double>::infinity(), std::nan("")}) {
+    Graph graph = sphereGraph(randomSphere(100, 1));
+    graph.lengths[7] = wrong;
+    EXPECT_THROW(buildGraphHierarchy(graph, {20, 1}), InvalidInput) << wrong;
+  }
 }
 
 TEST(GraphHierarchy, SmallGraphsHaveNoLevels) {
