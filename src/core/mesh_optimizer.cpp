@@ -16,6 +16,11 @@ namespace {
 /// Changes of the energy below this are rounding [mean length of the graph's edges].
 constexpr double kLeastGain = 1e-9;
 
+/// Changes of the energy of a few triangles below this share of it are rounding: less than 16
+/// terms, none negative, are added. A flip that gains no more could be made and taken back for
+/// ever.
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
 /// Candidates of flips between reports.
 constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
 /// Share of the work of flipAll() that finds the first candidates, and of intersections() before
@@ -144,8 +149,9 @@ double MeshOptimizer::flipGain(Index t, int k, double floor) const {
   after += edge(c, a, cad, ca);
   after += edge(a, d, cad, ad);
   after += edge(d, b, cdb, db);
+  const double gain = std::abs(before - after) > kRounding * before ? before - after : 0.0;
   // Beyond the range of double the difference is no number, and no gain.
-  return before - after > floor ? before - after : floor;
+  return gain > floor ? gain : floor;
 }
 
 void MeshOptimizer::queueFlip(Index t, int k) {
