@@ -3,7 +3,7 @@
 #
 #   run_fuzzers.sh FOLDER WORK [--quick] [--seed N]
 #
-# FOLDER holds the programs, WORK takes what is new. 15 minutes each; with --quick 25 seconds.
+# FOLDER holds the programs, WORK takes what is new. 15 minutes each; with --quick 30 seconds.
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -15,7 +15,7 @@ seed=0 # another one each time, which the log tells; with --quick 1
 while [ $# -gt 0 ]; do
   case "$1" in
   --quick)
-    seconds=25
+    seconds=30
     seed=1
     ;;
   --seed)
