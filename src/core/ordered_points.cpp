@@ -1,6 +1,7 @@
 #include "core/ordered_points.h"
 
 #include "core/parallel.h"
+#include "core/power_of_two.h"
 #include "core/radix_sort.h"
 #include "core/space_filling_curve.h"
 
@@ -19,40 +20,12 @@ struct Place {
   Index index;        ///< of the input point
 };
 
-/// Multiplies by 2^exponent, exactly where the result is not denormal.
-class PowerOfTwo {
-public:
-  explicit PowerOfTwo(int exponent) : exponent_(exponent), factor_(std::ldexp(1.0, exponent)) {}
-
-  double operator()(double x) const {
-    // Beyond, the factor itself is no normal number.
-    return std::abs(exponent_) < 1000 ? x * factor_ : std::ldexp(x, exponent_);
-  }
-  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const { return x.unaryExpr(*this); }
-
-private:
-  int exponent_;
-  double factor_;
-};
-
-/// Exponent of the smallest power of two that is larger than half of the extent.
-int exponentOf(const Positions& points) {
-  int exponent = 0;
-  // Halves, so that the difference of two huge coordinates stays finite.
-  const Eigen::Vector3d half_extent =
-      points.rowwise().maxCoeff() / 2.0 - points.rowwise().minCoeff() / 2.0;
-  std::frexp(half_extent.maxCoeff(), &exponent);
-  return exponent;
-}
-
 /// All points along the curve; those in one cell of it by their indices.
-std::vector<Place> sortedPlaces(const Positions& points, const PowerOfTwo& scaled, int threads) {
+std::vector<Place> sortedPlaces(const Positions& points, const MortonCurve& curve, int threads) {
   std::vector<Place> places(static_cast<std::size_t>(points.cols()));
-  const MortonCurve curve(scaled(points.rowwise().minCoeff()), scaled(points.rowwise().maxCoeff()));
   forEachBlock(places.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      places[i] = {curve.key(scaled(points.col(static_cast<Eigen::Index>(i)))),
-                   static_cast<Index>(i)};
+      places[i] = {curve.key(points.col(static_cast<Eigen::Index>(i))), static_cast<Index>(i)};
   });
   radixSort(places);
   return places;
@@ -66,9 +39,15 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   if (n == 0)
     return result;
   threads = threadCount(threads, n, kShortPassThreshold);
-  result.exponent = exponentOf(points);
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const Eigen::Vector3d high = points.rowwise().maxCoeff();
+  // An axis along which nothing differs may be so far away that it would not stay finite.
+  constexpr int most = 1000;
+  int largest = 0;
+  std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
+  result.exponent = std::max(exponentOfExtent(low, high), largest - most);
   const PowerOfTwo scaled(-result.exponent);
-  std::vector<Place> places = sortedPlaces(points, scaled, threads);
+  std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
 
   // Points that are the same lie in one cell; each is replaced by the first of them.
   std::vector<Index>& vertex_of_input = result.distinct.vertex_of_input;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/power_of_two.h"
 #include "spherical_param/types.h"
 
 #include <cstdint>
@@ -17,7 +18,9 @@ public:
   std::uint64_t key(const Eigen::Vector3d& point) const;
 
 private:
+  double half_;  ///< 1/2 if the extent is beyond the range of double, else 1
   Eigen::Vector3d low_;
+  PowerOfTwo scaled_;  ///< brings the cube to an extent of about 1
   double scale_;
 };
 

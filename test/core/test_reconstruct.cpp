@@ -1112,6 +1112,9 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   Positions plane = good;
   plane.row(1).setConstant(3.0);
   expect_reason(plane, bruteForceNeighbors(plane, 5), {}, "one plane");
+  Positions far_plane = 1e-300 * plane;
+  far_plane.row(1).setConstant(1e99);  // which no scale brings near together with the rest
+  expect_reason(far_plane, bruteForceNeighbors(plane, 5), {}, "one plane");
   Positions bad = good;
   bad(2, 11) = std::numeric_limits<double>::quiet_NaN();
   expect_reason(bad, lists, {}, "point 11 is not finite");

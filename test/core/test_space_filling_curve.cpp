@@ -1,12 +1,15 @@
 #include "core/space_filling_curve.h"
 
+#include "core/ordered_points.h"
 #include "helpers.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -37,6 +40,30 @@ TEST(SpaceFillingCurve, OrdersArePermutations) {
   const Positions repeated = test::randomSphere(1, 1).replicate(1, 3000);
   EXPECT_TRUE(isPermutation(mortonOrder(repeated), 3000));
   EXPECT_TRUE(isPermutation(insertionOrder(repeated), 3000));
+}
+
+TEST(SpaceFillingCurve, MortonOrderIsTheSameForAnyScale) {
+  // Whole numbers: no scale rounds them, and the least are denormal.
+  std::mt19937_64 random(1);
+  Positions points(3, 1000);
+  for (Eigen::Index i = 0; i < points.size(); ++i)
+    points.data()[i] = static_cast<double>(random() % 1024) - 512.0;
+  const std::vector<Index> order = mortonOrder(points);
+  for (const double scale :
+       {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(), 0x1p-300,
+        0x1p300, 0x1p1000, 0x1p1014}) {
+    EXPECT_EQ(mortonOrder(points * scale), order) << scale;
+    EXPECT_EQ(orderPoints(points * scale, 1).input_of_node, orderPoints(points, 1).input_of_node);
+  }
+}
+
+TEST(SpaceFillingCurve, AnAxisFarAwayChangesNothing) {
+  Positions points = 1e-300 * test::randomSphere(100, 1);
+  points.row(1).setZero();
+  const std::vector<Index> order = mortonOrder(points);
+  points.row(1).setConstant(1e300);
+  EXPECT_EQ(mortonOrder(points), order);
+  EXPECT_TRUE(orderPoints(points, 1).points.allFinite());
 }
 
 // The last round has 7 of 8 points; on average, one is about a mean spacing from the one before.
