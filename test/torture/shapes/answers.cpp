@@ -1,6 +1,7 @@
 #include "answers.h"
 
 #include "independent_check.h"
+#include "result_bytes.h"
 #include "search/kd_tree.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/reconstruct.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <limits>
 #include <memory>
@@ -129,23 +129,6 @@ Result reconstructCore(const Positions& points, const Options& options, bool by_
   return spherical_param::reconstruct(points, lists, options);
 }
 
-template <typename Scalar, int rows>
-bool sameBytes(const Eigen::Matrix<Scalar, rows, Eigen::Dynamic>& a,
-               const Eigen::Matrix<Scalar, rows, Eigen::Dynamic>& b) {
-  return a.cols() == b.cols() &&
-         (a.size() == 0 || std::memcmp(a.data(), b.data(),
-                                       static_cast<std::size_t>(a.size()) * sizeof(Scalar)) == 0);
-}
-
-bool sameBytes(const Result& a, const Result& b) {
-  return sameBytes<Index, 3>(a.triangles, b.triangles) &&
-         sameBytes<double, 3>(a.sphere, b.sphere) && sameBytes<double, 3>(a.smoothed, b.smoothed) &&
-         a.vertex_of_input == b.vertex_of_input && a.input_of_vertex == b.input_of_vertex &&
-         a.self_intersections == b.self_intersections && a.warnings == b.warnings &&
-         std::memcmp(&a.volume, &b.volume, sizeof a.volume) == 0 &&
-         std::memcmp(&a.area, &b.area, sizeof a.area) == 0;
-}
-
 /// What is wrong with the numbers of vertices: each distinct point one, that of its first point.
 std::vector<std::string> numberFaults(const Truth& truth, const std::vector<Index>& vertex_of_input,
                                       const std::vector<Index>& input_of_vertex) {
@@ -232,7 +215,7 @@ void tryCore(const Positions& points, Options options, Choice& choice, Answer& a
     checkResult(points, truth, options, result, answer);
     if (answer.twice) {
       options.threads = other_threads;
-      if (!sameBytes(result, reconstructCore(points, options, by_lists)))
+      if (bytesOf(result) != bytesOf(reconstructCore(points, options, by_lists)))
         answer.faults.push_back("other bytes with " + std::to_string(other_threads) + " threads");
     }
   } catch (const spherical_param::InvalidInput& error) {
@@ -314,7 +297,7 @@ void tryPcl(const Positions& points, const Options& options, Choice& choice, Ans
     const Result before = result;
     std::vector<pcl::Vertices> again;
     mesher.reconstruct(again);
-    if (!samePolygons(polygons, again) || !sameBytes(before, mesher.getResult()))
+    if (!samePolygons(polygons, again) || bytesOf(before) != bytesOf(mesher.getResult()))
       answer.faults.push_back("other bytes with " + std::to_string(other_threads) + " threads");
   }
 }
