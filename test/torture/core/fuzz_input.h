@@ -292,6 +292,15 @@ inline bool liesInPlane(const Positions& points) {
   });
 }
 
+/// Whether no coordinate has digits below 1e-100 of the largest one: intersections are then exact.
+inline bool haveExactProducts(const Positions& points) {
+  const double largest = points.size() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
+  const double least = 1e-100 * largest;
+  return (points.array() == 0.0 ||
+          points.array().abs() * std::numeric_limits<double>::epsilon() / 2.0 >= least)
+      .all();
+}
+
 inline bool areUnitVectors(const Positions& directions) {
   for (Eigen::Index i = 0; i < directions.cols(); ++i)
     if (!(std::abs(directions.col(i).norm() - 1.0) < 1e-9))
