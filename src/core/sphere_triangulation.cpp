@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +51,11 @@ public:
   }
   ~Qhull() {
     qh_freeqhull(&state_, !qh_ALL);
+    // Tables that qhull itself forgets if there was no memory for both.
+    if (state_.qhmem.LASTsize == 0) {
+      std::free(state_.qhmem.freelists);
+      std::free(state_.qhmem.sizetable);
+    }
     int current = 0;
     int total = 0;
     qh_memfreeshort(&state_, &current, &total);
