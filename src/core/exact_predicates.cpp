@@ -214,6 +214,12 @@ private:
       digits_.push_back(over);
     while (!digits_.empty() && digits_.back() == 0)
       digits_.pop_back();
+    // A last digit of -1 goes into the one before it, or negative numbers would grow by one each
+    // time.
+    while (digits_.size() > 1 && digits_.back() == -1) {
+      digits_.pop_back();
+      digits_.back() -= kBase;
+    }
   }
 
   std::vector<std::int64_t> digits_;
@@ -252,20 +258,30 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
   // About a point of the mesh, so that a far origin costs no digits.
   const Eigen::Vector3d origin = corner(0, 0);
   double sum = 0.0;
+  double lost = 0.0;  // by the roundings of the sum (A. Neumaier, 1974)
   double magnitude = 0.0;
+  double largest = 1.0;
   for (Eigen::Index t = 0; t < count; ++t) {
     const Eigen::Vector3d a = corner(t, 0) - origin;
     const Eigen::Vector3d b = corner(t, 1) - origin;
     const Eigen::Vector3d c = corner(t, 2) - origin;
-    sum += a.dot(b.cross(c));
+    const double term = a.dot(b.cross(c));
+    const double next = sum + term;
+    lost += std::abs(sum) >= std::abs(term) ? (sum - next) + term : (term - next) + sum;
+    sum = next;
+    largest = std::max(largest, a.cwiseAbs().maxCoeff());
     magnitude +=
         a.cwiseAbs().dot(Eigen::Vector3d(std::abs(b.y() * c.z()) + std::abs(b.z() * c.y()),
                                          std::abs(b.z() * c.x()) + std::abs(b.x() * c.z()),
                                          std::abs(b.x() * c.y()) + std::abs(b.y() * c.x())));
   }
-  // A term has some 8 roundings, then each sum one of at most the magnitude of all before it.
-  const double bound = (static_cast<double>(count) + 16.0) * 2.0 * kUnitRoundoff * magnitude;
-  if (std::abs(sum) > bound && magnitude > 1e-200 && magnitude < 1e200)
+  sum += lost;
+  // A term has some 8 roundings, what was lost one for each of them, and the magnitude has as many;
+  // products that underflow lose less than the least number each.
+  const auto terms = static_cast<double>(count);
+  const double bound = (16.0 + terms * terms * kUnitRoundoff) * 2.0 * kUnitRoundoff * magnitude +
+                       16.0 * terms * std::numeric_limits<double>::denorm_min() * largest;
+  if (std::abs(sum) > bound && magnitude < 1e200)
     return sum < 0.0 ? -1 : 1;
   // Around any origin a closed mesh has the same volume; around 0 nothing is subtracted.
   WideInteger exact(0.0);
