@@ -62,6 +62,9 @@ std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
       const auto w = at(power.neighbors[e]);
       if (w < v)
         continue;
+      // Not so in a graph with edges of one direction.
+      if (next[w] == power.offsets[w + 1] || at(power.neighbors[next[w]]) != v)
+        return std::nullopt;
       power.edges[e] = power.count;
       power.edges[next[w]++] = power.count++;
     }

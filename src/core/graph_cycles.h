@@ -13,9 +13,9 @@ namespace spherical_param::internal {
 /// A closed surface has two for each handle; one with b openings wider than that b - 1 more.
 ///
 /// \param reach at least 1.
-/// \return none if too many are in question at a time, or if the power has more than 64 neighbours
-/// a
-///         node, on average: there is no surface to be seen.
+/// \return none if more than 64 are in question, which is said of some 32 handles and more, if the
+///         power has more than 64 neighbours a node, on average (there is no surface to be seen),
+///         or if an edge is stored at one of its ends only.
 /// Cost: O(n) for a surface, below 1.2 KB of memory a node.
 std::optional<int> countCycles(const Graph& graph, int reach);
 

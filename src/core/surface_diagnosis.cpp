@@ -3,6 +3,7 @@
 #include "spherical_param/errors.h"
 
 #include "core/corner_table.h"
+#include "core/graph_checks.h"
 #include "core/graph_cycles.h"
 #include "core/parallel.h"
 #include "core/union_find.h"
@@ -801,6 +802,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
                 const std::vector<Bridge>& bridges, const DiagnosisOptions& options) {
   const auto n = static_cast<std::size_t>(points.cols());
   const auto in_range = [n](Index v) { return v >= 0 && static_cast<std::size_t>(v) < n; };
+  internal::checkGraph("diagnoseSurface", graph);
   if (graph.size() != n)
     throw InvalidInput("diagnoseSurface: a graph of " + std::to_string(graph.size()) +
                        " nodes for " + std::to_string(n) + " points; give the graph of the points");

@@ -336,6 +336,21 @@ TEST(SurfaceDiagnosis, HandlesAreCountedByTheCyclesOfTheGraph) {
   EXPECT_FALSE(internal::countCycles(chaos, 1));
 }
 
+TEST(SurfaceDiagnosis, CyclesOfEdgesInOneDirectionAreNotCounted) {
+  // Each names the next three: no row has an entry for the way back.
+  Graph graph;
+  for (Index v = 0; v < 40; ++v) {
+    std::set<Index> row;
+    for (Index step = 1; step <= 3; ++step)
+      row.insert((v + step) % 40);
+    graph.neighbors.insert(graph.neighbors.end(), row.begin(), row.end());
+    graph.lengths.insert(graph.lengths.end(), row.size(), 1.0);
+    graph.offsets.push_back(graph.neighbors.size());
+  }
+  for (const int reach : {1, 2, 3})
+    EXPECT_FALSE(internal::countCycles(graph, reach));
+}
+
 TEST(SurfaceDiagnosis, HandlesAreToldUnderAFoldedMeshUnlessThereIsAnOpening) {
   const auto folded = [](const Scene& scene) {
     Scene result = scene;
@@ -615,6 +630,8 @@ TEST(SurfaceDiagnosis, BadInputIsRefused) {
   expect_refused([](Scene& scene, DiagnosisOptions&) {
     scene.graph.bridges.push_back({0, 50, 1.0});
   });
+  expect_refused([](Scene& scene, DiagnosisOptions&) { scene.graph.graph.neighbors[3] = 50; });
+  expect_refused([](Scene& scene, DiagnosisOptions&) { scene.graph.graph.lengths.pop_back(); });
   expect_refused([](Scene&, DiagnosisOptions& options) { options.lid_diameter = 0.0; });
   expect_refused([](Scene&, DiagnosisOptions& options) { options.part_gap = -1.0; });
   expect_refused([](Scene&, DiagnosisOptions& options) { options.handle_steps = 2; });
