@@ -513,11 +513,10 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, clouds, morph); },
       [&] { printVerdict(clouds, morph, console); });
-  for (std::size_t side = 0; side < 2; ++side) {
-    requireNoWarnings(settings.product.reconstruction, settings.inputs[side],
-                      warningsOf(clouds[side].cloud));
-  }
-  requireNoWarnings(settings.product.reconstruction, settings.pairs, warningsOf(morph));
+  requireNoWarnings(settings.product.reconstruction,
+                    {{settings.inputs[0], warningsOf(clouds[0].cloud)},
+                     {settings.inputs[1], warningsOf(clouds[1].cloud)},
+                     {settings.pairs, warningsOf(morph)}});
 }
 
 }  // namespace

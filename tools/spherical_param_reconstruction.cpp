@@ -728,7 +728,7 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, cloud); },
       [&] { printVerdict(settings, cloud, console); });
-  requireNoWarnings(settings.reconstruction, settings.input, warningsOf(cloud));
+  requireNoWarnings(settings.reconstruction, {{settings.input, warningsOf(cloud)}});
 }
 
 }  // namespace

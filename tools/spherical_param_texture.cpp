@@ -396,7 +396,8 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, mapped, output); },
       [&] { printVerdict(settings, mapped, output, console); });
-  requireNoWarnings(settings.product.reconstruction, settings.input, warningsOf(settings, mapped));
+  requireNoWarnings(settings.product.reconstruction,
+                    {{settings.input, warningsOf(settings, mapped)}});
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "common/errors.h"
 #include "common/output_file.h"
+#include "common/reconstruction_options.h"
 #include "common/run_tool.h"
 #include "tool_runner.h"
 
@@ -15,6 +16,7 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -92,6 +94,27 @@ TEST(OutputFile, RefusesLinksThatLeadNowhere) {
 TEST(RunToolDeathTest, LackOfMemoryIsTold) {
   EXPECT_EXIT(runAndExit([] { throw std::bad_alloc(); }), testing::ExitedWithCode(1),
               "tool: not enough memory\n  remedy: ");
+}
+
+TEST(RunToolDeathTest, PathsThatAreNoneAreNoLackOfMemory) {
+  EXPECT_EXIT(runAndExit([] { std::filesystem::copy("/no/such/file", "/no/such/other"); }),
+              testing::ExitedWithCode(1), "tool: .*No such file.*\n  remedy: check .*paths");
+}
+
+TEST(RequireNoWarnings, TellsThoseOfAllInputs) {
+  ReconstructionSettings settings;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> warnings = {
+      {"a.ply", {"It is open.", "It is noisy."}}, {"b.ply", {}}, {"c.ply", {"It is folded."}}};
+  EXPECT_NO_THROW(requireNoWarnings(settings, warnings));
+  settings.strict = true;
+  EXPECT_NO_THROW(requireNoWarnings(settings, {{"b.ply", {}}}));
+  try {
+    requireNoWarnings(settings, warnings);
+    ADD_FAILURE() << "no failure";
+  } catch (const Failure& failure) {
+    EXPECT_STREQ(failure.what(),
+                 "'a.ply': 2 warnings: It is open. It is noisy. 'c.ply': It is folded.");
+  }
 }
 
 TEST(RunToolDeathTest, LackOfThreadsIsTold) {

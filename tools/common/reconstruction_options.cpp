@@ -265,19 +265,25 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
 
 const std::string files_are_made = "the files were made all the same";
 
-void requireNoWarnings(const ReconstructionSettings& settings, const std::string& input,
-                       const std::vector<std::string>& warnings) {
-  if (!settings.strict || warnings.empty()) {
-    return;
+void requireNoWarnings(
+    const ReconstructionSettings& settings,
+    const std::vector<std::pair<std::string, std::vector<std::string>>>& warnings) {
+  std::string cause;
+  for (const auto& [input, of_input] : warnings) {
+    if (of_input.empty()) {
+      continue;
+    }
+    cause += (cause.empty() ? "" : " ") + inQuotes(input) + ":";
+    if (of_input.size() > 1) {
+      cause += " " + std::to_string(of_input.size()) + " warnings:";
+    }
+    for (const std::string& warning : of_input) {
+      cause += " " + warning;
+    }
   }
-  std::string cause = inQuotes(input) + ": ";
-  if (warnings.size() > 1) {
-    cause += std::to_string(warnings.size()) + " warnings: ";
+  if (settings.strict && !cause.empty()) {
+    throw Failure(cause, files_are_made + ": look at them, and leave -strict out if they will do");
   }
-  for (std::size_t i = 0; i < warnings.size(); ++i) {
-    cause += (i > 0 ? " " : "") + warnings[i];
-  }
-  throw Failure(cause, files_are_made + ": look at them, and leave -strict out if they will do");
 }
 
 bool isIterative(const Options& options) {

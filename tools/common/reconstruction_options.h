@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -47,9 +48,10 @@ extern const std::string files_are_made;
 /// With -strict, ends the tool with exit code 1 if there is a warning. To be called last: whoever
 /// asks for a failure still wants to look at what was made. \throw Failure
 ///
-/// \param input whose warnings they are.
-void requireNoWarnings(const ReconstructionSettings& settings, const std::string& input,
-                       const std::vector<std::string>& warnings);
+/// \param warnings of each input, which is named with them.
+void requireNoWarnings(
+    const ReconstructionSettings& settings,
+    const std::vector<std::pair<std::string, std::vector<std::string>>>& warnings);
 
 /// Tells whether the solver is the paper's.
 bool isIterative(const Options& options);

@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -159,6 +160,9 @@ int runTool(const std::string& tool, int argc, char** argv,
       return finished(report(tool, error));
     } catch (const std::bad_alloc&) {
       return finished(print(tool.c_str(), no_memory, fewer_points));
+    } catch (const std::filesystem::filesystem_error& error) {
+      return finished(report(tool, Failure(error.what(), "check that the directories of all paths, "
+                                                         "and the one you are in, exist")));
     } catch (const std::system_error& error) {
       return finished(
           report(tool, Failure("the system refuses a resource: " + std::string(error.what()),
