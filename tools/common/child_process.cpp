@@ -116,6 +116,9 @@ pid_t ChildProcesses::start(const std::vector<std::string>& words) {
     arguments.push_back(word.data());
   }
   arguments.push_back(nullptr);
+  // All memory before there is a process, for which nobody would wait if there were none.
+  std::map<pid_t, Child> made;
+  auto node = made.extract(made.emplace(0, Child()).first);
   Pipes pipes;
   if (pipe2(pipes.output.data(), O_CLOEXEC) != 0 || pipe2(pipes.errors.data(), O_CLOEXEC) != 0) {
     failStarting(words.front(), errno);
@@ -128,11 +131,12 @@ pid_t ChildProcesses::start(const std::vector<std::string>& words) {
   if (process == 0) {
     becomeProgram(arguments.data(), pipes, parent);
   }
-  Child child;
+  Child& child = node.mapped();
   child.result.process = process;
   std::swap(child.output, pipes.output[0]);
   std::swap(child.errors, pipes.errors[0]);
-  children_.emplace(process, std::move(child));
+  node.key() = process;
+  children_.insert(std::move(node));
   return process;
 }
 

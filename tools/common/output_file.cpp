@@ -18,6 +18,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace spherical_param::tools {
 namespace {
@@ -179,13 +180,18 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(resolveLi
   removeAbandonedFiles(directoryOf(target_));
   // The name does not grow with the file's, which may be as long as a name can be.
   std::string pattern = directoryOf(target_) + "/" + temporaryPrefix(getpid()) + "XXXXXX";
+  // All memory before there is a file, which would stay if there were none.
+  std::set<std::string> made = {pattern};
+  auto node = made.extract(made.begin());
+  temporary_.reserve(pattern.size());
   const std::lock_guard<std::mutex> lock(registry().mutex);
   descriptor_ = mkostemp(pattern.data(), O_CLOEXEC);
   if (descriptor_ < 0) {
     fail("write", errno);
   }
   temporary_ = pattern;
-  registry().paths.insert(temporary_);
+  node.value() = std::move(pattern);
+  registry().paths.insert(std::move(node));
 }
 
 OutputFile::~OutputFile() {

@@ -1,9 +1,10 @@
-// Every allocation of a call of the core or of the PCL classes fails, each alone and each with all
-// after it. What must come of it: std::bad_alloc or the failure that is documented, or the right
-// answer; no leak; and the next call gives the same bytes as ever.
+// Every allocation of a call of the core, of the PCL classes or of the tools fails, each alone and
+// each with all after it. What must come of it: std::bad_alloc or the failure that is documented, or
+// the right answer; no leak; and the next call gives the same bytes as ever.
 //
 //   torture_allocation [--quick] [--only NAME] [--at K]
 
+#include "common/output_file.h"
 #include "failing_allocation.h"
 #include "helpers.h"
 #include "torture_row.h"
@@ -41,6 +42,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -495,6 +497,39 @@ void tryFault(const Call& call, const Fault& fault, std::uint64_t right) {
   }
 }
 
+/// The tools' own: a file that is written under another name, and nothing else there, whatever
+/// fails.
+std::vector<Call> callsOfTheTools() {
+  return {{"output-file", [](const Fault& fault) -> std::uint64_t {
+             static const std::string directory = [] {
+               std::string pattern = std::filesystem::temp_directory_path() / "torture.XXXXXX";
+               if (mkdtemp(pattern.data()) == nullptr)
+                 throw std::runtime_error("no directory can be made");
+               return pattern;
+             }();
+             const std::string path = directory + "/file";
+             const auto left = [&] {
+               std::uint64_t count = 0;
+               for (const auto& entry : std::filesystem::directory_iterator(directory))
+                 count += std::filesystem::remove(entry.path()) ? 1U : 0U;
+               return count;
+             };
+             try {
+               begin(fault.first, fault.all_after);
+               tools::OutputFile file(path);
+               file.write("all of it");
+               file.commit();
+               end();
+             } catch (...) {
+               end();
+               if (left() > 0)
+                 throw std::runtime_error("a file is left");
+               throw;
+             }
+             return left() == 1 ? 1 : 2;
+           }}};
+}
+
 /// What a callback throws; counts itself, so that none is lost or kept.
 struct Thrown {
   int number;
@@ -644,6 +679,8 @@ int main(int argc, char** argv) {
 
   std::vector<Call> calls = callsOfTheCore();
   for (Call& call : callsOfPcl())
+    calls.push_back(std::move(call));
+  for (Call& call : callsOfTheTools())
     calls.push_back(std::move(call));
   torture::Row row;
   row.part = "faults";
