@@ -513,7 +513,63 @@ TEST_F(CloudReader, PackedPointsThatMakeNoSenseAreRefused) {
   expectRefused(path, "too short for the points");
 }
 
+// PCL leaves these fields out of what it packs, so that the file's size is no bound of theirs.
+TEST_F(CloudReader, PaddingOfPackedPointsTakesNoMemory) {
+  std::string fields = "x y z";
+  std::string sizes = "4 4 4";
+  std::string types = "F F F";
+  std::string counts = "1 1 1";
+  for (int i = 0; i < 16; ++i) {
+    fields = "_ " + fields;
+    sizes = "8 " + sizes;
+    types = "U " + types;
+    counts = "1073741824 " + counts;
+  }
+  const std::uint32_t size = 12;
+  const std::string packed("\x00\x00\xe0\x02\x00", 5);
+  const auto packed_size = static_cast<std::uint32_t>(packed.size());
+  tool_test::writeFile(directory.file("a.pcd"),
+                       pcdOf(fields, sizes, types, "1", "binary_compressed\n") +
+                           bytesOf(&packed_size, 4, false) + bytesOf(&size, 4, false) + packed);
+  std::string file = tool_test::readFile(directory.file("a.pcd"));
+  file.replace(file.find("WIDTH"), 0, "COUNT " + counts + "\n");
+  tool_test::writeFile(directory.file("a.pcd"), file);
+  EXPECT_EQ(readCloud(directory.file("a.pcd")).points, (std::vector<Point>{{0.0F, 0.0F, 0.0F}}));
+}
+
+TEST_F(CloudReader, PointsOfVtkMayBeFarBehindTheBeginning) {
+  const std::string path = directory.file("a.vtk");
+  std::string before = "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nFIELD f 2\n"
+                       "words 1 1 string\npoints 7 float\nmany 1 1000000 int\n";
+  for (int i = 0; i < 1000000; ++i) {
+    before += "0 ";
+  }
+  tool_test::writeFile(path, before + "\nPOINTS\n2 float 1 2 3\n4 5 6\n");
+  EXPECT_EQ(readCloud(path).points, (std::vector<Point>{{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}));
+  tool_test::writeFile(path, before + "\nPOINTS 800000000 float 1 2 3\n");
+  expectRefused(path, "shorter than its header says");
+  tool_test::writeFile(path, before + "\nVERTICES 0 0\n");
+  expectRefused(path, "it has no points");
+}
+
+TEST_F(CloudReader, NumbersBeyondTheRangeOfDoubleAreNotZero) {
+  const std::string zeros(400, '0');
+  tool_test::writeFile(directory.file("a.xyz"),
+                       "1" + zeros + " -1" + zeros + ".5 0." + zeros + "1\n1e400 -1e+400 1e-400\n");
+  const PointData data = readCloud(directory.file("a.xyz"));
+  ASSERT_EQ(data.points.size(), 2U);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  for (const Point& point : data.points) {
+    EXPECT_EQ(point, (Point{infinity, -infinity, 0.0F}));
+  }
+}
+
 TEST_F(CloudReader, ElementsWithoutPropertiesTakeNoTime) {
+  tool_test::writeFile(
+      directory.file("a.ply"),
+      "ply\nformat ascii 1.0\nelement nothing 1073741824\nelement vertex "
+      "1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n");
+  EXPECT_EQ(readCloud(directory.file("a.ply")).points.size(), 1U);
   for (const std::string format : {"ascii", "binary_little_endian"}) {
     const std::string header = "ply\nformat " + format +
                                " 1.0\nelement vertex 1\nproperty float x\nproperty float "

@@ -82,6 +82,10 @@ bool BlockReader::skip(std::uint64_t count) {
   return true;
 }
 
+std::uint64_t BlockReader::left() const {
+  return file_size_ - std::min(file_size_, position_) + (buffer_.size() - begin_);
+}
+
 bool BlockReader::nextLine(std::string_view& line) {
   std::size_t searched = 0;
   for (;;) {

@@ -22,7 +22,7 @@ PointData readCloud(const std::string& path, const FileProgress& progress) {
   case FileFormat::Obj:
     return readObj(path, progress);
   case FileFormat::Vtk:
-    return readVtk(path, checkVtkHeader(path, file_size), progress);
+    return readVtk(path, progress);
   default:
     return readXyz(path, progress);
   }

@@ -51,6 +51,21 @@ private:
   std::vector<std::string_view> words_;
 };
 
+/// Bytes of a file behind a line; none if it was shorter when its size was asked for.
+std::uint64_t bytesBehind(const Lines& lines, std::uint64_t file_size) {
+  return file_size - std::min<std::uint64_t>(lines.position(), file_size);
+}
+
+void addField(RecordField field, RecordLayout& layout) {
+  field.offset = layout.record_size;
+  field.column = layout.columns;
+  layout.record_size += field.size * field.count;
+  layout.columns += field.count;
+  layout.fields.push_back(std::move(field));
+}
+
+}  // namespace
+
 std::int64_t requireCount(const std::string& path, std::string_view word, const std::string& what) {
   const std::optional<std::int64_t> count = toInteger(word);
   if (!count || *count < 0 || *count > count_limit) {
@@ -65,16 +80,6 @@ void requireBytes(const std::string& path, double needed, std::uint64_t availabl
     failContent(path, "it is shorter than its header says");
   }
 }
-
-void addField(RecordField field, RecordLayout& layout) {
-  field.offset = layout.record_size;
-  field.column = layout.columns;
-  layout.record_size += field.size * field.count;
-  layout.columns += field.count;
-  layout.fields.push_back(std::move(field));
-}
-
-}  // namespace
 
 RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   const std::string beginning = readBeginning(path, header_limit);
@@ -117,9 +122,10 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
       counts.size() != fields.size()) {
     failContent(path, "FIELDS, SIZE, TYPE and COUNT of its header differ in length");
   }
+  const std::string& storage = entries["DATA"][0];
+  const bool packed = storage == "binary_compressed";
   RecordLayout layout;
   double bytes_per_point = 0.0;
-  double stored_bytes_per_point = 0.0;
   double values_per_point = 0.0;
   for (std::size_t f = 0; f < fields.size(); ++f) {
     const std::string& size = entries["SIZE"][f];
@@ -136,15 +142,16 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
     if (count < 1 || (coordinate && (count != 1 || type != "F"))) {
       failContent(path, "field " + inQuotes(fields[f]) + " does not hold one number a point");
     }
+    if (packed && fields[f] == "_") {
+      continue;  // PCL leaves padding out of what it packs
+    }
     RecordField field;
     field.name = fields[f];
     field.type = type[0];
     field.size = static_cast<std::size_t>(size[0] - '0');
     field.count = static_cast<std::size_t>(count);
     addField(field, layout);
-    const double bytes = static_cast<double>(count) * static_cast<double>(size[0] - '0');
-    bytes_per_point += bytes;
-    stored_bytes_per_point += fields[f] == "_" ? 0.0 : bytes;  // padding is left out of LZF data
+    bytes_per_point += static_cast<double>(count) * static_cast<double>(size[0] - '0');
     values_per_point += static_cast<double>(count);
   }
 
@@ -158,8 +165,7 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
     failContent(path, "POINTS of its header is not WIDTH times HEIGHT");
   }
 
-  const std::string& storage = entries["DATA"][0];
-  const std::uint64_t body = file_size - lines.position();
+  const std::uint64_t body = bytesBehind(lines, file_size);
   const auto point_count = static_cast<double>(points);
   if (storage == "ascii") {
     // A value needs a digit and a separator, the last one no separator.
@@ -167,7 +173,7 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   } else if (storage == "binary") {
     requireBytes(path, point_count * bytes_per_point, body);
     layout.storage = RecordStorage::LittleEndian;
-  } else if (storage == "binary_compressed") {
+  } else if (packed) {
     requireBytes(path, 8.0, body);
     std::array<std::uint32_t, 2> sizes{};  // compressed, uncompressed
     if (beginning.size() < lines.position() + sizeof sizes) {
@@ -175,7 +181,7 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
     }
     std::memcpy(sizes.data(), beginning.data() + lines.position(), sizeof sizes);
     requireBytes(path, 8.0 + static_cast<double>(sizes[0]), body);
-    if (static_cast<double>(sizes[1]) != point_count * stored_bytes_per_point) {
+    if (static_cast<double>(sizes[1]) != point_count * bytes_per_point) {
       failContent(path, "its compressed data does not hold the points of its header");
     }
     // Three bytes stand for 264 at most.
@@ -396,7 +402,7 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   if (vertex_elements != 1) {
     failContent(path, "it has no vertices");
   }
-  requireBytes(path, needed - (ascii ? 1.0 : 0.0), file_size - lines.position());
+  requireBytes(path, needed - (ascii ? 1.0 : 0.0), bytesBehind(lines, file_size));
   RecordLayout layout = toLayout(elements);
   layout.storage = ascii        ? RecordStorage::Text
                    : big_endian ? RecordStorage::BigEndian
@@ -406,9 +412,10 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   return layout;
 }
 
-std::uint64_t checkVtkHeader(const std::string& path, std::uint64_t file_size) {
-  const std::string beginning = readBeginning(path, header_limit);
-  Lines lines(beginning);
+namespace {
+
+/// \return whether its data are binary.
+bool checkVtkStorage(const std::string& path, Lines& lines, const std::string& beginning) {
   if (beginning.rfind("# vtk DataFile Version", 0) != 0 || !lines.next() || !lines.next() ||
       !lines.next() || lines.words().size() != 1) {
     failContent(path, "it does not begin as a legacy VTK file does");
@@ -417,28 +424,33 @@ std::uint64_t checkVtkHeader(const std::string& path, std::uint64_t file_size) {
   if (storage != "ascii" && storage != "binary") {
     failContent(path, "its data is stored as " + inQuotes(storage));
   }
+  return storage == "binary";
+}
+
+}  // namespace
+
+void checkVtkHeader(const std::string& path) {
+  const std::string beginning = readBeginning(path, header_limit);
+  Lines lines(beginning);
+  checkVtkStorage(path, lines, beginning);
+}
+
+std::uint64_t mostVtkPoints(const std::string& path, std::uint64_t file_size) {
+  const std::string beginning = readBeginning(path, header_limit);
+  Lines lines(beginning);
+  const bool is_binary = checkVtkStorage(path, lines, beginning);
+  // Of three floats, or of three digits that are separated.
+  const std::uint64_t most = bytesBehind(lines, file_size) / (is_binary ? 12 : 5);
   while (lines.next()) {
     const auto& words = lines.words();
-    if (words.empty() || lowerCase(words[0]) != "points") {
-      continue;
+    if (words.size() == 3 && lowerCase(words[0]) == "points") {
+      const std::optional<std::int64_t> points = toInteger(words[1]);
+      if (points && *points > 0) {
+        return std::min(most, static_cast<std::uint64_t>(*points));
+      }
     }
-    if (words.size() != 3) {
-      failContent(path, "its POINTS line is broken");
-    }
-    const std::string type = lowerCase(words[2]);
-    if (type != "float" && type != "double") {
-      failReading(path, "its points are of type " + inQuotes(type), "save them as float or double");
-    }
-    const std::int64_t points = requireCount(path, words[1], "points");
-    if (points == 0) {
-      failContent(path, "it has no points");
-    }
-    const double bytes = storage == "ascii" ? 2.0 : type == "float" ? 4.0 : 8.0;
-    requireBytes(path, 3.0 * bytes * static_cast<double>(points) - (storage == "ascii" ? 1.0 : 0.0),
-                 file_size - lines.position());
-    return static_cast<std::uint64_t>(points);
   }
-  failContent(path, "it has no points");
+  return most;
 }
 
 }  // namespace spherical_param::tools

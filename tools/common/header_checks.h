@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace spherical_param::tools {
 
@@ -17,7 +18,17 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size);
 /// \return where its points are. \throw Failure.
 RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size);
 
-/// Checks a legacy VTK file. \return the number of points that it declares. \throw Failure.
-std::uint64_t checkVtkHeader(const std::string& path, std::uint64_t file_size);
+/// Checks that a file begins as a legacy VTK file. \throw Failure.
+void checkVtkHeader(const std::string& path);
+
+/// The number of points that a legacy VTK file declares, or, if that is far behind its beginning,
+/// how many it may hold. \throw Failure.
+std::uint64_t mostVtkPoints(const std::string& path, std::uint64_t file_size);
+
+/// A number in a header. \throw Failure if it is none, or more than points may be.
+std::int64_t requireCount(const std::string& path, std::string_view word, const std::string& what);
+
+/// \throw Failure if there are fewer bytes than a header needs.
+void requireBytes(const std::string& path, double needed, std::uint64_t available);
 
 }  // namespace spherical_param::tools

@@ -122,7 +122,7 @@ std::optional<std::uint64_t> pointCountOf(const std::string& path) {
     case FileFormat::Ply:
       return checkPlyHeader(path, size).points;
     case FileFormat::Vtk:
-      return checkVtkHeader(path, size);
+      return mostVtkPoints(path, size);
     case FileFormat::Xyz:
       return linesOf(path, "");
     case FileFormat::Obj:

@@ -46,9 +46,12 @@ std::optional<double> toReal(std::string_view text) {
   }
   if (error == std::errc::result_out_of_range) {
     // Too large and too small look the same: the exponent's sign tells which.
-    const bool tiny = text.find("e-") != std::string_view::npos ||
-                      text.find("E-") != std::string_view::npos ||
-                      text.find_first_of("eE") == std::string_view::npos;
+    // Without one, a digit before the point does.
+    const std::size_t exponent = text.find_first_of("eE");
+    const bool tiny =
+        exponent != std::string_view::npos
+            ? text.substr(exponent + 1, 1) == "-"
+            : text.substr(0, text.find('.')).find_first_of("123456789") == std::string_view::npos;
     const double magnitude = tiny ? 0.0 : std::numeric_limits<double>::infinity();
     return text.front() == '-' ? -magnitude : magnitude;
   }

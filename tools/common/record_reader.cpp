@@ -163,7 +163,7 @@ public:
 
   PointData read() {
     for (const SkippedElement& element : layout_.before) {
-      isText() ? skipLines(element.count) : skipBytes(element);
+      isText() ? skipLines(element) : skipBytes(element);
     }
     if (isPacked()) {
       unpack();
@@ -221,7 +221,7 @@ private:
     std::size_t size = 0;
     const auto count = static_cast<std::size_t>(layout_.points);
     for (const RecordField& field : layout_.fields) {
-      size += isPadding(field) ? 0 : count * field.size * field.count;
+      size += count * field.size * field.count;
     }
     std::optional<std::string> bytes = unpackLzf(reader_, layout_.packed_size, size);
     if (!bytes) {
@@ -231,19 +231,14 @@ private:
     gathered_.assign(layout_.record_size, '\0');
   }
 
-  /// PCL leaves these fields out of what it packs.
-  static bool isPadding(const RecordField& field) { return field.name == "_"; }
-
   /// The next record, from the columns that were unpacked.
   const char* gathered() {
     const auto count = static_cast<std::size_t>(layout_.points);
     std::size_t column = 0;
     for (const RecordField& field : layout_.fields) {
-      if (!isPadding(field)) {
-        const std::size_t size = field.size * field.count;
-        std::memcpy(&gathered_[field.offset], &unpacked_[column + next_record_ * size], size);
-        column += count * size;
-      }
+      const std::size_t size = field.size * field.count;
+      std::memcpy(&gathered_[field.offset], &unpacked_[column + next_record_ * size], size);
+      column += count * size;
     }
     ++next_record_;
     return gathered_.data();
@@ -281,8 +276,11 @@ private:
     }
   }
 
-  void skipLines(std::uint64_t count) {
-    for (std::uint64_t i = 0; i < count; ++i) {
+  void skipLines(const SkippedElement& element) {
+    if (element.properties.empty()) {
+      return;  // however many there are
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!nextWords()) {
         failContent(path_, "it has fewer points than its header says");
       }

@@ -1,5 +1,6 @@
 #include "common/vtk_clouds.h"
 
+#include "common/header_checks.h"
 #include "common/input_file.h"
 #include "common/numbers.h"
 #include "common/text.h"
@@ -53,8 +54,8 @@ std::array<double, 3> triple(const std::vector<double>& numbers) {
 
 class VtkReader {
 public:
-  VtkReader(const std::string& path, std::uint64_t declared_points, const FileProgress& progress)
-      : path_(path), declared_points_(declared_points), reader_(path, 0, progress) {}
+  VtkReader(const std::string& path, const FileProgress& progress)
+      : path_(path), reader_(path, 0, progress) {}
 
   PointData read() {
     readHeader();
@@ -62,8 +63,10 @@ public:
     while (nextKeyword(word)) {
       readSection(word);
     }
-    if (data_.points.empty() ||
-        (grid_points_ && *grid_points_ != static_cast<double>(data_.points.size()))) {
+    if (data_.points.empty()) {
+      failContent(path_, "it has no points");
+    }
+    if (grid_points_ && *grid_points_ != static_cast<double>(data_.points.size())) {
       fail();
     }
     data_.colors = std::move(colors_.values);
@@ -134,6 +137,15 @@ private:
       fail();
     }
     return static_cast<std::size_t>(number);
+  }
+
+  /// Bytes of the words of this line that are left.
+  std::uint64_t lengthOfWords() const {
+    std::uint64_t length = 0;
+    for (std::size_t i = next_word_; i < words_.size(); ++i) {
+      length += words_[i].size() + 1;
+    }
+    return length;
   }
 
   /// What is behind a keyword is text; bytes begin on the line after it.
@@ -337,15 +349,28 @@ private:
   }
 
   void readPoints() {
-    const std::uint64_t points = count();
-    const NumberType type = numberType();
-    if (points != declared_points_ || !data_.points.empty() || type.kind != 'F') {
+    const std::int64_t points = requireCount(path_, word(), "points");
+    const std::string name = lowerCase(word());
+    if (!data_.points.empty()) {
       fail();
     }
+    if (points == 0) {
+      failContent(path_, "it has no points");
+    }
+    const std::optional<NumberType> type = findType(name);
+    if (!type || type->kind != 'F') {
+      failReading(path_, "its points are of type " + inQuotes(name),
+                  "save them as float or double");
+    }
+    // A digit and what separates it from the next, which the last one lacks, or bytes.
+    const double each = is_binary_ ? static_cast<double>(type->size) : 2.0;
+    requireBytes(path_, 3.0 * each * static_cast<double>(points) - (is_binary_ ? 0.0 : 1.0),
+                 reader_.left() + (is_binary_ ? 0 : lengthOfWords()));
     data_.points.reserve(static_cast<std::size_t>(points));
-    readNumbers(type, points, 3, [this](std::size_t, const std::vector<double>& numbers) {
-      data_.addPoint(triple(numbers));
-    });
+    readNumbers(*type, static_cast<std::uint64_t>(points), 3,
+                [this](std::size_t, const std::vector<double>& numbers) {
+                  data_.addPoint(triple(numbers));
+                });
   }
 
   /// Up to version 4: the number of cells, then that of the integers, which follow. From 5 on:
@@ -477,7 +502,6 @@ private:
   }
 
   const std::string& path_;
-  std::uint64_t declared_points_;
   BlockReader reader_;
   std::vector<std::string_view> words_;
   std::size_t next_word_ = 0;
@@ -493,9 +517,9 @@ private:
 
 }  // namespace
 
-PointData readVtk(const std::string& path, std::uint64_t declared_points,
-                  const FileProgress& progress) {
-  return VtkReader(path, declared_points, progress).read();
+PointData readVtk(const std::string& path, const FileProgress& progress) {
+  checkVtkHeader(path);
+  return VtkReader(path, progress).read();
 }
 
 }  // namespace spherical_param::tools

@@ -3,7 +3,6 @@
 #include "common/block_reader.h"
 #include "common/point_data.h"
 
-#include <cstdint>
 #include <string>
 
 namespace spherical_param::tools {
@@ -16,9 +15,7 @@ namespace spherical_param::tools {
 /// VTK's reader is not used: it believes what a file tells, so that a broken one may end the
 /// program, and has the whole file in memory.
 ///
-/// \param declared_points as checkVtkHeader() found them.
 /// \throw Failure.
-PointData readVtk(const std::string& path, std::uint64_t declared_points,
-                  const FileProgress& progress);
+PointData readVtk(const std::string& path, const FileProgress& progress);
 
 }  // namespace spherical_param::tools
