@@ -154,7 +154,10 @@ private:
   // --- arrays ---
 
   double numberOf(const char* bytes, const NumberType& type) const {
-    std::uint64_t bits = 0;  // the most significant byte comes first
+    // The most significant byte comes first. What is before it is filled as it has to be of a
+    // negative number.
+    const bool is_negative = type.kind == 'I' && (static_cast<std::uint8_t>(bytes[0]) & 0x80U) != 0;
+    std::uint64_t bits = is_negative ? ~std::uint64_t{0} : std::uint64_t{0};
     for (std::size_t b = 0; b < type.size; ++b) {
       bits = bits << 8U | static_cast<std::uint8_t>(bytes[b]);
     }
@@ -172,11 +175,8 @@ private:
     if (type.kind == 'U') {
       return static_cast<double>(bits);
     }
-    const std::size_t unused = 64 - 8 * type.size;
     std::int64_t value = 0;
-    bits <<= unused;
     std::memcpy(&value, &bits, sizeof value);
-    value /= std::int64_t{1} << unused;
     return static_cast<double>(value);
   }
 

@@ -1,6 +1,6 @@
 // Every allocation of a call of the core, of the PCL classes or of the tools fails, each alone and
-// each with all after it. What must come of it: std::bad_alloc or the failure that is documented, or
-// the right answer; no leak; and the next call gives the same bytes as ever.
+// each with all after it. What must come of it: std::bad_alloc or the failure that is documented,
+// or the right answer; no leak; and the next call gives the same bytes as ever.
 //
 //   torture_allocation [--quick] [--only NAME] [--at K]
 
@@ -655,7 +655,7 @@ std::uint64_t tortureCall(const Call& call, std::uint64_t most_faults, std::uint
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::uint64_t most_faults = 6000;
+  std::uint64_t most_faults = 1000000;
   std::uint64_t at = 0;
   std::string only;
   for (int i = 1; i < argc; ++i) {
