@@ -443,7 +443,7 @@ std::uint64_t mostVtkPoints(const std::string& path, std::uint64_t file_size) {
   const std::uint64_t most = bytesBehind(lines, file_size) / (is_binary ? 12 : 5);
   while (lines.next()) {
     const auto& words = lines.words();
-    if (words.size() == 3 && lowerCase(words[0]) == "points") {
+    if (words.size() >= 3 && lowerCase(words[0]) == "points") {
       const std::optional<std::int64_t> points = toInteger(words[1]);
       if (points && *points > 0) {
         return std::min(most, static_cast<std::uint64_t>(*points));

@@ -21,8 +21,9 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size);
 /// Checks that a file begins as a legacy VTK file. \throw Failure.
 void checkVtkHeader(const std::string& path);
 
-/// The number of points that a legacy VTK file declares, or, if that is far behind its beginning,
-/// how many it may hold. \throw Failure.
+/// How many points a legacy VTK file may have, for who plans with it: what the first line that
+/// looks like it declares, or, if none does in the beginning of the file, as many as its size has
+/// room for. \throw Failure.
 std::uint64_t mostVtkPoints(const std::string& path, std::uint64_t file_size);
 
 /// A number in a header. \throw Failure if it is none, or more than points may be.

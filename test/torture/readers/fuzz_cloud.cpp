@@ -54,8 +54,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   require(data->colors.empty() || data->colors.size() == count, "a colour for each point");
   require(!data->has_alpha || !data->colors.empty(), "no alpha without colours");
   require(data->rounding >= 0.0 && std::isfinite(data->rounding), "the rounding is a length");
-  if (extension != ".obj" && extension != ".xyz") {
+  if (extension == ".pcd" || extension == ".ply") {
     require(declared && *declared == count, "all points of the header");
+  } else if (extension == ".vtk") {
+    require(declared && *declared > 0, "a number of points to plan with");
   }
   const std::optional<PointData> again = readOrRefuse(file.path());
   require(again && sameBytes(again->points, data->points) &&
