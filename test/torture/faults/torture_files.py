@@ -812,6 +812,10 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("parts", nargs="*")
     arguments = parser.parse_args()
+    # Programs that a shell runs in the background ignore SIGINT, and so would the tools.
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler if number == signal.SIGINT
+                      else signal.SIG_DFL)
     print(f"seed {arguments.seed}")
     torture = Torture(arguments)
     rows = {
