@@ -528,11 +528,9 @@ TEST_F(CloudReader, PaddingOfPackedPointsTakesNoMemory) {
   const std::uint32_t size = 12;
   const std::string packed("\x00\x00\xe0\x02\x00", 5);
   const auto packed_size = static_cast<std::uint32_t>(packed.size());
-  tool_test::writeFile(directory.file("a.pcd"),
-                       pcdOf(fields, sizes, types, "1", "binary_compressed\n") +
-                           bytesOf(&packed_size, 4, false) + bytesOf(&size, 4, false) + packed);
-  std::string file = tool_test::readFile(directory.file("a.pcd"));
-  file.replace(file.find("WIDTH"), 0, "COUNT " + counts + "\n");
+  std::string file = pcdOf(fields, sizes, types, "1", "binary_compressed\n") +
+                     bytesOf(&packed_size, 4, false) + bytesOf(&size, 4, false) + packed;
+  file.insert(file.find("WIDTH"), "COUNT " + counts + "\n");
   tool_test::writeFile(directory.file("a.pcd"), file);
   EXPECT_EQ(readCloud(directory.file("a.pcd")).points, (std::vector<Point>{{0.0F, 0.0F, 0.0F}}));
 }

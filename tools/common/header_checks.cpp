@@ -327,6 +327,9 @@ RecordLayout toLayout(const std::vector<PlyElement>& elements) {
   bool behind = false;
   for (const PlyElement& element : elements) {
     if (element.name != "vertex") {
+      if (element.properties.empty()) {
+        continue;  // nothing to go through, however many there are
+      }
       (behind ? layout.after : layout.before).push_back(toSkipped(element));
       continue;
     }

@@ -27,7 +27,7 @@ struct SkippedElement {
     std::size_t length_size = 0;  ///< bytes of the length of a list; 0: one value
   };
   std::uint64_t count = 0;
-  std::vector<Property> properties;
+  std::vector<Property> properties;  ///< at least one
 };
 
 /// Where a file has its points, as its header says.

@@ -163,7 +163,7 @@ public:
 
   PointData read() {
     for (const SkippedElement& element : layout_.before) {
-      isText() ? skipLines(element) : skipBytes(element);
+      isText() ? skipLines(element.count) : skipBytes(element);
     }
     if (isPacked()) {
       unpack();
@@ -276,11 +276,8 @@ private:
     }
   }
 
-  void skipLines(const SkippedElement& element) {
-    if (element.properties.empty()) {
-      return;  // however many there are
-    }
-    for (std::uint64_t i = 0; i < element.count; ++i) {
+  void skipLines(std::uint64_t count) {
+    for (std::uint64_t i = 0; i < count; ++i) {
       if (!nextWords()) {
         failContent(path_, "it has fewer points than its header says");
       }
@@ -289,9 +286,6 @@ private:
 
   /// Behind the points, nobody cares which line a word is on.
   void skipWords(const SkippedElement& element) {
-    if (element.properties.empty()) {
-      return;
-    }
     const auto next_word = [this] {
       if (next_word_ >= words_.size()) {
         next_word_ = 0;
@@ -323,9 +317,6 @@ private:
   }
 
   void skipBytes(const SkippedElement& element) {
-    if (element.properties.empty()) {
-      return;  // however many there are
-    }
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (const SkippedElement::Property& property : element.properties) {
         std::uint64_t values = 1;
