@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 // Theorem and lemma numbers are those of Shewchuk (1997), see the header.

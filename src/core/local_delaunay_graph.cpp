@@ -5,6 +5,7 @@
 #include "core/neighbor_lists.h"
 #include "core/option_checks.h"
 #include "core/parallel.h"
+#include "core/power_of_two.h"
 #include "core/progress.h"
 #include "spherical_param/errors.h"
 
@@ -205,10 +206,9 @@ void collectCandidates(const Positions& points, Index i, const Index* begin, con
   constexpr double safe = 1e-100;
   if (extent > 0.0 && (extent < safe || extent > 1.0 / safe)) {
     // By a power of two, which is exact.
-    const int exponent = std::ilogb(extent);
+    const internal::PowerOfTwo scaled(-std::ilogb(extent));
     for (Candidate& candidate : candidates) {
-      candidate.offset =
-          candidate.offset.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+      candidate.offset = scaled(candidate.offset);
       candidate.squared_distance = candidate.offset.squaredNorm();
     }
   }
