@@ -54,74 +54,74 @@ public:
     if (value)
       add(*value);
   }
+  /// All that a result says, but for the times.
+  void add(const spherical_param::Result& result) {
+    add(result.triangles);
+    add(result.sphere);
+    add(result.vertex_of_input);
+    add(result.input_of_vertex);
+    add(result.duplicates);
+    add(result.self_intersections);
+    add(result.smoothed);
+    add(result.history.vertices);
+    for (const spherical_param::HistoryFrame& frame : result.history.frames) {
+      add(frame.level);
+      add(frame.iteration);
+      add(frame.residual);
+      add(frame.sphere);
+    }
+    add(result.vertex_residuals);
+    add(result.diagnosis.kind);
+    add(result.diagnosis.genus);
+    add(result.diagnosis.summary);
+    add(result.diagnosis.triangle_marks);
+    for (const spherical_param::Lid& lid : result.diagnosis.lids) {
+      add(lid.area);
+      add(lid.vertices);
+      add(lid.loops);
+    }
+    for (const spherical_param::CollapsedHandle& handle : result.diagnosis.handles)
+      add(handle.vertices);
+    add(result.volume);
+    add(result.area);
+    add(result.edges_outside_graph);
+    add(result.graph.edges);
+    add(result.graph.components);
+    add(result.graph.without_tangent_plane);
+    add(result.graph.searched_again);
+    add(result.graph.uncertified);
+    add(result.graph.weak);
+    add(result.embedding.stop_reason);
+    add(result.embedding.iterations);
+    add(result.embedding.residual);
+    add(result.embedding.residuals);
+    add(result.embedding.centroid_norm);
+    add(result.embedding.energy);
+    add(result.triangulation.reinserted);
+    add(result.optimization.energy);
+    add(result.optimization.rough);
+    add(result.optimization.alignment);
+    add(result.optimization.unevenness);
+    add(result.smoothing.rms_displacement);
+    add(result.smoothing.volume_after);
+    for (const spherical_param::AttemptReport& attempt : result.attempts) {
+      add(attempt.description);
+      add(attempt.self_intersections);
+      add(attempt.energy);
+      add(attempt.chosen);
+    }
+    add(result.warnings);
+  }
   std::string take() { return std::move(bytes_); }
 
 private:
   std::string bytes_;
 };
 
-/// All that a result says, but for the times.
-inline void addResult(const spherical_param::Result& result, Bytes& bytes) {
-  bytes.add(result.triangles);
-  bytes.add(result.sphere);
-  bytes.add(result.vertex_of_input);
-  bytes.add(result.input_of_vertex);
-  bytes.add(result.duplicates);
-  bytes.add(result.self_intersections);
-  bytes.add(result.smoothed);
-  bytes.add(result.history.vertices);
-  for (const spherical_param::HistoryFrame& frame : result.history.frames) {
-    bytes.add(frame.level);
-    bytes.add(frame.iteration);
-    bytes.add(frame.residual);
-    bytes.add(frame.sphere);
-  }
-  bytes.add(result.vertex_residuals);
-  bytes.add(result.diagnosis.kind);
-  bytes.add(result.diagnosis.genus);
-  bytes.add(result.diagnosis.summary);
-  bytes.add(result.diagnosis.triangle_marks);
-  for (const spherical_param::Lid& lid : result.diagnosis.lids) {
-    bytes.add(lid.area);
-    bytes.add(lid.vertices);
-    bytes.add(lid.loops);
-  }
-  for (const spherical_param::CollapsedHandle& handle : result.diagnosis.handles)
-    bytes.add(handle.vertices);
-  bytes.add(result.volume);
-  bytes.add(result.area);
-  bytes.add(result.edges_outside_graph);
-  bytes.add(result.graph.edges);
-  bytes.add(result.graph.components);
-  bytes.add(result.graph.without_tangent_plane);
-  bytes.add(result.graph.searched_again);
-  bytes.add(result.graph.uncertified);
-  bytes.add(result.graph.weak);
-  bytes.add(result.embedding.stop_reason);
-  bytes.add(result.embedding.iterations);
-  bytes.add(result.embedding.residual);
-  bytes.add(result.embedding.residuals);
-  bytes.add(result.embedding.centroid_norm);
-  bytes.add(result.embedding.energy);
-  bytes.add(result.triangulation.reinserted);
-  bytes.add(result.optimization.energy);
-  bytes.add(result.optimization.rough);
-  bytes.add(result.optimization.alignment);
-  bytes.add(result.optimization.unevenness);
-  bytes.add(result.smoothing.rms_displacement);
-  bytes.add(result.smoothing.volume_after);
-  for (const spherical_param::AttemptReport& attempt : result.attempts) {
-    bytes.add(attempt.description);
-    bytes.add(attempt.self_intersections);
-    bytes.add(attempt.energy);
-    bytes.add(attempt.chosen);
-  }
-  bytes.add(result.warnings);
-}
-
-inline std::string bytesOf(const spherical_param::Result& result) {
+template <typename... Values>
+std::string bytesOf(const Values&... values) {
   Bytes bytes;
-  addResult(result, bytes);
+  (bytes.add(values), ...);
   return bytes.take();
 }
 

@@ -813,9 +813,9 @@ def main():
     parser.add_argument("parts", nargs="*")
     arguments = parser.parse_args()
     # Programs that a shell runs in the background ignore SIGINT, and so would the tools.
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.default_int_handler if number == signal.SIGINT
-                      else signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     print(f"seed {arguments.seed}")
     torture = Torture(arguments)
     rows = {

@@ -128,7 +128,7 @@ inline Answer answer(const Job& job) {
     const Result result = reconstruct(
         job.points, lists, job.options,
         job.is_spiral ? NeighborSearch() : NeighborSearch(test::bruteForceSearch(job.points)));
-    addResult(result, bytes);
+    bytes.add(result);
     const bool is_sphere =
         test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount()));
     if (job.has_map) {

@@ -24,7 +24,7 @@ public:
     reconstruction_.reconstruct(mesh);
     const spherical_param::Result& result = reconstruction_.getResult();
     Bytes bytes;
-    addResult(result, bytes);
+    bytes.add(result);
     for (const pcl::Vertices& polygon : mesh.polygons)
       bytes.add(polygon.vertices);
     bytes.add(reconstruction_.getErrorMessage());

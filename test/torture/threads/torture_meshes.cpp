@@ -28,6 +28,7 @@
 namespace {
 
 using namespace spherical_param;
+using torture::bytesOf;
 
 struct Cloud {
   std::string name;
@@ -87,13 +88,6 @@ NeighborSearchFactory kdTreeSearch() {
 /// What came out, in the order of the work.
 using Stages = std::vector<std::pair<std::string, std::string>>;
 
-template <typename... Values>
-std::string bytesOf(const Values&... values) {
-  torture::Bytes bytes;
-  (bytes.add(values), ...);
-  return bytes.take();
-}
-
 Stages stagesOf(const Positions& points, Options options, int threads) {
   options.threads = threads;
   // The lists by themselves, too: the result does not have them.
@@ -108,8 +102,6 @@ Stages stagesOf(const Positions& points, Options options, int threads) {
   SphereMapOptions map_options;
   map_options.threads = threads;
   const SphereMap map = computeSphereMap(vertices, result.triangles, result.sphere, map_options);
-  torture::Bytes rest;
-  torture::addResult(result, rest);
   return {
       {"points", bytesOf(points)},
       {"neighbors", bytesOf(search(all, neighborsToSearch(options)).indices)},
@@ -119,7 +111,7 @@ Stages stagesOf(const Positions& points, Options options, int threads) {
       {"embedding", bytesOf(result.sphere)},
       {"triangles", bytesOf(result.triangles, result.vertex_of_input)},
       {"smoothed", bytesOf(result.smoothed)},
-      {"result", rest.take()},
+      {"result", bytesOf(result)},
       {"map", bytesOf(map.sphere)},
   };
 }
