@@ -1,5 +1,5 @@
-# Everything that the project builds against. The VTK-free parts of PCL for the library, the rest
-# for tools and tests only. README.md lists the bounds of their versions.
+# What the libraries build against; what tools and tests need more is found there. README.md lists
+# the bounds of their versions.
 include(${PROJECT_SOURCE_DIR}/cmake/RequireVersion.cmake)
 find_package(Eigen3 QUIET NO_MODULE)
 if(NOT TARGET Eigen3::Eigen)
@@ -34,19 +34,8 @@ spherical_param_require_version(FLANN "${SPHERICAL_PARAM_FLANN_VERSION}" 1.9 lib
 if(NOT SPHERICAL_PARAM_BUILD_PCL)
   return()
 endif()
-set(spherical_param_pcl_components common kdtree search)
-if(SPHERICAL_PARAM_BUILD_TOOLS)
-  list(APPEND spherical_param_pcl_components filters io)
-endif()
-if(SPHERICAL_PARAM_BUILD_TESTS)
-  list(APPEND spherical_param_pcl_components octree)
-endif()
-find_package(PCL REQUIRED COMPONENTS ${spherical_param_pcl_components})
+find_package(PCL REQUIRED COMPONENTS common kdtree search)
 spherical_param_require_version(PCL "${PCL_VERSION}" 1.12 libpcl-dev 2)
-# What PCL brings, of which the tools use parts.
-if(SPHERICAL_PARAM_BUILD_TOOLS)
-  spherical_param_require_version(VTK "${VTK_VERSION}" 9.0 libvtk9-dev)
-endif()
 
 # Older PCL gives plain library targets and variables, newer PCL namespaced targets.
 function(spherical_param_link_pcl target visibility)

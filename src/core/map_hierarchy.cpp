@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 /// small it is in space, is one that coordinates of double tell apart.
 constexpr double kLeastMass = 1e-6;
 /// A vertex of more neighbours is only taken out if there are too few others.
-constexpr Index kMostNeighbors = 8;
+constexpr Index kMostCoarseNeighbors = 8;
 /// This share of the candidates, the cheapest, is considered for a batch.
 constexpr double kShareOfCandidates = 0.7;
 /// With fewer vertices than this they are taken out one at a time.
@@ -295,7 +295,7 @@ public:
 
   MapHierarchy run(const ShareReport& report) {
     const auto n = static_cast<double>(alive_.size());
-    Index most_neighbors = kMostNeighbors;
+    Index most_neighbors = kMostCoarseNeighbors;
     while (alive_.size() > 4) {
       const std::size_t before = alive_.size();
       takeOut(most_neighbors);
@@ -304,7 +304,7 @@ public:
       if (gone == 0 || (gone < before / 20 && before > static_cast<std::size_t>(kFewVertices)))
         most_neighbors = most_neighbors < (Index{1} << 29) ? 2 * most_neighbors : most_neighbors;
       else
-        most_neighbors = std::max(kMostNeighbors, most_neighbors / 2);
+        most_neighbors = std::max(kMostCoarseNeighbors, most_neighbors / 2);
       const auto kept = static_cast<double>(hierarchy_.meshes.back().vertex_count);
       const double ratio = kept > 1000.0 ? 0.5 : 0.8;
       if (static_cast<double>(alive_.size()) <= ratio * kept || alive_.size() == 4)

@@ -1,6 +1,7 @@
 #include "core/rotation_search.h"
 
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/space_filling_curve.h"
 
 #include <Eigen/Geometry>
@@ -14,8 +15,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Rotations that are tried: nearest ones are some 12 degrees apart.
 constexpr std::size_t kRotations = 8192;

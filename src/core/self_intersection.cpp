@@ -843,7 +843,7 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
 
 // --- The functions of the header -----------------------------------------------------------------
 
-[[noreturn]] void fail(const std::string& message) {
+[[noreturn]] void refuse(const std::string& message) {
   throw InvalidInput("findSelfIntersections: " + message);
 }
 
@@ -851,20 +851,20 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
 /// differences. Throws InvalidInput.
 double checkedScale(const Positions& points, const Triangles& triangles, int threads) {
   if (threads < 0 || threads > internal::kMostThreads)
-    fail("threads = " + std::to_string(threads) + " is out of range; use 0 (all) to " +
-         std::to_string(internal::kMostThreads));
+    refuse("threads = " + std::to_string(threads) + " is out of range; use 0 (all) to " +
+           std::to_string(internal::kMostThreads));
   if (!points.allFinite())
     for (Eigen::Index i = 0; i < points.cols(); ++i)
       if (!points.col(i).allFinite())
-        fail("point " + std::to_string(i) + " is not finite; remove such points first");
+        refuse("point " + std::to_string(i) + " is not finite; remove such points first");
   const double most = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
   if (triangles.cols() > 0 && (triangles.minCoeff() < 0 || triangles.maxCoeff() >= points.cols()))
     for (Eigen::Index t = 0; t < triangles.cols(); ++t)
       for (int k = 0; k < 3; ++k)
         if (triangles(k, t) < 0 || triangles(k, t) >= points.cols())
-          fail("triangle " + std::to_string(t) + " names vertex " +
-               std::to_string(triangles(k, t)) + ", but there are " +
-               std::to_string(points.cols()) + " points");
+          refuse("triangle " + std::to_string(t) + " names vertex " +
+                 std::to_string(triangles(k, t)) + ", but there are " +
+                 std::to_string(points.cols()) + " points");
   int exponent = 0;
   std::frexp(most, &exponent);
   return std::ldexp(1.0, std::min(-exponent, 1000));
@@ -928,8 +928,8 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   std::vector<char> in_set(mesh.size(), 0);
   for (const Index t : of) {
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
-      fail("triangle " + std::to_string(t) + " is asked for, but there are " +
-           std::to_string(mesh.size()));
+      refuse("triangle " + std::to_string(t) + " is asked for, but there are " +
+             std::to_string(mesh.size()));
     in_set[static_cast<std::size_t>(t)] = 1;
   }
   std::vector<Index> subset;

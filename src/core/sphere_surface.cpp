@@ -4,6 +4,7 @@
 #include "core/exact_predicates.h"
 #include "core/option_checks.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/sphere_locator.h"
 #include "core/vertex_normals.h"
 #include "core/vertex_quadrics.h"
@@ -24,7 +25,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
+using internal::kPi;
 
 /// Throws InvalidInput for the first column of positions that check() does not pass.
 template <typename Check>

@@ -2,6 +2,7 @@
 
 #include "core/exact_predicates.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/tangent_basis.h"
 
 #include <Eigen/Cholesky>
@@ -16,8 +17,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A step x -> (x + s(x)) / |x + s(x)| of a tangential field is locally one to one where |s|^2 +
 /// |Ds|^2 < 1, as I + (s, Ds) then has an inverse; and a map of the sphere that is so everywhere is

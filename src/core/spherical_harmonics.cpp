@@ -1,6 +1,7 @@
 #include "spherical_param/spherical_harmonics.h"
 
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
+using internal::kPi;
 constexpr int kMostDegree = 512;
 
 void checkDegree(const char* function, int degree) {

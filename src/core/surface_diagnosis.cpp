@@ -6,6 +6,7 @@
 #include "core/graph_checks.h"
 #include "core/graph_cycles.h"
 #include "core/parallel.h"
+#include "core/pi.h"
 #include "core/union_find.h"
 
 #include <Eigen/Geometry>
@@ -26,7 +27,7 @@
 namespace spherical_param {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using internal::kPi;
 
 // The thresholds rest on measurements: raw, optimised and true meshes of 14 closed scans of very
 // different sampling and of generated closed shapes, on none of which anything may be reported; on

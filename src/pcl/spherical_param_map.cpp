@@ -1,7 +1,6 @@
 #include <pcl/console/print.h>
-#include <pcl/impl/instantiate.hpp>
 #include <pcl/point_types.h>
-#include <pcl/surface/impl/spherical_param_map.hpp>
+#include <pcl/surface/spherical_param_map.h>
 
 #include <exception>
 #include <functional>
@@ -47,5 +46,3 @@ bool mapMesh(const spherical_param::Positions& points, const spherical_param::Re
 
 }  // namespace detail
 }  // namespace pcl
-
-PCL_INSTANTIATE(computeSphericalParamMap, PCL_XYZ_POINT_TYPES)

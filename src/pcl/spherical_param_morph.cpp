@@ -1,8 +1,7 @@
 #include <pcl/conversions.h>
-#include <pcl/impl/instantiate.hpp>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/surface/impl/spherical_param_morph.hpp>
+#include <pcl/surface/spherical_param_morph.h>
 
 #include "spherical_param/errors.h"
 
@@ -108,5 +107,3 @@ bool morph(const MappedMesh& first, const spherical_param::Triangles& first_tria
 
 }  // namespace detail
 }  // namespace pcl
-
-PCL_INSTANTIATE(morphSphericalParam, PCL_XYZ_POINT_TYPES)

@@ -1,8 +1,7 @@
 #include <pcl/conversions.h>
-#include <pcl/impl/instantiate.hpp>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/surface/impl/spherical_param_remesh.hpp>
+#include <pcl/surface/spherical_param_remesh.h>
 
 #include "spherical_param/errors.h"
 
@@ -57,5 +56,3 @@ bool remesh(const spherical_param::Positions& points, const spherical_param::Tri
 
 }  // namespace detail
 }  // namespace pcl
-
-PCL_INSTANTIATE(remeshSphericalParam, PCL_XYZ_POINT_TYPES)

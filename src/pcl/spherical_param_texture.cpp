@@ -1,9 +1,8 @@
 #include <pcl/conversions.h>
-#include <pcl/impl/instantiate.hpp>
 #include <pcl/pcl_config.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
-#include <pcl/surface/impl/spherical_param_texture.hpp>
+#include <pcl/surface/spherical_param_texture.h>
 
 #include "spherical_param/mesh_measures.h"
 
@@ -91,5 +90,3 @@ bool textureMesh(const spherical_param::Positions& points,
 
 }  // namespace detail
 }  // namespace pcl
-
-PCL_INSTANTIATE(textureSphericalParam, PCL_XYZ_POINT_TYPES)

@@ -3,9 +3,6 @@
 #include "common/errors.h"
 #include "common/record_writer.h"
 
-#include <pcl/PCLPointCloud2.h>
-#include <pcl/io/pcd_io.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -311,35 +308,37 @@ void writeXyz(RecordWriter& writer, const MeshView& mesh) {
   }
 }
 
-/// The header is PCL's. It writes the body to named files only, hence the packing in here.
+/// The header has the lines of PCL's own, in their order.
 void writePcd(RecordWriter& writer, const MeshView& mesh) {
-  pcl::PCLPointCloud2 cloud;
-  cloud.width = static_cast<std::uint32_t>(mesh.vertexCount());
-  cloud.height = 1;
-  const auto add_field = [&cloud](const char* name, std::uint8_t type) {
-    pcl::PCLPointField field;
-    field.name = name;
-    field.offset = cloud.point_step;
-    field.datatype = type;
-    field.count = 1;
-    cloud.fields.push_back(field);
-    cloud.point_step += 4;
-  };
-  for (const char* name : {"x", "y", "z"}) {
-    add_field(name, pcl::PCLPointField::FLOAT32);
-  }
+  std::string fields = "x y z";
+  std::string types = "F F F";
+  std::size_t numbers = 3;
   if (mesh.hasNormals()) {
-    for (const char* name : {"normal_x", "normal_y", "normal_z"}) {
-      add_field(name, pcl::PCLPointField::FLOAT32);
-    }
+    fields += " normal_x normal_y normal_z";
+    types += " F F F";
+    numbers += 3;
   }
   if (mesh.hasColors()) {
-    add_field(mesh.hasAlpha() ? "rgba" : "rgb",
-              mesh.hasAlpha() ? pcl::PCLPointField::UINT32 : pcl::PCLPointField::FLOAT32);
+    fields += mesh.hasAlpha() ? " rgba" : " rgb";
+    types += mesh.hasAlpha() ? " U" : " F";
+    ++numbers;
   }
-  cloud.row_step = cloud.point_step * cloud.width;
-  writer.text(pcl::PCDWriter().generateHeaderBinary(cloud, Eigen::Vector4f::Zero(),
-                                                    Eigen::Quaternionf::Identity()));
+  std::string sizes;
+  std::string counts;
+  for (std::size_t i = 0; i < numbers; ++i) {
+    sizes += " 4";
+    counts += " 1";
+  }
+  writer.line("# .PCD v0.7 - Point Cloud Data file format");
+  writer.line("VERSION 0.7");
+  writer.line("FIELDS " + fields);
+  writer.line("SIZE" + sizes);
+  writer.line("TYPE " + types);
+  writer.line("COUNT" + counts);
+  writer.line("WIDTH " + count(mesh.vertexCount()));
+  writer.line("HEIGHT 1");
+  writer.line("VIEWPOINT 0 0 0 1 0 0 0");
+  writer.line("POINTS " + count(mesh.vertexCount()));
   writer.line("DATA binary");
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     writer.words(mesh.point(i), ByteOrder::Little);

@@ -8,10 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPNGWriter.h>
-#include <vtkUnsignedCharArray.h>
+#include <png.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -102,26 +99,21 @@ TexturedMesh makeTexturedMesh(const TextureAtlas& atlas, const Positions& points
 }
 
 std::string encodePng(const TextureImage& image) {
-  vtkNew<vtkImageData> pixels;
-  pixels->SetDimensions(image.width, image.height, 1);
-  pixels->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
-  auto* const target = static_cast<std::uint8_t*>(pixels->GetScalarPointer());
-  for (int y = 0; y < image.height; ++y) {
-    // VTK has the lowest row first.
-    std::copy_n(image.pixels.data() + row * static_cast<std::size_t>(y), row,
-                target + row * static_cast<std::size_t>(image.height - 1 - y));
-  }
-  vtkNew<vtkPNGWriter> writer;
-  writer->WriteToMemoryOn();
-  writer->SetInputData(pixels);
-  writer->Write();
-  const vtkUnsignedCharArray* const result = writer->GetResult();
-  if (result == nullptr || writer->GetErrorCode() != 0 || writer->GetResult()->GetSize() == 0) {
+  png_image header = {};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  constexpr int converted = 0;   // the pixels are of 8 bits
+  constexpr int row_stride = 0;  // rows follow each other
+  std::string png(PNG_IMAGE_PNG_SIZE_MAX(header), '\0');
+  png_alloc_size_t size = png.size();
+  if (png_image_write_to_memory(&header, png.data(), &size, converted, image.pixels.data(),
+                                row_stride, nullptr) == 0) {
     throw Failure("the image cannot be encoded as PNG", "give -size a smaller number");
   }
-  const auto* const bytes = reinterpret_cast<const char*>(writer->GetResult()->GetPointer(0));
-  return std::string(bytes, static_cast<std::size_t>(writer->GetResult()->GetNumberOfValues()));
+  png.resize(size);
+  return png;
 }
 
 void writeGlb(OutputFile& file, const TexturedMesh& mesh, const std::string& png) {

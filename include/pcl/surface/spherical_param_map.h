@@ -31,6 +31,9 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
 
 namespace detail {
 
+/** \brief The core's messages begin with the name of the function; ours has its own. */
+PCL_EXPORTS const char* withoutFunctionName(const char* message);
+
 /** \brief Calls a piece of work that uses the core. Whatever exception it throws is told by
  * PCL_ERROR as one of a function. Needs no memory itself.
  * \return false after an exception */
@@ -48,8 +51,40 @@ PCL_EXPORTS bool mapMesh(const spherical_param::Positions& points,
                          spherical_param::SphereMap& map);
 
 }  // namespace detail
-}  // namespace pcl
 
-#ifdef PCL_NO_PRECOMPILE
-#include <pcl/surface/impl/spherical_param_map.hpp>
-#endif
+template <typename PointInT>
+bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruction,
+                              spherical_param::Positions& points, spherical_param::SphereMap& map,
+                              const spherical_param::SphereMapOptions& options) {
+  points.resize(3, 0);
+  map = spherical_param::SphereMap();
+  reconstruction.reconstruct();
+  const spherical_param::Result& result = reconstruction.getResult();
+  // It has told why.
+  if (!reconstruction.getErrorMessage().empty())
+    return false;
+  spherical_param::SphereMapOptions with_threads;
+  const bool has_points = detail::runCore("computeSphericalParamMap", [&] {
+    with_threads = options;
+    if (result.smoothed.cols() > 0) {
+      points = result.smoothed;
+      return;
+    }
+    const pcl::Indices& vertices = reconstruction.getVertexIndices();
+    const auto& cloud = *reconstruction.getInputCloud();
+    points.resize(3, static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const PointInT& point = cloud[static_cast<std::size_t>(vertices[i])];
+      points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
+          static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
+    }
+  });
+  if (with_threads.threads == 0)
+    with_threads.threads = static_cast<int>(reconstruction.getNumberOfThreads());
+  if (has_points && detail::mapMesh(points, result, with_threads, map))
+    return true;
+  points.resize(3, 0);
+  return false;
+}
+
+}  // namespace pcl

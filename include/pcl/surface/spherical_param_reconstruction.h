@@ -385,22 +385,12 @@ protected:
   void performReconstruction(std::vector<pcl::Vertices>& polygons) override;
 
 private:
-  /// \cond
-  /** \brief Stands for an output that nobody wants. */
-  struct NoOutput {};
-  /// \endcond
+  /** \brief Fills the results. */
+  void meshPoints();
 
-  void performReconstruction(NoOutput& none);
-
-  /** \brief Makes a cloud of the size of the input from places of the vertices, 3 x v; NaN where a
-   * point is no vertex. */
-  pcl::PointCloud<pcl::PointXYZ>::Ptr
-  cloudOfVertices(const spherical_param::Positions& vertices) const;
-
-  /** \brief Clears output and results, calls performReconstruction() and, if that fails, clears
-   * both again and says why. */
-  template <typename Output>
-  void run(Output& output);
+  /** \brief Clears the results, does the work and, if that fails, clears results and output and
+   * says why. */
+  void run(const std::function<void()>& work, const std::function<void()>& clear_output);
 
   void clearResults();
 
@@ -410,9 +400,6 @@ private:
   /** \brief Fills used_indices_ and counts ignored_points_.
    * \return the used points, 3 x used_indices_.size() */
   spherical_param::Positions collectPoints();
-
-  spherical_param::Result reconstructPoints(const spherical_param::Positions& points,
-                                            const spherical_param::Options& options) const;
 
   /** \brief Gives the distinct points to the search object of setSearchMethod().
    * \param[in] point_of_distinct the first of the used points at each of them */

@@ -5,12 +5,12 @@
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/library_output.h"
 #include "common/mesh_writer.h"
 #include "common/output_file.h"
 #include "common/peak_memory.h"
 #include "common/run_tool.h"
 #include "common/text.h"
+#include "library_output.h"
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>

@@ -3,8 +3,8 @@
 #include "common/errors.h"
 #include "common/file_formats.h"
 #include "common/input_file.h"
-#include "common/library_output.h"
 #include "common/text.h"
+#include "library_output.h"
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/PCLPointField.h>

@@ -10,106 +10,48 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <exception>
-#include <limits>
+#include <functional>
 #include <memory>
-#include <mutex>
 #include <new>
+#include <string>
 #include <utility>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include <vector>
 
 namespace pcl {
 namespace detail {
 
-/** \brief Carries an exception of the user's progress callback past the handlers that turn
- * exceptions into error messages; therefore not a std::exception. */
-struct ProgressCallbackFailure {
-  std::exception_ptr cause;
-};
+/** \brief Calls the work of a reconstruction, which may throw anything.
+ * \param[out] callback_error what the progress callback threw, if it did
+ * \return why it failed, with a remedy; empty after a success */
+PCL_EXPORTS std::string failureOf(const std::function<void()>& work,
+                                  std::exception_ptr& callback_error);
 
-/** \brief The core's messages begin with the name of the function; ours has its own. */
-inline const char* withoutFunctionName(const char* message) {
-  const char* end = message;
-  while (std::isalnum(static_cast<unsigned char>(*end)) != 0)
-    ++end;
-  return end > message && end[0] == ':' && end[1] == ' ' ? end + 2 : message;
-}
+/** \brief Throws InvalidInput for a cloud without points, or with a width and a height of another
+ * number of points. */
+PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t height);
 
-/** \brief Keeps a message in words that need no memory, if there is none for the message. */
-inline void setMessage(std::string& message, const char* text) noexcept {
-  try {
-    message = text;
-  } catch (...) {
-    message = "out of memory";
-  }
-}
+/** \brief Throws InvalidInput for an entry of the indices that is out of range. */
+[[noreturn]] PCL_EXPORTS void refuseIndex(std::size_t entry, pcl::index_t index,
+                                          std::size_t points);
 
-/** \brief Gives an output the header of the cloud, if it has one. */
-inline void setHeader(pcl::PolygonMesh& output, const pcl::PCLHeader& header) {
-  output.header = header;
-}
-template <typename Output>
-void setHeader(Output& /*output*/, const pcl::PCLHeader& /*header*/) {}
+/** \brief Makes a cloud of so many points from places of vertices, 3 x v; NaN where a point is no
+ * vertex.
+ * \param[in] vertex_of_used the vertex of each of the used points */
+PCL_EXPORTS pcl::PointCloud<pcl::PointXYZ>::Ptr
+cloudOfVertices(const spherical_param::Positions& vertices,
+                const std::vector<spherical_param::Index>& vertex_of_used,
+                const pcl::Indices& used_points, std::size_t points);
+
+/** \brief Triangles of vertices as polygons of points. */
+PCL_EXPORTS std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangles,
+                                                  const pcl::Indices& point_of_vertex);
 
 /** \brief Which numbers a search object returns that was filled with a subset of a cloud: PCL 1.13
  * has both, e.g. KdTree the one and FlannSearch the other. */
 enum class SearchIndexSpace { Cloud, Subset };
-
-/** \brief Calls query(i, indices, distances) for i in [0, count), the last two being scratch memory
- * of the thread, and report(fraction) from the calling thread after each of some blocks, the last
- * time with 1.
- * \param[in] blocks at least 1; with several threads each waits for the others at its end
- * \param[in] threads above 1, query is called concurrently. Its exceptions are passed on. */
-template <typename Query, typename Report>
-void queryInBlocks(std::size_t count, std::size_t blocks, [[maybe_unused]] int threads,
-                   const Query& query, const Report& report) {
-  blocks = std::min(count, blocks);
-  std::exception_ptr error;
-  std::mutex error_mutex;
-  for (std::size_t block = 0; block < blocks; ++block) {
-    const auto begin = static_cast<std::int64_t>(count * block / blocks);
-    const auto end = static_cast<std::int64_t>(count * (block + 1) / blocks);
-#ifdef _OPENMP
-#pragma omp parallel num_threads(threads) if (threads > 1)
-#endif
-    {
-      pcl::Indices indices;
-      std::vector<float> distances;
-#ifdef _OPENMP
-#pragma omp for schedule(guided)
-#endif
-      for (std::int64_t i = begin; i < end; ++i) {
-        try {
-          query(static_cast<std::size_t>(i), indices, distances);
-        } catch (...) {
-          const std::lock_guard<std::mutex> lock(error_mutex);
-          error = std::current_exception();
-        }
-      }
-    }
-    if (error)
-      std::rethrow_exception(error);
-    report(static_cast<double>(block + 1) / static_cast<double>(blocks));
-  }
-}
-
-/** \brief Threads for `queries` queries if `threads` are asked for (0: as many as OpenMP would
- * use); 1 without OpenMP or where starting threads takes longer than they save. */
-inline int searchThreads([[maybe_unused]] int threads, [[maybe_unused]] std::size_t queries) {
-#ifdef _OPENMP
-  constexpr std::size_t fewest_parallel_queries = 5000;
-  if (threads >= 0 && queries >= fewest_parallel_queries)
-    // The runtime ends the process if it cannot start the threads it is asked for.
-    return std::min(threads > 0 ? threads : omp_get_max_threads(), 4 * omp_get_num_procs());
-#endif
-  return 1;
-}
 
 /** \brief Finds all neighbours of a set of points; it is searched once more for some of them. */
 struct NeighborSource {
@@ -121,38 +63,16 @@ struct NeighborSource {
       query;
 };
 
-/** \brief Room for the neighbours of `queries` points among `points`, each besides itself. */
-inline spherical_param::NeighborLists listsOfOneLength(std::size_t queries, int neighbors,
-                                                       std::size_t points) {
-  // One more, since a point is its own neighbour.
-  const std::size_t list_size =
-      std::min(static_cast<std::size_t>(std::max(neighbors, 0)), points - 1) + 1;
-  spherical_param::NeighborLists lists;
-  lists.offsets.resize(queries + 1);
-  for (std::size_t i = 0; i < lists.offsets.size(); ++i)
-    lists.offsets[i] = i * list_size;
-  lists.indices.resize(queries * list_size);
-  return lists;
-}
-
-/** \brief Finds the nearest neighbours of each point, besides itself, one point after the other. */
-template <typename Report>
-spherical_param::NeighborLists findNeighbors(const NeighborSource& source,
-                                             const std::vector<spherical_param::Index>& points,
-                                             int neighbors, const Report& report) {
-  spherical_param::NeighborLists lists = listsOfOneLength(points.size(), neighbors, source.size);
-  constexpr std::size_t reports = 32;
-  // A search object of the user need not be ready for concurrent queries.
-  constexpr int threads = 1;
-  queryInBlocks(
-      points.size(), reports, threads,
-      [&](std::size_t i, pcl::Indices& indices, std::vector<float>& distances) {
-        source.query(points[i], lists.offsets[i + 1] - lists.offsets[i], indices, distances,
-                     lists.indices.data() + lists.offsets[i]);
-      },
-      report);
-  return lists;
-}
+/** \brief Meshes points with the core.
+ * \param[in] options their progress callback may throw
+ * \param[in] ignored_points points of the cloud that are not finite, for messages
+ * \param[in] use_search_method gives the distinct points, of each of which it is told the first of
+ * the points, to the user's search object; empty: a k-d tree of our own is used */
+PCL_EXPORTS spherical_param::Result
+reconstructPoints(const spherical_param::Positions& points, spherical_param::Options options,
+                  std::size_t ignored_points,
+                  const std::function<NeighborSource(const std::vector<spherical_param::Index>&)>&
+                      use_search_method);
 
 /** \brief FLANN's k-d tree of some points, which answers many queries at a time. That of
  * pcl::search::KdTree is the same, but opens a parallel region for each query, which takes as long
@@ -250,24 +170,38 @@ SphericalParamReconstruction<PointInT>::SphericalParamReconstruction() {
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct(pcl::PolygonMesh& output) {
-  run(output);
+  output = pcl::PolygonMesh();
+  const auto work = [&] {
+    performReconstruction(output);
+    output.header = input_->header;
+  };
+  const auto clear_output = [&] {
+    output = pcl::PolygonMesh();
+    if (input_)
+      output.header = input_->header;
+  };
+  run(std::cref(work), std::cref(clear_output));
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct(std::vector<pcl::Vertices>& polygons) {
-  run(polygons);
+  polygons = std::vector<pcl::Vertices>();
+  const auto work = [&] { performReconstruction(polygons); };
+  const auto clear_output = [&] { polygons = std::vector<pcl::Vertices>(); };
+  run(std::cref(work), std::cref(clear_output));
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct() {
-  NoOutput none;
-  run(none);
+  const auto work = [&] { meshPoints(); };
+  run(std::cref(work), [] {});
 }
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  return cloudOfVertices(result_.sphere);
+  return detail::cloudOfVertices(result_.sphere, result_.vertex_of_input, used_indices_,
+                                 input_size_);
 }
 
 template <typename PointInT>
@@ -275,21 +209,8 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSmoothedPoints() const {
   if (result_.smoothed.cols() == 0)
     return pcl::PointCloud<pcl::PointXYZ>::Ptr(new pcl::PointCloud<pcl::PointXYZ>);
-  return cloudOfVertices(result_.smoothed);
-}
-
-template <typename PointInT>
-pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::cloudOfVertices(
-    const spherical_param::Positions& vertices) const {
-  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  cloud->resize(input_size_);
-  std::fill(cloud->begin(), cloud->end(), pcl::PointXYZ(nan, nan, nan));
-  cloud->is_dense = used_indices_.size() == input_size_;
-  for (std::size_t i = 0; i < used_indices_.size(); ++i)
-    (*cloud)[static_cast<std::size_t>(used_indices_[i])].getVector3fMap() =
-        vertices.col(result_.vertex_of_input[i]).template cast<float>();
-  return cloud;
+  return detail::cloudOfVertices(result_.smoothed, result_.vertex_of_input, used_indices_,
+                                 input_size_);
 }
 
 template <typename PointInT>
@@ -301,42 +222,20 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonM
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(
     std::vector<pcl::Vertices>& polygons) {
-  NoOutput none;
-  performReconstruction(none);
-  polygons.resize(static_cast<std::size_t>(result_.triangles.cols()));
-  for (std::size_t t = 0; t < polygons.size(); ++t) {
-    const auto triangle = result_.triangles.col(static_cast<Eigen::Index>(t));
-    polygons[t].vertices = {vertex_indices_[static_cast<std::size_t>(triangle[0])],
-                            vertex_indices_[static_cast<std::size_t>(triangle[1])],
-                            vertex_indices_[static_cast<std::size_t>(triangle[2])]};
-  }
+  meshPoints();
+  polygons = detail::polygonsOf(result_.triangles, vertex_indices_);
 }
 
 template <typename PointInT>
-void SphericalParamReconstruction<PointInT>::performReconstruction(NoOutput& /*none*/) {
-  // A copy, so that the callback may call the setters.
-  spherical_param::Options options = options_;
-  std::exception_ptr callback_error;
-  if (options_.progress) {
-    options.progress = [callback = options_.progress,
-                        &callback_error](const spherical_param::Progress& progress) {
-      try {
-        return !callback_error && callback(progress);
-      } catch (...) {
-        callback_error = std::current_exception();
-        return false;
-      }
+void SphericalParamReconstruction<PointInT>::meshPoints() {
+  std::function<detail::NeighborSource(const std::vector<spherical_param::Index>&)>
+      use_search_method;
+  if (tree_)
+    use_search_method = [this](const std::vector<spherical_param::Index>& point_of_distinct) {
+      return useSearchMethod(point_of_distinct);
     };
-  }
-
-  try {
-    result_ = reconstructPoints(collectPoints(), options);
-  } catch (...) {
-    if (!callback_error)
-      throw;
-  }
-  if (callback_error)
-    throw detail::ProgressCallbackFailure{callback_error};
+  const spherical_param::Positions points = collectPoints();
+  result_ = detail::reconstructPoints(points, options_, ignored_points_, use_search_method);
 
   vertex_indices_.reserve(result_.input_of_vertex.size());
   for (const spherical_param::Index point : result_.input_of_vertex)
@@ -345,34 +244,20 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(NoOutput& /*n
 }
 
 template <typename PointInT>
-template <typename Output>
-void SphericalParamReconstruction<PointInT>::run(Output& output) {
-  output = Output();
+void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& work,
+                                                 const std::function<void()>& clear_output) {
   clearResults();
-  std::string failure;
   std::exception_ptr callback_error;
   bool initialized = false;
-  try {
+  const auto whole_work = [&] {
     checkInput();
     initialized = initCompute();
     // initCompute() ignores that it had no memory for the indices.
     if (!initialized || (fake_indices_ && indices_->size() != input_->size()))
       throw std::bad_alloc();
-    performReconstruction(output);
-    detail::setHeader(output, input_->header);
-  } catch (const detail::ProgressCallbackFailure& error) {
-    callback_error = error.cause;
-    detail::setMessage(failure, "the progress callback threw an exception");
-  } catch (const std::bad_alloc&) {
-    detail::setMessage(
-        failure, "out of memory; mesh a subset of the points (setIndices) or lower k (setKSearch)");
-  } catch (const std::exception& error) {
-    detail::setMessage(failure, detail::withoutFunctionName(error.what()));
-    if (failure.empty())
-      detail::setMessage(failure, "an exception without a message");
-  } catch (...) {
-    detail::setMessage(failure, "an unknown exception, probably of the search object");
-  }
+    work();
+  };
+  std::string failure = detail::failureOf(std::cref(whole_work), callback_error);
   if (initialized)
     deinitCompute();
   // Copies of this object would share the indices that initCompute() made, across threads as well.
@@ -381,11 +266,9 @@ void SphericalParamReconstruction<PointInT>::run(Output& output) {
   if (failure.empty())
     return;
 
-  output = Output();
   clearResults();
   try {
-    if (input_)
-      detail::setHeader(output, input_->header);
+    clear_output();
   } catch (const std::bad_alloc&) {
     // There is a failure to be told already.
   }
@@ -415,16 +298,7 @@ template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::checkInput() const {
   if (!input_)
     throw spherical_param::InvalidInput("there is no input cloud; call setInputCloud() first");
-  if (input_->empty())
-    throw spherical_param::InvalidInput("the input cloud is empty; at least 4 points are needed");
-  const std::size_t width = input_->width;
-  const std::size_t height = input_->height;
-  // PCL allows both to be 0 for "not organized".
-  if ((width != 0 || height != 0) && width * height != input_->size())
-    throw spherical_param::InvalidInput("the input cloud has " + std::to_string(input_->size()) +
-                                        " points, but its width is " + std::to_string(width) +
-                                        " and its height " + std::to_string(height) +
-                                        "; set width to the number of points and height to 1");
+  detail::checkCloud(input_->size(), input_->width, input_->height);
   if (indices_ && !fake_indices_ && indices_->empty())
     throw spherical_param::InvalidInput(
         "the indices are empty; set at least 4, or none (a null pointer) to mesh all points");
@@ -437,10 +311,7 @@ spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints
   for (std::size_t i = 0; i < indices_->size(); ++i) {
     const pcl::index_t index = (*indices_)[i];
     if (index < 0 || static_cast<std::size_t>(index) >= input_->size())
-      throw spherical_param::InvalidInput(
-          "entry " + std::to_string(i) + " of the indices is " + std::to_string(index) +
-          ", but the cloud has " + std::to_string(input_->size()) +
-          " points; indices must be from 0 to the number of points less one");
+      detail::refuseIndex(i, index, input_->size());
     const auto position = static_cast<std::size_t>(index);
     if (seen[position])
       continue;
@@ -460,50 +331,6 @@ spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints
         static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
   }
   return points;
-}
-
-template <typename PointInT>
-spherical_param::Result SphericalParamReconstruction<PointInT>::reconstructPoints(
-    const spherical_param::Positions& points, const spherical_param::Options& options) const {
-  const auto report = [&options](double fraction) {
-    // The end of the stage is told by the core.
-    const double share = spherical_param::kShareBeforeSearch +
-                         (1.0 - spherical_param::kShareBeforeSearch) * fraction;
-    if (fraction < 1.0 && options.progress && !options.progress({"neighbors", share, 0, 0.0}))
-      throw spherical_param::Cancelled("cancelled by the progress callback");
-  };
-  const auto make_search = [&](const spherical_param::Positions& distinct,
-                               const std::vector<spherical_param::Index>& point_of_distinct)
-      -> spherical_param::NeighborSearch {
-    std::function<spherical_param::NeighborLists(const std::vector<spherical_param::Index>&, int,
-                                                 const std::function<void(double)>&)>
-        find;
-    if (tree_)
-      find = [source = useSearchMethod(point_of_distinct)](const auto& some_points, int neighbors,
-                                                           const auto& report_share) {
-        return detail::findNeighbors(source, some_points, neighbors, report_share);
-      };
-    else
-      find = [tree = detail::KdTreeSearch(distinct),
-              &options](const auto& some_points, int neighbors, const auto& report_share) {
-        return tree.findNeighbors(some_points, neighbors, options.threads, report_share);
-      };
-    return [find, report, is_first = true](const std::vector<spherical_param::Index>& some_points,
-                                           int neighbors) mutable {
-      // The progress is that of the search for all points; others belong to the graph.
-      if (std::exchange(is_first, false))
-        return find(some_points, neighbors, report);
-      return find(some_points, neighbors, [](double) {});
-    };
-  };
-  try {
-    return spherical_param::reconstruct(points, make_search, options);
-  } catch (const spherical_param::InvalidInput& error) {
-    if (ignored_points_ == 0)
-      throw;
-    throw spherical_param::InvalidInput(std::string(error.what()) + " (of the cloud's points, " +
-                                        std::to_string(ignored_points_) + " are not finite)");
-  }
 }
 
 template <typename PointInT>

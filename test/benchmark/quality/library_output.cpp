@@ -1,7 +1,4 @@
-#include "common/library_output.h"
-
-#include <pcl/console/print.h>
-#include <vtkObject.h>
+#include "library_output.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,7 +6,7 @@
 #include <cstdio>
 #include <iostream>
 
-namespace spherical_param::tools {
+namespace spherical_param::benchmark {
 namespace {
 
 void flushAll() {
@@ -53,9 +50,4 @@ LibraryOutputSilencer::~LibraryOutputSilencer() {
   restore(STDERR_FILENO, standard_error_);
 }
 
-void silenceLibraryConsoles() {
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  vtkObject::GlobalWarningDisplayOff();
-}
-
-}  // namespace spherical_param::tools
+}  // namespace spherical_param::benchmark
