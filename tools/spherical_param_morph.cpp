@@ -5,9 +5,7 @@
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/frame_names.h"
 #include "common/json_report.h"
-#include "common/library_failure.h"
 #include "common/mesh_writer.h"
 #include "common/names.h"
 #include "common/numbers.h"
@@ -18,7 +16,6 @@
 #include "common/product_input.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/morphing.h"
@@ -33,7 +30,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -120,6 +116,62 @@ struct Settings {
 
   int threads() const { return product.reconstruction.options.threads; }
 };
+
+constexpr std::size_t fewest_digits = 3;
+
+/// A number with zeros before it.
+std::string padded(int number, std::size_t digits) {
+  const std::string text = std::to_string(number);
+  return std::string(digits - std::min(digits, text.size()), '0') + text;
+}
+
+[[noreturn]] void refusePattern(const std::string& pattern) {
+  throw UsageError("the output " + inQuotes(pattern) + " has a % that is no number of a frame",
+                   "give one placeholder, as in frame_%03d.ply, or none");
+}
+
+/// Names of numbered files. A placeholder in the pattern's file name, %d or %03d with any number of
+/// digits up to 9, is replaced by the number of the frame; without one, it goes before the
+/// extension: morph.ply gives morph_000.ply. Frames begin at 0.
+///
+/// \throw UsageError for a pattern with another or a second %.
+std::vector<std::string> frameNames(const std::string& pattern, int frames) {
+  const std::size_t slash = pattern.rfind('/');
+  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
+  const std::size_t percent = pattern.find('%', begin);
+  std::string before;
+  std::string after;
+  std::size_t digits = std::max(fewest_digits, std::to_string(frames - 1).size());
+  if (percent == std::string::npos) {
+    const std::size_t dot = pattern.rfind('.');
+    const std::size_t end = dot == std::string::npos || dot < begin ? pattern.size() : dot;
+    before = pattern.substr(0, end) + "_";
+    after = pattern.substr(end);
+  } else {
+    // The text between % and d is nothing, or a 0 and one digit from 1 to 9.
+    const std::size_t d =
+        percent + 1 < pattern.size() && pattern[percent + 1] == '0' ? percent + 3 : percent + 1;
+    if (d >= pattern.size() || pattern[d] != 'd' ||
+        pattern.find('%', percent + 1) != std::string::npos) {
+      refusePattern(pattern);
+    }
+    digits = 1;
+    if (d == percent + 3) {
+      if (pattern[percent + 2] < '1' || pattern[percent + 2] > '9') {
+        refusePattern(pattern);
+      }
+      digits = static_cast<std::size_t>(pattern[percent + 2] - '0');
+    }
+    before = pattern.substr(0, percent);
+    after = pattern.substr(d + 1);
+  }
+  std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(frames));
+  for (int frame = 0; frame < frames; ++frame) {
+    names.push_back(before + padded(frame, digits) + after);
+  }
+  return names;
+}
 
 Settings parseSettings(const CommandLine& command_line) {
   const std::vector<std::string>& files = command_line.others();

@@ -1,15 +1,12 @@
 // pcl_spherical_param_reconstruction: meshes the point cloud of a file.
 
-#include "common/batch.h"
 #include "common/cloud_reconstruction.h"
 #include "common/command_line.h"
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/foreign_options.h"
 #include "common/html_report.h"
 #include "common/json_report.h"
-#include "common/memory_need.h"
 #include "common/mesh_writer.h"
 #include "common/names.h"
 #include "common/output_file.h"
@@ -23,11 +20,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -48,8 +44,7 @@ const std::vector<OptionInfo> option_table =
     joined({reconstructionOptions(),
             {{"sphere", "FILE", "write the points on the sphere with the same triangles"}},
             htmlReportOptions(),
-            outputOptions(),
-            batchOptions()});
+            outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -59,24 +54,18 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A failure, unless the scan is a closed surface and nothing else is wrong",
      "scan.ply mesh.ply -strict"},
     {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers 4 -smooth 5"},
-    {"Of many scans; the same line again does those that are missing",
-     "scan.ply other.ply -output 'meshes/{name}.ply' -jsonl meshes.jsonl -resume"},
 };
 
 std::string helpText() {
-  return "Usage: " + tool_name + " input output [options]\n       " + tool_name +
-         " inputs... -output PATTERN [options]\n\n"
+  return "Usage: " + tool_name +
+         " input output [options]\n\n"
          "Meshes the points of an object without holes through it into a closed surface.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) +
-         "\nMany inputs: files and directories. In PATTERN, and in the files of other options,\n"
-         "{name} stands for the input's name without extension, {ext} for its extension,\n"
-         "{dir} for its directory, {index} or {index:4} for its place in the list.\n\n" +
-         describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done (also with warnings), 1 failed (of many: one or more; with\n"
-         "-strict also warnings), 2 wrong usage.\n";
+         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also warnings),\n"
+         "2 wrong usage.\n";
 }
 
 /// What the user asked for.
@@ -112,44 +101,10 @@ const Names<StopReason> stop_reason_names = {
     {"unfinished", StopReason::Unfinished},
 };
 
-/// Which of two files is the input: the first, unless the second can only be that. Nothing is
-/// guessed where the first may be a scan, as that would be lost. \throw UsageError
-bool isSwapped(const std::string& first, const std::string& second) {
-  const std::optional<FileFormat> output = formatOf(first);
-  const std::optional<FileFormat> input = formatOf(second);
-  if (!output || !input || !isUsable(*output, FileUse::WriteMesh) ||
-      !isUsable(*input, FileUse::ReadCloud) || isUsable(*input, FileUse::WriteMesh)) {
-    return false;
-  }
-  std::error_code error;
-  if (isUsable(*output, FileUse::ReadCloud) && std::filesystem::exists(first, error)) {
-    throw UsageError(inQuotes(second) + " has an extension that no meshes are written to, and " +
-                         inQuotes(first) + " is there",
-                     "put the input first: " + tool_name + " input output; the output is one of " +
-                         extensionsFor(FileUse::WriteMesh));
-  }
-  // Of two files that are both missing, the message is about the second's extension.
-  return !isUsable(*output, FileUse::ReadCloud) || std::filesystem::exists(second, error);
-}
-
 Settings parseSettings(const CommandLine& command_line) {
-  std::vector<std::string> files = command_line.others();
-  if (files.size() != 2) {
-    throw UsageError(files.empty()       ? "there is no input file"
-                     : files.size() == 1 ? "there is no output file"
-                                         : "there is one file too many: " + inQuotes(files[2]),
-                     "run '" + tool_name +
-                         (files.size() < 3 ? " input output [options]'"
-                                           : " inputs... -output meshes/{name}.ply [options]'") +
-                         ", -h shows the options");
-  }
-  if (isSwapped(files[0], files[1])) {
-    std::swap(files[0], files[1]);
-  }
 
   Settings settings;
-  settings.input = files[0];
-  settings.output = files[1];
+  std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
   requireFormat(settings.input, FileUse::ReadCloud);
   settings.output_format = requireFormat(settings.output, FileUse::WriteMesh);
   settings.sphere = command_line.value("sphere", "");
@@ -654,32 +609,9 @@ void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Co
   }
 }
 
-/// Meshes each of many inputs.
-void runBatch(const CommandLine& command_line) {
-  const ReconstructionSettings reconstruction = parseReconstructionOptions(command_line);
-  // Each input would only tell the same of it.
-  parseHtmlReport(command_line);
-  BatchTool tool;
-  tool.name = tool_name;
-  tool.memory_need = [&reconstruction](const std::string& input) {
-    return memoryNeed(pointCountOf(input).value_or(0), reconstruction);
-  };
-  tool.check_output = [](const std::string& option, const std::string& file) {
-    if (option == "output" || option == "sphere") {
-      requireFormat(file, FileUse::WriteMesh);
-    }
-  };
-  spherical_param::tools::runBatch(tool, command_line);
-}
-
 void run(const std::vector<std::string>& words) {
-  const CommandLine command_line(words, joined({option_table, foreignOptions()}));
+  const CommandLine command_line(words, option_table);
   if (answerHelpOrVersion(command_line, tool_name, helpText())) {
-    return;
-  }
-  const std::vector<std::string> notes = notesOnForeignOptions(command_line);
-  if (isBatch(command_line)) {
-    runBatch(command_line);
     return;
   }
   const Settings settings = parseSettings(command_line);
@@ -687,9 +619,6 @@ void run(const std::vector<std::string>& words) {
 
   Console console(settings.report.printsText());
   printParameters(settings, console);
-  for (const std::string& note : notes) {
-    console.entry("note", note);
-  }
   StagePlan stages = reconstructionStages(settings.reconstruction);
   stages.emplace_back("write", 2.0);
   if (!settings.page.empty()) {

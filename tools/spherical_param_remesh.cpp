@@ -8,7 +8,6 @@
 #include "common/file_formats.h"
 #include "common/geometry_image_file.h"
 #include "common/json_report.h"
-#include "common/library_failure.h"
 #include "common/mesh_distance.h"
 #include "common/mesh_writer.h"
 #include "common/names.h"
@@ -19,7 +18,6 @@
 #include "common/product_input.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/resampling.h"
@@ -34,10 +32,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -71,6 +69,8 @@ const Names<SurfaceFit> fit_names = {
     {"smooth", SurfaceFit::Smooth},
 };
 
+/// Of geometry images.
+constexpr const char* image_extensions = " .tif .tiff";
 constexpr int longest_side = 16385;
 constexpr std::int64_t most_even_points = std::int64_t{1} << 24;
 constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
@@ -192,37 +192,20 @@ std::string nonempty(const CommandLine& command_line, const std::string& option)
   return value;
 }
 
-/// What requireFormat() does, for files that may be geometry images as well.
-FileFormat requireFormatOrImage(const std::string& path, FileUse use, const std::string& verb) {
-  const std::optional<FileFormat> format = formatOf(path);
-  if (!format || !isUsable(*format, use)) {
-    throw UsageError(inQuotes(path) + " has an extension that this tool does not " + verb,
-                     "use one of " + extensionsFor(use) + " .tif .tiff");
-  }
-  return *format;
-}
-
 void parseFiles(const CommandLine& command_line, Settings& settings) {
-  const std::vector<std::string>& files = command_line.others();
-  if (files.size() != 2) {
-    throw UsageError(files.empty()       ? "there is no input file"
-                     : files.size() == 1 ? "there is no output file"
-                                         : "there is one file too many: " + inQuotes(files[2]),
-                     "run '" + tool_name + " input output [options]', -h shows the options");
-  }
-  settings.input = files[0];
-  settings.output = files[1];
+  std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
   settings.reads_image = isGeometryImageFile(settings.input);
   settings.writes_image = isGeometryImageFile(settings.output);
   if (!settings.reads_image) {
-    requireFormatOrImage(settings.input, FileUse::ReadCloud, "read");
+    requireFormat(settings.input, FileUse::ReadCloud, image_extensions);
   } else if (settings.writes_image) {
     throw UsageError("a geometry image is read to be written as a mesh",
                      "give an output with one of " + extensionsFor(FileUse::WriteMesh));
   }
   if (!settings.writes_image) {
-    settings.output_format = requireFormatOrImage(
-        settings.output, settings.makesCloud() ? FileUse::WriteCloud : FileUse::WriteMesh, "write");
+    settings.output_format = requireFormat(
+        settings.output, settings.makesCloud() ? FileUse::WriteCloud : FileUse::WriteMesh,
+        image_extensions);
   }
   settings.sphere = nonempty(command_line, "sphere");
   if (command_line.has("sphere")) {
@@ -657,16 +640,6 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
   for (const std::string& warning : warningsOf(settings, mapped, output)) {
     console.entry("warning", oneLine(warning));
   }
-}
-
-std::vector<Point> toPoints(const Positions& positions) {
-  std::vector<Point> points;
-  points.reserve(static_cast<std::size_t>(positions.cols()));
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    const Eigen::Vector3f point = positions.col(i).cast<float>();
-    points.push_back({point.x(), point.y(), point.z()});
-  }
-  return points;
 }
 
 PointData toVertices(const Output& output, const MappedCloud& mapped) {

@@ -6,7 +6,7 @@
 #include "common/file_formats.h"
 #include "common/mesh_writer.h"
 #include "common/numbers.h"
-#include "common/output_file.h"
+#include "common/output_options.h"
 #include "common/point_data.h"
 #include "common/run_tool.h"
 #include "common/text.h"
@@ -134,37 +134,6 @@ Settings parseSettings(const CommandLine& command_line) {
   return settings;
 }
 
-void checkOutputs(const Settings& settings) {
-  checkOutputPath(settings.output);
-  if (settings.truth.empty()) {
-    return;
-  }
-  if (isSameFile(settings.output, settings.truth)) {
-    throw UsageError(inQuotes(settings.truth) + " would overwrite " + inQuotes(settings.output),
-                     "give every file a name of its own");
-  }
-  checkOutputPath(settings.truth);
-}
-
-std::vector<Point> toPoints(const spherical_param::Positions& positions) {
-  std::vector<Point> points;
-  points.reserve(static_cast<std::size_t>(positions.cols()));
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    const Eigen::Vector3f point = positions.col(i).cast<float>();
-    points.push_back({point.x(), point.y(), point.z()});
-  }
-  return points;
-}
-
-TriangleMesh toMesh(const TruthMesh& truth) {
-  TriangleMesh mesh;
-  mesh.vertices.points = toPoints(truth.vertices);
-  for (Eigen::Index t = 0; t < truth.triangles.cols(); ++t) {
-    mesh.triangles.push_back({truth.triangles(0, t), truth.triangles(1, t), truth.triangles(2, t)});
-  }
-  return mesh;
-}
-
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
   if (answerHelpOrVersion(command_line, tool_name, helpText())) {
@@ -175,27 +144,35 @@ void run(const std::vector<std::string>& words) {
     return;
   }
   const Settings settings = parseSettings(command_line);
-  checkOutputs(settings);
+  std::vector<std::string> outputs = {settings.output};
+  if (!settings.truth.empty()) {
+    outputs.push_back(settings.truth);
+  }
+  checkOutputs({}, outputs);
 
   const Scan scan = generateScan(settings.scan);
-  TriangleMesh cloud;
-  cloud.vertices.points = toPoints(scan.points);
+  PointData cloud;
+  cloud.points = toPoints(scan.points);
   if (settings.normals) {
-    cloud.vertices.normals = toPoints(scan.normals);
+    cloud.normals = toPoints(scan.normals);
   }
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), cloud, settings.output_format, Encoding::Binary);
+  writeMesh(*files.back(), MeshView(cloud, spherical_param::Triangles()), settings.output_format,
+            Encoding::Binary);
   if (!settings.truth.empty()) {
+    const TruthMesh truth = referenceMesh(settings.scan.shape, truth_triangles);
+    PointData vertices;
+    vertices.points = toPoints(truth.vertices);
     files.push_back(std::make_unique<OutputFile>(settings.truth));
-    writeMesh(*files.back(), toMesh(referenceMesh(settings.scan.shape, truth_triangles)),
-              settings.truth_format, Encoding::Binary);
+    writeMesh(*files.back(), MeshView(vertices, truth.triangles), settings.truth_format,
+              Encoding::Binary);
   }
   for (const auto& file : files) {
     file->finish();
   }
-  printAll(std::to_string(cloud.vertices.points.size()) + " points written to " +
-           oneLine(settings.output) + "\n");
+  printAll(std::to_string(cloud.points.size()) + " points written to " + oneLine(settings.output) +
+           "\n");
   for (const auto& file : files) {
     file->commit();
   }

@@ -6,7 +6,6 @@
 #include "common/errors.h"
 #include "common/file_formats.h"
 #include "common/json_report.h"
-#include "common/library_failure.h"
 #include "common/names.h"
 #include "common/numbers.h"
 #include "common/output_file.h"
@@ -15,18 +14,17 @@
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "common/textured_mesh.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/texture_atlas.h"
 #include "spherical_param/version.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -129,15 +127,7 @@ void checkName(const Settings& settings, const std::string& name) {
 }
 
 void parseFiles(const CommandLine& command_line, Settings& settings) {
-  const std::vector<std::string>& files = command_line.others();
-  if (files.size() != 2) {
-    throw UsageError(files.empty()       ? "there is no input file"
-                     : files.size() == 1 ? "there is no output file"
-                                         : "there is one file too many: " + inQuotes(files[2]),
-                     "run '" + tool_name + " input output [options]', -h shows the options");
-  }
-  settings.input = files[0];
-  settings.output = files[1];
+  std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
   requireFormat(settings.input, FileUse::ReadCloud);
   const std::filesystem::path output = settings.output;
   const std::string extension = lowerCase(output.extension().string());

@@ -1,11 +1,9 @@
-// Reading by blocks, against PCL's readers and VTK's writers, on files of several blocks; and files
-// that would have ended the program.
+// Readers of clouds against those of PCL, on files of several blocks; and files that broke readers.
 
 #include "common/cloud_reader.h"
 
 #include "common/errors.h"
 #include "common/file_formats.h"
-#include "common/record_log.h"
 #include "tool_runner.h"
 
 #include <pcl/PCLPointCloud2.h>
@@ -16,28 +14,6 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include <vtkBitArray.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkDataWriter.h>
-#include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
-#include <vtkFloatArray.h>
-#include <vtkIdTypeArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPointSet.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkPolyDataWriter.h>
-#include <vtkStringArray.h>
-#include <vtkStructuredGrid.h>
-#include <vtkStructuredGridWriter.h>
-#include <vtkTypeInt64Array.h>
-#include <vtkUnsignedCharArray.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkUnstructuredGridWriter.h>
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +23,6 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -140,7 +115,7 @@ std::string bytesOf(const void* value, std::size_t size, bool big_endian) {
   return bytes;
 }
 
-/// A PLY file with things before and behind its points.
+/// A PLY file with elements before and after its points.
 std::string plyOf(const Cloud& cloud, const std::string& format) {
   const bool text = format == "ascii";
   const bool big_endian = format == "binary_big_endian";
@@ -185,7 +160,7 @@ std::string plyOf(const Cloud& cloud, const std::string& format) {
   return file;
 }
 
-TEST_F(CloudReader, FindsThePointsBetweenOtherElementsInAnyByteOrder) {
+TEST_F(CloudReader, FindsThePointsAmongOtherElementsInAnyByteOrder) {
   const Cloud cloud = makeCloud();
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     SCOPED_TRACE(format);
@@ -204,12 +179,6 @@ std::string textOf(const Cloud& cloud, const std::string& before) {
   return text.str();
 }
 
-/// A VTK file of text.
-std::string vtkOf(const Cloud& cloud, const std::string& behind) {
-  return "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS " +
-         std::to_string(cloud.size()) + " float\n" + textOf(cloud, "") + behind;
-}
-
 void expectRefused(const std::string& path, const std::string& cause) {
   try {
     readCloud(path);
@@ -220,7 +189,6 @@ void expectRefused(const std::string& path, const std::string& cause) {
   }
 }
 
-// Files of several blocks that end, or go wrong, far behind their headers.
 TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
   const Cloud cloud = makeCloud();
   const auto expect_cut_refused = [&](const std::string& name, const std::string& content,
@@ -232,9 +200,6 @@ TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
   };
   for (const char* format : {"binary_little_endian", "binary_big_endian", "ascii"}) {
     const std::string ply = plyOf(cloud, format);
-    // Within the faces, whose length no header tells, and within the points.
-    expect_cut_refused("cut.ply", ply, 5, "broken or not complete");
-    expect_cut_refused("cut.ply", ply, 200000, "broken or not complete");
     expect_cut_refused("cut.ply", ply, ply.size() - 400000, "shorter than its header says");
   }
   ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("a.pcd"), cloud), 0);
@@ -251,10 +216,6 @@ TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
   expect_cut_refused("cut.pcd", text_pcd, text_pcd.size() - text_pcd.rfind(' ') + 1,
                      "line " + std::to_string(point_count + 11) + " has no 8 numbers");
   const std::string xyz = textOf(cloud, "");
-  const std::string vtk = vtkOf(cloud, "POINT_DATA 90000\n");
-  expect_cut_refused("cut.vtk", vtk, vtk.size() - vtk.rfind("90000"), "broken or not complete");
-  expect_cut_refused("cut.vtk", vtk, vtk.size() - vtk.rfind(' ', vtk.size() - 30),
-                     "broken or not complete");
   expect_cut_refused("cut.xyz", xyz, xyz.size() - xyz.rfind(' '),
                      "line " + std::to_string(point_count) + " does not begin");
   const std::string obj = textOf(cloud, "v ");
@@ -274,14 +235,13 @@ TEST_F(CloudReader, TextHasTheSamePointsAsBytes) {
   }
 }
 
-TEST_F(CloudReader, TellsHowFarItIs) {
+TEST_F(CloudReader, ProgressGrowsToOne) {
   const Cloud cloud = makeCloud();
   ASSERT_EQ(pcl::io::savePLYFileBinary(directory.file("a.ply"), cloud), 0);
   ASSERT_EQ(pcl::io::savePCDFileBinary(directory.file("a.pcd"), cloud), 0);
   ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(directory.file("packed.pcd"), cloud), 0);
   tool_test::writeFile(directory.file("a.xyz"), textOf(cloud, ""));
-  tool_test::writeFile(directory.file("a.vtk"), vtkOf(cloud, ""));
-  for (const char* name : {"a.ply", "a.pcd", "packed.pcd", "a.xyz", "a.vtk"}) {
+  for (const char* name : {"a.ply", "a.pcd", "packed.pcd", "a.xyz"}) {
     std::vector<double> shares;
     readCloud(directory.file(name), [&](double share) { shares.push_back(share); });
     ASSERT_GE(shares.size(), 2U) << name;
@@ -290,181 +250,6 @@ TEST_F(CloudReader, TellsHowFarItIs) {
     EXPECT_EQ(shares.back(), 1.0) << name;
   }
 }
-
-// --- VTK -------------------------------------------------------------------------------------
-
-/// What a writer of VTK has to write, besides points and cells.
-void addAttributes(vtkPointSet& set, const Cloud& cloud) {
-  const auto count = static_cast<vtkIdType>(cloud.size());
-  vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetName("Colors");
-  colors->SetNumberOfComponents(4);
-  vtkNew<vtkDoubleArray> normals;
-  normals->SetName("n");
-  normals->SetNumberOfComponents(3);
-  vtkNew<vtkFloatArray> vectors;
-  vectors->SetName("v");
-  vectors->SetNumberOfComponents(3);
-  vectors->SetComponentName(0, "first one");
-  vtkNew<vtkFloatArray> tensors;
-  tensors->SetName("t");
-  tensors->SetNumberOfComponents(9);
-  vtkNew<vtkFloatArray> textures;
-  textures->SetName("u v");
-  textures->SetNumberOfComponents(2);
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
-  vtkNew<vtkTypeInt64Array> large;
-  large->SetName("large");
-  vtkNew<vtkBitArray> bits;
-  bits->SetName("bits");
-  vtkNew<vtkStringArray> names;
-  names->SetName("names");
-  for (const pcl::PointXYZRGBNormal& point : cloud) {
-    colors->InsertNextTuple4(point.r, point.g, point.b, 77);
-    normals->InsertNextTuple3(static_cast<double>(point.normal_x),
-                              static_cast<double>(point.normal_y),
-                              static_cast<double>(point.normal_z));
-    vectors->InsertNextTuple3(1.0, 2.0, 3.0);
-    tensors->InsertNextTuple9(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0);
-    textures->InsertNextTuple2(0.5, 0.25);
-    ids->InsertNextValue(ids->GetNumberOfValues());
-    large->InsertNextValue(-1);
-    bits->InsertNextValue(static_cast<int>(ids->GetNumberOfValues() % 2));
-    names->InsertNextValue(std::string(static_cast<std::size_t>(point.r) * 2, 'n'));
-  }
-  ASSERT_EQ(ids->GetNumberOfValues(), count);
-  vtkPointData& data = *set.GetPointData();
-  data.SetScalars(colors);
-  data.SetNormals(normals);
-  data.SetVectors(vectors);
-  data.SetTensors(tensors);
-  data.SetTCoords(textures);
-  data.SetPedigreeIds(ids);
-  data.AddArray(large);
-  data.AddArray(bits);
-  data.AddArray(names);
-  vtkNew<vtkDoubleArray> time;
-  time->SetName("TimeValue");
-  time->InsertNextValue(0.5);
-  set.GetFieldData()->AddArray(time);
-}
-
-template <typename Set, typename Writer>
-void writeVtk(const std::string& path, const Cloud& cloud, int point_type, bool binary,
-              int version) {
-  vtkNew<Set> set;
-  vtkNew<vtkPoints> points;
-  points->SetDataType(point_type);
-  for (const pcl::PointXYZRGBNormal& point : cloud) {
-    points->InsertNextPoint(static_cast<double>(point.x), static_cast<double>(point.y),
-                            static_cast<double>(point.z));
-  }
-  set->SetPoints(points);
-  const auto count = static_cast<vtkIdType>(cloud.size());
-  if constexpr (std::is_same_v<Set, vtkStructuredGrid>) {
-    set->SetDimensions(static_cast<int>(count), 1, 1);
-  } else {
-    vtkNew<vtkCellArray> cells;
-    for (vtkIdType i = 2; i < count; ++i) {
-      cells->InsertNextCell({i - 2, i - 1, i});
-    }
-    if constexpr (std::is_same_v<Set, vtkPolyData>) {
-      set->SetPolys(cells);
-    } else {
-      set->SetCells(VTK_TRIANGLE, cells);
-    }
-    vtkNew<vtkFloatArray> heights;
-    heights->SetName("heights");
-    heights->SetNumberOfTuples(cells->GetNumberOfCells());
-    heights->Fill(1.0);
-    set->GetCellData()->SetScalars(heights);
-  }
-  addAttributes(*set, cloud);
-  vtkNew<Writer> writer;
-  writer->SetFileName(path.c_str());
-  writer->SetInputData(set);
-  writer->SetFileVersion(version);
-  binary ? writer->SetFileTypeToBinary() : writer->SetFileTypeToASCII();
-  ASSERT_EQ(writer->Write(), 1);
-}
-
-/// Cut anywhere, it is refused, or nothing of its points is missing: sections that are lost as a
-/// whole, and the ends of texts, are not missed.
-void expectCutsRefused(const std::string& path, std::size_t points) {
-  const std::string whole = tool_test::readFile(path);
-  std::size_t refused = 0;
-  constexpr std::size_t cuts = 20;
-  for (std::size_t cut = 1; cut < cuts; ++cut) {
-    tool_test::writeFile(path, whole.substr(0, whole.size() * cut / cuts));
-    try {
-      const PointData data = readCloud(path);
-      EXPECT_EQ(data.points.size(), points);
-      EXPECT_TRUE(data.normals.empty() || data.normals.size() == points);
-      EXPECT_TRUE(data.colors.empty() || data.colors.size() == points);
-    } catch (const Failure&) {
-      ++refused;
-    }
-  }
-  EXPECT_GT(refused, cuts / 4);
-}
-
-TEST_F(CloudReader, ReadsTheFilesOfVtkWhateverElseTheyHave) {
-  Cloud cloud = makeCloud();
-  cloud.resize(1000);
-  for (pcl::PointXYZRGBNormal& point : cloud) {
-    // VTK's text has 6 digits.
-    point.x = std::round(point.x * 64.0F) / 64.0F;
-    point.y = std::round(point.y * 1e3F);
-    point.z = std::round(point.z);
-    point.normal_x = point.r % 2 == 0 ? 1.0F : 0.0F;
-    point.normal_y = 0.25F;
-  }
-  const std::string path = directory.file("a.vtk");
-  for (const int version : {42, 51}) {
-    for (const bool binary : {false, true}) {
-      for (const int type : {VTK_FLOAT, VTK_DOUBLE}) {
-        using Write = void (*)(const std::string&, const Cloud&, int, bool, int);
-        for (const Write write : {Write(writeVtk<vtkPolyData, vtkPolyDataWriter>),
-                                  Write(writeVtk<vtkUnstructuredGrid, vtkUnstructuredGridWriter>),
-                                  Write(writeVtk<vtkStructuredGrid, vtkStructuredGridWriter>)}) {
-          write(path, cloud, type, binary, version);
-          SCOPED_TRACE(tool_test::readFile(path).substr(0, 200));
-          PointData data = readCloud(path);
-          EXPECT_TRUE(data.has_alpha);
-          for (Color& color : data.colors) {
-            EXPECT_EQ(color[3], 77);
-            color[3] = 255;
-          }
-          expectSame(data, cloud, true);
-          expectCutsRefused(path, cloud.size());
-        }
-      }
-    }
-  }
-}
-
-TEST_F(CloudReader, VtkColoursOfArraysWithAName) {
-  Cloud cloud = makeCloud();
-  cloud.resize(2);
-  const std::string path = directory.file("a.vtk");
-  const auto colors_of = [&](const std::string& behind) {
-    tool_test::writeFile(path, vtkOf(cloud, "POINT_DATA 2\n" + behind));
-    return readCloud(path).colors;
-  };
-  const std::vector<Color> expected = {{1, 2, 3, 255}, {4, 5, 6, 255}};
-  const std::string rgb = "RGB 3 2 unsigned_char\n1 2 3 4 5 6\n";
-  EXPECT_EQ(colors_of("FIELD f 1\n" + rgb), expected);
-  EXPECT_EQ(colors_of("FIELD f 2\nRGBA 4 2 unsigned_char\n9 9 9 9 9 9 9 9\n" + rgb), expected);
-  EXPECT_EQ(colors_of("FIELD f 1\n" + rgb + "SCALARS s unsigned_char 3\nLOOKUP_TABLE default\n" +
-                      "1 2 3\n4 5 6\n"),
-            expected);
-  EXPECT_TRUE(colors_of("FIELD f 1\nRGB 3 2 int\n1 2 3 4 5 6\n").empty());
-  EXPECT_TRUE(colors_of("FIELD f 1\nRGB 2 2 unsigned_char\n1 2 3 4\n").empty());
-  EXPECT_TRUE(colors_of("SCALARS s unsigned_char\nLOOKUP_TABLE default\n1\n2\n").empty());
-}
-
-// --- Files that would have ended the program -----------------------------------------------------
 
 /// One point a field, so that other fields may be added.
 std::string pcdOf(const std::string& fields, const std::string& sizes, const std::string& types,
@@ -479,7 +264,7 @@ std::string packedPcd(const std::string& points, std::uint32_t size, const std::
          bytesOf(&packed_size, 4, false) + bytesOf(&size, 4, false) + packed;
 }
 
-TEST_F(CloudReader, ColoursWithoutAllTheirChannelsAreNone) {
+TEST_F(CloudReader, IncompleteColoursAreIgnored) {
   tool_test::writeFile(directory.file("a.pcd"),
                        pcdOf("x y z red", "4 4 4 1", "F F F U", "1", "ascii\n1 2 3 4\n"));
   const PointData data = readCloud(directory.file("a.pcd"));
@@ -487,7 +272,18 @@ TEST_F(CloudReader, ColoursWithoutAllTheirChannelsAreNone) {
   EXPECT_TRUE(data.colors.empty());
 }
 
-TEST_F(CloudReader, PackedPointsThatMakeNoSenseAreRefused) {
+TEST_F(CloudReader, ColoursOfPlyAreFoundByTheirNames) {
+  const std::string header = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty "
+                             "float y\nproperty float z\nproperty uchar alpha\n";
+  tool_test::writeFile(directory.file("a.ply"),
+                       header + "property uchar blue\nproperty uchar green\nproperty uchar red\n"
+                                "end_header\n0 0 0 1 2 3 4\n");
+  EXPECT_EQ(readCloud(directory.file("a.ply")).colors, (std::vector<Color>{{4, 3, 2, 1}}));
+  tool_test::writeFile(directory.file("a.ply"), header + "end_header\n0 0 0 1\n");
+  EXPECT_TRUE(readCloud(directory.file("a.ply")).colors.empty());
+}
+
+TEST_F(CloudReader, BrokenCompressedPointsAreRefused) {
   const std::string path = directory.file("a.pcd");
   const std::string zeros("\x00\x00\xe0\x02\x00", 5);  // one byte, then 11 times the same
   tool_test::writeFile(path, packedPcd("1", 12, zeros));
@@ -513,8 +309,8 @@ TEST_F(CloudReader, PackedPointsThatMakeNoSenseAreRefused) {
   expectRefused(path, "too short for the points");
 }
 
-// PCL leaves these fields out of what it packs, so that the file's size is no bound of theirs.
-TEST_F(CloudReader, PaddingOfPackedPointsTakesNoMemory) {
+// PCL does not compress padding fields, so that the size of the file does not limit their counts.
+TEST_F(CloudReader, PaddingOfCompressedPointsTakesNoMemory) {
   std::string fields = "x y z";
   std::string sizes = "4 4 4";
   std::string types = "F F F";
@@ -535,21 +331,6 @@ TEST_F(CloudReader, PaddingOfPackedPointsTakesNoMemory) {
   EXPECT_EQ(readCloud(directory.file("a.pcd")).points, (std::vector<Point>{{0.0F, 0.0F, 0.0F}}));
 }
 
-TEST_F(CloudReader, PointsOfVtkMayBeFarBehindTheBeginning) {
-  const std::string path = directory.file("a.vtk");
-  std::string before = "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nFIELD f 2\n"
-                       "words 1 1 string\npoints 7 float\nmany 1 1000000 int\n";
-  for (int i = 0; i < 1000000; ++i) {
-    before += "0 ";
-  }
-  tool_test::writeFile(path, before + "\nPOINTS\n2 float 1 2 3\n4 5 6\n");
-  EXPECT_EQ(readCloud(path).points, (std::vector<Point>{{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}));
-  tool_test::writeFile(path, before + "\nPOINTS 800000000 float 1 2 3\n");
-  expectRefused(path, "shorter than its header says");
-  tool_test::writeFile(path, before + "\nVERTICES 0 0\n");
-  expectRefused(path, "it has no points");
-}
-
 TEST_F(CloudReader, NumbersBeyondTheRangeOfDoubleAreNotZero) {
   const std::string zeros(400, '0');
   tool_test::writeFile(directory.file("a.xyz"),
@@ -568,17 +349,9 @@ TEST_F(CloudReader, ElementsWithoutPropertiesTakeNoTime) {
       "ply\nformat ascii 1.0\nelement nothing 1073741824\nelement vertex "
       "1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n");
   EXPECT_EQ(readCloud(directory.file("a.ply")).points.size(), 1U);
-  for (const std::string format : {"ascii", "binary_little_endian"}) {
-    const std::string header = "ply\nformat " + format +
-                               " 1.0\nelement vertex 1\nproperty float x\nproperty float "
-                               "y\nproperty float z\nelement nothing 1073741824\nend_header\n";
-    tool_test::writeFile(directory.file("a.ply"),
-                         header + (format == "ascii" ? "0 0 0\n" : std::string(12, '\0')));
-    EXPECT_EQ(readCloud(directory.file("a.ply")).points.size(), 1U);
-  }
 }
 
-TEST_F(CloudReader, LengthsOfListsAreWholeNumbers) {
+TEST_F(CloudReader, ListLengthsOfRealTypeAreRefused) {
   tool_test::writeFile(
       directory.file("a.ply"),
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float "
@@ -587,29 +360,7 @@ TEST_F(CloudReader, LengthsOfListsAreWholeNumbers) {
   expectRefused(directory.file("a.ply"), "unknown type 'float'");
 }
 
-// PCL's reader spreads such points over the grid; here they are just read.
-TEST_F(CloudReader, PointsOfARangeGridAreReadInTheirOrder) {
-  tool_test::writeFile(directory.file("a.ply"),
-                       "ply\nformat ascii 1.0\nobj_info num_cols 1073741824\nobj_info num_rows "
-                       "1073741824\nobj_info num_rows 1073741824\nelement vertex 2\nproperty float "
-                       "x\nproperty float y\nproperty float z\nelement range_grid 3\nproperty list "
-                       "uchar int vertex_indices\nend_header\n1 2 3\n4 5 6\n1 1\n0\n1 0\n");
-  EXPECT_EQ(readCloud(directory.file("a.ply")).points,
-            (std::vector<Point>{{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}));
-}
-
-TEST_F(CloudReader, RecordsThatAreNestedDeeplyAreNotKept) {
-  const std::string path = directory.file("a.jsonl");
-  const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
-  tool_test::writeFile(path, "{\"output\":" + deep + "}\n" + deep + "\n{\"output\":[[1]]}\n");
-  const std::vector<Json> records = readRecords(path);
-  ASSERT_EQ(records.size(), 2U);
-  EXPECT_LT(records[0].dump().size(), 200U);  // the rest of it is as if it were not there
-  EXPECT_EQ(records[1]["output"], Json::parse("[[1]]"));
-}
-
-/// An answer or a refusal, but nothing else.
-void expectAnswer(const std::string& path) {
+void expectPointsOrRefusal(const std::string& path) {
   try {
     const PointData data = readCloud(path);
     EXPECT_FALSE(data.points.empty());
@@ -620,7 +371,7 @@ void expectAnswer(const std::string& path) {
   }
 }
 
-TEST_F(CloudReader, EveryFileOfTheFuzzersHasAnAnswer) {
+TEST_F(CloudReader, EveryFileOfTheFuzzersIsReadOrRefused) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FUZZERS_CORPUS)) {
     const std::string kind = entry.path().parent_path().filename().string();
@@ -632,7 +383,7 @@ TEST_F(CloudReader, EveryFileOfTheFuzzersHasAnAnswer) {
     const std::string content = tool_test::readFile(entry.path().string());
     tool_test::writeFile(path, content);
     SCOPED_TRACE(entry.path());
-    expectAnswer(path);
+    expectPointsOrRefusal(path);
   }
   EXPECT_GT(count, 30U);
 }

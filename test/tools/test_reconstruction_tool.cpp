@@ -31,7 +31,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <random>
 #include <set>
 #include <sstream>
 #include <string>
@@ -143,20 +142,6 @@ void writeCloud(const std::string& path, const std::string& name, const Mesh& me
     }
     for (std::size_t i = 0; i < count; ++i) {
       text << "f " << i + 1 << "//" << count - i << " 1//" << count << " -1//-" << count << "\n";
-    }
-  } else if (name == "in.vtk") {
-    text << "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET POLYDATA\nPOINTS " << count
-         << " float\n";
-    for (const Point& point : mesh.points) {
-      text << digits(point) << "\n";
-    }
-    text << "POINT_DATA " << count << "\nCOLOR_SCALARS rgb 3\n";
-    for (const Color& color : mesh.colors) {
-      text << color[0] / 255.0 << " " << color[1] / 255.0 << " " << color[2] / 255.0 << "\n";
-    }
-    text << "NORMALS normals float\n";
-    for (const Point& normal : mesh.normals) {
-      text << digits(normal) << "\n";
     }
   } else if (name == "in.xyz") {
     for (std::size_t i = 0; i < count; ++i) {
@@ -325,7 +310,7 @@ Mesh readOff(const std::string& path) {
 
 Mesh readMesh(const std::string& path, const std::vector<Point>& points) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".ply") {
+  if (extension == ".ply" || extension == ".PLY") {
     return readPly(path);
   }
   if (extension == ".vtk") {
@@ -385,20 +370,25 @@ TEST_P(Formats, KeepCoordinatesColorsAndNormals) {
   EXPECT_EQ(text, !has_both || encoding == "ascii");
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, Formats,
-    testing::Combine(testing::Values("in.pcd", "ascii.pcd", "compressed.pcd", "in.ply", "ascii.ply",
-                                     "in.obj", "in.vtk", "in.xyz", "in.txt"),
-                     testing::Values("out.ply", "out.obj", "out.stl", "out.vtk", "out.off"),
-                     testing::Values("binary", "ascii")),
-    [](const auto& test) {
-      std::string name =
-          std::get<0>(test.param) + "_" + std::get<1>(test.param) + "_" + std::get<2>(test.param);
-      for (char& character : name) {
-        character = character == '.' ? '_' : character;
-      }
-      return name;
-    });
+std::string nameOf(const testing::TestParamInfo<Formats::ParamType>& test) {
+  std::string name =
+      std::get<0>(test.param) + "_" + std::get<1>(test.param) + "_" + std::get<2>(test.param);
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Inputs, Formats,
+                         testing::Combine(testing::Values("in.pcd", "ascii.pcd", "compressed.pcd",
+                                                          "in.ply", "ascii.ply", "in.obj", "in.xyz",
+                                                          "in.txt"),
+                                          testing::Values("out.ply"), testing::Values("binary")),
+                         nameOf);
+INSTANTIATE_TEST_SUITE_P(Outputs, Formats,
+                         testing::Combine(testing::Values("in.xyz"),
+                                          testing::Values("OUT.PLY", "out.obj", "out.stl",
+                                                          "out.vtk", "out.off"),
+                                          testing::Values("binary", "ascii")),
+                         nameOf);
 
 class ReconstructionTool : public testing::Test {
 protected:
@@ -434,19 +424,6 @@ TEST_F(ReconstructionTool, KeepsAlpha) {
   ASSERT_EQ(runTool(directory, {"alpha.ply", "out.vtk", "-ascii"}).exit_code, 0);
   EXPECT_NE(tool_test::readFile(directory.file("out.vtk")).find("COLOR_SCALARS Colors 4\n"),
             std::string::npos);
-}
-
-TEST_F(ReconstructionTool, ReadsAllPointsWhateverTheCameraOfAPlyFileSays) {
-  std::string text = "ply\nformat ascii 1.0\nelement vertex 200\nproperty float x\nproperty float "
-                     "y\nproperty float z\nelement camera 1\nproperty int viewportx\nproperty int "
-                     "viewporty\nend_header\n";
-  for (const Point& point : cloud.points) {
-    text += digits(point) + "\n";
-  }
-  for (const char* view : {"20 1", "20 10", "200 1", "1000000 1000000"}) {
-    tool_test::writeFile(directory.file("camera.ply"), text + view + "\n");
-    EXPECT_EQ(reportOf({"camera.ply", "out.ply"})["vertices"], 200) << view;
-  }
 }
 
 TEST_F(ReconstructionTool, LeavesOutDuplicatesAndPointsThatAreNotFinite) {
@@ -491,125 +468,66 @@ TEST_F(ReconstructionTool, WritesTheSphereWithTheSameTriangles) {
 }
 
 TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
-  ASSERT_EQ(runTool(directory, {"in.ply", "out.ply", "-json", "report.json", "-k=9"}).exit_code, 0);
-  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-  for (const char* key : {"points", "vertices", "duplicates", "ignored_points", "triangles",
-                          "components", "genus", "iterations", "peak_memory_bytes"}) {
-    EXPECT_TRUE(report[key].is_number_integer()) << key;
-  }
-  for (const char* key : {"volume", "area", "residual", "edges_outside_graph"}) {
-    EXPECT_TRUE(report[key].is_number_float()) << key;
-  }
-  for (const char* key : {"closed", "manifold", "oriented", "converged"}) {
-    EXPECT_TRUE(report[key].is_boolean()) << key;
-  }
-  for (const char* key : {"stop_reason", "input", "output", "version"}) {
-    EXPECT_TRUE(report[key].is_string()) << key;
-  }
-  for (const char* key : {"residuals", "stages", "warnings"}) {
-    EXPECT_TRUE(report[key].is_array()) << key;
+  const json report = reportOf({"in.ply", "out.ply", "-k=9"});
+  const std::vector<std::pair<std::string, std::string>> keys = {
+      {"number_integer",
+       "/points /vertices /duplicates /ignored_points /triangles /components /genus /iterations "
+       "/peak_memory_bytes /self_intersections /graph/edges /graph/components "
+       "/graph/without_tangent_plane_count /graph/searched_again /graph/uncertified /graph/weak "
+       "/embedding/starts /embedding/collapsed_starts /triangulation/hull_vertices "
+       "/triangulation/reinserted /triangulation/coincident /optimization/noise_steps "
+       "/optimization/phases/0/tried /optimization/phases/0/moves "
+       "/attempts/0/self_intersections /options/k /options/starts /options/seed"},
+      {"number_float",
+       "/volume /area /residual /edges_outside_graph /stages/0/seconds /embedding/centroid_norm "
+       "/embedding/energy /embedding/operator_complexity /embedding/grid_complexity "
+       "/optimization/energy /optimization/rough /optimization/alignment "
+       "/optimization/unevenness /optimization/phases/0/energy_before "
+       "/optimization/phases/0/energy /optimization/phases/0/seconds /attempts/0/energy "
+       "/attempts/0/seconds /measures/volume /measures/area /measures/mean_edge_length "
+       "/measures/bounding_box/min/2 /measures/bounding_box/max/2 /measures/centroid/2 "
+       "/measures/inertia/2/2 /options/exponent /options/lambda"},
+      {"boolean",
+       "/closed /manifold /oriented /converged /embedding/barrier /embedding/added_barrier "
+       "/triangulation/hull_rejected /optimization/noisy /attempts/0/chosen "
+       "/diagnosis/looks_closed_genus0 /options/strict /options/ascii /options/quiet"},
+      {"string",
+       "/stop_reason /input /output /version /stages/0/name /graph/method /embedding/solver "
+       "/triangulation/method /optimization/method /optimization/phases/0/name "
+       "/attempts/0/description /diagnosis/kind /diagnosis/summary /options/graph /options/solver "
+       "/options/weights /options/hull /options/optimize"},
+      {"array", "/residuals /stages /warnings /self_intersecting_pairs /graph/bridges "
+                "/graph/without_tangent_plane /embedding/levels /diagnosis/lids /diagnosis/handles "
+                "/diagnosis/bridges"},
+      {"null", "/outliers /smoothing /options/tolerance /options/iterations /options/stagnation "
+               "/options/outliers /options/outlier_method /options/sphere"}};
+  const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {
+      {"number_integer", &json::is_number_integer},
+      {"number_float", &json::is_number_float},
+      {"boolean", &json::is_boolean},
+      {"string", &json::is_string},
+      {"array", &json::is_array},
+      {"null", &json::is_null}};
+  for (const auto& [type, paths] : keys) {
+    std::istringstream words(paths);
+    for (std::string path; words >> path;) {
+      const json::json_pointer pointer(path);
+      EXPECT_TRUE(report.contains(pointer) && (report.at(pointer).*is_of_type.at(type))())
+          << path << " " << type;
+    }
   }
   EXPECT_EQ(report["points"], 200);
-  EXPECT_EQ(report["vertices"], 200);
   EXPECT_EQ(report["triangles"], 396);
-  EXPECT_EQ(report["closed"], true);
-  EXPECT_EQ(report["manifold"], true);
-  EXPECT_EQ(report["oriented"], true);
-  EXPECT_EQ(report["components"], 1);
   EXPECT_EQ(report["genus"], 0);
-  EXPECT_GT(report["volume"], 0.0);
-  EXPECT_GT(report["peak_memory_bytes"], 1 << 20);
   // Smoothing is no step to a solution.
   EXPECT_EQ(report["stop_reason"], "unfinished");
-  EXPECT_EQ(report["converged"], false);
-  EXPECT_EQ(report["iterations"], report["embedding"]["levels"][0]["newton_iterations"]);
-
   std::vector<std::string> stages;
   for (const json& stage : report["stages"]) {
     stages.push_back(stage["name"]);
-    EXPECT_TRUE(stage["seconds"].is_number_float());
   }
   const std::vector<std::string> expected = {"read",          "neighbors",    "graph", "embedding",
                                              "triangulation", "optimization", "check", "write"};
   EXPECT_EQ(stages, expected);
-  for (const char* key :
-       {"graph",    "k",          "solver",     "weights",  "exponent",       "tolerance",
-        "lambda",   "iterations", "stagnation", "starts",   "seed",           "hull",
-        "optimize", "attempts",   "smooth",     "outliers", "outlier_method", "threads",
-        "sphere",   "json",       "ascii",      "quiet"}) {
-    EXPECT_TRUE(report["options"].contains(key)) << key;
-  }
-  EXPECT_EQ(report["options"]["k"], 9);
-  EXPECT_EQ(report["options"]["weights"], "adaptive");
-  EXPECT_EQ(report["graph"]["method"], "delaunay");
-  for (const char* key : {"edges", "components", "without_tangent_plane_count", "searched_again",
-                          "uncertified", "weak"}) {
-    EXPECT_TRUE(report["graph"][key].is_number_integer()) << key;
-  }
-  EXPECT_EQ(report["graph"]["components"], 1);
-  EXPECT_TRUE(report["graph"]["bridges"].empty());
-  EXPECT_TRUE(report["graph"]["without_tangent_plane"].is_array());
-  EXPECT_EQ(report["embedding"]["solver"], "multilevel");
-  for (const char* key : {"starts", "collapsed_starts"}) {
-    EXPECT_TRUE(report["embedding"][key].is_number_integer()) << key;
-  }
-  for (const char* key : {"centroid_norm", "energy", "operator_complexity", "grid_complexity"}) {
-    EXPECT_TRUE(report["embedding"][key].is_number_float()) << key;
-  }
-  for (const char* key : {"barrier", "added_barrier"}) {
-    EXPECT_TRUE(report["embedding"][key].is_boolean()) << key;
-  }
-  EXPECT_EQ(report["triangulation"]["method"], "incremental");
-  for (const char* key : {"hull_vertices", "reinserted", "coincident"}) {
-    EXPECT_TRUE(report["triangulation"][key].is_number_integer()) << key;
-  }
-  EXPECT_TRUE(report["triangulation"]["hull_rejected"].is_boolean());
-
-  EXPECT_TRUE(report["self_intersections"].is_number_integer());
-  EXPECT_TRUE(report["self_intersecting_pairs"].is_array());
-  EXPECT_TRUE(report["outliers"].is_null());
-  EXPECT_TRUE(report["smoothing"].is_null());
-  EXPECT_EQ(report["optimization"]["method"], "full");
-  for (const char* key : {"energy", "rough", "alignment", "unevenness"}) {
-    EXPECT_TRUE(report["optimization"][key].is_number_float()) << key;
-  }
-  EXPECT_EQ(report["optimization"]["noisy"], false);
-  EXPECT_EQ(report["optimization"]["noise_steps"], 0);
-  EXPECT_FALSE(report["optimization"]["phases"].empty());
-  for (const json& phase : report["optimization"]["phases"]) {
-    EXPECT_TRUE(phase["name"].is_string());
-    for (const char* key : {"tried", "moves"}) {
-      EXPECT_TRUE(phase[key].is_number_integer()) << key;
-    }
-    for (const char* key : {"energy_before", "energy", "seconds"}) {
-      EXPECT_TRUE(phase[key].is_number_float()) << key;
-    }
-    const json& self_intersections = phase["self_intersections"];
-    EXPECT_TRUE(self_intersections.is_null() || self_intersections.is_number_integer());
-  }
-  EXPECT_FALSE(report["attempts"].empty());
-  for (const json& attempt : report["attempts"]) {
-    EXPECT_TRUE(attempt["description"].is_string());
-    EXPECT_TRUE(attempt["self_intersections"].is_number_integer());
-    EXPECT_TRUE(attempt["energy"].is_number_float());
-    EXPECT_TRUE(attempt["seconds"].is_number_float());
-    EXPECT_TRUE(attempt["chosen"].is_boolean());
-  }
-  for (const char* key : {"kind", "summary"}) {
-    EXPECT_TRUE(report["diagnosis"][key].is_string()) << key;
-  }
-  EXPECT_TRUE(report["diagnosis"]["looks_closed_genus0"].is_boolean());
-  for (const char* key : {"lids", "handles", "bridges"}) {
-    EXPECT_TRUE(report["diagnosis"][key].is_array()) << key;
-  }
-  for (const char* key : {"volume", "area", "mean_edge_length"}) {
-    EXPECT_TRUE(report["measures"][key].is_number_float()) << key;
-  }
-  EXPECT_EQ(report["measures"]["bounding_box"]["min"].size(), 3U);
-  EXPECT_EQ(report["measures"]["bounding_box"]["max"].size(), 3U);
-  EXPECT_EQ(report["measures"]["centroid"].size(), 3U);
-  ASSERT_EQ(report["measures"]["inertia"].size(), 3U);
-  EXPECT_EQ(report["measures"]["inertia"][0].size(), 3U);
 }
 
 TEST_F(ReconstructionTool, ReportOfTheIterationHasAResidualBeforeEachStepAndAtItsEnd) {
@@ -617,55 +535,50 @@ TEST_F(ReconstructionTool, ReportOfTheIterationHasAResidualBeforeEachStepAndAtIt
   EXPECT_GT(report["iterations"], 1);
   EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
   EXPECT_EQ(report["residuals"].back(), report["residual"]);
-  EXPECT_EQ(report["embedding"]["solver"], "iterative");
   EXPECT_FALSE(report["embedding"].contains("levels"));
 }
 
-TEST_F(ReconstructionTool, ReportTellsTheOptionsInForce) {
-  const json standard = reportOf({"in.ply", "out.ply"})["options"];
-  EXPECT_EQ(standard["graph"], "delaunay");
-  EXPECT_EQ(standard["k"], 12);
-  EXPECT_EQ(standard["solver"], "multilevel");
-  EXPECT_EQ(standard["exponent"], 3.0);
-  EXPECT_EQ(standard["starts"], 2);
-  EXPECT_EQ(standard["seed"], 1);
-  EXPECT_EQ(standard["hull"], "incremental");
-  EXPECT_EQ(standard["optimize"], "full");
-  EXPECT_EQ(standard["attempts"], 4);
-  EXPECT_EQ(standard["smooth"], 0);
-  for (const char* key : {"outliers", "outlier_method"}) {
-    EXPECT_TRUE(standard[key].is_null()) << key;
-  }
-  for (const char* key : {"tolerance", "iterations", "stagnation"}) {
-    EXPECT_TRUE(standard[key].is_null()) << key;
-  }
-  const json paper = reportOf({"in.ply", "out.ply", "-graph", "knn", "-solver", "iterative",
-                               "-hull", "qhull", "-optimize", "none", "-attempts", "1"})["options"];
-  EXPECT_EQ(paper["graph"], "knn");
-  EXPECT_EQ(paper["k"], 25);
-  EXPECT_EQ(paper["solver"], "iterative");
-  EXPECT_EQ(paper["tolerance"], 1e-8);
-  EXPECT_EQ(paper["iterations"], 1600);
-  EXPECT_EQ(paper["stagnation"], 100);
-  EXPECT_EQ(paper["hull"], "qhull");
-  EXPECT_EQ(paper["optimize"], "none");
-  EXPECT_EQ(paper["attempts"], 1);
-  for (const char* key : {"exponent", "starts", "seed"}) {
-    EXPECT_TRUE(paper[key].is_null()) << key;
-  }
-  EXPECT_TRUE(
-      reportOf({"in.ply", "out.ply", "-weights", "uniform"})["options"]["exponent"].is_null());
+TEST_F(ReconstructionTool, ReportHasTheOptionsInForce) {
+  const auto expect_options = [&](std::vector<std::string> arguments, const json& expected) {
+    arguments.insert(arguments.begin(), {"in.ply", "out.ply"});
+    const json options = reportOf(arguments)["options"];
+    for (const auto& [name, value] : expected.items()) {
+      EXPECT_EQ(options[name], value) << name;
+    }
+  };
+  expect_options({}, {{"graph", "delaunay"},
+                      {"k", 12},
+                      {"solver", "multilevel"},
+                      {"exponent", 3.0},
+                      {"starts", 2},
+                      {"seed", 1},
+                      {"hull", "incremental"},
+                      {"optimize", "full"},
+                      {"attempts", 4},
+                      {"smooth", 0}});
+  expect_options({"-graph", "knn", "-solver", "iterative", "-hull", "qhull", "-optimize", "none",
+                  "-attempts", "1"},
+                 {{"graph", "knn"},
+                  {"k", 25},
+                  {"solver", "iterative"},
+                  {"tolerance", 1e-8},
+                  {"iterations", 1600},
+                  {"stagnation", 100},
+                  {"hull", "qhull"},
+                  {"optimize", "none"},
+                  {"attempts", 1},
+                  {"exponent", nullptr},
+                  {"starts", nullptr},
+                  {"seed", nullptr}});
+  expect_options({"-weights", "uniform"}, {{"exponent", nullptr}});
   // The optimisation is random even where the solver is not.
-  const json iterative =
-      reportOf({"in.ply", "out.ply", "-solver", "iterative", "-seed", "7"})["options"];
-  EXPECT_EQ(iterative["seed"], 7);
-  const json cleaned = reportOf({"in.ply", "out.ply", "-optimize", "flips", "-smooth", "3",
-                                 "-outliers", "2.5", "-attempts", "2"})["options"];
-  EXPECT_EQ(cleaned["optimize"], "flips");
-  EXPECT_EQ(cleaned["smooth"], 3);
-  EXPECT_EQ(cleaned["attempts"], 2);
-  EXPECT_EQ(cleaned["outliers"], 2.5);
-  EXPECT_EQ(cleaned["outlier_method"], "paper");
+  expect_options({"-solver", "iterative", "-seed", "7"}, {{"seed", 7}});
+  expect_options({"-optimize", "flips", "-smooth", "3", "-outliers", "2.5", "-attempts", "2"},
+                 {{"optimize", "flips"},
+                  {"smooth", 3},
+                  {"attempts", 2},
+                  {"outliers", 2.5},
+                  {"outlier_method", "paper"}});
 }
 
 TEST_F(ReconstructionTool, EachMethodIsTheOneThatWasAskedFor) {
@@ -741,51 +654,6 @@ TEST_F(ReconstructionTool, ReportTellsTheHierarchy) {
   EXPECT_GE(levels.back()["linear_iterations"], levels.back()["newton_iterations"]);
 }
 
-TEST_F(ReconstructionTool, PrintsTheHierarchyThatTheReportTells) {
-  writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(5000));
-  const RunResult result = runTool(directory, {"large.ply", "out.ply", "-json", "report.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-  const json& levels = report["embedding"]["levels"];
-  EXPECT_NE(result.output.find("Number of levels:    " + std::to_string(levels.size()) + "\n"),
-            std::string::npos);
-  for (const char* word : {"Operator complexity: 1.", "Grid complexity:     1."}) {
-    EXPECT_NE(result.output.find(word), std::string::npos) << word;
-  }
-  const std::string head = "level      nodes      edges  ratio  sweeps  Newton     CG\n";
-  const std::size_t table = result.output.find(head);
-  ASSERT_NE(table, std::string::npos);
-  std::istringstream lines(result.output.substr(table + head.size()));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line.find_first_not_of(" -"), std::string::npos);
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    std::getline(lines, line);
-    std::istringstream words(line);
-    std::size_t level = 0;
-    std::size_t nodes = 0;
-    std::size_t edges = 0;
-    words >> level >> nodes >> edges;
-    EXPECT_EQ(level, i);
-    EXPECT_EQ(levels[i]["nodes"], nodes);
-    EXPECT_EQ(levels[i]["edges"], edges);
-    if (i > 0) {
-      double ratio = 0.0;
-      words >> ratio;
-      // Three digits are printed.
-      EXPECT_NEAR(ratio, levels[i]["coarsening_ratio"].get<double>(), 0.01 * ratio);
-    }
-    int sweeps = 0;
-    int newton = 0;
-    int linear = 0;
-    words >> sweeps >> newton >> linear;
-    EXPECT_FALSE(words.fail()) << line;
-    EXPECT_EQ(levels[i]["sweeps"], sweeps);
-    EXPECT_EQ(levels[i]["newton_iterations"], newton);
-    EXPECT_EQ(levels[i]["linear_iterations"], linear);
-  }
-}
-
 // Without a tolerance nothing is promised; with one the report keeps the promise.
 TEST_F(ReconstructionTool, ToleranceMakesTheMultilevelSolverConverge) {
   writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(20000));
@@ -802,50 +670,6 @@ TEST_F(ReconstructionTool, ToleranceMakesTheMultilevelSolverConverge) {
     EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
     EXPECT_GT(report["iterations"], 0) << graph;
   }
-}
-
-// The pull of a barrier is left in the residual: the tool says so.
-TEST_F(ReconstructionTool, TellsOfTheBarrierOfWeightsThatHaveNone) {
-  for (const char* weights : {"uniform", "inverse"}) {
-    const RunResult result = runTool(directory, {"in.ply", "out.ply", "-weights", weights,
-                                                 "-tolerance", "1e-8", "-json", "report.json"});
-    ASSERT_EQ(result.exit_code, 0) << result.errors;
-    const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-    EXPECT_EQ(report["embedding"]["barrier"], true);
-    EXPECT_EQ(report["embedding"]["added_barrier"], false);
-    EXPECT_LT(report["embedding"]["centroid_norm"], 0.5);
-    EXPECT_NE(result.output.find("the pull of a barrier is left"), std::string::npos);
-  }
-  const RunResult adaptive = runTool(directory, {"in.ply", "out.ply", "-tolerance", "1e-8"});
-  EXPECT_EQ(adaptive.output.find("barrier"), std::string::npos);
-}
-
-// Points on a needle have all their neighbours on a line, hence no tangent plane.
-TEST_F(ReconstructionTool, NamesPointsOfTheInputWithoutATangentPlane) {
-  std::string text = "nan nan nan\n";
-  for (const Point& point : cloud.points) {
-    text += digits(point) + "\n";
-  }
-  for (int i = 0; i < 100; ++i) {
-    text += digits(Point{0.35F + 0.01F * static_cast<float>(i), 0.0F, 10.0F}) + "\n";
-  }
-  tool_test::writeFile(directory.file("needle.xyz"), text);
-  const RunResult result = runTool(directory, {"needle.xyz", "out.ply", "-json", "report.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-  const auto points = report["graph"]["without_tangent_plane"].get<std::set<int>>();
-  EXPECT_EQ(report["graph"]["without_tangent_plane_count"], points.size());
-  // The far half of the needle, counted from the line of NaN on.
-  for (int i = 251; i < 301; ++i) {
-    EXPECT_EQ(points.count(i), 1U) << i;
-  }
-  EXPECT_EQ(points.count(0), 0U);
-  EXPECT_LT(*points.rbegin(), 301);
-  EXPECT_NE(result.output.find("tangent plane       missing at " + std::to_string(points.size()) +
-                               " points"),
-            std::string::npos);
-  const json knn = reportOf({"needle.xyz", "out.ply", "-graph", "knn"});
-  EXPECT_EQ(knn["graph"]["without_tangent_plane_count"], 0);
 }
 
 TEST_F(ReconstructionTool, ReportNamesBridgesByPointsOfTheInput) {
@@ -893,21 +717,6 @@ TEST_F(ReconstructionTool, OptionsReachTheLibraryInEveryNotation) {
     meshes.insert(tool_test::readFile(directory.file("out.ply")));
   }
   EXPECT_EQ(meshes.size(), 1U);
-}
-
-TEST_F(ReconstructionTool, FilesAreToldByTheirExtension) {
-  writeCloud(directory.file("in.pcd"), "in.pcd", cloud);
-  EXPECT_EQ(runTool(directory, {"-k", "9", "out.stl", "in.pcd"}).exit_code, 0);
-  EXPECT_EQ(runTool(directory, {"in.ply", "OUT.VTK"}).exit_code, 0);
-  EXPECT_EQ(directory.listing().count("out.stl"), 1U);
-  EXPECT_EQ(directory.listing().count("OUT.VTK"), 1U);
-}
-
-TEST_F(ReconstructionTool, NeverTakesTheFirstOfTwoPossibleInputsForTheOutput) {
-  writeCloud(directory.file("in.pcd"), "in.pcd", cloud);
-  const auto before = directory.listing();
-  EXPECT_EQ(runTool(directory, {"in.ply", "in.pcd"}).exit_code, 2);
-  EXPECT_EQ(directory.listing(), before);
 }
 
 TEST_F(ReconstructionTool, StandardOutputIsTheReportAlone) {
@@ -1010,36 +819,13 @@ TEST_F(ReconstructionTool, HelpAndVersionSucceed) {
 TEST_F(ReconstructionTool, PrintsStagesInPlainLinesAndTheVerdict) {
   const RunResult result = runTool(directory, {"in.ply", "out.ply"});
   EXPECT_EQ(result.output.find_first_of("\r\033"), std::string::npos);
-  for (const char* word : {"read",
-                           "neighbors",
-                           "graph",
-                           "embedding",
-                           "triangulation",
-                           "optimization",
-                           "check",
-                           "write",
-                           "points              200",
-                           "used                200",
-                           "graph edges         ",
-
-                           "local Delaunay      ",
-                           "tangent plane       missing at 0 points",
-                           "starts tried        2 (0 collapsed)",
-                           "triangles           396",
-                           "closed              yes",
-                           "manifold            yes",
-                           "oriented            yes",
-                           "genus               0",
-                           "residual",
-                           "hull vertices       200 (0 put back, 0 coincident)",
-                           "converged           not asked for",
-                           "optimised           full, energy ",
-                           "self-intersections  0",
-                           "looks like          a closed genus-0 surface.",
-                           "volume              ",
-                           "area                ",
-                           "bounding box        ",
-                           "centroid            "}) {
+  for (const char* word :
+       {"graph               delaunay", "tolerance           off", "embedding", "write",
+        "points              200", "tangent plane       missing at 0 points",
+        "starts tried        2 (0 collapsed)", "triangles           396", "closed              yes",
+        "genus               0", "hull vertices       200 (0 put back, 0 coincident)",
+        "converged           not asked for", "self-intersections  0",
+        "looks like          a closed genus-0 surface."}) {
     EXPECT_NE(result.output.find(std::string("\n  ") + word), std::string::npos) << word;
   }
   EXPECT_NE(result.output.find(" (1 component, 0 bridges)\n"), std::string::npos);
@@ -1049,10 +835,6 @@ TEST_F(ReconstructionTool, PrintsStagesInPlainLinesAndTheVerdict) {
 
 Eigen::Vector3d position(const Point& point) {
   return Eigen::Vector3f(point.data()).cast<double>();
-}
-
-Eigen::Vector3d vectorOf(const json& values) {
-  return {values[0].get<double>(), values[1].get<double>(), values[2].get<double>()};
 }
 
 spherical_param::Positions positionsOf(const Mesh& mesh) {
@@ -1120,115 +902,6 @@ protected:
   Mesh meshFile(const std::string& name) const { return readPly(directory.file(name)); }
 };
 
-/// What the parts of a report say about each other.
-void expectConsistency(const json& report, const Mesh& mesh) {
-  const json& pairs = report["self_intersecting_pairs"];
-  const auto count = report["self_intersections"].get<std::size_t>();
-  EXPECT_EQ(pairs.size(), std::min<std::size_t>(count, 1000));
-  std::array<int, 2> last = {-1, -1};
-  for (const json& pair : pairs) {
-    const auto [low, high] = pair.get<std::array<int, 2>>();
-    EXPECT_LT(low, high);
-    EXPECT_LT(high, static_cast<int>(mesh.triangles.size()));
-    EXPECT_LT(last, (std::array<int, 2>{low, high}));
-    last = {low, high};
-  }
-  int chosen = 0;
-  for (const json& attempt : report["attempts"]) {
-    chosen += attempt["chosen"].get<bool>() ? 1 : 0;
-  }
-  EXPECT_EQ(chosen, 1);
-  EXPECT_LE(report["attempts"].size(), report["options"]["attempts"].get<std::size_t>());
-  EXPECT_EQ(report["measures"]["volume"], report["volume"]);
-  EXPECT_EQ(report["measures"]["area"], report["area"]);
-  const json& diagnosis = report["diagnosis"];
-  EXPECT_EQ(diagnosis["looks_closed_genus0"].get<bool>(), diagnosis["kind"] == "closed genus 0");
-  for (const char* kind : {"lids", "handles", "bridges"}) {
-    for (const json& finding : diagnosis[kind]) {
-      EXPECT_EQ(finding["location"].size(), 3U);
-      EXPECT_GT(finding["size"], 0.0);
-      EXPECT_FALSE(finding["vertices"].empty());
-      for (const json& vertex : finding["vertices"]) {
-        EXPECT_GE(vertex, 0);
-        EXPECT_LT(vertex, report["points"]);
-      }
-    }
-  }
-}
-
-TEST_F(QualityOfTheMesh, GeneratedObjectsAreMeshedWithoutSelfIntersections) {
-  for (const char* shape : {"head", "bird", "hand", "ellipsoid"}) {
-    scan({shape, "scan.ply", "-points", "3000"});
-    const json report = reportOf({"scan.ply", "out.ply"});
-    const Mesh mesh = meshFile("out.ply");
-    expectConsistency(report, mesh);
-    EXPECT_EQ(report["self_intersections"], 0) << shape;
-    EXPECT_TRUE(selfIntersections(mesh).empty()) << shape;
-    EXPECT_EQ(report["diagnosis"]["kind"], "closed genus 0") << shape;
-    for (const char* finding : {"lids", "handles", "bridges"}) {
-      EXPECT_TRUE(report["diagnosis"][finding].empty()) << shape << " " << finding;
-    }
-    EXPECT_EQ(report["attempts"].size(), 1U) << shape;
-  }
-}
-
-TEST_F(QualityOfTheMesh, AnOpeningIsFoundWhereItIs) {
-  scan({"bowl", "scan.ply", "-points", "3000"});
-  const json report = reportOf({"scan.ply", "out.ply"});
-  expectConsistency(report, meshFile("out.ply"));
-  const json& diagnosis = report["diagnosis"];
-  EXPECT_EQ(diagnosis["kind"], "open");
-  ASSERT_EQ(diagnosis["lids"].size(), 1U);
-  const json& lid = diagnosis["lids"][0];
-  EXPECT_EQ(lid["cause"], "open");
-  // A sphere of radius 0.5 cut at z = 0.15, sampled every 0.035.
-  EXPECT_LT((vectorOf(lid["location"]) - Eigen::Vector3d(0.0, 0.0, 0.15)).norm(), 0.07);
-  EXPECT_NEAR(lid["size"].get<double>(), 2.0 * std::sqrt(0.25 - 0.15 * 0.15), 0.1);
-  const Mesh input = meshFile("scan.ply");
-  for (const json& vertex : lid["vertices"]) {
-    EXPECT_NEAR(static_cast<double>(input.points[vertex.get<std::size_t>()][2]), 0.15, 0.07);
-  }
-}
-
-TEST_F(QualityOfTheMesh, TwoPartsAreFoundWithTheGapBetweenThem) {
-  scan({"pair", "scan.ply", "-points", "2000"});
-  const json report = reportOf({"scan.ply", "out.ply"});
-  expectConsistency(report, meshFile("out.ply"));
-  const json& diagnosis = report["diagnosis"];
-  EXPECT_EQ(diagnosis["kind"], "several parts");
-  ASSERT_EQ(diagnosis["bridges"].size(), 1U);
-  const json& bridge = diagnosis["bridges"][0];
-  EXPECT_EQ(bridge["points"].get<int>() + bridge["other_points"].get<int>(), 2000);
-  EXPECT_NEAR(bridge["points"].get<double>(), 1000.0, 50.0);
-  // Spheres of radius 0.2 at x = -0.3 and 0.3: a gap of 0.2 around the origin.
-  EXPECT_NEAR(bridge["size"].get<double>(), 0.2, 0.02);
-  EXPECT_LT(vectorOf(bridge["location"]).norm(), 0.05);
-}
-
-TEST_F(QualityOfTheMesh, LoopsOfALidArePathsAlongTheMeshWithItsLength) {
-  scan({"holed", "scan.ply", "-points", "3000"});
-  const json report = reportOf({"scan.ply", "out.ply"});
-  const json& diagnosis = report["diagnosis"];
-  EXPECT_EQ(diagnosis["kind"], "open");
-  EXPECT_TRUE(diagnosis["genus"].is_null());
-  ASSERT_EQ(diagnosis["lids"].size(), 4U);
-  // All points are vertices, in their order.
-  const Mesh mesh = meshFile("out.ply");
-  const spherical_param::Positions points = positionsOf(mesh);
-  const auto corners = cornersOfEdges(mesh);
-  for (const json& lid : diagnosis["lids"]) {
-    ASSERT_EQ(lid["loops"].size(), 1U);
-    const auto loop = lid["loops"][0].get<std::vector<int>>();
-    double length = 0.0;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const int next = loop[(i + 1) % loop.size()];
-      EXPECT_EQ(corners.count({loop[i], next}), 1U);
-      length += (points.col(loop[i]) - points.col(next)).norm();
-    }
-    EXPECT_NEAR(length, lid["boundary_length"].get<double>(), 1e-9);
-  }
-}
-
 TEST_F(QualityOfTheMesh, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
   scan({"holed", "scan.ply", "-points", "2000"});
   const RunResult lax = runTool(directory, {"scan.ply", "lax.ply", "-quiet"});
@@ -1256,35 +929,11 @@ TEST_F(QualityOfTheMesh, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame)
   EXPECT_EQ(clean.output + clean.errors, "");
 }
 
-TEST_F(QualityOfTheMesh, HandlesAreCounted) {
-  scan({"double_torus", "scan.ply", "-points", "3000"});
-  const json diagnosis = reportOf({"scan.ply", "out.ply"})["diagnosis"];
-  EXPECT_EQ(diagnosis["kind"], "handles");
-  EXPECT_EQ(diagnosis["genus"], 2);
-  EXPECT_NE(diagnosis["summary"].get<std::string>().find("2 handles"), std::string::npos);
-}
-
-TEST_F(QualityOfTheMesh, AHandleIsFound) {
-  scan({"torus", "scan.ply", "-points", "3000"});
-  const json report = reportOf({"scan.ply", "out.ply"});
-  expectConsistency(report, meshFile("out.ply"));
-  const json& diagnosis = report["diagnosis"];
-  EXPECT_EQ(diagnosis["looks_closed_genus0"], false);
-  EXPECT_EQ(diagnosis["kind"], "handles");
-  ASSERT_FALSE(diagnosis["handles"].empty());
-  // A tube of radius 0.14 around a circle of radius 0.36: the cut goes through the tube, or fills
-  // the hole; a few edges beyond either.
-  const Eigen::Vector3d place = vectorOf(diagnosis["handles"][0]["location"]);
-  EXPECT_LT(place.head<2>().norm(), 0.5);
-  EXPECT_LT(std::abs(place.z()), 0.14);
-}
-
 TEST_F(QualityOfTheMesh, WithoutOptimizationTheMeshIsThatOfTheSphere) {
   scan({"hand", "scan.ply", "-points", "3000"});
   const std::vector<std::string> raw_run = {"scan.ply",  "raw.ply", "-sphere",   "sphere.ply",
                                             "-optimize", "none",    "-attempts", "1"};
   const json raw = reportOf(raw_run);
-  expectConsistency(raw, meshFile("raw.ply"));
   EXPECT_EQ(raw["optimization"]["method"], "none");
   EXPECT_TRUE(raw["optimization"]["phases"].empty());
   EXPECT_EQ(raw["attempts"].size(), 1U);
@@ -1310,165 +959,12 @@ TEST_F(QualityOfTheMesh, SelfIntersectionsOfTheReportAreThoseOfTheMesh) {
   scan({"hand", "scan.ply", "-points", "4000", "-noise", "1"});
   const json report = reportOf({"scan.ply", "out.ply", "-optimize", "none", "-attempts", "1"});
   const Mesh mesh = meshFile("out.ply");
-  expectConsistency(report, mesh);
   const auto pairs = selfIntersections(mesh);
   // More than are listed.
   ASSERT_GT(pairs.size(), 1000U);
   EXPECT_EQ(report["self_intersections"], pairs.size());
   for (std::size_t i = 0; i < report["self_intersecting_pairs"].size(); ++i) {
     EXPECT_EQ(report["self_intersecting_pairs"][i], json(pairs[i]));
-  }
-}
-
-// A cloud so coarse that the first mesh may intersect itself, and so few points that they show no
-// surface, some of which have no other mesh.
-TEST_F(QualityOfTheMesh, AttemptsAreABudgetThatIsSpentWhereTheMeshIntersectsItself) {
-  scan({"hand", "coarse.ply", "-points", "300"});
-  std::vector<std::string> files{"coarse.ply"};
-  for (unsigned seed = 0; seed < 6; ++seed) {
-    std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    std::ostringstream text;
-    for (int i = 0; i < (seed % 2 == 0 ? 8 : 16); ++i) {
-      text << uniform(random) << ' ' << uniform(random) << ' ' << uniform(random) << '\n';
-    }
-    files.push_back("random" + std::to_string(seed) + ".xyz");
-    tool_test::writeFile(directory.file(files.back()), text.str());
-  }
-  std::size_t most = 0;
-  for (const std::string& file : files) {
-    for (const std::size_t budget : {1U, 3U}) {
-      const RunResult result = runTool(directory, {file, "out.ply", "-attempts",
-                                                   std::to_string(budget), "-json", "report.json"});
-      ASSERT_EQ(result.exit_code, 0) << result.errors;
-      const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-      expectConsistency(report, meshFile("out.ply"));
-      const json& attempts = report["attempts"];
-      ASSERT_FALSE(attempts.empty());
-      ASSERT_LE(attempts.size(), budget);
-      most = std::max(most, attempts.size());
-      for (std::size_t i = 0; i < attempts.size(); ++i) {
-        const json& attempt = attempts[i];
-        for (const json& other : attempts) {
-          EXPECT_TRUE(!attempt["chosen"].get<bool>() ||
-                      attempt["self_intersections"] <= other["self_intersections"]);
-        }
-        const std::string line = "\n  attempt " + std::to_string(i + 1) + "           ";
-        EXPECT_EQ(result.output.find(line) != std::string::npos, attempts.size() > 1);
-        // Nothing is tried after a mesh that does not intersect itself.
-        EXPECT_TRUE(attempt["self_intersections"] > 0 || i + 1 == attempts.size());
-      }
-    }
-  }
-  EXPECT_GT(most, 1U);
-}
-
-// Equation (1) of optimizeMesh(), by the book.
-TEST_F(QualityOfTheMesh, EnergyOfTheReportIsThatOfTheMesh) {
-  scan({"bird", "scan.ply", "-points", "2000"});
-  const json report = reportOf({"scan.ply", "out.ply"});
-  ASSERT_EQ(report["optimization"]["noisy"], false);
-  const Mesh mesh = meshFile("out.ply");
-  const spherical_param::Positions p = positionsOf(mesh);
-  double energy = 0.0;
-  const auto corners = cornersOfEdges(mesh);
-  for (const auto& [edge, corner] : corners) {
-    const auto [a, b] = edge;
-    if (a < b) {
-      const Eigen::Vector3d side = p.col(b) - p.col(a);
-      const Eigen::Vector3d n = side.cross(p.col(corner) - p.col(a));
-      const Eigen::Vector3d m = (p.col(corners.at({b, a})) - p.col(a)).cross(side);
-      energy += side.norm() * std::atan2(n.cross(m).norm(), n.dot(m));
-    }
-  }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const double ab = (p.col(b) - p.col(a)).norm();
-    const double bc = (p.col(c) - p.col(b)).norm();
-    const double ca = (p.col(a) - p.col(c)).norm();
-    const double twice_area = (p.col(b) - p.col(a)).cross(p.col(c) - p.col(a)).norm();
-    energy += 0.3 * std::min(ab * bc * ca / (2.0 * twice_area), 4.0 * std::max({ab, bc, ca}));
-  }
-  // Sums of some 10,000 terms in another order.
-  EXPECT_NEAR(report["optimization"]["energy"].get<double>(), energy, 1e-9 * energy);
-}
-
-TEST_F(QualityOfTheMesh, PrintsThePhasesThatTheReportTells) {
-  scan({"hand", "scan.ply", "-points", "3000"});
-  const RunResult result = runTool(directory, {"scan.ply", "out.ply", "-json", "report.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-  const json& phases = report["optimization"]["phases"];
-  const std::string head = "phase          tried      moves       energy  self-int.  seconds\n";
-  const std::size_t table = result.output.find(head);
-  ASSERT_NE(table, std::string::npos);
-  std::istringstream lines(result.output.substr(table + head.size()));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line.find_first_not_of(" -"), std::string::npos);
-  for (const json& phase : phases) {
-    std::getline(lines, line);
-    std::istringstream words(line);
-    std::string name;
-    std::size_t tried = 0;
-    std::size_t moves = 0;
-    double energy = 0.0;
-    words >> name >> tried >> moves >> energy;
-    EXPECT_EQ(phase["name"], name);
-    EXPECT_EQ(phase["tried"], tried);
-    EXPECT_EQ(phase["moves"], moves);
-    // Six digits are printed.
-    EXPECT_NEAR(energy, phase["energy"].get<double>(), 1e-5 * energy);
-    if (!phase["self_intersections"].is_null()) {
-      std::size_t self_intersections = 0;
-      words >> self_intersections;
-      EXPECT_EQ(phase["self_intersections"], self_intersections);
-    }
-    double seconds = 0.0;
-    words >> seconds;
-    EXPECT_FALSE(words.fail()) << line;
-    std::string rest;
-    EXPECT_FALSE(words >> rest) << line;
-  }
-  EXPECT_EQ(phases.back()["energy"].is_number_float(), true);
-}
-
-TEST_F(QualityOfTheMesh, MeasuresAreThoseOfTheMesh) {
-  scan({"animal", "scan.ply", "-points", "2000"});
-  const json measures = reportOf({"scan.ply", "out.ply"})["measures"];
-  const Mesh mesh = meshFile("out.ply");
-  const spherical_param::Positions p = positionsOf(mesh);
-  double area = 0.0;
-  double length = 0.0;
-  double volume = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
-  for (const auto& [a, b, c] : mesh.triangles) {
-    area += (p.col(b) - p.col(a)).cross(p.col(c) - p.col(a)).norm() / 2.0;
-    length +=
-        (p.col(b) - p.col(a)).norm() + (p.col(c) - p.col(b)).norm() + (p.col(a) - p.col(c)).norm();
-    Eigen::Matrix3d corners;
-    corners << p.col(a), p.col(b), p.col(c);
-    // A tetrahedron with the origin: its moments about it.
-    const double part = corners.determinant() / 6.0;
-    const Eigen::Vector3d sum = corners.rowwise().sum();
-    volume += part;
-    moment += part / 4.0 * sum;
-    second += part / 20.0 * (sum * sum.transpose() + corners * corners.transpose());
-  }
-  const Eigen::Vector3d centroid = moment / volume;
-  second -= volume * centroid * centroid.transpose();
-  const Eigen::Matrix3d inertia = second.trace() * Eigen::Matrix3d::Identity() - second;
-  // Sums of 4,000 terms in another order, of a cloud of extent 1.
-  EXPECT_NEAR(measures["volume"].get<double>(), volume, 1e-12);
-  EXPECT_NEAR(measures["area"].get<double>(), area, 1e-12);
-  const double edges = 1.5 * static_cast<double>(mesh.triangles.size());
-  EXPECT_NEAR(measures["mean_edge_length"].get<double>(), length / 2.0 / edges, 1e-12);
-  EXPECT_LT((vectorOf(measures["centroid"]) - centroid).norm(), 1e-12);
-  EXPECT_EQ(vectorOf(measures["bounding_box"]["min"]), p.rowwise().minCoeff());
-  EXPECT_EQ(vectorOf(measures["bounding_box"]["max"]), p.rowwise().maxCoeff());
-  for (std::size_t row = 0; row < 3; ++row) {
-    const Eigen::Vector3d expected = inertia.row(static_cast<Eigen::Index>(row));
-    EXPECT_LT((vectorOf(measures["inertia"][row]) - expected).norm(), 1e-12);
   }
 }
 
@@ -1521,36 +1017,6 @@ TEST_F(QualityOfTheMesh, SmoothingMovesThePointsAloneAndTellsHowFar) {
   for (const char* line : {"\n  smooth              3\n", "\n  smoothed            3 steps, "}) {
     EXPECT_NE(result.output.find(line), std::string::npos) << line;
   }
-}
-
-TEST_F(QualityOfTheMesh, ANoisyScanThatIsSmoothedDoesNotIntersectItself) {
-  for (const char* shape : {"head", "ellipsoid", "bird"}) {
-    scan({shape, "scan.ply", "-points", "3000", "-noise", "0.5"});
-    const json report = reportOf({"scan.ply", "out.ply", "-smooth", "5"});
-    expectConsistency(report, meshFile("out.ply"));
-    EXPECT_EQ(report["optimization"]["noisy"], true) << shape;
-    EXPECT_EQ(report["smoothing"]["self_intersections"], 0) << shape;
-    EXPECT_TRUE(selfIntersections(meshFile("out.ply")).empty()) << shape;
-  }
-}
-
-// At noise as large as the distance of neighbours nothing is promised, but what is left is told.
-TEST_F(QualityOfTheMesh, StrongNoiseIsToldAndSmoothingLeavesFewSelfIntersections) {
-  scan({"head", "scan.ply", "-points", "3000", "-noise", "1"});
-  const RunResult result =
-      runTool(directory, {"scan.ply", "out.ply", "-smooth", "5", "-json", "report.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  const json report = json::parse(tool_test::readFile(directory.file("report.json")));
-  const Mesh mesh = meshFile("out.ply");
-  expectConsistency(report, mesh);
-  EXPECT_EQ(report["optimization"]["noisy"], true);
-  const int steps = report["optimization"]["noise_steps"];
-  EXPECT_NE(result.output.find("noisy: on positions after " + std::to_string(steps) + " steps"),
-            std::string::npos);
-  const std::size_t left = report["smoothing"]["self_intersections"];
-  EXPECT_LT(left, report["self_intersections"].get<std::size_t>());
-  // The points are rounded to single precision when they are written.
-  EXPECT_NEAR(static_cast<double>(selfIntersections(mesh).size()), static_cast<double>(left), 2.0);
 }
 
 /// Outliers among the points of an ellipsoid, with repeated ones and some that are not finite.
@@ -1632,58 +1098,6 @@ TEST_F(QualityOfTheMesh, SameBytesForAnyNumberOfThreadsWithAllThatIsOptional) {
 }
 
 // ------------------------------------------------------------------------------ what is printed
-
-TEST_F(ReconstructionTool, PrintsTheParametersInForce) {
-  const auto expect_lines = [&](std::vector<std::string> arguments,
-                                const std::vector<std::string>& lines,
-                                const std::vector<std::string>& missing) {
-    arguments.insert(arguments.begin(), {"in.ply", "out.ply"});
-    const RunResult result = runTool(directory, arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    for (const std::string& line : lines) {
-      EXPECT_NE(result.output.find("\n  " + line + "\n"), std::string::npos) << line;
-    }
-    for (const std::string& label : missing) {
-      EXPECT_EQ(result.output.find("\n  " + label + " "), std::string::npos) << label;
-    }
-  };
-  expect_lines({},
-               {"graph               delaunay", "k                   12",
-                "solver              multilevel", "weights             adaptive",
-                "exponent            3", "tolerance           off", "lambda              0.5",
-                "starts              2", "seed                1", "hull                incremental",
-                "optimize            full", "attempts            up to 4"},
-               {"iterations", "stagnation", "smooth", "smoothed", "outliers", "attempt 1"});
-  expect_lines({"-graph", "knn", "-solver", "iterative", "-hull", "qhull"},
-               {"graph               knn", "k                   25",
-                "solver              iterative", "tolerance           1e-08",
-                "iterations          1600", "stagnation          100", "hull                qhull"},
-               {"exponent", "starts", "local Delaunay", "energy", "level"});
-  expect_lines({"-solver", "iterative", "-optimize", "none"},
-               {"optimize            none", "optimised           no (-optimize none)"}, {"seed"});
-  expect_lines({"-optimize", "flips", "-attempts", "7", "-smooth", "3", "-outliers", "3.5"},
-               {"optimize            flips", "attempts            up to 7", "smooth              3",
-                "outliers            3.5 (paper)"},
-               {});
-  expect_lines({"-outliers", "6", "-outlier-method", "statistical"},
-               {"outliers            6 (statistical)"}, {"smooth", "smoothed"});
-  expect_lines({"-exponent", "2.5", "-starts", "7", "-seed", "42", "-tolerance", "1e-5"},
-               {"exponent            2.5", "starts              7", "seed                42",
-                "tolerance           1e-05"},
-               {});
-  expect_lines({"-solver", "iterative", "-stagnation", "0", "-iterations", "7"},
-               {"stagnation          never", "iterations          7"}, {});
-  expect_lines({"-weights", "uniform"}, {"weights             uniform"}, {"exponent"});
-}
-
-TEST_F(ReconstructionTool, DrawsABarOnATerminal) {
-  RunOptions options;
-  options.directory = directory.path();
-  options.terminal = true;
-  const RunResult result = run(RECONSTRUCTION_TOOL, {"in.ply", "out.ply"}, options);
-  EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find("\r  embedding           ["), std::string::npos);
-}
 
 TEST_F(ReconstructionTool, TheShareOfTheWholeOnlyGrows) {
   writeCloud(directory.file("large.ply"), "in.ply", ellipsoid(5000));

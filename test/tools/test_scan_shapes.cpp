@@ -267,16 +267,6 @@ TEST(ScanShapes, PointsAndNormalsOfAnalyticShapesAreExact) {
   }
 }
 
-TEST(ScanShapes, PointsOfASphereAreUniform) {
-  // 1000 random points would vary by sqrt(1000 / 8 * 7 / 8) = 10 per octant; even ones vary less.
-  const Scan& scan = commonScan(Shape::Sphere);
-  std::array<int, 8> octants{};
-  for (const Point& p : toPoints(scan.points))
-    ++octants[(p[0] > 0.0 ? 1u : 0u) + (p[1] > 0.0 ? 2u : 0u) + (p[2] > 0.0 ? 4u : 0u)];
-  for (const int count : octants)
-    EXPECT_NEAR(count, 125, 10);
-}
-
 TEST_P(EveryShape, IsAboutOneUnitLong) {
   const Positions& points = commonMesh(GetParam().shape).vertices;
   const Vector3d low = points.rowwise().minCoeff();
@@ -347,31 +337,6 @@ TEST_P(EveryShape, ReferenceMeshHasTheTopologyOfTheShape) {
   }
 }
 
-TEST(ScanShapes, OpeningsAreWhereTheyWereCut) {
-  // The rims of the rabbit's lie on the balls that they were cut with, those of the room on boxes.
-  const std::array<std::pair<Vector3d, double>, 4> balls = {{{{-0.10, 0.0, -0.35}, 0.13},
-                                                             {{-0.12, 0.0, 0.11}, 0.12},
-                                                             {{-0.10, 0.215, -0.12}, 0.12},
-                                                             {{-0.10, -0.215, -0.12}, 0.115}}};
-  const TruthMesh& holed = commonMesh(Shape::Holed);
-  std::set<std::size_t> seen;
-  for (const std::vector<Index>& loop : boundaryLoops(holed)) {
-    const auto nearest =
-        std::min_element(balls.begin(), balls.end(), [&](const auto& a, const auto& b) {
-          const Vector3d p = holed.vertices.col(loop.front());
-          return (p - a.first).norm() - a.second < (p - b.first).norm() - b.second;
-        });
-    seen.insert(static_cast<std::size_t>(nearest - balls.begin()));
-    for (const Index v : loop)
-      EXPECT_NEAR((Vector3d(holed.vertices.col(v)) - nearest->first).norm(), nearest->second, 1e-6);
-  }
-  EXPECT_EQ(seen.size(), 4u);
-  for (Eigen::Index i = 0; i < commonScan(Shape::Holed).points.cols(); ++i)
-    for (const auto& [center, radius] : balls)
-      // The chords of the rim are within its ball by less than the mesh's step squared.
-      EXPECT_GT((Vector3d(commonScan(Shape::Holed).points.col(i)) - center).norm(), radius - 2e-3);
-}
-
 TEST(ScanShapes, ReferenceMeshHasAboutTheTrianglesAskedFor) {
   const TruthMesh mesh = referenceMesh(Shape::Dumbbell, 30000);
   // The number of cubes that a lattice cuts depends on where it lies.
@@ -425,52 +390,6 @@ TEST(ScanShapes, NoiseIsUniformAlongTheNormalRelativeToThe25NearestNeighbors) {
   // standard deviations for 1000 points.
   EXPECT_NEAR(sum / 1000.0, 0.0, 5.0 * std::sqrt(1.0 / 3.0 / 1000.0));
   EXPECT_NEAR(sum_of_squares / 1000.0, 1.0 / 3.0, 5.0 * std::sqrt(4.0 / 45.0 / 1000.0));
-}
-
-TEST(ScanShapes, NeighborsDoNotJumpAcrossGaps) {
-  // Two points that face each other across empty space (fingers, legs, coils, the folded tail) are
-  // further apart than the 25 nearest neighbours, which lie within sqrt(26 / pi) = 2.9 spacings.
-  constexpr std::size_t n = 5000;
-  for (const Shape shape : {Shape::Bird, Shape::Hand, Shape::Animal, Shape::Snake}) {
-    const Scan scan = scanOf(shape, n);
-    const std::vector<Point> points = toPoints(scan.points);
-    const std::vector<Point> normals = toPoints(scan.normals);
-    const TruthMesh& mesh = commonMesh(shape);
-    double area = 0.0;
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-      const Vector3d a = mesh.vertices.col(mesh.triangles(0, t));
-      const Vector3d b = mesh.vertices.col(mesh.triangles(1, t));
-      const Vector3d c = mesh.vertices.col(mesh.triangles(2, t));
-      area += 0.5 * (b - a).cross(c - a).norm();
-    }
-    const double reach_squared = 26.0 / 3.14159265358979323846 * area / n;
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t i, std::size_t j) { return points[i][0] < points[j][0]; });
-    std::size_t facing_pairs = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = i + 1; j < n; ++j) {
-        const Point& p = points[order[i]];
-        const Point& q = points[order[j]];
-        if ((q[0] - p[0]) * (q[0] - p[0]) > reach_squared)
-          break;
-        const double squared = squaredDistance(p, q);
-        if (squared > reach_squared)
-          continue;
-        const double bound = 0.7 * std::sqrt(squared);
-        double from_p = 0.0;
-        double from_q = 0.0;
-        double cosine = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          from_p += (q[k] - p[k]) * normals[order[i]][k];
-          from_q += (p[k] - q[k]) * normals[order[j]][k];
-          cosine += normals[order[i]][k] * normals[order[j]][k];
-        }
-        facing_pairs += cosine < -0.7 && from_p > bound && from_q > bound ? 1 : 0;
-      }
-    EXPECT_EQ(facing_pairs, 0u) << "shape " << static_cast<int>(shape);
-  }
 }
 
 }  // namespace spherical_param::tools

@@ -46,13 +46,6 @@ void redirect(const std::string& path, int descriptor) {
   if (chdir(options.directory.c_str()) != 0) {
     _exit(126);
   }
-  if (!options.standard_input.empty()) {
-    const int file = open(options.standard_input.c_str(), O_RDONLY);
-    if (file < 0 || dup2(file, STDIN_FILENO) < 0) {
-      _exit(126);
-    }
-    close(file);
-  }
   if (options.unprivileged && geteuid() == 0 && setuid(nobody) != 0) {
     _exit(126);
   }
@@ -152,9 +145,6 @@ RunResult run(const std::string& program, const std::vector<std::string>& argume
   }
 
   RunResult result;
-  if (options.meanwhile) {
-    options.meanwhile(child);
-  }
   if (options.terminal) {
     result.output = readTerminal(terminal);
     close(terminal);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -36,8 +35,6 @@ struct RunOptions {
   bool terminal = false;                ///< the standard output is a terminal
   int signal_when_temporary = 0;        ///< signal to send as soon as a temporary file is there
   unsigned time_limit = 60;             ///< [s]
-  std::string standard_input;           ///< file for the standard input; empty: that of the test
-  std::function<void(int)> meanwhile;   ///< given the process id while the tool runs
 };
 
 /// What came of it.

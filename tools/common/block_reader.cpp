@@ -62,15 +62,6 @@ const char* BlockReader::take(std::size_t count) {
   return bytes;
 }
 
-std::string_view BlockReader::takeSome() {
-  if (begin_ == buffer_.size()) {
-    refill();
-  }
-  const std::string_view bytes = std::string_view(buffer_).substr(begin_);
-  begin_ = buffer_.size();
-  return bytes;
-}
-
 bool BlockReader::skip(std::uint64_t count) {
   while (count > 0) {
     const std::uint64_t step = std::min<std::uint64_t>(count, block_size);
@@ -80,10 +71,6 @@ bool BlockReader::skip(std::uint64_t count) {
     count -= step;
   }
   return true;
-}
-
-std::uint64_t BlockReader::left() const {
-  return file_size_ - std::min(file_size_, position_) + (buffer_.size() - begin_);
 }
 
 bool BlockReader::nextLine(std::string_view& line) {

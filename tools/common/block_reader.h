@@ -22,12 +22,8 @@ public:
   /// The next bytes, until the next call of anything; null if there are not so many.
   /// \throw Failure, as everything below.
   const char* take(std::size_t count);
-  /// Some of the next bytes, as many as are at hand; empty at the end.
-  std::string_view takeSome();
   /// Leaves out bytes. \return false if there are not so many.
   bool skip(std::uint64_t count);
-  /// Bytes that are not taken yet, by the size that the file had when it was opened.
-  std::uint64_t left() const;
   /// The next line without its end, until the next call of anything. \return false if there is
   /// none.
   bool nextLine(std::string_view& line);

@@ -5,7 +5,6 @@
 #include "common/input_file.h"
 #include "common/record_reader.h"
 #include "common/text_clouds.h"
-#include "common/vtk_clouds.h"
 
 #include <cstdint>
 
@@ -21,8 +20,6 @@ PointData readCloud(const std::string& path, const FileProgress& progress) {
     return readRecords(path, checkPlyHeader(path, file_size), progress);
   case FileFormat::Obj:
     return readObj(path, progress);
-  case FileFormat::Vtk:
-    return readVtk(path, progress);
   default:
     return readXyz(path, progress);
   }

@@ -7,12 +7,12 @@
 
 namespace spherical_param::tools {
 
-/// Reads the points of a .pcd, .ply, .obj, .vtk, .xyz or .txt file with their colours and normals.
+/// Reads the points of a .pcd, .ply, .obj, .xyz or .txt file with their colours and normals.
 /// Coordinates that are not finite are kept. Besides the points, a block of the file is in memory,
 /// but for compressed .pcd, whose fields have to be unpacked as a whole.
 ///
-/// Neither PCL nor VTK reads any of it: their readers believe what a file tells, so that a broken
-/// one may end the program without a word. Ours are fuzzed (test/torture/readers).
+/// PCL's readers are not used: they trust the file, so that a broken one may end the program
+/// without a message. Ours are fuzzed (test/torture/readers).
 ///
 /// \param progress told of the share that is read; may be empty. \throw UsageError, Failure.
 PointData readCloud(const std::string& path, const FileProgress& progress = {});

@@ -85,16 +85,11 @@ void reconstruct(const std::string& path, const ReconstructionSettings& settings
   reconstruction.setProgressCallback({});  // what it refers to ends here
   const std::string& message = reconstruction.getErrorMessage();
   if (!message.empty()) {
-    // The messages of the library are "cause; remedy", the remedy optional.
-    const std::size_t remedy = message.find("; ");
-    const std::string cause = message.substr(0, remedy);
-    throw Failure("cannot mesh " + inQuotes(path) + ": " + cause,
-                  remedy == std::string::npos ? "check that the file holds the cloud you mean"
-                                              : message.substr(remedy + 2));
+    throw libraryFailure("cannot mesh " + inQuotes(path), message,
+                         "check that the file holds the cloud you mean");
   }
   if (reconstruction.getResult().triangles.cols() == 0) {
-    throw Failure("cannot mesh " + inQuotes(path) + ": there is no result",
-                  "this should not happen: please report it");
+    throw Failure("cannot mesh " + inQuotes(path) + ": there is no result", kReportIt);
   }
 }
 

@@ -95,6 +95,18 @@ std::string CommandLine::value(const std::string& option, const std::string& fal
   return found == values_.end() ? fallback : found->second;
 }
 
+std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_line,
+                                                   const std::string& tool) {
+  const std::vector<std::string>& files = command_line.others();
+  if (files.size() != 2) {
+    throw UsageError(files.empty()       ? "there is no input file"
+                     : files.size() == 1 ? "there is no output file"
+                                         : "there is one file too many: " + inQuotes(files[2]),
+                     "run '" + tool + " input output [options]', -h shows the options");
+  }
+  return {files[0], files[1]};
+}
+
 std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables) {
   std::vector<OptionInfo> all;
   for (const std::vector<OptionInfo>& table : tables) {

@@ -40,6 +40,11 @@ private:
   std::vector<std::string> others_;
 };
 
+/// The words of a command line that has an input and an output, and no other word.
+/// \throw UsageError
+std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_line,
+                                                   const std::string& tool);
+
 /// Tables of options one after the other.
 std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables);
 

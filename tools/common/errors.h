@@ -1,5 +1,8 @@
 #pragma once
 
+#include "spherical_param/errors.h"
+
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -36,5 +39,35 @@ public:
   UsageError(const std::string& cause, std::string remedy)
       : ToolError(ExitCode::Usage, cause, std::move(remedy)) {}
 };
+
+/// A message of the library, "function: cause; remedy" or "cause; remedy", for the user of a tool,
+/// who does not know the functions.
+///
+/// \param task   what could not be done, e.g. "cannot mesh 'file'".
+/// \param remedy used where the message has none.
+inline Failure libraryFailure(const std::string& task, const std::string& message,
+                              const std::string& remedy) {
+  const std::size_t name = message.find(": ");
+  // The name of a function is one word.
+  const std::string text = name < message.find(' ') ? message.substr(name + 2) : message;
+  const std::size_t end = text.find("; ");
+  return {task + ": " + text.substr(0, end),
+          end == std::string::npos ? remedy : text.substr(end + 2)};
+}
+
+/// Does some work with the library. \throw Failure if the library refuses its input or fails.
+template <typename Work>
+void runLibrary(const std::string& task, const std::string& remedy, const Work& work) {
+  try {
+    work();
+  } catch (const InvalidInput& error) {
+    throw libraryFailure(task, error.what(), remedy);
+  } catch (const ComputeError& error) {
+    throw libraryFailure(task, error.what(), remedy);
+  }
+}
+
+/// The remedy of failures that should not occur.
+inline constexpr const char* kReportIt = "this should not happen: please report it";
 
 }  // namespace spherical_param::tools

@@ -22,7 +22,7 @@ constexpr std::array<FormatInfo, 8> format_table = {{
     {".pcd", FileFormat::Pcd, true, true, false},
     {".ply", FileFormat::Ply, true, true, true},
     {".obj", FileFormat::Obj, true, true, true},
-    {".vtk", FileFormat::Vtk, true, true, true},
+    {".vtk", FileFormat::Vtk, false, true, true},
     {".xyz", FileFormat::Xyz, true, true, false},
     {".txt", FileFormat::Xyz, true, true, false},
     {".stl", FileFormat::Stl, false, false, true},
@@ -65,15 +65,6 @@ std::optional<FileFormat> formatOf(const std::string& path) {
   return std::nullopt;
 }
 
-bool isUsable(FileFormat format, FileUse use) {
-  for (const FormatInfo& info : format_table) {
-    if (info.format == format) {
-      return isUsable(info, use);
-    }
-  }
-  return false;
-}
-
 std::string extensionsFor(FileUse use) {
   std::string text;
   for (const FormatInfo& info : format_table) {
@@ -84,13 +75,17 @@ std::string extensionsFor(FileUse use) {
   return text;
 }
 
-FileFormat requireFormat(const std::string& path, FileUse use) {
+FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others) {
   const std::optional<FileFormat> format = formatOf(path);
-  if (!format || !isUsable(*format, use)) {
-    throw UsageError(inQuotes(path) + " has an extension that no " + std::string(nameOf(use)),
-                     "use one of " + extensionsFor(use));
+  for (const FormatInfo& info : format_table) {
+    if (format == info.format && isUsable(info, use)) {
+      return info.format;
+    }
   }
-  return *format;
+  throw UsageError(inQuotes(path) + " has an extension that no " + std::string(nameOf(use)),
+                   format == FileFormat::Vtk
+                       ? "convert it to .pcd with PCL's tool: pcl_vtk2pcd in.vtk out.pcd"
+                       : "use one of " + extensionsFor(use) + others);
 }
 
 }  // namespace spherical_param::tools

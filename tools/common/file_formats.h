@@ -14,14 +14,13 @@ enum class FileUse { ReadCloud, WriteCloud, WriteMesh };
 /// The format that the extension stands for, in upper or lower case; none if it is unknown.
 std::optional<FileFormat> formatOf(const std::string& path);
 
-/// Tells whether a format can be used that way.
-bool isUsable(FileFormat format, FileUse use);
-
 /// The extensions that can be used that way, e.g. ".ply .obj".
 std::string extensionsFor(FileUse use);
 
 /// The format of a file that is wanted for a use.
+///
+/// \param others further extensions that the tool takes, e.g. " .tif".
 /// \throw UsageError if the extension is unknown or its format cannot be used that way.
-FileFormat requireFormat(const std::string& path, FileUse use);
+FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others = "");
 
 }  // namespace spherical_param::tools

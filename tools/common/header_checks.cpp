@@ -64,8 +64,7 @@ void addField(RecordField field, RecordLayout& layout) {
   layout.fields.push_back(std::move(field));
 }
 
-}  // namespace
-
+/// A number in a header. \throw Failure if it is none, or more than points may be.
 std::int64_t requireCount(const std::string& path, std::string_view word, const std::string& what) {
   const std::optional<std::int64_t> count = toInteger(word);
   if (!count || *count < 0 || *count > count_limit) {
@@ -74,12 +73,15 @@ std::int64_t requireCount(const std::string& path, std::string_view word, const 
   return *count;
 }
 
+/// \throw Failure if there are fewer bytes than a header needs.
 void requireBytes(const std::string& path, double needed, std::uint64_t available) {
   // Products of counts go through double: they overflow any integer in a broken header.
   if (needed > static_cast<double>(available)) {
     failContent(path, "it is shorter than its header says");
   }
 }
+
+}  // namespace
 
 RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   const std::string beginning = readBeginning(path, header_limit);
@@ -249,40 +251,6 @@ PlyProperty parsePlyProperty(const std::string& path, const std::vector<std::str
   return property;
 }
 
-/// PCL's reader takes the three colours for one packed number: files whose colours it and others
-/// would tell apart in different ways are refused.
-void checkPlyColors(const std::string& path, const PlyElement& vertex) {
-  for (const std::string prefix : {"", "diffuse_"}) {
-    std::array<std::size_t, 3> places{};
-    std::size_t present = 0;
-    for (std::size_t p = 0; p < vertex.properties.size(); ++p) {
-      const PlyProperty& property = vertex.properties[p];
-      const bool byte = property.type == "uchar" || property.type == "uint8";
-      const std::array<std::string, 3> names = {prefix + "red", prefix + "green", prefix + "blue"};
-      for (std::size_t c = 0; c < names.size(); ++c) {
-        if (property.name == names[c] && byte) {
-          places[c] = p;
-          ++present;
-        }
-      }
-    }
-    if (present != 0 &&
-        (present != 3 || places[1] != places[0] + 1 || places[2] != places[1] + 1)) {
-      failReading(path, "its colours are not red, green and blue, one after the other",
-                  "save it with all three colours in that order, or without colours");
-    }
-  }
-  bool colored = false;
-  for (const PlyProperty& property : vertex.properties) {
-    const bool byte = property.type == "uchar" || property.type == "uint8";
-    colored = colored || (byte && (property.name == "red" || property.name == "diffuse_red"));
-    if (property.name == "alpha" && byte && !colored) {
-      failReading(path, "it has alpha before or without its colours",
-                  "save it with red, green, blue and alpha in that order");
-    }
-  }
-}
-
 void checkPlyVertex(const std::string& path, const PlyElement& vertex) {
   std::map<std::string, int> found;
   for (const PlyProperty& property : vertex.properties) {
@@ -304,12 +272,7 @@ void checkPlyVertex(const std::string& path, const PlyElement& vertex) {
   if (vertex.count == 0) {
     failContent(path, "it has no points");
   }
-  checkPlyColors(path, vertex);
 }
-
-}  // namespace
-
-namespace {
 
 SkippedElement toSkipped(const PlyElement& element) {
   SkippedElement skipped;
@@ -324,16 +287,14 @@ SkippedElement toSkipped(const PlyElement& element) {
 
 RecordLayout toLayout(const std::vector<PlyElement>& elements) {
   RecordLayout layout;
-  bool behind = false;
   for (const PlyElement& element : elements) {
     if (element.name != "vertex") {
-      if (element.properties.empty()) {
-        continue;  // nothing to go through, however many there are
+      // Without properties there is nothing to skip, however many there are.
+      if (!element.properties.empty()) {
+        layout.before.push_back(toSkipped(element));
       }
-      (behind ? layout.after : layout.before).push_back(toSkipped(element));
       continue;
     }
-    behind = true;
     layout.points = static_cast<std::uint64_t>(element.count);
     for (const PlyProperty& property : element.properties) {
       RecordField field;
@@ -344,6 +305,7 @@ RecordLayout toLayout(const std::vector<PlyElement>& elements) {
       field.size = static_cast<std::size_t>(plyTypeSize(property.type));
       addField(field, layout);
     }
+    break;  // what follows the points is not read
   }
   return layout;
 }
@@ -413,47 +375,6 @@ RecordLayout checkPlyHeader(const std::string& path, std::uint64_t file_size) {
   layout.body = lines.position();
   layout.body_line = lines.number();
   return layout;
-}
-
-namespace {
-
-/// \return whether its data are binary.
-bool checkVtkStorage(const std::string& path, Lines& lines, const std::string& beginning) {
-  if (beginning.rfind("# vtk DataFile Version", 0) != 0 || !lines.next() || !lines.next() ||
-      !lines.next() || lines.words().size() != 1) {
-    failContent(path, "it does not begin as a legacy VTK file does");
-  }
-  const std::string storage = lowerCase(lines.words()[0]);
-  if (storage != "ascii" && storage != "binary") {
-    failContent(path, "its data is stored as " + inQuotes(storage));
-  }
-  return storage == "binary";
-}
-
-}  // namespace
-
-void checkVtkHeader(const std::string& path) {
-  const std::string beginning = readBeginning(path, header_limit);
-  Lines lines(beginning);
-  checkVtkStorage(path, lines, beginning);
-}
-
-std::uint64_t mostVtkPoints(const std::string& path, std::uint64_t file_size) {
-  const std::string beginning = readBeginning(path, header_limit);
-  Lines lines(beginning);
-  const bool is_binary = checkVtkStorage(path, lines, beginning);
-  // Of three floats, or of three digits that are separated.
-  const std::uint64_t most = bytesBehind(lines, file_size) / (is_binary ? 12 : 5);
-  while (lines.next()) {
-    const auto& words = lines.words();
-    if (words.size() >= 3 && lowerCase(words[0]) == "points") {
-      const std::optional<std::int64_t> points = toInteger(words[1]);
-      if (points && *points > 0) {
-        return std::min(most, static_cast<std::uint64_t>(*points));
-      }
-    }
-  }
-  return most;
 }
 
 }  // namespace spherical_param::tools

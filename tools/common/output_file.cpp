@@ -1,22 +1,16 @@
 #include "common/output_file.h"
 
 #include "common/errors.h"
-#include "common/numbers.h"
 #include "common/text.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -79,57 +73,7 @@ bool isRegularOrAbsent(const std::string& target) {
   throw Failure("cannot write " + inQuotes(path) + ": " + reason, remedy);
 }
 
-/// Beginning of the names of all temporary files of this machine.
-std::string temporaryPrefix() {
-  // Directories may be shared by machines, whose process ids are not.
-  std::array<char, 64> host{};
-  gethostname(host.data(), host.size() - 1);
-  return ".spherical_param." + std::string(host.data()) + "-";
-}
-
 }  // namespace
-
-std::string temporaryPrefix(std::int64_t process) {
-  return temporaryPrefix() + std::to_string(process) + ".";
-}
-
-void removeTemporaryFilesOf(std::int64_t process, const std::string& path) {
-  const std::string directory = directoryOf(resolveLinks(path));
-  const std::string prefix = temporaryPrefix(process);
-  std::error_code error;
-  fs::directory_iterator entry(directory, error);
-  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    const fs::path found = entry->path();
-    if (found.filename().string().rfind(prefix, 0) == 0) {
-      unlink(found.c_str());
-    }
-  }
-}
-
-void removeAbandonedFiles(const std::string& directory) {
-  // Containers may share a name and a directory, and not know of each other's programs; but what
-  // is being written changes.
-  constexpr auto untouched = std::chrono::minutes(10);
-  const std::string prefix = temporaryPrefix();
-  std::error_code error;
-  fs::directory_iterator entry(directory, error);
-  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.rfind(prefix, 0) != 0) {
-      continue;
-    }
-    const std::string number =
-        name.substr(prefix.size(), name.find('.', prefix.size()) - prefix.size());
-    const std::optional<std::int64_t> process = toInteger(number);
-    std::error_code unknown;
-    const fs::file_time_type changed = fs::last_write_time(entry->path(), unknown);
-    if (process && *process > 0 && *process <= std::numeric_limits<pid_t>::max() && !unknown &&
-        fs::file_time_type::clock::now() - changed > untouched &&
-        kill(static_cast<pid_t>(*process), 0) != 0 && errno == ESRCH) {
-      unlink(entry->path().c_str());
-    }
-  }
-}
 
 void checkOutputPath(const std::string& path) {
   const std::string another_place = "choose a place that exists and that you may write to";
@@ -176,10 +120,8 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(resolveLi
     }
     return;
   }
-  // What a run that was killed has left here goes with a later one.
-  removeAbandonedFiles(directoryOf(target_));
   // The name does not grow with the file's, which may be as long as a name can be.
-  std::string pattern = directoryOf(target_) + "/" + temporaryPrefix(getpid()) + "XXXXXX";
+  std::string pattern = directoryOf(target_) + "/.spherical_param.XXXXXX";
   // All memory before there is a file, which would stay if there were none.
   std::set<std::string> made = {pattern};
   auto node = made.extract(made.begin());

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -49,17 +48,6 @@ private:
   std::size_t written_ = 0;
   int descriptor_ = -1;
 };
-
-/// Beginning of the names of temporary files of a program.
-std::string temporaryPrefix(std::int64_t process);
-
-/// Removes what a program of this machine that has ended left where it was to make a file, killed
-/// before it could do so itself.
-void removeTemporaryFilesOf(std::int64_t process, const std::string& path);
-
-/// Removes from a directory what programs of this machine left there that were killed, themselves
-/// and those that they were started by, more than ten minutes ago.
-void removeAbandonedFiles(const std::string& directory);
 
 /// Removes the temporary files of all OutputFiles and calls a function, while no other thread can
 /// make, rename or remove one.

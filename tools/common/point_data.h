@@ -1,5 +1,7 @@
 #pragma once
 
+#include "spherical_param/types.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +16,17 @@ using Color = std::array<std::uint8_t, 4>;  ///< red, green, blue, alpha in 0 ..
 inline Point toPoint(const std::array<double, 3>& values) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]),
           static_cast<float>(values[2])};
+}
+
+/// 3 x n, in single precision.
+inline std::vector<Point> toPoints(const Positions& positions) {
+  std::vector<Point> points;
+  points.reserve(static_cast<std::size_t>(positions.cols()));
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    const Eigen::Vector3f point = positions.col(i).cast<float>();
+    points.push_back({point.x(), point.y(), point.z()});
+  }
+  return points;
 }
 
 /// Points and what belongs to each of them.

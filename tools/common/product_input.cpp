@@ -1,12 +1,10 @@
 #include "common/product_input.h"
 
-#include "common/library_failure.h"
+#include "common/errors.h"
 #include "common/numbers.h"
 #include "common/text.h"
-#include "spherical_param/errors.h"
 
 #include <cstddef>
-#include <exception>
 #include <string>
 
 namespace spherical_param::tools {

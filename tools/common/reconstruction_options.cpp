@@ -263,8 +263,6 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   return json;
 }
 
-const std::string files_are_made = "the files were made all the same";
-
 void requireNoWarnings(
     const ReconstructionSettings& settings,
     const std::vector<std::pair<std::string, std::vector<std::string>>>& warnings) {
@@ -282,7 +280,8 @@ void requireNoWarnings(
     }
   }
   if (settings.strict && !cause.empty()) {
-    throw Failure(cause, files_are_made + ": look at them, and leave -strict out if they will do");
+    throw Failure(cause, "the files were made all the same: look at them, and leave -strict out if "
+                         "they will do");
   }
 }
 

@@ -41,10 +41,6 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
 /// What is in force; what has no say with the chosen methods is null.
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings);
 
-/// How the remedy begins that requireNoWarnings() gives: unlike other failures, this one comes
-/// after all files were made.
-extern const std::string files_are_made;
-
 /// With -strict, ends the tool with exit code 1 if there is a warning. To be called last: whoever
 /// asks for a failure still wants to look at what was made. \throw Failure
 ///

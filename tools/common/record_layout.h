@@ -40,8 +40,7 @@ struct RecordLayout {
   std::size_t columns = 0;        ///< numbers on a line of text
   std::uint64_t packed_size = 0;  ///< bytes of the file, if they are packed
   std::vector<RecordField> fields;
-  std::vector<SkippedElement> before;  ///< the points
-  std::vector<SkippedElement> after;   ///< the points
+  std::vector<SkippedElement> before;  ///< the points; what follows them is not read
 };
 
 }  // namespace spherical_param::tools

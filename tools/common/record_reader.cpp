@@ -168,11 +168,7 @@ public:
     if (isPacked()) {
       unpack();
     }
-    PointData data = readPoints();
-    for (const SkippedElement& element : layout_.after) {
-      isText() ? skipWords(element) : skipBytes(element);
-    }
-    return data;
+    return readPoints();
   }
 
 private:
@@ -284,38 +280,6 @@ private:
     }
   }
 
-  /// Behind the points, nobody cares which line a word is on.
-  void skipWords(const SkippedElement& element) {
-    const auto next_word = [this] {
-      if (next_word_ >= words_.size()) {
-        next_word_ = 0;
-        if (!nextWords()) {
-          failBroken(path_);
-        }
-      }
-      return words_[next_word_++];
-    };
-    if (!behind_points_) {
-      words_.clear();
-      behind_points_ = true;
-    }
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (const SkippedElement::Property& property : element.properties) {
-        const std::string_view word = next_word();
-        if (property.length_size == 0) {
-          continue;
-        }
-        const std::optional<std::int64_t> length = toInteger(word);
-        if (!length || *length < 0) {
-          failBroken(path_);
-        }
-        for (std::int64_t k = 0; k < *length; ++k) {
-          next_word();
-        }
-      }
-    }
-  }
-
   void skipBytes(const SkippedElement& element) {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (const SkippedElement::Property& property : element.properties) {
@@ -344,8 +308,6 @@ private:
   BlockReader reader_;
   std::size_t line_number_;
   std::vector<std::string_view> words_;
-  std::size_t next_word_ = 0;
-  bool behind_points_ = false;
   std::string unpacked_;  ///< all values of a field, then those of the next
   std::string gathered_;  ///< those of one point
   std::size_t next_record_ = 0;

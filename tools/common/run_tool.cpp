@@ -17,40 +17,24 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <mutex>
 #include <new>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 namespace spherical_param::tools {
 namespace {
 
-/// Who is told of signals.
-struct Watch {
-  std::mutex mutex;
-  std::function<void(int)> told;
-};
-
-/// Never destroyed: the thread that waits for signals may need it until the very end.
-Watch& watch() {
-  static Watch& instance = *new Watch;
-  return instance;
-}
-
-/// Waits for signals.
-void waitForSignals(const sigset_t& signals) {
-  for (;;) {
-    int signal_number = 0;
-    if (sigwait(&signals, &signal_number) != 0) {
-      return;
-    }
-    const std::lock_guard<std::mutex> lock(watch().mutex);
-    if (!watch().told) {
-      endBySignal(signal_number);
-    }
-    watch().told(signal_number);
-  }
+/// Ends the tool as the signal would have, so that the caller sees what happened.
+[[noreturn]] void endBySignal(int signal_number) {
+  removeTemporaryFiles([signal_number] {
+    std::signal(signal_number, SIG_DFL);
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, signal_number);
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    std::raise(signal_number);
+  });
+  std::abort();
 }
 
 /// Leaves the signals that end a program to a thread of their own: a handler could interrupt the
@@ -67,7 +51,12 @@ void handleSignals() {
     }
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::thread([signals] { waitForSignals(signals); }).detach();
+  std::thread([signals] {
+    int signal_number = 0;
+    if (sigwait(&signals, &signal_number) == 0) {
+      endBySignal(signal_number);
+    }
+  }).detach();
   // A closed pipe or a size limit is an error of the write like any other.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -119,28 +108,6 @@ void occupyStandardStreams() {
 
 }  // namespace
 
-SignalWatch::SignalWatch(std::function<void(int)> told) {
-  const std::lock_guard<std::mutex> lock(watch().mutex);
-  watch().told = std::move(told);
-}
-
-SignalWatch::~SignalWatch() {
-  const std::lock_guard<std::mutex> lock(watch().mutex);
-  watch().told = nullptr;
-}
-
-void endBySignal(int signal_number) {
-  removeTemporaryFiles([signal_number] {
-    std::signal(signal_number, SIG_DFL);
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, signal_number);
-    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-    std::raise(signal_number);
-  });
-  std::abort();
-}
-
 int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(const std::vector<std::string>&)>& body) {
   occupyStandardStreams();
@@ -170,8 +137,7 @@ int runTool(const std::string& tool, int argc, char** argv,
           report(tool, Failure("the system refuses a resource: " + std::string(error.what()),
                                "allow more memory or processes")));
     } catch (const std::exception& error) {
-      return finished(
-          report(tool, Failure(error.what(), "this should not happen: please report it")));
+      return finished(report(tool, Failure(error.what(), kReportIt)));
     }
   } catch (const std::bad_alloc&) {
     // Not even enough for the message.

@@ -15,19 +15,6 @@ namespace spherical_param::tools {
 int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(const std::vector<std::string>&)>& body);
 
-/// While it lives, a signal that would end the tool is told to a function instead, which runs in a
-/// thread of its own. There is one at most.
-class SignalWatch {
-public:
-  explicit SignalWatch(std::function<void(int)> told);
-  ~SignalWatch();
-  SignalWatch(const SignalWatch&) = delete;
-  SignalWatch& operator=(const SignalWatch&) = delete;
-};
-
-/// Ends the tool as the signal would have, so that the caller sees what happened.
-[[noreturn]] void endBySignal(int signal_number);
-
 /// Prints the help or the version if that is what the user wants. \return whether it was.
 bool answerHelpOrVersion(const CommandLine& command_line, const std::string& tool,
                          const std::string& help);

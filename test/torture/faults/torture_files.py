@@ -3,7 +3,7 @@
 
     torture_files.py [--tools DIRECTORY] [--quick] [--seed N] [PART...]
 
-Parts: paths, full, kill, signals, pipes, batch, memory; all of them by default. Whatever happens, an
+Parts: paths, full, kill, signals, pipes, memory; all of them by default. Whatever happens, an
 old file must be whole, or the new one; a failure must be told by a line of cause and one of remedy;
 and nothing else may be left.
 """
@@ -550,16 +550,12 @@ class Torture:
                 self.check(job, directory, ended, f"killed ({i})", killed=True)
                 temporary = [file for file in os.listdir(directory) if file.startswith(TEMPORARY)]
                 left += len(temporary)
-                # The next run works, and what is left does not stay for ever.
+                # The next run works.
                 if temporary or i % 8 == 0:
-                    for file in temporary:
-                        long_ago = time.time() - 3600.0
-                        os.utime(os.path.join(directory, file), (long_ago, long_ago))
                     ended = self.run(job, directory)
-                    self.check(job, directory, ended, f"after it was killed ({i})")
+                    self.check(job, directory, ended, f"after it was killed ({i})", killed=True)
                 self.remove(directory)
-            print(f"{job.name}: killed {times} times, {left} temporary files were left and removed "
-                  "by the next run")
+            print(f"{job.name}: killed {times} times, {left} temporary files were left")
 
     @staticmethod
     def await_temporary(process, directory):
@@ -680,100 +676,6 @@ class Torture:
         self.count.injected += 1
         self.remove(directory)
 
-    def batch(self):
-        """Many inputs: the parent is told to end, or killed."""
-        names = [self.cloud(f"batch{i}.xyz", "hand", 3000 + 500 * i) for i in range(6)]
-        outputs = [f"mesh_batch{i}.ply" for i in range(6)]
-        job = Job("batch", "reconstruction",
-                  names + ["-output", "mesh_{name}.ply", "-jobs", "2", "-threads", "1"], names,
-                  outputs)
-        self.learn(job)
-        job.words += ["-jsonl", "records.jsonl", "-resume"]
-        for i in range(6 if self.quick else 50):
-            which = (signal.SIGINT, signal.SIGKILL, signal.SIGTERM, signal.SIGKILL)[i % 4]
-            directory = self.directory(job)
-            process = self.start(job, directory)
-            time.sleep(self.random.uniform(0.05, 1.0) * job.seconds)
-            children = self.children_of(process.pid)
-            process.send_signal(which)
-            begin = time.monotonic()
-            ended = self.wait(process)
-            while time.monotonic() - begin < 5.0 and any(map(self.is_running, children)):
-                time.sleep(0.005)
-            seconds = time.monotonic() - begin
-            self.count.tried += 1
-            self.count.injected += 1
-            where = f"batch, {which}: {ended.exit_code} {ended.signal}"
-            if any(map(self.is_running, children)):
-                self.count.find(f"{where}: leaves jobs running")
-            if seconds > END_LIMIT:
-                print(f"{where}: all ended {seconds:.3f} s later")
-            if ended.exit_code is None and ended.signal != which:
-                self.count.find(f"{where}: not ended by the signal")
-            for name in outputs:
-                content = self.get(os.path.join(directory, name))
-                if content != OLD and not self.is_right(job, name, content):
-                    self.count.lose(f"{where}: {name} has {content and len(content)} bytes")
-            left = [name for name in os.listdir(directory) if name.startswith(TEMPORARY)]
-            if left:
-                self.count.find(f"{where}: leaves {left}")
-            # The same line again does the rest.
-            if i % 5 == 0:
-                ended = self.run(job, directory)
-                wrong = [name for name in outputs
-                         if not self.is_right(job, name, self.get(os.path.join(directory, name)))]
-                if ended.exit_code != 0 or wrong:
-                    self.count.find(f"{where}: resumed: {ended}, wrong: {wrong}")
-            self.remove(directory)
-        self.full_batch(job)
-
-    def full_batch(self, job):
-        if not self.mounts:
-            return
-        place = os.path.join(self.work, "disk")
-        total = sum(len(job.right[name]) for name in job.outputs) + 100000
-        points = 3 if self.quick else 20
-        for i in range(points):
-            free = int(total * 1.1 * i / (points - 1))
-            self.mount(place, "size=16m")
-            directory = self.directory(job, old=False, inside=place)
-            room = os.statvfs(place)
-            with open(os.path.join(place, "filler"), "wb") as filler:
-                filler.write(bytes(max(0, room.f_bavail * room.f_bsize - free)))
-            ended = self.run(job, directory)
-            self.count.tried += 1
-            self.count.injected += 1
-            where = f"batch, a disk with {free} bytes: {ended}"
-            if ended.exit_code not in (0, 1):
-                self.count.find(where)
-            there = 0
-            for name in job.outputs:
-                content = self.get(os.path.join(directory, name))
-                there += content is not None
-                if content is not None and content != job.right[name]:
-                    self.count.lose(f"{where}: {name} has {len(content)} bytes")
-            if ended.exit_code == 0 and there < len(job.outputs):
-                self.count.find(where)
-            if any(name.startswith(TEMPORARY) for name in os.listdir(directory)):
-                self.count.find(f"{where}: leaves something")
-            self.unmount(place)
-
-    @staticmethod
-    def children_of(process):
-        try:
-            with open(f"/proc/{process}/task/{process}/children", encoding="ascii") as file:
-                return [int(word) for word in file.read().split()]
-        except OSError:
-            return []
-
-    @staticmethod
-    def is_running(process):
-        try:
-            with open(f"/proc/{process}/stat", encoding="ascii", errors="replace") as file:
-                return file.read().rpartition(")")[2].split()[0] != "Z"
-        except OSError:
-            return False
-
     def memory(self):
         """Less and less address space."""
         values = 5 if self.quick else 30
@@ -824,7 +726,6 @@ def main():
         "kill": "killed at random times, with old files there",
         "signals": "SIGINT, SIGTERM, SIGHUP at random times: ended within 0.5 s",
         "pipes": "closed streams and broken pipes",
-        "batch": "batches: parents killed or told to end, full disks",
         "memory": "tools with less and less address space",
     }
     bad = 0
