@@ -10,6 +10,8 @@
 #include "spherical_param/reconstruct.h"
 #include "torture.h"
 
+#include <Eigen/Geometry>
+
 #include <vtkCellArray.h>
 #include <vtkFeatureEdges.h>
 #include <vtkNew.h>
