@@ -5,7 +5,6 @@
 #include "core/graph_checks.h"
 #include "core/option_checks.h"
 #include "core/parallel.h"
-#include "core/sleeping_barrier.h"
 #include "core/space_filling_curve.h"
 #include "core/tangential_laplacian.h"
 
@@ -13,17 +12,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <string>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -32,9 +25,6 @@ using internal::PaddedPositions;
 using internal::Rows;
 using internal::WeightRule;
 
-/// Sums are formed per block and then over the blocks in order: the same bits for any number of
-/// threads.
-constexpr Index kBlockSize = internal::kBlockSize;
 /// A collapse: this share of the nodes within this distance of one direction.
 constexpr double kCollapsedShare = 0.9;
 constexpr double kCollapsedRadius = 0.01;
@@ -95,52 +85,54 @@ bool isCollapsed(const Positions& u) {
 }
 
 /// The state of the iteration of Figure 3, on renumbered nodes, and its two passes over the nodes.
-/// All threads of a team call a pass; each takes blocks of nodes until none is left.
 class Iteration {
 public:
   Iteration(const Graph& graph, const Positions& directions, const EmbeddingOptions& options)
       : rows_(internal::makeRows(graph, internal::mortonOrder(directions),
                                  options.weights == EdgeWeights::Uniform)),
         adaptive_(options.weights == EdgeWeights::Adaptive), lambda_(options.lambda),
-        n_(static_cast<Index>(graph.size())), u_(4, n_), moved_(4, n_),
-        block_sums_(static_cast<std::size_t>((n_ + kBlockSize - 1) / kBlockSize)),
+        n_(static_cast<Index>(graph.size())),
+        threads_(
+            internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold)),
+        u_(4, n_), moved_(4, n_),
+        block_sums_((graph.size() + internal::kBlockSize - 1) / internal::kBlockSize),
         block_residuals_(block_sums_.size()) {
     for (Index row = 0; row < n_; ++row)
       u_.col(row) << directions.col(rows_.node_of_row[static_cast<std::size_t>(row)]), 0.0;
   }
 
   /// First pass: the tangential Laplacian of each node and the step from it.
-  void evaluate() {
-    while (const auto block = takeBlock(next_to_evaluate_)) {
-      if (adaptive_)
-        evaluateBlock<WeightRule::Linear>(*block);
-      else
-        evaluateBlock<WeightRule::Fixed>(*block);
-    }
-  }
-
-  /// Between the passes, by one thread: returns the mean length of the tangential Laplacian.
-  double finishEvaluation() {
+  ///
+  /// \return the mean length of the tangential Laplacian.
+  double evaluate() {
+    internal::forEachBlock(static_cast<std::size_t>(n_), threads_,
+                           [&](std::size_t block, std::size_t begin, std::size_t end) {
+                             if (adaptive_)
+                               evaluateBlock<WeightRule::Linear>(block, begin, end);
+                             else
+                               evaluateBlock<WeightRule::Fixed>(block, begin, end);
+                           });
     mean_.setZero();
     for (const Eigen::Vector3d& sum : block_sums_)
       mean_ += sum;
     mean_ /= static_cast<double>(n_);
-    next_to_evaluate_ = 0;
-    next_to_center_ = 0;
     return std::accumulate(block_residuals_.begin(), block_residuals_.end(), 0.0) /
            static_cast<double>(n_);
   }
 
   /// Second pass: takes the step, centres it and projects it on the sphere.
   void center() {
-    while (const auto block = takeBlock(next_to_center_))
-      for (Index row = beginOf(*block); row < endOf(*block); ++row) {
-        const Eigen::Vector3d moved = moved_.col(row).head<3>();
-        const Eigen::Vector3d centered = moved - mean_;
-        const double length = centered.norm();
-        // At the very centre there is no direction: stay.
-        u_.col(row).head<3>() = length > 0.0 ? Eigen::Vector3d(centered / length) : moved;
-      }
+    internal::forEachBlock(
+        static_cast<std::size_t>(n_), threads_,
+        [&](std::size_t, std::size_t begin, std::size_t end) {
+          for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row) {
+            const Eigen::Vector3d moved = moved_.col(row).head<3>();
+            const Eigen::Vector3d centered = moved - mean_;
+            const double length = centered.norm();
+            // At the very centre there is no direction: stay.
+            u_.col(row).head<3>() = length > 0.0 ? Eigen::Vector3d(centered / length) : moved;
+          }
+        });
   }
 
   Positions directions() const {
@@ -151,18 +143,11 @@ public:
   }
 
 private:
-  std::optional<Index> takeBlock(std::atomic<Index>& next) const {
-    const Index block = next.fetch_add(1, std::memory_order_relaxed);
-    return block < static_cast<Index>(block_sums_.size()) ? std::optional(block) : std::nullopt;
-  }
-  Index beginOf(Index block) const { return block * kBlockSize; }
-  Index endOf(Index block) const { return std::min(n_, (block + 1) * kBlockSize); }
-
   template <WeightRule Rule>
-  void evaluateBlock(Index block) {
+  void evaluateBlock(std::size_t block, std::size_t begin, std::size_t end) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double residual = 0.0;
-    for (Index row = beginOf(block); row < endOf(block); ++row) {
+    for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row) {
       const Eigen::Vector3d step = internal::tangentialLaplacian<Rule>(rows_, u_, row);
       residual += step.norm();
       // Never zero: the step is orthogonal to a unit vector.
@@ -170,65 +155,21 @@ private:
       moved_.col(row).head<3>() = moved;
       sum += moved;
     }
-    block_sums_[static_cast<std::size_t>(block)] = sum;
-    block_residuals_[static_cast<std::size_t>(block)] = residual;
+    block_sums_[block] = sum;
+    block_residuals_[block] = residual;
   }
 
   Rows rows_;
   bool adaptive_;
   double lambda_;
   Index n_;
+  int threads_;
   PaddedPositions u_;      ///< unit vectors, centred before their projection
   PaddedPositions moved_;  ///< unit vectors after the step
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();  ///< of `moved_`
   std::vector<Eigen::Vector3d> block_sums_;
   std::vector<double> block_residuals_;
-  std::atomic<Index> next_to_evaluate_{0};
-  std::atomic<Index> next_to_center_{0};
 };
-
-/// Runs evaluate and center in turn on all threads until goesOn(residual), called between the two
-/// by the calling thread alone, returns false.
-template <typename GoesOn>
-void iterate(Iteration& iteration, [[maybe_unused]] int threads, const GoesOn& goes_on) {
-  bool running = true;
-  std::exception_ptr error;
-  const auto work = [&](internal::SleepingBarrier& barrier, bool is_caller) {
-    for (;;) {
-      iteration.evaluate();
-      barrier.wait();
-      if (is_caller) {
-        // No exception may leave a parallel region.
-        try {
-          running = goes_on(iteration.finishEvaluation());
-        } catch (...) {
-          error = std::current_exception();
-          running = false;
-        }
-      }
-      barrier.wait();
-      if (!running)
-        return;
-      iteration.center();
-      barrier.wait();
-    }
-  };
-#ifdef _OPENMP
-  std::optional<internal::SleepingBarrier> barrier;
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    // There may be fewer threads than were asked for.
-#pragma omp single
-    barrier.emplace(omp_get_num_threads());
-    work(*barrier, omp_get_thread_num() == 0);
-  }
-#else
-  internal::SleepingBarrier barrier(1);
-  work(barrier, true);
-#endif
-  if (error)
-    std::rethrow_exception(error);
-}
 
 bool hasStagnated(const std::vector<double>& residuals, const EmbeddingOptions& options) {
   const auto window = static_cast<std::size_t>(options.stagnation_window);
@@ -295,28 +236,27 @@ Embedding embedOnSphere(const Graph& graph, const Positions& start,
   }
   Iteration iteration(graph, projectFromCentroid(start), options);
   result.residuals.reserve(static_cast<std::size_t>(std::min(options.max_iterations, 100000)) + 1);
-  iterate(iteration,
-          internal::threadCount(options.threads, graph.size(), internal::kParallelThreshold),
-          [&](double residual) {
-            if (options.progress && !options.progress(result.iterations, residual))
-              throw Cancelled("embedOnSphere: cancelled by the progress callback");
-            result.residual = residual;
-            result.residuals.push_back(residual);
-            if (options.observer)
-              options.observer({0, graph.size(), EmbeddingStep::Iteration, result.iterations,
-                                residual, [&] { return iteration.directions(); }});
-            if (residual <= options.tolerance)
-              result.stop_reason = StopReason::Converged;
-            else if (result.iterations >= options.max_iterations)
-              result.stop_reason = StopReason::IterationLimit;
-            else if (hasStagnated(result.residuals, options))
-              result.stop_reason = StopReason::Stagnated;
-            else {
-              ++result.iterations;
-              return true;
-            }
-            return false;
-          });
+  for (;;) {
+    result.residual = iteration.evaluate();
+    if (options.progress && !options.progress(result.iterations, result.residual))
+      throw Cancelled("embedOnSphere: cancelled by the progress callback");
+    result.residuals.push_back(result.residual);
+    if (options.observer)
+      options.observer({0, graph.size(), EmbeddingStep::Iteration, result.iterations,
+                        result.residual, [&] { return iteration.directions(); }});
+    if (result.residual <= options.tolerance)
+      result.stop_reason = StopReason::Converged;
+    else if (result.iterations >= options.max_iterations)
+      result.stop_reason = StopReason::IterationLimit;
+    else if (hasStagnated(result.residuals, options))
+      result.stop_reason = StopReason::Stagnated;
+    else {
+      ++result.iterations;
+      iteration.center();
+      continue;
+    }
+    break;
+  }
   result.directions = iteration.directions();
   result.centroid_norm = result.directions.rowwise().mean().norm();
   // Judged at the end only: the centring undoes a passing collapse within a few steps.

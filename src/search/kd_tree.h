@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <new>
-#include <stdexcept>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -31,46 +29,6 @@ struct SquaredDistance {
   }
   Scalar accum_dist(Scalar a, Scalar b, int /*axis*/) const { return (a - b) * (a - b); }
 };
-
-/// A node of FLANN's tree, which says so where there is no memory for it: FLANN's own would be
-/// written to nowhere. Their memory is that of the tree, and goes with it.
-template <typename Scalar, typename Node>
-struct KdTreeNode {
-  int left;     ///< of the points of a leaf, the first, then the end
-  int right;    ///<
-  int divfeat;  ///< axis of the cut
-  Scalar divlow;
-  Scalar divhigh;
-  Node* child1;
-  Node* child2;
-
-  static void* operator new(std::size_t size, flann::PooledAllocator& pool) {
-    void* const memory = pool.allocateMemory(static_cast<int>(size));
-    if (memory == nullptr)
-      throw std::bad_alloc();
-    return memory;
-  }
-  static void operator delete(void* /*node*/, flann::PooledAllocator& /*pool*/) {}
-
-  /// Needed by functions of FLANN that nobody calls.
-  template <typename Archive>
-  void serialize(Archive& /*archive*/) {
-    throw std::logic_error("a tree is never stored");
-  }
-};
-
-}  // namespace spherical_param::internal
-
-namespace flann {
-template <>
-struct KDTreeSingleIndex<spherical_param::internal::SquaredDistance<float>>::Node
-    : spherical_param::internal::KdTreeNode<float, Node> {};
-template <>
-struct KDTreeSingleIndex<spherical_param::internal::SquaredDistance<double>>::Node
-    : spherical_param::internal::KdTreeNode<double, Node> {};
-}  // namespace flann
-
-namespace spherical_param::internal {
 
 /// FLANN's k-d tree of some points, with coordinates and distances of type Scalar.
 ///

@@ -3,7 +3,6 @@
 
 #include "helpers.h"
 
-#include "core/sleeping_barrier.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/sphere_map.h"
 #include "spherical_param/sphere_surface.h"
@@ -99,27 +98,5 @@ TEST(Concurrency, OneSurfaceAnswersSeveralThreads) {
 
 // Each thread writes its own counter and, behind the barrier, reads all others: with a barrier that
 // let one pass too early the counters would differ.
-TEST(Concurrency, ThreadsBehindABarrierSeeEachOthersWorkOfEveryRound) {
-  constexpr int team = 4;
-  constexpr int rounds = 2000;
-  internal::SleepingBarrier barrier(team);
-  std::vector<int> counters(team, 0);
-  std::vector<int> wrong(team, 0);
-  std::vector<std::thread> threads;
-  for (std::size_t self = 0; self < team; ++self)
-    threads.emplace_back([&, self] {
-      for (int round = 1; round <= rounds; ++round) {
-        counters[self] = round;
-        barrier.wait();
-        for (const int counter : counters)
-          wrong[self] += counter == round ? 0 : 1;
-        barrier.wait();
-      }
-    });
-  for (std::thread& thread : threads)
-    thread.join();
-  EXPECT_EQ(wrong, std::vector<int>(team, 0));
-}
-
 }  // namespace
 }  // namespace spherical_param

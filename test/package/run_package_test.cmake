@@ -93,17 +93,21 @@ if(PKG_CONFIG)
   set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
   set(ENV{LD_LIBRARY_PATH} ${prefix}/${LIBDIR})
   set(names spherical_param_core)
+  set(source_of_spherical_param_core consumer_core/main.cpp)
   if("pcl" IN_LIST COMPONENTS)
     list(APPEND names pcl_spherical_param)
+    # The README's line: reading files takes PCL's own library for it.
+    set(packages_of_pcl_spherical_param pcl_io)
+    set(source_of_pcl_spherical_param consumer_pcl/read_ply.cpp)
   endif()
   foreach(name IN LISTS names)
-    string(REGEX MATCH "core|pcl" which ${name})
-    run("pkg-config ${name}" ${PKG_CONFIG} --cflags --libs ${name})
+    run("pkg-config ${name}" ${PKG_CONFIG} --cflags --libs ${name} ${packages_of_${name}})
     separate_arguments(flags UNIX_COMMAND "${output}")
     run("compilation with pkg-config ${name}" ${CXX} -std=c++17
-        ${SOURCE_DIR}/test/package/consumer_${which}/main.cpp -o ${WORK_DIR}/${which}_by_pkg_config
+        ${SOURCE_DIR}/test/package/${source_of_${name}} -o ${WORK_DIR}/${name}_by_pkg_config
         ${flags})
-    run("program compiled with pkg-config ${name}" ${WORK_DIR}/${which}_by_pkg_config)
+    run("program compiled with pkg-config ${name}" ${CMAKE_COMMAND} -E chdir ${WORK_DIR}
+        ${WORK_DIR}/${name}_by_pkg_config)
     run("version of ${name}" ${PKG_CONFIG} --modversion ${name})
     if(NOT output STREQUAL "${VERSION}\n")
       message(FATAL_ERROR "pkg-config says that ${name} has version ${output}")

@@ -67,33 +67,6 @@ tests() {
   failed=$((failed + bad))
 }
 
-# variant_tests <step> <preset> <folder> <ctest option>...: as tests(), of a build that differs from
-# the first one by its compiler's settings only. Not run again if all passed and no program, library
-# or file of the tests changed since.
-variant_tests() {
-  local step="$1" preset="$2" folder="$3" stamp key count
-  shift 3
-  stamp="build/$preset/tests-passed"
-  key="$( (
-    echo "$@"
-    find "build/$preset" -type f \( -path '*/bin/*' -o -name '*.so*' \) -print0 | sort -z |
-      xargs -0 sha256sum
-    files 'test/*' 'cmake/*' | xargs sha256sum
-  ) | sha256sum | cut -d' ' -f1)"
-  if [ -f "$stamp" ] && read -r count <"$stamp" && [ "${count#"$key "}" != "$count" ]; then
-    count="${count#"$key "}"
-    passed=$((passed + count))
-    report ok 0 "$step ($count, unchanged)"
-    return 0
-  fi
-  rm -f "$stamp"
-  local failed_before="$failed" passed_before="$passed"
-  tests "$step" "$folder" "$@"
-  if [ "$failed" -eq "$failed_before" ]; then
-    echo "$key $((passed - passed_before))" >"$stamp"
-  fi
-}
-
 junit_number() { # <attribute> <file>
   local number=""
   if [ -f "$2" ]; then

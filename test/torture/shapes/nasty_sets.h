@@ -4,21 +4,16 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 namespace torture {
 
-/// Points that a mesher may trip over.
+/// Points that a mesher may fail on.
 struct NastySet {
-  std::string family;                  ///< what they are
-  std::vector<std::string> treatment;  ///< what was done to them after that, e.g. "offset by 1e7"
-  spherical_param::Positions points;   ///< 3 x n, not always finite
+  std::string family;
+  spherical_param::Positions points;  ///< 3 x n, not always finite, not always in space
 };
 
-/// The set of a seed: always the same. Some are no valid input: see Truth.
-///
-/// \param seed any.
-/// \return the set.
+/// The same set for the same seed.
 NastySet makeNastySet(std::uint64_t seed);
 
 }  // namespace torture

@@ -1,127 +1,163 @@
-// Many reconstructions at the same time, each of which must answer what it answers alone. Through
-// the core; with SPHERICAL_PARAM_TORTURE_PCL also through objects of the PCL class.
+// Reconstructions on several threads of the caller at once answer what they answer alone, and each
+// answers the same bytes for any number of threads of its own. Also run with the thread sanitizer.
 //
 //   torture_threads [--quick] [--seed N]
 
-#include "arguments.h"
-#include "mixed_jobs.h"
-#include "torture_row.h"
+#include "helpers.h"
+#include "result_bytes.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/reconstruct.h"
+#include "torture.h"
 
+#include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
-#ifdef SPHERICAL_PARAM_TORTURE_PCL
-#include "pcl_calls.h"
-#endif
-
 namespace {
 
-using torture::Job;
+using namespace spherical_param;
 
 constexpr std::size_t kThreads = 8;
 
-class CoreCalls {
-public:
-  static constexpr const char* kName = "through the core";
-  static torture::JobLimits limits(bool quick) {
-    torture::JobLimits limits;
-    limits.most = quick ? 150 : 400;
-#ifdef SPHERICAL_PARAM_TORTURE_PCL
-    limits.large_every = quick ? 0 : 50;  // with OpenMP, in this build
-#endif
-    return limits;
-  }
-  torture::Answer operator()(const Job& job) {
-    return torture::answer(job);
-  }
+/// A cloud and the options for it.
+struct Job {
+  Positions points;
+  Options options;
+  bool is_valid = true;
 };
 
-#ifdef SPHERICAL_PARAM_TORTURE_PCL
-class PclCalls : public torture::PclObject {
-public:
-  static constexpr const char* kName = "through objects of the PCL class";
-  static torture::JobLimits limits(bool quick) {
-    torture::JobLimits limits;
-    limits.most = quick ? 300 : 1500;
-    limits.with_invalid = false;  // the class prints what is wrong
-    limits.large_every = quick ? 0 : 50;
-    return limits;
+/// The same job for the same seed and number.
+Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
+  std::seed_seq sequence{seed, static_cast<std::uint64_t>(number)};
+  std::mt19937_64 random(sequence);
+  const auto below = [&random](std::uint64_t count) { return random() % count; };
+  Job job;
+  const Index n = 8 + static_cast<Index>(below(static_cast<std::uint64_t>(most_points)));
+  switch (below(4)) {
+  case 0:
+    job.points = Eigen::Vector3d(1.0, 0.6, 0.3).asDiagonal() * test::spiralSphere(n);
+    break;
+  case 1:
+    job.points = test::withNoise(test::randomSphere(n, random()), 0.02, random());
+    break;
+  case 2:
+    job.points = test::cubeGrid(2 + static_cast<int>(below(5)));
+    break;
+  default:  // each point twice
+    job.points = test::randomSphere(n / 2, random());
+    job.points = test::horizontally(job.points, job.points);
+    break;
   }
-};
-#endif
+  if (below(20) == 0) {
+    job.is_valid = false;
+    job.points(1, job.points.cols() / 2) = std::numeric_limits<double>::quiet_NaN();
+  }
+  Options& options = job.options;
+  options.graph = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
+  options.solver = below(4) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
+  options.max_iterations = 60;
+  options.hull = below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
+  options.optimization = std::array{OptimizationMethod::None, OptimizationMethod::Flips,
+                                    OptimizationMethod::Full}[below(3)];
+  options.smoothing_steps = below(3) == 0 ? 5 : 0;
+  options.attempts = 1 + static_cast<int>(below(3));
+  options.seed = static_cast<std::uint32_t>(below(1000));
+  options.details = below(4) == 0;
+  options.threads = 1 + static_cast<int>(below(2));
+  return job;
+}
 
-/// \return the program's exit code
-template <typename Calls>
-int compare(const torture::Arguments& arguments, std::size_t calls_of_thread) {
-  const torture::JobLimits limits = Calls::limits(arguments.quick);
-  const std::size_t count = kThreads * calls_of_thread;
-  std::vector<Job> jobs(count);
-  std::vector<std::string> alone(count);
-  std::size_t wrong = 0;
-  std::size_t refused = 0;
-  Calls calls;
-  for (std::size_t i = 0; i < count; ++i) {
-    jobs[i] = torture::makeJob(arguments.seed, i, limits);
-    torture::Answer answer = calls(jobs[i]);
-    refused += jobs[i].is_valid ? 0 : 1;
-    if (!answer.is_right) {
+/// All of the answer as bytes; nothing if it is of the wrong kind.
+std::string answerTo(const Job& job) {
+  try {
+    const NeighborLists lists = test::bruteForceNeighbors(job.points, 25);
+    const Result result =
+        reconstruct(job.points, lists, job.options, test::bruteForceSearch(job.points));
+    const bool is_sphere =
+        test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount()));
+    return job.is_valid && is_sphere ? torture::bytesOf(result) : std::string();
+  } catch (const InvalidInput& error) {
+    return job.is_valid ? std::string() : error.what();
+  }
+}
+
+std::size_t differencesTogether(const torture::Arguments& arguments, std::size_t jobs_of_thread) {
+  std::vector<Job> jobs;
+  std::vector<std::string> alone;
+  std::atomic<std::size_t> wrong{0};
+  for (std::size_t i = 0; i < kThreads * jobs_of_thread; ++i) {
+    jobs.push_back(makeJob(arguments.seed, i, arguments.quick ? 100 : 400));
+    alone.push_back(answerTo(jobs.back()));
+    if (alone.back().empty()) {
       ++wrong;
-      std::printf("job %zu, alone: not the right kind of answer\n", i);
+      std::printf("job %zu: not the right kind of answer\n", i);
     }
-    alone[i] = std::move(answer.bytes);
   }
-
-  std::atomic<std::size_t> ready{0};
-  std::vector<std::vector<std::size_t>> different(kThreads);
   std::vector<std::thread> threads;
   for (std::size_t t = 0; t < kThreads; ++t)
     threads.emplace_back([&, t] {
-      Calls calls_of_this;
-      // All begin at once.
-      ++ready;
-      while (ready < kThreads)
-        std::this_thread::yield();
-      for (std::size_t i = t * calls_of_thread; i < (t + 1) * calls_of_thread; ++i)
-        if (calls_of_this(jobs[i]).bytes != alone[i])
-          different[t].push_back(i);
+      for (std::size_t i = t; i < jobs.size(); i += kThreads)
+        if (answerTo(jobs[i]) != alone[i]) {
+          ++wrong;
+          std::printf("job %zu: other bytes together with others than alone\n", i);
+        }
     });
   for (std::thread& thread : threads)
     thread.join();
-  std::size_t differences = 0;
-  for (const std::vector<std::size_t>& of_thread : different)
-    for (const std::size_t i : of_thread) {
-      ++differences;
-      std::printf("job %zu: together with others, other bytes than alone\n", i);
-    }
+  return wrong;
+}
 
-#ifdef __SANITIZE_THREAD__
-  const std::string sanitizer = ", with the thread sanitizer";
-#else
-  const std::string sanitizer;
-#endif
-  torture::Row row;
-  row.part = "threads";
-  row.load = std::to_string(kThreads) + " threads x " + std::to_string(calls_of_thread) +
-             " reconstructions " + Calls::kName + ", same bytes as alone" + sanitizer;
-  row.tried = count;
-  row.injected = refused;
-  row.found = wrong + differences;
-  return torture::print(row);
+/// Clouds of so many points that their work is shared out among threads.
+std::size_t differencesByThreads(const std::vector<Index>& sizes) {
+  std::size_t wrong = 0;
+  for (const Index size : sizes)
+    for (const bool is_paper : {false, true}) {
+      const Positions points =
+          Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() * test::spiralSphere(size);
+      Options options;
+      options.attempts = 1;
+      if (is_paper) {
+        options.graph = GraphMethod::NearestNeighbors;
+        options.solver = EmbeddingMethod::Iterative;
+        options.hull = TriangulationMethod::Qhull;
+        options.optimization = OptimizationMethod::None;
+        options.max_iterations = 20;
+      }
+      const NeighborLists lists = test::spiralNeighbors(points, neighborsToSearch(options));
+      std::string expected;
+      for (const int threads : {1, 2, 4}) {
+        options.threads = threads;
+        const std::string bytes = torture::bytesOf(reconstruct(points, lists, options));
+        if (threads == 1)
+          expected = bytes;
+        if (bytes != expected) {
+          ++wrong;
+          std::printf("%d points: other bytes with %d threads\n", size, threads);
+        }
+      }
+    }
+  return wrong;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto arguments = torture::parse(argc, argv);
-  if (!arguments)
-    return 2;
-  const std::size_t calls_of_thread = arguments->quick ? 8 : 200;
-  int code = compare<CoreCalls>(*arguments, calls_of_thread);
-#ifdef SPHERICAL_PARAM_TORTURE_PCL
-  code |= compare<PclCalls>(*arguments, calls_of_thread);
+  const torture::Arguments arguments = torture::parse(argc, argv);
+  const std::size_t jobs_of_thread = arguments.quick ? 6 : 200;
+  std::size_t tried = kThreads * jobs_of_thread;
+  std::size_t wrong = differencesTogether(arguments, jobs_of_thread);
+#ifndef __SANITIZE_THREAD__  // that build has no OpenMP
+  const std::vector<Index> sizes =
+      arguments.quick ? std::vector<Index>{6000, 52000} : std::vector<Index>{6000, 52000, 200000};
+  tried += 2 * 3 * sizes.size();
+  wrong += differencesByThreads(sizes);
 #endif
-  return code;
+  return torture::finish("threads: together as alone, and with 1, 2 and 4", tried, wrong);
 }
