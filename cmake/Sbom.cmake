@@ -9,19 +9,17 @@ if(NOT Python3_Interpreter_FOUND)
 endif()
 
 # sbom_dependency(<key of make_sbom.py> <relationship> <version> <file that its package has>
-#                 <component>...). What is in the page of -report is only there if the page is.
+#                 <component>...).
 set(sbom_dependencies "")
 function(sbom_dependency key kind version file)
   list(JOIN ARGN "\", \"" components)
   string(APPEND sbom_dependencies "${sbom_separator}
     {\"key\": \"${key}\", \"kind\": \"${kind}\", \"version\": \"${version}\",
-     \"file\": \"${file}\", \"only_with\": \"${sbom_only_with}\",
-     \"components\": [\"${components}\"]}")
+     \"file\": \"${file}\", \"components\": [\"${components}\"]}")
   set(sbom_dependencies "${sbom_dependencies}" PARENT_SCOPE)
   set(sbom_separator "," PARENT_SCOPE)
 endfunction()
 set(sbom_separator "")
-set(sbom_only_with "")
 
 # The files of each component.
 set(sbom_components core)
@@ -82,18 +80,9 @@ if(SPHERICAL_PARAM_BUILD_TOOLS)
   mark_as_advanced(SPHERICAL_PARAM_JSON_HEADER)
   sbom_dependency(nlohmann_json DEPENDS_ON "${nlohmann_json_VERSION}"
     "${SPHERICAL_PARAM_JSON_HEADER}/nlohmann/json.hpp" tools)
-  # What the page of -report is bundled from is pinned.
-  file(STRINGS ${PROJECT_SOURCE_DIR}/tools/report/package.json sbom_page
-    REGEX "\"[a-z]+\": \"[0-9.]+\"")
-  set(sbom_only_with ${PROJECT_BINARY_DIR}/tools/report/report_page.html)
-  foreach(line IN LISTS sbom_page)
-    if(line MATCHES "\"(three)\": \"([0-9.]+)\"")
-      sbom_dependency(three CONTAINS "${CMAKE_MATCH_2}" "" tools)
-    elseif(line MATCHES "\"(esbuild)\": \"([0-9.]+)\"")
-      sbom_dependency(esbuild BUILD_TOOL_OF "${CMAKE_MATCH_2}" "" tools)
-    endif()
-  endforeach()
-  set(sbom_only_with "")
+  if(SPHERICAL_PARAM_HAS_REPORT)
+    sbom_dependency(three CONTAINS "" "${SPHERICAL_PARAM_THREE_DIR}/three.min.js" tools)
+  endif()
 endif()
 sbom_dependency(cmake BUILD_TOOL_OF "${CMAKE_VERSION}" "${CMAKE_COMMAND}" ${sbom_components})
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -92,7 +92,7 @@ def debian_copyright(license_text, arguments):
         "Files: usr/bin/pcl_spherical_param_reconstruction\n"
         "Comment: three.js is part of the pages that it writes.\n"
         f"Copyright: {match[1]}\n"
-        " 2010-2025 three.js authors\n"
+        " 2010-2017 three.js authors\n"
         "License: BSD-3-clause and Expat\n"
         "\n"
         "License: Expat\n"

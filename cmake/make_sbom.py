@@ -56,7 +56,6 @@ KNOWN = {
     "pybind11": ("pybind11", "BSD-3-Clause", "https://github.com/pybind/pybind11", ()),
     "python": ("Python", "PSF-2.0", "https://www.python.org/", ("libpython",)),
     "three": ("three.js", "MIT", "https://threejs.org/", ()),
-    "esbuild": ("esbuild", "MIT", "https://esbuild.github.io/", ()),
     "cmake": ("CMake", "BSD-3-Clause", "https://cmake.org/", ()),
     "gcc": ("GCC", "GPL-3.0-or-later WITH GCC-exception-3.1", "https://gcc.gnu.org/", ()),
     "clang": ("Clang", "Apache-2.0 WITH LLVM-exception", "https://clang.llvm.org/", ()),
@@ -175,10 +174,6 @@ class Document:
             purl = (f"pkg:deb/{system}/{urllib.parse.quote(debian[0], safe='')}"
                     f"@{urllib.parse.quote(debian[1], safe='')}?arch={debian[2]}")
             references.append(purl + (f"&distro={system}-{release}" if release else ""))
-        if key in ("three", "esbuild") and version:
-            package["supplier"] = "Organization: npm"
-            package["downloadLocation"] = f"https://registry.npmjs.org/{key}/-/{key}-{version}.tgz"
-            references.append(f"pkg:npm/{key}@{version}")
         listed = package.setdefault("externalRefs", [])
         for purl in references:
             entry = {"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
@@ -245,8 +240,7 @@ def make(build, arguments):
     external = sorted({library for _, _, _, libraries in found for library in libraries
                        if not any(name.startswith(library) for name in ours)})
     declared = [entry for entry in build["dependencies"]
-                if set(entry["components"]) & set(components)
-                and (not entry["only_with"] or pathlib.Path(entry["only_with"]).is_file())]
+                if set(entry["components"]) & set(components)]
     debian = DebianPackages([paths[library] for library in external if library in paths] +
                             [entry["file"] for entry in declared if entry["file"]])
     versions = {entry["key"]: entry["version"] for entry in build["dependencies"]}

@@ -147,9 +147,7 @@ installed_in_root() {
 }
 
 used_from_root() {
-  local page=no
-  [ ! -s build/package/tools/report/report_page.html ] || page=yes
-  in_root sh /packages/use.sh "$page" "${tools[@]}"
+  in_root sh /packages/use.sh "${tools[@]}"
 }
 
 removed_from_root() {
@@ -163,9 +161,6 @@ if check "package: build" build && check "package: packages" make_packages; then
     check "package: manual pages" man_pages_are_good || true
     check "package: no path of the build" no_path_of_the_build || true
     check "package: foreign projects" foreign_projects || true
-  fi
-  if [ ! -s build/package/tools/report/report_page.html ]; then
-    skip "package: pages of -report" "npm's registry cannot be reached, so that there are none"
   fi
   check "package: strays are refused" strays_are_refused || true
   if ! run "package: bare root" have_bare_root; then

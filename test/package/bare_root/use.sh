@@ -1,9 +1,6 @@
 #!/bin/sh
-# Run where the packages are installed: use.sh <yes, if there are pages of -report> <name of a
-# tool>... Nothing of the build is there.
+# Run where the packages are installed: use.sh <name of a tool>... Nothing of the build is there.
 set -eu
-has_page="$1"
-shift
 
 folder="$(mktemp -d)"
 cd "$folder"
@@ -33,10 +30,8 @@ grep -q '"closed": true' report.json
 grep -q '"genus": 0' report.json
 grep -q '"vertices": 5000' report.json
 [ "$(head -c 3 mesh.ply)" = ply ]
-if [ "$has_page" = yes ]; then
-  pcl_spherical_param_reconstruction scan.ply mesh.ply -report page.html -quiet
-  [ -s page.html ]
-fi
+pcl_spherical_param_reconstruction scan.ply mesh.ply -report page.html -quiet
+[ -s page.html ]
 pcl_spherical_param_remesh scan.ply even.ply -points 642 -quiet
 pcl_spherical_param_texture scan.ply textured.glb -checker 8 -quiet
 pcl_spherical_param_scan bird other.ply -points 2000
