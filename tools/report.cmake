@@ -1,80 +1,60 @@
-# The page of -report: bundled from tools/report by npm and esbuild, then put into the tools library
-# as bytes. Nothing of it is needed when the tools run.
-#
-#   SPHERICAL_PARAM_BUILD_REPORT  AUTO: if there is npm; what fails leaves the tools without
-#                                 -report. ON: what fails stops the build. OFF: without
-#   SPHERICAL_PARAM_REPORT_PAGE   a page that was built before: neither npm nor network is needed
-#   SPHERICAL_PARAM_NODE_MODULES  folder with three and esbuild, as package-lock.json says
-set(SPHERICAL_PARAM_BUILD_REPORT AUTO CACHE STRING "Build the page of -report: AUTO, ON or OFF")
-set_property(CACHE SPHERICAL_PARAM_BUILD_REPORT PROPERTY STRINGS AUTO ON OFF)
-set(SPHERICAL_PARAM_REPORT_PAGE "" CACHE FILEPATH "Page of -report that was built before")
-set(SPHERICAL_PARAM_NODE_MODULES "" CACHE PATH "node_modules for the page of -report")
-foreach(given REPORT_PAGE NODE_MODULES)
-  if(SPHERICAL_PARAM_${given} AND NOT EXISTS "${SPHERICAL_PARAM_${given}}")
-    message(FATAL_ERROR "SPHERICAL_PARAM_${given}: there is no '${SPHERICAL_PARAM_${given}}'")
-  endif()
-endforeach()
+# The page of -report: the files of tools/report with Debian's three.js, put into the tools library as
+# text. Without three.js the tools are built without -report.
+option(SPHERICAL_PARAM_BUILD_REPORT "Build the tools with -report, if three.js is found" ON)
+find_path(SPHERICAL_PARAM_THREE_DIR three.min.js
+  PATHS /usr/share/javascript/three /usr/local/share/javascript/three)
+find_file(SPHERICAL_PARAM_THREE_LICENSE copyright PATHS /usr/share/doc/libjs-three NO_DEFAULT_PATH)
+mark_as_advanced(SPHERICAL_PARAM_THREE_DIR SPHERICAL_PARAM_THREE_LICENSE)
 
-find_program(SPHERICAL_PARAM_NPM npm)
-find_program(SPHERICAL_PARAM_NODE NAMES node nodejs)
-mark_as_advanced(SPHERICAL_PARAM_NPM SPHERICAL_PARAM_NODE)
-
-set(report_missing "")
-if(SPHERICAL_PARAM_REPORT_PAGE)
-elseif(NOT SPHERICAL_PARAM_NODE)
-  set(report_missing "node was not found")
-elseif(NOT SPHERICAL_PARAM_NPM AND NOT SPHERICAL_PARAM_NODE_MODULES)
-  set(report_missing "npm was not found")
-endif()
-if(NOT SPHERICAL_PARAM_BUILD_REPORT)
-  set(report_missing "SPHERICAL_PARAM_BUILD_REPORT is off")
-elseif(report_missing AND NOT SPHERICAL_PARAM_BUILD_REPORT STREQUAL "AUTO")
-  message(FATAL_ERROR "The page of -report cannot be built: ${report_missing}. "
-    "Install it, or give SPHERICAL_PARAM_REPORT_PAGE, or set SPHERICAL_PARAM_BUILD_REPORT to AUTO")
-endif()
+# The source of a script in a Content-Security-Policy: its SHA-256 in base64.
+function(spherical_param_script_hash script result)
+  string(SHA256 hex "${script}")
+  set(digits ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/)
+  set(base64 "")
+  foreach(at RANGE 0 60 6)
+    string(SUBSTRING "${hex}00" ${at} 6 bytes)
+    foreach(shift 18 12 6 0)
+      math(EXPR digit "(0x${bytes} >> ${shift}) & 63")
+      string(SUBSTRING ${digits} ${digit} 1 digit)
+      string(APPEND base64 ${digit})
+    endforeach()
+  endforeach()
+  string(REGEX REPLACE "A$" "=" base64 ${base64}) # the byte that fills the last group
+  set(${result} "'sha256-${base64}'" PARENT_SCOPE)
+endfunction()
 
 set(report_folder ${CMAKE_CURRENT_LIST_DIR}/report)
-set(report_build_folder ${CMAKE_CURRENT_BINARY_DIR}/report)
-set(report_source ${report_build_folder}/report_page.cpp)
-if(report_missing)
-  message(STATUS "The tools are built without -report: ${report_missing}")
-  set(report_mode EMPTY)
-  set(report_inputs "")
-elseif(SPHERICAL_PARAM_REPORT_PAGE)
-  set(report_mode GIVEN)
-  set(report_inputs ${SPHERICAL_PARAM_REPORT_PAGE})
+set(report_inputs page.html style.css loader.js text.js views.js main.js)
+list(TRANSFORM report_inputs PREPEND ${report_folder}/)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_inputs})
+
+set(SPHERICAL_PARAM_HAS_REPORT OFF CACHE INTERNAL "Whether the tools have -report")
+set(report_page "")
+set(report_program "")
+if(NOT SPHERICAL_PARAM_BUILD_REPORT)
+  message(STATUS "The tools are built without -report: SPHERICAL_PARAM_BUILD_REPORT is off")
+elseif(NOT EXISTS "${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitControls.js" OR
+       NOT SPHERICAL_PARAM_THREE_LICENSE)
+  message(STATUS "The tools are built without -report: three.js (libjs-three) was not found")
 else()
-  set(report_mode BUILD)
-  set(report_inputs build.mjs package.json package-lock.json page.html style.css)
-  foreach(part charts colors decode dom geometry history loader main modes shaders text views)
-    list(APPEND report_inputs src/${part}.js)
+  set(SPHERICAL_PARAM_HAS_REPORT ON CACHE INTERNAL "Whether the tools have -report")
+  foreach(script ${SPHERICAL_PARAM_THREE_DIR}/three.min.js
+                 ${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitControls.js
+                 ${report_folder}/text.js ${report_folder}/views.js ${report_folder}/main.js)
+    file(READ ${script} text)
+    string(APPEND report_program "${text}\n")
   endforeach()
-  list(TRANSFORM report_inputs PREPEND ${report_folder}/)
+  file(READ ${report_folder}/loader.js LOADER)
+  file(READ ${report_folder}/style.css STYLE)
+  file(READ ${SPHERICAL_PARAM_THREE_LICENSE} THREE_LICENSE)
+  string(REPLACE "&" "&amp;" THREE_LICENSE "${THREE_LICENSE}")
+  string(REPLACE "<" "&lt;" THREE_LICENSE "${THREE_LICENSE}")
+  spherical_param_script_hash("${LOADER}" LOADER_HASH)
+  spherical_param_script_hash("${report_program}" PROGRAM_HASH)
+  file(READ ${report_folder}/page.html report_page)
+  string(CONFIGURE "${report_page}" report_page @ONLY)
+  install(FILES ${SPHERICAL_PARAM_THREE_LICENSE} RENAME third-party.txt
+    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 endif()
-set(report_stamp ${report_build_folder}/report_page.stamp)
-# Where AUTO fails (no network) the stamp is not written: the next build tries again.
-add_custom_command(
-  OUTPUT ${report_stamp}
-  BYPRODUCTS ${report_source}
-  COMMAND ${CMAKE_COMMAND}
-    -D MODE=${report_mode}
-    -D FOLDER=${report_folder}
-    -D BUILD_FOLDER=${report_build_folder}
-    -D SOURCE=${report_source}
-    -D STAMP=${report_stamp}
-    -D PAGE=${SPHERICAL_PARAM_REPORT_PAGE}
-    -D NODE_MODULES=${SPHERICAL_PARAM_NODE_MODULES}
-    -D NPM=${SPHERICAL_PARAM_NPM}
-    -D NODE=${SPHERICAL_PARAM_NODE}
-    -D REQUIRED=${SPHERICAL_PARAM_BUILD_REPORT}
-    -P ${report_folder}/make_page.cmake
-  DEPENDS ${report_inputs} ${report_folder}/make_page.cmake
-  COMMENT "Page of -report"
-  VERBATIM)
-add_custom_target(spherical_param_report_page DEPENDS ${report_stamp})
-set_source_files_properties(${report_source} PROPERTIES GENERATED ON)
-target_sources(spherical_param_tools PRIVATE ${report_source})
-add_dependencies(spherical_param_tools spherical_param_report_page)
-# The licence of what the page holds of others; there is none without a page.
-install(FILES ${report_build_folder}/third-party.txt
-  DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools OPTIONAL)
+configure_file(${report_folder}/report_page.cpp.in report/report_page.cpp @ONLY)
+target_sources(spherical_param_tools PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/report/report_page.cpp)

@@ -77,7 +77,7 @@ installed_and_used() {
       apt-get update
       apt-get -y --no-install-recommends install /*.deb
       pcl_spherical_param_scan hand scan.ply
-      pcl_spherical_param_reconstruction scan.ply mesh.ply -json report.json
+      pcl_spherical_param_reconstruction scan.ply mesh.ply -json report.json -report report.html
       grep -q "\"closed\": true" report.json && grep -q "\"vertices\": 5000" report.json
       python3 -c "import spherical_param"
       apt-get -y purge "*spherical-param*"

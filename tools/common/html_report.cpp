@@ -1,7 +1,6 @@
 #include "common/html_report.h"
 
 #include "common/errors.h"
-#include "common/packed_array.h"
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "common/text.h"
@@ -11,11 +10,14 @@
 
 #include <Eigen/Geometry>
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <new>
 #include <utility>
 
 namespace spherical_param::tools {
@@ -23,70 +25,149 @@ namespace {
 
 constexpr std::string_view marker = "<!--DATA-->";
 
-/// Ways of vertices in the history at most, and states.
-constexpr Index most_history_vertices = 5000;
-constexpr int most_history_frames = 40;
-/// Of small meshes fewer, so that the history is not larger than the mesh: one for so many
-/// vertices, but so many anyhow.
+/// Vertices and states of the history at most; of small meshes fewer vertices, so that the history
+/// is not larger than the mesh: one of so many, but so many anyhow.
+constexpr Index max_history_vertices = 5000;
+constexpr int max_history_frames = 40;
 constexpr std::size_t vertices_for_history = 23;
-constexpr std::size_t least_history_vertices = 1000;
+constexpr std::size_t min_history_vertices = 1000;
 
-/// Points of the cloud that are shown beside a mesh at most.
-constexpr std::size_t most_cloud_points = 150000;
+/// Outliers that are shown at most.
+constexpr std::size_t max_outliers = 75000;
 
-/// Entries of lists of points in the report that a page repeats at most: nobody reads more.
-constexpr std::size_t most_listed = 1000;
+const char* nameOfStep(EmbeddingStep step) {
+  switch (step) {
+  case EmbeddingStep::Start:
+    return "start";
+  case EmbeddingStep::Sweeps:
+    return "sweep";
+  case EmbeddingStep::Newton:
+    return "newton";
+  case EmbeddingStep::Iteration:
+    return "iteration";
+  case EmbeddingStep::End:
+    return "end";
+  }
+  return "";
+}
 
-/// Residuals of a page at most: more than its curve has pixels.
-constexpr std::size_t most_residuals = 2000;
+std::string deflated(std::string_view bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string packed(size, '\0');
+  // The best level takes several times as long for a hundredth of the size.
+  constexpr int level = 6;
+  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
+                level) != Z_OK) {
+    throw std::bad_alloc();
+  }
+  packed.resize(size);
+  return packed;
+}
 
-/// Shares of vertices that are darker or brighter than all colours.
-constexpr double clamped_share = 0.01;
+/// RFC 4648, section 4.
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      bits = bits << 8U | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? digits[(bits >> (18 - 6 * k)) & 63U] : '=';
+    }
+  }
+  return text;
+}
 
-const std::array<std::pair<EmbeddingStep, const char*>, 5> step_names = {{
-    {EmbeddingStep::Start, "start"},
-    {EmbeddingStep::Sweeps, "sweep"},
-    {EmbeddingStep::Newton, "newton"},
-    {EmbeddingStep::Iteration, "iteration"},
-    {EmbeddingStep::End, "end"},
-}};
-
-std::string nameOfStep(EmbeddingStep step) {
-  const auto found = std::find_if(step_names.begin(), step_names.end(),
-                                  [step](const auto& entry) { return entry.first == step; });
-  return found->second;
+/// An element that holds bytes deflated and in base64, which no text of theirs can end.
+std::string element(const std::string& id, std::string_view bytes) {
+  return "<script type=\"text/plain\" id=\"" + id + "\">" + base64(deflated(bytes)) + "</script>\n";
 }
 
 std::vector<double> numbersOf(const Positions& points) {
   return {points.data(), points.data() + points.size()};
 }
 
-PackedArray integers(const std::string& name, PackedType type, std::size_t components,
-                     std::vector<std::uint32_t> values) {
-  PackedArray array;
-  array.name = name;
-  array.type = type;
-  array.components = components;
-  array.values = std::move(values);
-  return array;
-}
-
-PackedArray integers(const std::string& name, const Triangles& triangles) {
-  std::vector<std::uint32_t> values;
-  values.reserve(static_cast<std::size_t>(triangles.size()));
-  for (Eigen::Index i = 0; i < triangles.size(); ++i) {
-    values.push_back(static_cast<std::uint32_t>(triangles.data()[i]));
+/// The arrays of a page: elements with the numbers, and what the page must know to read them.
+class Arrays {
+public:
+  /// Adds rows of integers. Each is stored less that of the row before it, little-endian: of rows
+  /// in a good order differences are small, which deflates well.
+  template <typename Integer>
+  void add(const std::string& name, std::size_t components, const std::vector<Integer>& values) {
+    std::string bytes;
+    bytes.reserve(values.size() * sizeof(Integer));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto difference = static_cast<std::uint32_t>(
+          values[i] - (i < components ? Integer{0} : values[i - components]));
+      for (std::size_t b = 0; b < sizeof(Integer); ++b) {
+        bytes += static_cast<char>(difference >> (8 * b) & 0xffU);
+      }
+    }
+    Json& entry = about_[name];
+    entry["bits"] = 8 * sizeof(Integer);
+    entry["components"] = components;
+    elements_ += element("array-" + name, bytes);
   }
-  return integers(name, PackedType::U32, 3, std::move(values));
+
+  /// Adds numbers from `min` to `max`, in 2^8 or 2^16 steps.
+  template <typename Integer>
+  void add(const std::string& name, std::size_t components, const std::vector<double>& values,
+           const std::vector<double>& min, const std::vector<double>& max) {
+    std::vector<Integer> steps;
+    steps.reserve(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double low = min[i % components];
+      const double high = max[i % components];
+      const double share = high > low ? (std::clamp(values[i], low, high) - low) / (high - low) : 0;
+      steps.push_back(
+          static_cast<Integer>(std::lround(share * std::numeric_limits<Integer>::max())));
+    }
+    add(name, components, steps);
+    setRange(name, min, max);
+  }
+
+  /// Adds points in space.
+  void addPoints(const std::string& name, const Positions& points, const Eigen::AlignedBox3d& box) {
+    add<std::uint16_t>(name, 3, numbersOf(points), {box.min().x(), box.min().y(), box.min().z()},
+                       {box.max().x(), box.max().y(), box.max().z()});
+  }
+
+  /// Adds points on the unit sphere.
+  void addDirections(const std::string& name, const std::vector<double>& directions) {
+    add<std::uint16_t>(name, 3, directions, {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+  }
+
+  void addTriangles(const std::string& name, const Triangles& triangles) {
+    add(name, 3, std::vector<std::uint32_t>(triangles.data(), triangles.data() + triangles.size()));
+  }
+
+  void setRange(const std::string& name, const std::vector<double>& min,
+                const std::vector<double>& max) {
+    about_[name]["min"] = min;
+    about_[name]["max"] = max;
+  }
+
+  const Json& about() const { return about_; }
+  const std::string& elements() const { return elements_; }
+
+private:
+  Json about_ = Json::object();
+  std::string elements_;
+};
+
+Eigen::AlignedBox3d boxOf(const Positions& points) {
+  return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()};
 }
 
-/// The bounds between which all but a few values are.
+/// The bounds between which all but one percent of the values at either end are.
 std::pair<double, double> robustRange(std::vector<double> values) {
-  if (values.empty()) {
-    return {0.0, 0.0};
-  }
-  const auto cut =
-      static_cast<std::ptrdiff_t>(clamped_share * static_cast<double>(values.size() - 1));
+  const auto cut = static_cast<std::ptrdiff_t>(0.01 * static_cast<double>(values.size() - 1));
   const auto low = values.begin() + cut;
   std::nth_element(values.begin(), low, values.end());
   const double min = *low;
@@ -95,267 +176,115 @@ std::pair<double, double> robustRange(std::vector<double> values) {
   return {min, *high};
 }
 
-PackedArray attribute(const std::string& name, const std::vector<double>& values) {
-  const auto [min, max] = robustRange(values);
-  return quantized(name, PackedType::U8, values, min, max);
+/// Powers of two of area, each side of 0 in units of its own end: limbs are squeezed by many powers
+/// of two, and little is stretched as much.
+void addArea(std::vector<double> values, Arrays& arrays) {
+  auto [low, high] = robustRange(values);
+  low = std::min(low, -1e-3);
+  high = std::max(high, 1e-3);
+  for (double& value : values) {
+    value = value < 0.0 ? -value / low : value / high;
+  }
+  arrays.add<std::uint8_t>("area", 1, values, {-1.0}, {1.0});
+  arrays.setRange("area", {low}, {high});
 }
 
-/// Powers of two of area: the colours of each side of 0 have the whole of it, and of a long range
-/// (limbs are squeezed by many powers of two) 8 bits leave few steps for the shorter side.
-PackedArray areaDistortion(const std::vector<double>& values) {
-  const auto [min, max] = robustRange(values);
-  constexpr double least_steps = 32.0;
-  const double shorter = std::min(min < 0.0 ? -min : max - min, max > 0.0 ? max : max - min);
-  const bool is_long = 255.0 * shorter < least_steps * (max - min);
-  return quantized("area_distortion", is_long ? PackedType::U16 : PackedType::U8, values, min, max);
+void addScalar(const std::string& name, const std::vector<double>& values, Arrays& arrays) {
+  const auto [low, high] = robustRange(values);
+  arrays.add<std::uint8_t>(name, 1, values, {low}, {high});
 }
 
-/// Ratios from 1 to that which one vertex of a hundred exceeds. Their logarithm has the colours: of
-/// a long range 8 bits leave few steps for what is near 1.
-PackedArray angleDistortion(const std::vector<double>& values) {
-  const double max = std::max(1.0, robustRange(values).second);
-  constexpr double long_range = 5.0;
-  return quantized("angle_distortion", max > long_range ? PackedType::U16 : PackedType::U8, values,
-                   1.0, max);
+void addMesh(const ReportMesh& mesh, Arrays& arrays) {
+  arrays.addPoints("positions", mesh.positions, boxOf(mesh.positions));
+  arrays.addDirections("sphere", numbersOf(mesh.sphere));
+  arrays.addTriangles("triangles", mesh.triangles);
+  addArea(mesh.area_distortion, arrays);
+  std::vector<double> angles = mesh.angle_distortion;
+  std::transform(angles.begin(), angles.end(), angles.begin(),
+                 [](double ratio) { return std::log10(ratio); });
+  addScalar("angle", angles, arrays);
+  addScalar("residual", mesh.residual, arrays);
+  arrays.add("suspicious", 1, mesh.marks);
 }
 
-/// Bits of a number with two between each and the next.
-std::uint64_t spread(std::uint64_t bits) {
-  bits = (bits | bits << 32U) & 0x00ff00000000ffffU;
-  bits = (bits | bits << 16U) & 0x00ff0000ff0000ffU;
-  bits = (bits | bits << 8U) & 0xf00f00f00f00f00fU;
-  bits = (bits | bits << 4U) & 0x30c30c30c30c30c3U;
-  bits = (bits | bits << 2U) & 0x9249249249249249U;
-  return bits;
-}
-
-/// Moves removed points that are farther from the middle of the others' box than that box is long
-/// to this distance, in the same direction: one point far off would leave no steps for the object.
-///
-/// \param points indices into `is_removed`. \param numbers coordinates of each of these.
-void bringNear(const std::vector<std::size_t>& points, const std::vector<bool>& is_removed,
-               std::vector<double>& numbers) {
+/// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
+void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& arrays) {
+  const std::vector<int>& indices = cloud.reconstruction.getVertexIndices();
+  const auto input = [&](Index vertex) {
+    return static_cast<std::size_t>(indices[static_cast<std::size_t>(vertex)]);
+  };
   const auto place = [&](std::size_t i) {
-    return Eigen::Map<Eigen::Vector3d>(numbers.data() + 3 * i);
-  };
-  Eigen::AlignedBox3d box;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!is_removed[points[i]]) {
-      box.extend(place(i));
-    }
-  }
-  if (box.isEmpty()) {
-    return;
-  }
-  const Eigen::Vector3d middle = box.center();
-  const double most = box.diagonal().norm();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d off = place(i) - middle;
-    const double distance = off.norm();
-    if (is_removed[points[i]] && distance > most) {
-      place(i) = middle + most / distance * off;
-    }
-  }
-}
-
-/// The cloud, where the mesh does not show it: its points along a space-filling curve.
-void addCloud(const CloudReconstruction& cloud, std::vector<PackedArray>& arrays) {
-  const bool has_outliers = cloud.outliers && !cloud.outliers->indices.empty();
-  if (cloud.result().smoothed.cols() == 0 && !has_outliers) {
-    return;
-  }
-  std::vector<bool> is_removed(cloud.data.points.size(), false);
-  std::size_t removed = 0;
-  if (has_outliers) {
-    for (const int i : cloud.outliers->indices) {
-      is_removed[static_cast<std::size_t>(i)] = true;
-    }
-    removed = cloud.outliers->indices.size();
-  }
-  std::vector<std::size_t> points;
-  std::vector<double> numbers;
-  for (std::size_t i = 0; i < cloud.data.points.size(); ++i) {
     const Point& point = cloud.data.points[i];
-    if (std::all_of(point.begin(), point.end(), [](float x) { return std::isfinite(x); })) {
-      points.push_back(i);
-      numbers.insert(numbers.end(), point.begin(), point.end());
-    }
-  }
-  bringNear(points, is_removed, numbers);
-  const PackedArray all = quantized("cloud", PackedType::U16, 3, numbers);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-  order.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    order.emplace_back(spread(all.values[3 * i]) | spread(all.values[3 * i + 1]) << 1U |
-                           spread(all.values[3 * i + 2]) << 2U,
-                       static_cast<std::uint32_t>(i));
-  }
-  std::sort(order.begin(), order.end());
-  // Outliers are few and the point of it: all of them, and every so-manieth of the others.
-  const auto every = [](std::size_t count, std::size_t most) {
-    return std::max<std::size_t>(1, (count + most - 1) / most);
+    return Eigen::Vector3d(point[0], point[1], point[2]);
   };
-  const std::size_t step_removed = every(removed, most_cloud_points / 2);
-  const std::size_t step =
-      every(points.size() - std::min(removed, points.size()), most_cloud_points / 2);
-  PackedArray shown;
-  shown.name = all.name;
-  shown.type = all.type;
-  shown.components = all.components;
-  shown.min = all.min;
-  shown.max = all.max;
-  std::vector<std::uint32_t> flags;
-  std::size_t seen = 0;
-  std::size_t seen_removed = 0;
-  for (const auto& [key, i] : order) {
-    const bool is_out = is_removed[points[i]];
-    if (is_out ? seen_removed++ % step_removed != 0 : seen++ % step != 0) {
-      continue;
-    }
-    shown.values.insert(shown.values.end(),
-                        {all.values[3 * i], all.values[3 * i + 1], all.values[3 * i + 2]});
-    flags.push_back(is_out ? 1 : 0);
-  }
-  arrays.push_back(std::move(shown));
-  if (has_outliers) {
-    arrays.push_back(integers("cloud_removed", PackedType::U8, 1, std::move(flags)));
-  }
-}
-
-void addMesh(const ReportMesh& mesh, std::vector<PackedArray>& arrays) {
-  arrays.push_back(quantized("positions", PackedType::U16, 3, numbersOf(mesh.positions)));
-  arrays.push_back(quantized("sphere", PackedType::U16, numbersOf(mesh.sphere), -1.0, 1.0, 3));
-  arrays.push_back(integers("triangles", mesh.triangles));
-  if (!mesh.colors.empty()) {
-    std::vector<std::uint32_t> colors;
-    for (const Color& color : mesh.colors) {
+  if (!cloud.data.colors.empty()) {
+    std::vector<std::uint8_t> colors;
+    for (const Index vertex : mesh.vertices) {
+      const Color& color = cloud.data.colors[input(vertex)];
       colors.insert(colors.end(), color.begin(), color.begin() + 3);
     }
-    arrays.push_back(integers("colors", PackedType::U8, 3, std::move(colors)));
+    arrays.add("colors", 3, colors);
   }
-  arrays.push_back(areaDistortion(mesh.area_distortion));
-  arrays.push_back(angleDistortion(mesh.angle_distortion));
-  arrays.push_back(attribute("residual", mesh.residual));
-  arrays.push_back(
-      integers("suspicious", PackedType::U8, 1, {mesh.marks.begin(), mesh.marks.end()}));
+  const Eigen::AlignedBox3d box = boxOf(mesh.positions);
+  if (cloud.result().smoothed.cols() != 0) {
+    Positions points(3, mesh.positions.cols());
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+      points.col(static_cast<Eigen::Index>(i)) = place(input(mesh.vertices[i]));
+    }
+    arrays.addPoints("cloud", points, boxOf(points));
+  }
+  if (cloud.outliers && !cloud.outliers->indices.empty()) {
+    const std::size_t all = cloud.outliers->indices.size();
+    const std::size_t count = std::min(all, max_outliers);
+    Positions points(3, static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      points.col(static_cast<Eigen::Index>(i)) =
+          place(static_cast<std::size_t>(cloud.outliers->indices[i * all / count]));
+    }
+    // One far off comes to the side of a box around the mesh, where it can be seen.
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
+    arrays.addPoints("outliers", points, {box.min() - margin, box.max() + margin});
+  }
 }
 
-/// Adds the unfolding, and returns what there is to say about it.
-Json addHistory(const CloudReconstruction& cloud, std::vector<PackedArray>& arrays) {
+/// Adds the unfolding, and returns its frames.
+Json addHistory(const CloudReconstruction& cloud, Arrays& arrays) {
   const Result& result = cloud.result();
   const EmbeddingHistory& history = result.history;
   const std::size_t all = history.vertices.size();
   const std::size_t count =
-      std::min(all, std::max(least_history_vertices, result.vertexCount() / vertices_for_history));
+      std::min(all, std::max(min_history_vertices, result.vertexCount() / vertices_for_history));
   if (history.frames.empty() || count < 4) {
-    return nullptr;
+    return Json::array();
   }
   std::vector<Index> places(count);  // among the vertices of the history
   for (std::size_t i = 0; i < count; ++i) {
     places[i] = static_cast<Index>(i * all / count);
   }
-  const auto picked = [&](const Positions& of_history) {
-    Positions points(3, static_cast<Eigen::Index>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      points.col(static_cast<Eigen::Index>(i)) = of_history.col(places[i]);
-    }
-    return points;
-  };
-  const Triangles unordered = triangulateSphere(picked(history.frames.back().sphere)).triangles;
-  const MeshOrder order = traversalOrder(unordered, count);
-  std::vector<Index> reordered;
-  reordered.reserve(count);
-  for (const Index vertex : order.vertices) {
-    reordered.push_back(places[static_cast<std::size_t>(vertex)]);
+  std::vector<Index> ordered;
+  std::vector<Index> vertices;
+  for (const Index i : orderOnSphere(picked(history.frames.back().sphere, places))) {
+    ordered.push_back(places[static_cast<std::size_t>(i)]);
+    vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
   }
-  places = std::move(reordered);
-
-  const Positions vertices = vertexPositions(cloud);
-  Positions positions(3, static_cast<Eigen::Index>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    positions.col(static_cast<Eigen::Index>(i)) =
-        vertices.col(history.vertices[static_cast<std::size_t>(places[i])]);
-  }
-  arrays.push_back(integers("history_triangles", order.renumbered));
-  arrays.push_back(quantized("history_positions", PackedType::U16, 3, numbersOf(positions)));
+  const Positions positions = picked(vertexPositions(cloud), vertices);
+  arrays.addPoints("history_positions", positions, boxOf(positions));
+  arrays.addTriangles("history_triangles",
+                      triangulateSphere(picked(history.frames.back().sphere, ordered)).triangles);
   std::vector<double> directions;
   directions.reserve(3 * count * history.frames.size());
   Json frames = Json::array();
   for (const HistoryFrame& frame : history.frames) {
-    const Positions shown = picked(frame.sphere);
-    directions.insert(directions.end(), shown.data(), shown.data() + shown.size());
+    const std::vector<double> shown = numbersOf(picked(frame.sphere, ordered));
+    directions.insert(directions.end(), shown.begin(), shown.end());
     frames.push_back({{"level", frame.level},
                       {"nodes", frame.nodes},
                       {"step", nameOfStep(frame.step)},
                       {"iteration", frame.iteration},
                       {"residual", frame.residual ? Json(*frame.residual) : Json(nullptr)}});
   }
-  arrays.push_back(quantized("history_frames", PackedType::U16, directions, -1.0, 1.0, 3));
-  return {
-      {"vertices", count}, {"triangles", order.renumbered.cols()}, {"frames", std::move(frames)}};
-}
-
-Json describe(const std::vector<PackedArray>& arrays) {
-  Json json = Json::object();
-  for (const PackedArray& array : arrays) {
-    Json& entry = json[array.name];
-    entry["type"] = "u" + std::to_string(8 * static_cast<int>(array.type));
-    entry["components"] = array.components;
-    entry["count"] = array.rows();
-    if (!array.min.empty()) {
-      entry["min"] = array.min;
-      entry["max"] = array.max;
-    }
-  }
-  return json;
-}
-
-/// Some in even distances of the numbers of a long list, the first and the last among them.
-Json thinned(const Json& list) {
-  if (!list.is_array() || list.size() <= most_residuals) {
-    return list;
-  }
-  Json some = Json::array();
-  for (std::size_t i = 0; i < most_residuals; ++i) {
-    some.push_back(list[i * (list.size() - 1) / (most_residuals - 1)]);
-  }
-  return some;
-}
-
-/// The report without the rest of long lists, whose lengths it or the page tells elsewhere.
-Json shortened(Json report) {
-  const auto shorten = [](Json& list) {
-    if (list.is_array() && list.size() > most_listed) {
-      list.erase(list.begin() + static_cast<std::ptrdiff_t>(most_listed), list.end());
-    }
-  };
-  if (report.contains("graph")) {
-    shorten(report["graph"]["without_tangent_plane"]);
-    shorten(report["graph"]["bridges"]);
-  }
-  if (report.contains("outliers") && report["outliers"].is_object()) {
-    shorten(report["outliers"]["indices"]);
-  }
-  if (report.contains("residuals")) {
-    report["residuals"] = thinned(report["residuals"]);
-  }
-  return report;
-}
-
-/// JSON that does not end the element that holds it.
-std::string scriptText(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string escaped;
-  escaped.reserve(text.size());
-  for (const char c : text) {
-    // Only strings have it.
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
+  arrays.addDirections("history_frames", directions);
+  return frames;
 }
 
 /// A word as a POSIX shell takes it.
@@ -391,14 +320,14 @@ std::string parseHtmlReport(const CommandLine& command_line) {
   }
   if (reportPage().empty()) {
     throw UsageError("option -report: this program was built without the page of the report",
-                     "install npm and build again, or use -json");
+                     "install three.js (libjs-three) and build again, or use -json");
   }
   return file;
 }
 
 void keepForHtmlReport(ReconstructionSettings& settings) {
-  settings.options.history.vertices = most_history_vertices;
-  settings.options.history.frames = most_history_frames;
+  settings.options.history.vertices = max_history_vertices;
+  settings.options.history.frames = max_history_frames;
   settings.options.details = true;
 }
 
@@ -436,43 +365,39 @@ std::string repeatedCommand(const std::string& tool, const CommandLine& command_
 }
 
 void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportInput& input,
-                     std::size_t most_triangles) {
+                     std::size_t max_triangles) {
   const std::size_t place = page.find(marker);
   if (place == std::string_view::npos) {
     throw Failure("the page of the report has no place for its data",
                   "this should not happen: please report it");
   }
   const CloudReconstruction& cloud = *input.cloud;
-  std::vector<PackedArray> arrays;
-  const ReportMesh mesh = reportMesh(cloud, most_triangles, input.threads);
+  const ReportMesh mesh = reportMesh(cloud, max_triangles, input.threads);
+  Arrays arrays;
   addMesh(mesh, arrays);
-  addCloud(cloud, arrays);
+  addCloud(cloud, mesh, arrays);
+  // The sphere is shown turned so that its points are about where those of the object are.
+  const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false);
   Json json;
-  json["format"] = 1;
   json["tool"] = {{"name", input.tool}, {"version", SPHERICAL_PARAM_VERSION}};
   json["command"] = input.command;
-  json["report"] = shortened(input.report);
-  if (input.report.contains("residuals")) {
-    json["residual_count"] = input.report["residuals"].size();
-  }
+  json["report"] = input.report;
   json["mesh"] = {{"vertices", cloud.result().vertexCount()},
                   {"triangles", cloud.result().triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
-                  {"shown_triangles", mesh.triangles.cols()},
-                  {"decimated", mesh.decimated},
-                  {"sphere_of", "embedding"}};
-  json["history"] = addHistory(cloud, arrays);
-  json["arrays"] = describe(arrays);
+                  {"shown_triangles", mesh.triangles.cols()}};
+  json["outliers"] = cloud.outliers ? cloud.outliers->indices.size() : 0;
+  json["sphere_turn"] = Json::array();
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    json["sphere_turn"].push_back(turn(i / 3, i % 3));
+  }
+  json["frames"] = addHistory(cloud, arrays);
+  json["arrays"] = arrays.about();
 
   file.write(page.substr(0, place));
-  file.write("<script type=\"application/json\" id=\"report-data\">");
-  file.write(scriptText(json));
-  file.write("</script>\n");
-  for (const PackedArray& array : arrays) {
-    file.write("<script type=\"text/plain\" id=\"array-" + array.name + "\">");
-    file.write(textOf(array));
-    file.write("</script>\n");
-  }
+  file.write(element("program", reportProgram()));
+  file.write(element("data", json.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  file.write(arrays.elements());
   file.write(page.substr(place + marker.size()));
 }
 

@@ -13,8 +13,8 @@
 
 namespace spherical_param::tools {
 
-/// Triangles of a mesh up to which a page shows all of it.
-inline constexpr std::size_t kMostReportTriangles = 300000;
+/// Triangles of a mesh up to which a page shows all of it: it has about 12 bytes for each.
+inline constexpr std::size_t kMaxReportTriangles = 1000000;
 
 /// The line of -report.
 std::vector<OptionInfo> htmlReportOptions();
@@ -48,9 +48,9 @@ struct HtmlReportInput {
 /// Writes a page with all it needs: it opens in a browser, without any other file or the network.
 ///
 /// \param page           the page without its data. \see reportPage()
-/// \param most_triangles of the mesh that is shown.
+/// \param max_triangles of the mesh that is shown.
 /// \throw Failure if it cannot be stored.
 void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportInput& input,
-                     std::size_t most_triangles = kMostReportTriangles);
+                     std::size_t max_triangles = kMaxReportTriangles);
 
 }  // namespace spherical_param::tools

@@ -1,0 +1,288 @@
+// Reads the data, and puts the page together: first words, which need no WebGL, then the views.
+
+const outlier_color = '#e14614';
+const flag_kinds = [
+  { bit: 1, name: 'Self-intersection', color: '#d53c00' },
+  { bit: 2, name: 'Filled hole', color: '#006ebe' },
+  { bit: 4, name: 'Cut handle', color: '#c85aa5' },
+  { bit: 8, name: 'Bridge between parts', color: '#00966e' },
+  { bit: 16, name: "Edge outside the graph's 2-ring", color: '#d79600' },
+];
+
+/** The arrays of the data: {values: integers, numbers(), low, high}. */
+async function readArrays(about) {
+  const arrays = {};
+  for (const [name, { bits, components, min, max }] of Object.entries(about)) {
+    const buffer = await unpacked(`array-${name}`).arrayBuffer();
+    const values = new { 8: Uint8Array, 16: Uint16Array, 32: Uint32Array }[bits](buffer);
+    // Stored are differences to the row before.
+    for (let i = components; i < values.length; ++i) values[i] += values[i - components];
+    arrays[name] = {
+      values, low: min, high: max,
+      numbers: () => Float32Array.from(values, (value, i) => {
+        const c = i % components;
+        return min[c] + (value / (2 ** bits - 1)) * (max[c] - min[c]);
+      }),
+    };
+  }
+  return arrays;
+}
+
+/** 256 colours between some, evenly. */
+function palette(...colors) {
+  const stops = colors.map((color) => new THREE.Color(color));
+  const out = new Uint8Array(768);
+  for (let i = 0; i < 256; ++i) {
+    const at = (i / 255) * (stops.length - 1);
+    const stop = Math.min(Math.floor(at), stops.length - 2);
+    const { r, g, b } = stops[stop].clone().lerp(stops[stop + 1], at - stop);
+    out.set([255 * r, 255 * g, 255 * b], 3 * i);
+  }
+  return out;
+}
+
+const sequential = palette('#440154', '#3b528b', '#21918c', '#5ec962', '#fde725');
+const diverging = palette('#08519c', '#6baed6', '#ececec', '#fd8d3c', '#a63603');
+
+/** Places in a box around 0 as colours: neighbours look alike, distant places do not. */
+function placeColors(rows, box) {
+  return Uint8Array.from(rows, (x, i) => 255 * (0.6 + 0.36 * (x / box[i % 3])));
+}
+
+/** The ways to colour by, by key: {name, colors(), about, ends, text(share)}. */
+function makeModes(arrays, views) {
+  const scalar = (array, colors, more) => ({
+    colors: () => {
+      const out = new Uint8Array(3 * array.values.length);
+      array.values.forEach((q, v) => {
+        for (let c = 0; c < 3; ++c) out[3 * v + c] = colors[3 * q + c];
+      });
+      return out;
+    },
+    at: (share) => array.low[0] + share * (array.high[0] - array.low[0]),
+    array, ramp: colors, ...more,
+  });
+  const uniform = (level) => () => new Uint8Array(views.positions.length).fill(level);
+  return {
+    place: {
+      name: 'position on the sphere', colors: () => placeColors(views.sphere, [1, 1, 1]),
+      cells: true,
+      about: 'The same colour and the same cell of 15° mean the same place on the sphere.',
+    },
+    area: scalar(arrays.area, diverging, {
+      name: 'area distortion', about: 'Area on the sphere over area on the object, 1 on average.',
+      // Each side of 1 has half of the colours.
+      at: (share) => (2 * share - 1) * (share < 0.5 ? -arrays.area.low[0] : arrays.area.high[0]),
+      text: (x) => `×${number(2 ** x, 3)}`,
+    }),
+    angle: scalar(arrays.angle, sequential, {
+      name: 'angle distortion', about: 'Longest over shortest axis of what a small circle becomes.',
+      text: (x) => number(10 ** x, 3),
+    }),
+    residual: scalar(arrays.residual, sequential, {
+      name: 'residual', about: 'Distance of each point of the sphere from balance, in radii.',
+      text: (x) => number(10 ** x, 2),
+    }),
+    suspicious: {
+      name: 'suspicious triangles', colors: uniform(190),
+      about: 'Triangles to look at, each kind in its colour. The buttons below lead to them.',
+    },
+    ...(arrays.colors && { input: {
+      name: 'colours of the cloud', colors: () => arrays.colors.values,
+      about: 'The colours of the input.',
+    } }),
+    plain: { name: 'one colour', colors: uniform(185), about: '' },
+  };
+}
+
+function showLegend(mode) {
+  const shares = [0, 0.25, 0.5, 0.75, 1];
+  byId('legend').replaceChildren(make('div', {}, mode.about), mode.ramp ? make('div', {},
+    make('div', { class: 'ramp', style: { background: `linear-gradient(to right, ${
+      shares.flatMap((share) => [share, share + 0.125]).slice(0, 9).map((share) => {
+        const q = 3 * Math.round(255 * share);
+        return `rgb(${mode.ramp.subarray(q, q + 3).join(' ')})`;
+      }).join(', ')})` } }),
+    make('div', { class: 'ticks' },
+      shares.map((share) => make('span', {}, mode.text(mode.at(share)))))) : '');
+}
+
+/** Triangles of each kind in connected places, the largest first. */
+function findFlags(marks, triangles) {
+  return flag_kinds.map((kind) => {
+    const flagged = [];
+    marks.forEach((bits, t) => { if (bits & kind.bit) flagged.push(t); });
+    const parent = new Map();
+    const root = (v) => {
+      while ((parent.get(v) ?? v) !== v) v = parent.get(v);
+      return v;
+    };
+    for (const t of flagged) {
+      for (let k = 1; k < 3; ++k) parent.set(root(triangles[3 * t + k]), root(triangles[3 * t]));
+    }
+    const places = new Map();
+    for (const t of flagged) {
+      const place = root(triangles[3 * t]);
+      places.set(place, [...(places.get(place) ?? []), t]);
+    }
+    return { ...kind, triangles: flagged,
+      places: [...places.values()].sort((a, b) => b.length - a.length) };
+  }).filter((kind) => kind.triangles.length > 0);
+}
+
+function showFlags(kinds, views, select) {
+  byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:',
+    ...kinds.map((kind) => {
+      let next = 0;
+      return make('button', { type: 'button', 'data-bit': kind.bit, onclick: () => {
+        select('suspicious');
+        views.lookAt(views.triangles[3 * kind.places[next % kind.places.length][0]]);
+        ++next;
+      } }, make('span', { class: 'swatch', style: { background: kind.color } }),
+      `${kind.name}: ${counted(kind.triangles.length, 'triangle')} in ` +
+        counted(kind.places.length, 'place'));
+    }));
+}
+
+function describe(vertex, modes, views, arrays) {
+  if (vertex === null) return 'No vertex is marked.';
+  const place = arrays.positions.numbers().subarray(3 * vertex, 3 * vertex + 3);
+  return [`Vertex at (${Array.from(place, (x) => number(x)).join(', ')})`,
+    ...['area', 'angle', 'residual'].map((key) => {
+      const mode = modes[key];
+      return `${mode.name} ${mode.text(mode.at(mode.array.values[vertex] / 255))}`;
+    })].join(' · ');
+}
+
+/** The slider over the frames, the last place of which is the result. */
+function makePlayer(views, frames, changed) {
+  const slider = byId('frame');
+  const count = frames.length;
+  let playing = false;
+  slider.max = count;
+  const show = (at) => {
+    const is_result = at >= count;
+    const frame = frames[Math.min(Math.floor(at), count - 1)];
+    slider.value = Math.floor(at);
+    views.setFrame(is_result ? null : Math.min(at, count - 1));
+    byId('caption').textContent = is_result ? 'Result'
+      : `Frame ${Math.floor(at) + 1} of ${count} · level ${frame.level} · ` +
+        `${number(frame.nodes)} nodes · ${frame.step} ${frame.iteration}` +
+        (frame.residual === null ? '' : ` · residual ${number(frame.residual, 3)}`);
+    changed(is_result ? null : Math.floor(at));
+  };
+  const play = (on) => {
+    playing = on;
+    byId('play').textContent = on ? 'Pause' : 'Play';
+  };
+  byId('play').addEventListener('click', () => {
+    play(!playing);
+    let at = Number(slider.value) % count;
+    let before = null;
+    const step = (now) => {
+      if (!playing) return;
+      at += (Math.min(now - (before ?? now), 100) / 10000) * count; // ten seconds for all
+      before = now;
+      show(at);
+      if (at >= count) play(false);
+      else requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  });
+  const seek = (at) => {
+    play(false);
+    show(at);
+  };
+  slider.addEventListener('input', () => seek(Number(slider.value)));
+  byId('unfolding').hidden = false;
+  show(count);
+  return seek;
+}
+
+function showViews(data, arrays, context) {
+  const views = new Views(byId('canvas'), context, arrays, data.sphere_turn);
+  window.report_views = views; // for tests
+  const modes = makeModes(arrays, views);
+  const kinds = findFlags(arrays.suspicious.values, views.triangles);
+  const select = byId('color');
+  select.replaceChildren(...Object.entries(modes).map(([key, mode]) =>
+    make('option', { value: key }, mode.name)));
+  const unfolding = {
+    colors: () => placeColors(views.positions, views.box),
+    about: 'During the unfolding colours mean the position on the object. Parts of the sphere ' +
+      'that are inside out are dark.',
+  };
+  const paint = () => {
+    const mode = views.frame_at === null ? modes[select.value] : unfolding;
+    views.setColors(mode.colors(), mode.cells);
+    views.setFlags(mode === modes.suspicious ? kinds : []);
+    select.disabled = mode === unfolding;
+    showLegend(mode);
+  };
+  select.addEventListener('change', paint);
+  byId('wireframe').addEventListener('change', (event) =>
+    views.setWireframe(event.target.checked));
+  byId('reset').addEventListener('click', () => views.reset());
+  views.onMark = (vertex) => {
+    byId('readout').textContent = describe(vertex, modes, views, arrays);
+  };
+  views.onMark(null);
+  if (data.outliers > 0) {
+    byId('cloud-note').replaceChildren(
+      make('span', { class: 'swatch', style: { background: outlier_color } }),
+      `${counted(data.outliers, 'outlier')} left out`);
+  }
+
+  let seek = () => {};
+  if (views.unfolding) {
+    views.history_color.array.set(placeColors(views.history_places, views.box));
+    let shown;
+    const moveCursor = showCurve('residual', data.frames.map((frame) => frame.residual),
+      'frame of the unfolding', (frame) => seek(frame));
+    seek = makePlayer(views, data.frames, (frame) => {
+      moveCursor(frame);
+      const was_result = shown === null;
+      shown = frame;
+      if (was_result !== (frame === null) || byId('legend').childElementCount === 0) paint();
+    });
+  }
+  showFlags(kinds, views, (key) => {
+    seek(data.frames.length);
+    select.value = key;
+    paint();
+  });
+  paint();
+}
+
+async function main() {
+  const data = await unpacked('data').json();
+  showVerdict(data);
+  showTables(data);
+  showStages(data.report.stages ?? []);
+  if ((data.report.residuals ?? []).length > 1) {
+    showCurve('residual', data.report.residuals, 'iteration of the solver', () => {});
+  }
+  byId('content').hidden = false;
+
+  const note = (text) => {
+    byId('note').hidden = false;
+    byId('note').textContent = text;
+  };
+  if (data.mesh.shown_triangles < data.mesh.triangles) {
+    note(`The views show a reduced copy: ${counted(data.mesh.shown_vertices, 'vertex', 'vertices')} ` +
+      'of the mesh, triangulated anew on the sphere. The numbers are those of the whole mesh.');
+  }
+  const canvas = byId('canvas');
+  const context = canvas.getContext('webgl2', { antialias: true });
+  if (!context) {
+    byId('show').hidden = true;
+    note('The views need WebGL 2, which this browser does not offer here: try another one, or ' +
+      'switch on hardware acceleration in its settings.');
+  } else {
+    showViews(data, await readArrays(data.arrays), context);
+  }
+  byId('loading').hidden = true;
+  document.documentElement.dataset.report = context ? 'ready' : 'text';
+}
+
+main().catch((error) => fail(`The page failed: ${error.message ?? error}`));

@@ -1,0 +1,367 @@
+// Three views of one object, drawn by one WebGL context into the parts of one canvas. They share a
+// camera, and each has three.js' controls of it. A frame is drawn only when something changed.
+
+const view_names = ['mesh', 'cloud', 'sphere'];
+const field_of_view = 28; // degrees
+const start = new THREE.Vector3(0, -1, 0.25)
+  .setLength(1.04 / Math.sin((field_of_view * Math.PI) / 360)); // a ball of radius 1 fits
+
+/** Discs of a diameter in units of the object, or in pixels if `pixels` is given. */
+function discMaterial({ size = 0, pixels = 0, lit = false, color = '#ffffff', on_top = false }) {
+  return new THREE.ShaderMaterial({
+    vertexShader: `
+      uniform float size, pixels, scale;
+      varying vec3 shade;
+      void main() {
+        vec4 place = modelViewMatrix * vec4(position, 1.0);
+        gl_Position = projectionMatrix * place;
+        gl_PointSize = max(size * scale / -place.z, pixels);
+        float facing = dot(normalize(normalMatrix * normal), normalize(-place.xyz));
+        shade = ${lit ? 'color * (facing > 0.0 ? 0.45 + 0.6 * facing : 0.35)' : 'vec3(1.0)'};
+      }`,
+    fragmentShader: `
+      uniform vec3 tint;
+      varying vec3 shade;
+      void main() {
+        float radius = 2.0 * length(gl_PointCoord - 0.5);
+        if (radius > 1.0) discard;
+        gl_FragColor = vec4(${lit ? 'shade' : 'radius > 0.75 ? vec3(0.0) : tint'}, 1.0);
+      }`,
+    uniforms: {
+      size: { value: size }, pixels: { value: pixels * devicePixelRatio }, scale: { value: 1 },
+      tint: { value: new THREE.Color(color) },
+    },
+    vertexColors: lit ? THREE.VertexColors : THREE.NoColors,
+    depthTest: !on_top,
+    transparent: on_top, // drawn last
+  });
+}
+
+/**
+ * A lit surface. Where `cells.value` is 1, every other cell of 15 degrees of the sphere is darker;
+ * the attribute `place` is where a vertex is on it.
+ */
+function surfaceMaterial(options, cells) {
+  const material = new THREE.MeshPhongMaterial({
+    vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1, ...options,
+  });
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.cells = cells;
+    shader.vertexShader = `attribute vec3 place; varying vec3 v_place;
+      ${shader.vertexShader.replace('#include <color_vertex>', `$&
+        v_place = place;`)}`;
+    shader.fragmentShader = `uniform float cells; varying vec3 v_place;
+      ${shader.fragmentShader.replace('#include <color_fragment>', `$&
+        vec3 direction = normalize(v_place);
+        vec2 cell = floor(vec2(asin(direction.z), atan(direction.y, direction.x)) / radians(15.0));
+        diffuseColor.rgb *= 1.0 - 0.17 * cells * mod(cell.x + cell.y, 2.0);`)}`;
+  };
+  return material;
+}
+
+function geometryOf(attributes, index) {
+  const geometry = new THREE.BufferGeometry();
+  for (const [name, value] of Object.entries(attributes)) geometry.setAttribute(name, value);
+  if (index) geometry.setIndex(index);
+  return geometry;
+}
+
+const rowsOf = (array) => new THREE.BufferAttribute(array, 3);
+const colorsOf = (vertices) =>
+  new THREE.BufferAttribute(new Uint8Array(3 * vertices), 3, true).setUsage(THREE.DynamicDrawUsage);
+
+class Views {
+  constructor(canvas, context, arrays, sphere_turn) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
+    this.renderer.setPixelRatio(devicePixelRatio);
+    this.renderer.setScissorTest(true);
+    this.renderer.setClearColor(0, 0);
+    this.camera = new THREE.PerspectiveCamera(field_of_view, 1, 0.01, 50);
+    this.camera.up.set(0, 0, 1);
+    this.frame_at = null; // frame of the unfolding; null: the result
+    this.drawn = 0; // frames
+    this.makeScene(arrays);
+    const [a, b, c, d, e, f, g, h, i] = sphere_turn;
+    this.align = new THREE.Quaternion().setFromRotationMatrix(
+      new THREE.Matrix4().set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1));
+    if (arrays.history_frames) this.makeHistory(arrays);
+    this.target = new THREE.Vector3();
+    this.controls = view_names.map((name) => this.makeControls(name));
+    this.reset();
+    new ResizeObserver(() => this.request()).observe(canvas);
+  }
+
+  makeScene(arrays) {
+    const { low, high } = arrays.positions;
+    const center = low.map((x, c) => (x + high[c]) / 2);
+    const radius = Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) || 1;
+    /** Rows of points with the object's middle at 0 and the corners of its box at distance 1. */
+    this.normalized = (array) =>
+      array.numbers().map((x, i) => (x - center[i % 3]) / radius);
+    this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
+    this.positions = this.normalized(arrays.positions);
+    this.sphere = arrays.sphere.numbers();
+    this.triangles = arrays.triangles.values;
+    this.color = colorsOf(this.positions.length / 3);
+    this.cells = { value: 0 };
+
+    this.scene = new THREE.Scene();
+    this.light = new THREE.DirectionalLight(0xffffff, 0.75);
+    this.scene.add(new THREE.AmbientLight(0xffffff, 0.45), this.light, this.light.target);
+    this.groups = Object.fromEntries(view_names.map((name) => [name, new THREE.Group()]));
+    this.scene.add(...Object.values(this.groups));
+
+    const index = new THREE.BufferAttribute(this.triangles, 1);
+    const position = rowsOf(this.positions);
+    const place = rowsOf(this.sphere);
+    const mesh = geometryOf({ position, place, color: this.color }, index);
+    mesh.computeVertexNormals();
+    this.normal = mesh.getAttribute('normal');
+    this.surfaces = {
+      mesh: this.addSurface('mesh', mesh),
+      sphere: this.addSurface('sphere',
+        geometryOf({ position: place, normal: place, place, color: this.color }, index)),
+    };
+    let edges = 0;
+    for (let t = 0; t < this.triangles.length; t += 3) {
+      edges += this.vector(this.triangles[t]).distanceTo(this.vector(this.triangles[t + 1]));
+    }
+    this.edge = edges / (this.triangles.length / 3);
+    this.addPoints('cloud', {
+      position: arrays.cloud ? rowsOf(this.normalized(arrays.cloud)) : position,
+      normal: this.normal, color: this.color,
+    }, discMaterial({ size: 1.5 * this.edge, pixels: 1.5, lit: true }));
+    if (arrays.outliers) {
+      const points = rowsOf(this.normalized(arrays.outliers));
+      this.addPoints('cloud', { position: points, normal: points },
+        discMaterial({ pixels: 6, color: outlier_color }));
+    }
+    this.marks = Object.fromEntries(view_names.map((name) => [name,
+      this.addPoints(name, { position: rowsOf(new Float32Array(3)),
+        normal: rowsOf(new Float32Array(3)) },
+      discMaterial({ pixels: 13, color: '#ffd600', on_top: true }))]));
+    this.flags = [];
+  }
+
+  vector(vertex, rows = this.positions) {
+    return new THREE.Vector3().fromArray(rows, 3 * vertex);
+  }
+
+  /** Both sides of a surface, of which the inner is dark, and its edges. */
+  addSurface(name, geometry) {
+    const group = new THREE.Group();
+    group.add(
+      new THREE.Mesh(geometry, surfaceMaterial({ specular: 0x141414 }, this.cells)),
+      new THREE.Mesh(geometry, surfaceMaterial(
+        { color: 0x605858, specular: 0, side: THREE.BackSide }, this.cells)),
+      new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({
+        wireframe: true, color: 0, opacity: 0.3, transparent: true, depthWrite: false })));
+    group.children[2].visible = false;
+    this.add(name, group);
+    return group;
+  }
+
+  addPoints(name, attributes, material) {
+    return this.add(name, new THREE.Points(geometryOf(attributes), material));
+  }
+
+  add(name, object) {
+    // Nearly all is in sight: no need for bounds, which change with each frame of the unfolding.
+    object.traverse((part) => { part.frustumCulled = false; });
+    this.groups[name].add(object);
+    return object;
+  }
+
+  makeControls(name) {
+    const panel = byId(`view-${name}`);
+    const controls = new THREE.OrbitControls(this.camera, panel);
+    controls.target = this.target; // of all
+    controls.minDistance = 0.02;
+    controls.maxDistance = 20;
+    controls.screenSpacePanning = true;
+    controls.addEventListener('change', () => this.request());
+    // A click, which is no drag, marks a vertex.
+    let down = null;
+    panel.addEventListener('pointerdown', (event) => { down = event; });
+    panel.addEventListener('pointerup', (event) => {
+      if (down && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < 4) {
+        this.pick(name, panel, event);
+      }
+    });
+    return controls;
+  }
+
+  /** Marks the vertex next to the pointer. The cloud's points are those of the mesh. */
+  pick(name, panel, event) {
+    const rect = panel.getBoundingClientRect();
+    this.camera.aspect = rect.width / rect.height;
+    this.camera.updateProjectionMatrix();
+    this.scene.updateMatrixWorld();
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera({
+      x: (2 * (event.clientX - rect.left)) / rect.width - 1,
+      y: 1 - (2 * (event.clientY - rect.top)) / rect.height,
+    }, this.camera);
+    const surface = this.surfaces[name === 'sphere' ? 'sphere' : 'mesh'].children[0];
+    const [hit] = ray.intersectObject(surface);
+    if (!hit) return this.mark(null);
+    const rows = name === 'sphere' ? this.sphere : this.positions;
+    const at = surface.worldToLocal(hit.point.clone());
+    const distance = (vertex) => this.vector(vertex, rows).distanceTo(at);
+    return this.mark([hit.face.a, hit.face.b, hit.face.c]
+      .reduce((best, vertex) => (distance(vertex) < distance(best) ? vertex : best)));
+  }
+
+  /** Marks a vertex in all views; null: none. */
+  mark(vertex) {
+    for (const [name, points] of Object.entries(this.marks)) {
+      points.visible = vertex !== null && (name !== 'sphere' || this.frame_at === null);
+      if (vertex !== null) {
+        const position = points.geometry.getAttribute('position');
+        position.array.set(this.vector(vertex, name === 'sphere' ? this.sphere : this.positions)
+          .toArray());
+        position.needsUpdate = true;
+      }
+    }
+    this.marked = vertex;
+    this.onMark?.(vertex);
+    this.request();
+  }
+
+  /** Brings a vertex and its place on the sphere to the middle of the views. */
+  lookAt(vertex) {
+    const place = this.vector(vertex);
+    const normal = this.vector(vertex, this.normal.array).normalize();
+    const direction = this.vector(vertex, this.sphere).normalize().applyQuaternion(this.align);
+    this.groups.sphere.quaternion.setFromUnitVectors(direction, normal).multiply(this.align);
+    this.groups.sphere.position.copy(place).sub(normal);
+    this.target.copy(place);
+    this.camera.position.copy(place).addScaledVector(normal,
+      Math.min(Math.max(60 * this.edge, 0.1), start.length()));
+    this.mark(vertex);
+    this.controls[0].update();
+  }
+
+  reset() {
+    this.groups.sphere.quaternion.copy(this.align);
+    this.groups.sphere.position.set(0, 0, 0);
+    this.target.set(0, 0, 0);
+    this.camera.position.copy(start);
+    this.mark(null);
+    this.controls[0].update();
+  }
+
+  // --- looks
+
+  setColors(colors, cells) {
+    this.color.array.set(colors);
+    this.cells.value = cells ? 1 : 0;
+    this.color.needsUpdate = true;
+    this.request();
+  }
+
+  setWireframe(on) {
+    for (const surface of Object.values(this.surfaces)) surface.children[2].visible = on;
+    this.request();
+  }
+
+  /** Shows triangles in colours of their own: [{color, triangles}], the first over the others. */
+  setFlags(groups) {
+    for (const object of this.flags) {
+      object.parent.remove(object);
+      object.geometry.dispose();
+      object.material.dispose();
+    }
+    this.flags = groups.flatMap(({ color, triangles }, i) => ['mesh', 'sphere'].map((name) => {
+      const index = new Uint32Array(3 * triangles.length);
+      triangles.forEach((t, k) => index.set(this.triangles.subarray(3 * t, 3 * t + 3), 3 * k));
+      const { position, normal } = this.surfaces[name].children[0].geometry.attributes;
+      const object = new THREE.Mesh(
+        geometryOf({ position, normal }, new THREE.BufferAttribute(index, 1)),
+        new THREE.MeshPhongMaterial({ color, specular: 0, side: THREE.DoubleSide }));
+      object.renderOrder = groups.length - i;
+      return this.add(name, object);
+    }));
+    this.setFrame(this.frame_at);
+  }
+
+  // --- the unfolding
+
+  makeHistory(arrays) {
+    const places = arrays.history_positions;
+    this.history = arrays.history_frames.numbers();
+    this.history_places = this.normalized(places);
+    this.frame = rowsOf(new Float32Array(this.history_places.length));
+    this.history_color = colorsOf(this.history_places.length / 3);
+    this.unfolding = this.addSurface('sphere', geometryOf(
+      { position: this.frame, normal: this.frame, place: this.frame, color: this.history_color },
+      new THREE.BufferAttribute(arrays.history_triangles.values, 1)));
+    this.unfolding.children[2].visible = true; // colours alone hardly show how it moves
+    this.unfolding.visible = false;
+  }
+
+  /** Shows the sphere at a frame, or between two; null: the result. */
+  setFrame(at) {
+    this.frame_at = at;
+    if (at !== null) {
+      const out = this.frame.array;
+      const size = out.length;
+      const before = Math.floor(at) * size;
+      const after = Math.min(before + size, this.history.length - size);
+      const share = at % 1;
+      const place = new THREE.Vector3();
+      for (let i = 0; i < size; i += 3) {
+        place.fromArray(this.history, before + i)
+          .lerp(new THREE.Vector3().fromArray(this.history, after + i), share)
+          .normalize().toArray(out, i);
+      }
+      this.frame.needsUpdate = true;
+    }
+    if (this.unfolding) this.unfolding.visible = at !== null;
+    this.surfaces.sphere.visible = at === null;
+    for (const object of this.flags) {
+      if (object.parent === this.groups.sphere) object.visible = at === null;
+    }
+    this.marks.sphere.visible = at === null && this.marked !== null;
+    this.request();
+  }
+
+  // --- drawing
+
+  request() {
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame(() => {
+      this.requested = false;
+      this.draw();
+    });
+  }
+
+  draw() {
+    const all = this.canvas.getBoundingClientRect();
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (size.x !== Math.floor(all.width) || size.y !== Math.floor(all.height)) {
+      this.renderer.setSize(Math.floor(all.width), Math.floor(all.height), false);
+    }
+    this.light.position.set(-0.5, 0.7, 1).applyQuaternion(this.camera.quaternion);
+    for (const name of view_names) {
+      const rect = byId(`view-${name}`).getBoundingClientRect();
+      const part = [rect.left - all.left, all.bottom - rect.bottom, rect.width, rect.height];
+      this.renderer.setViewport(...part);
+      this.renderer.setScissor(...part);
+      this.camera.aspect = rect.width / rect.height;
+      this.camera.updateProjectionMatrix();
+      for (const other of view_names) this.groups[other].visible = other === name;
+      this.scene.traverse(({ material }) => {
+        if (material?.uniforms?.scale) {
+          material.uniforms.scale.value = (rect.height * devicePixelRatio) /
+            (2 * Math.tan((field_of_view * Math.PI) / 360));
+        }
+      });
+      this.renderer.render(this.scene, this.camera);
+    }
+    ++this.drawn;
+  }
+}
