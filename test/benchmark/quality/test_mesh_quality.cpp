@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -26,21 +25,20 @@ using spherical_param::Triangles;
 /// What differs from exact arithmetic on numbers around 1.
 constexpr double kRounding = 1e-12;
 
-Mesh meshOf(const std::vector<Vector3d>& points, const std::vector<std::array<Index, 3>>& faces) {
+/// Three corners for each triangle.
+Mesh meshOf(const std::vector<Vector3d>& points, const std::vector<Index>& corners) {
   Mesh mesh{Positions(3, static_cast<Eigen::Index>(points.size())),
-            Triangles(3, static_cast<Eigen::Index>(faces.size()))};
+            Eigen::Map<const Triangles>(corners.data(), 3,
+                                        static_cast<Eigen::Index>(corners.size() / 3))};
   for (std::size_t i = 0; i < points.size(); ++i)
     mesh.points.col(static_cast<Eigen::Index>(i)) = points[i];
-  for (std::size_t t = 0; t < faces.size(); ++t)
-    mesh.triangles.col(static_cast<Eigen::Index>(t)) << faces[t][0], faces[t][1], faces[t][2];
   return mesh;
 }
 
 /// Vertices +x, +y, -x, -y, +z, -z; triangles 0 to 3 are those at +z.
 Mesh octahedron() {
-  return meshOf(
-      {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-      {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}});
+  return meshOf({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+                {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5});
 }
 
 /// [0, 1]^3. Vertex x + 2 y + 4 z; the first two triangles are those of z = 0.
@@ -48,35 +46,20 @@ Mesh cube() {
   std::vector<Vector3d> points;
   for (int i = 0; i < 8; ++i)
     points.emplace_back(i % 2, i / 2 % 2, i / 4);
-  return meshOf(points, {{0, 2, 3},
-                         {0, 3, 1},
-                         {4, 5, 7},
-                         {4, 7, 6},
-                         {0, 1, 5},
-                         {0, 5, 4},
-                         {2, 6, 7},
-                         {2, 7, 3},
-                         {0, 4, 6},
-                         {0, 6, 2},
-                         {1, 3, 7},
-                         {1, 7, 5}});
+  return meshOf(points, {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                         2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5});
 }
 
-Mesh torus(int around, int across) {
-  std::vector<Vector3d> points;
-  std::vector<std::array<Index, 3>> faces;
-  const double turn = 2.0 * std::acos(-1.0);
-  for (int i = 0; i < around; ++i)
-    for (int j = 0; j < across; ++j) {
-      const double a = turn * i / around;
-      const double b = turn * j / across;
-      const double radius = 3.0 + std::cos(b);
-      points.emplace_back(radius * std::cos(a), radius * std::sin(a), std::sin(b));
-      const auto at = [&](int u, int v) { return u % around * across + v % across; };
-      faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return meshOf(points, faces);
+/// The connectivity of a torus, all vertices at one place.
+Mesh torus(Index around, Index across) {
+  std::vector<Index> corners;
+  const auto at = [&](Index u, Index v) { return u % around * across + v % across; };
+  for (Index i = 0; i < around; ++i)
+    for (Index j = 0; j < across; ++j)
+      corners.insert(corners.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j),
+                                     at(i + 1, j + 1), at(i, j + 1)});
+  return meshOf(std::vector<Vector3d>(static_cast<std::size_t>(around * across), Vector3d::Zero()),
+                corners);
 }
 
 Mesh together(const Mesh& a, const Mesh& b) {
@@ -86,11 +69,6 @@ Mesh together(const Mesh& a, const Mesh& b) {
   const Triangles shifted = b.triangles.array() + static_cast<Index>(a.points.cols());
   both.triangles << a.triangles, shifted;
   return both;
-}
-
-Mesh moved(Mesh mesh, const Vector3d& by) {
-  mesh.points.colwise() += by;
-  return mesh;
 }
 
 /// Without its first triangles.
@@ -117,17 +95,9 @@ TEST(MeshQuality, OtherSurfacesAreNoSpheres) {
   EXPECT_FALSE(isClosedManifoldGenus0(together(octahedron(), octahedron())));
   EXPECT_FALSE(isClosedManifoldGenus0(without(octahedron(), 1)));
   // The projective plane: the icosahedron with opposite vertices identified.
-  EXPECT_FALSE(
-      isClosedManifoldGenus0(meshOf(std::vector<Vector3d>(6, Vector3d::Zero()), {{0, 1, 2},
-                                                                                 {0, 2, 3},
-                                                                                 {0, 3, 4},
-                                                                                 {0, 4, 5},
-                                                                                 {0, 5, 1},
-                                                                                 {1, 2, 4},
-                                                                                 {2, 3, 5},
-                                                                                 {3, 4, 1},
-                                                                                 {4, 5, 2},
-                                                                                 {5, 1, 3}})));
+  EXPECT_FALSE(isClosedManifoldGenus0(meshOf(
+      std::vector<Vector3d>(6, Vector3d::Zero()),
+      {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5, 0, 5, 1, 1, 2, 4, 2, 3, 5, 3, 4, 1, 4, 5, 2, 5, 1, 3})));
 }
 
 TEST(MeshQuality, MeshesThatAreNoManifoldsAreNoSpheres) {
@@ -176,19 +146,18 @@ TEST(MeshQuality, AFlippedEdgeIsNotReproduced) {
 
 TEST(MeshQuality, SmallestAnglesOfIsoscelesTriangles) {
   std::vector<Vector3d> points = {{-1, 0, 0}, {1, 0, 0}};
-  std::vector<std::array<Index, 3>> faces;
+  std::vector<Index> corners;
   for (const double angle : {45.0, 5.0, 0.5, 0.0}) {
     points.emplace_back(0.0, std::tan(angle * std::acos(-1.0) / 180.0), 0.0);
-    faces.push_back({0, 1, static_cast<Index>(points.size() - 1)});
+    corners.insert(corners.end(), {0, 1, static_cast<Index>(points.size() - 1)});
   }
-  const TriangleShapes found = measureTriangleShapes(meshOf(points, faces));
+  const TriangleShapes found = measureTriangleShapes(meshOf(points, corners));
   EXPECT_NEAR(found.min_angle_mean, 50.5 / 4.0, 100.0 * kRounding);
   EXPECT_DOUBLE_EQ(found.below_10_percent, 75.0);
 }
 
 TEST(MeshQuality, DistancesOfShiftedAndTiltedSquares) {
-  const Mesh square =
-      meshOf({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+  const Mesh square = meshOf({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {0, 1, 2, 0, 2, 3});
   const double percent = 100.0 / std::sqrt(8.0);
   Mesh shifted = square;
   shifted.points.row(2).array() += 0.25;
@@ -231,7 +200,7 @@ TEST(MeshQuality, NearestPointsAreThoseOfBruteForce) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto point = [&] { return Vector3d(uniform(random), uniform(random), uniform(random)); };
   std::vector<Vector3d> points;
-  std::vector<std::array<Index, 3>> faces;
+  std::vector<Index> corners;
   for (Index t = 0; t < 200; ++t) {
     // Of all sizes, some of them thin, some without any area.
     const Vector3d a = point();
@@ -240,13 +209,13 @@ TEST(MeshQuality, NearestPointsAreThoseOfBruteForce) {
                        : t % 7 == 0 ? b
                                     : Vector3d(a + 0.3 * point());
     points.insert(points.end(), {a, b, c});
-    faces.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    corners.insert(corners.end(), {3 * t, 3 * t + 1, 3 * t + 2});
   }
   const Positions queries = 1.5 * Positions::Random(3, 60);
-  const std::vector<double> found = distancesTo(meshOf(points, faces), queries);
+  const std::vector<double> found = distancesTo(meshOf(points, corners), queries);
   for (std::size_t i = 0; i < found.size(); ++i) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t t = 0; t < faces.size(); ++t)
+    for (std::size_t t = 0; t < corners.size() / 3; ++t)
       if (t % 3 == 0 || t % 7 != 0)
         nearest = std::min(nearest,
                            distanceToTriangle(queries.col(static_cast<Eigen::Index>(i)),
@@ -257,7 +226,7 @@ TEST(MeshQuality, NearestPointsAreThoseOfBruteForce) {
 }
 
 TEST(MeshQuality, AMeshWithoutAreaHasNoDistances) {
-  const Mesh line = meshOf({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}});
+  const Mesh line = meshOf({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {0, 1, 2});
   EXPECT_FALSE(measureDistances(line, cube(), 10));
   EXPECT_FALSE(measureDistances(cube(), line, 10));
 }

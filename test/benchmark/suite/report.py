@@ -79,7 +79,7 @@ def write_report(folder, provenance, sections):
     for section in sections:
         lines.append(f"## {section.title}\n")
         for part in section.parts:
-            lines.append(part + "\n" if isinstance(part, str) else part.markdown())
+            lines.append(part.strip() + "\n" if isinstance(part, str) else part.markdown())
             if isinstance(part, Table):
                 tables[part.name] = part
                 part.write_csv(folder / f"{part.name}.csv")
