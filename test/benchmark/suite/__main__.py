@@ -25,7 +25,7 @@ class Context:
         self.out = arguments.out
         self.work = pathlib.Path(work)
         self.quick, self.large = arguments.quick, arguments.large
-        self.programs = Programs(arguments.build / "bin", self.work, self.choose(20000, 100000))
+        self.programs = Programs(arguments.build / "bin", self.work, self.choose(10000, 50000))
         self.models = load_clouds(arguments.models) if arguments.models else []
         self.started = time.monotonic()
 

@@ -112,7 +112,7 @@ def _draw_residuals(context, name, title, histories, over_time=True):
 
 def figures6_and_7(context):
     cloud = context.programs.scan(context.choose("head_2000", "max"))
-    count, long = context.choose((100, 400), (1600, 20000))
+    count, long = context.choose((100, 400), (1600, 10000))
     knn = ("-graph", "knn", "-k", 25)
 
     def history(label, *options, ours=False):

@@ -56,7 +56,7 @@ def require(command, threads=None):
     return done
 
 
-def in_turn(commands, repeats, timeout=None, long_run=2.0):
+def in_turn(commands, repeats, timeout=None, long_run=1.0):
     """A list of runs for each command. In turn, so that another load hits all of them alike.
 
     A command that takes longer than `long_run` seconds, or fails, is not repeated.
