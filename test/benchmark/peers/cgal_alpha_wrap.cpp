@@ -1,5 +1,4 @@
-#include "cgal_conversions.h"
-#include "cgal_methods.h"
+#include "cgal_peer.h"
 
 #include <CGAL/alpha_wrap_3.h>
 #include <CGAL/compute_average_spacing.h>
@@ -9,20 +8,17 @@
 
 namespace spherical_param::benchmark {
 
-PeerResult cgalAlphaWrap(const Points& points) {
-  // Fine enough to be compared. With less, the wrap slips in between the points of many clouds.
+PeerResult cgalAlphaWrap(const Positions& points) {
+  // Fine enough to be compared. With less, the wrap gets in between the points of many clouds.
   constexpr double alpha_per_spacing = 4.0;
   constexpr double alpha_per_offset = 30.0;  // as in the examples of CGAL's manual
   const std::vector<Kernel::Point_3> vertices = toCgal(points);
   const double alpha = alpha_per_spacing * CGAL::compute_average_spacing<CGAL::Sequential_tag>(
-                                               vertices, cgal_spacing_neighbors);
+                                               vertices, kSpacingNeighbors);
   SurfaceMesh mesh;
   CGAL::alpha_wrap_3(vertices, alpha, alpha / alpha_per_offset, mesh);
-  PeerResult result;
-  result.mesh = fromCgal(mesh);
-  result.parameters = "alpha 4 average spacings of " + std::to_string(cgal_spacing_neighbors) +
-                      " neighbours, offset alpha / 30; 1 thread";
-  return result;
+  return {fromCgal(mesh), "alpha 4 average spacings of " + std::to_string(kSpacingNeighbors) +
+                              " neighbours, offset alpha / 30; 1 thread"};
 }
 
 }  // namespace spherical_param::benchmark

@@ -18,41 +18,36 @@ namespace {
 
 using namespace spherical_param::benchmark;
 using open3d::geometry::PointCloud;
+using spherical_param::Positions;
 
 constexpr int normal_neighbors = 30;  // default of Open3D
 
 const std::string normals_parameters =
     "EstimateNormals " + std::to_string(normal_neighbors) +
     " neighbours on all cores, OrientNormalsConsistentTangentPlane " +
-    std::to_string(orientation_neighbors) + " neighbours on 1 thread";
+    std::to_string(kOrientationNeighbors) + " neighbours on 1 thread";
 
-PointCloud estimateNormals(const Points& points) {
+PointCloud estimateNormals(const Positions& points) {
   PointCloud cloud;
-  cloud.points_.reserve(points.size());
-  for (const auto& point : points) {
-    cloud.points_.emplace_back(point[0], point[1], point[2]);
-  }
+  for (const auto& point : points.colwise())
+    cloud.points_.emplace_back(point);
   cloud.EstimateNormals(open3d::geometry::KDTreeSearchParamKNN(normal_neighbors));
-  cloud.OrientNormalsConsistentTangentPlane(orientation_neighbors);
+  cloud.OrientNormalsConsistentTangentPlane(kOrientationNeighbors);
   return cloud;
 }
 
-spherical_param::tools::TriangleMesh toMesh(const open3d::geometry::TriangleMesh& surface) {
-  spherical_param::tools::TriangleMesh mesh;
-  mesh.vertices.points.reserve(surface.vertices_.size());
-  for (const Eigen::Vector3d& vertex : surface.vertices_) {
-    mesh.vertices.points.push_back(
-        spherical_param::tools::toPoint({vertex.x(), vertex.y(), vertex.z()}));
-  }
-  mesh.triangles.reserve(surface.triangles_.size());
-  for (const Eigen::Vector3i& triangle : surface.triangles_) {
-    mesh.triangles.push_back({triangle.x(), triangle.y(), triangle.z()});
-  }
+Mesh toMesh(const open3d::geometry::TriangleMesh& surface) {
+  Mesh mesh{spherical_param::Positions(3, surface.vertices_.size()),
+            spherical_param::Triangles(3, surface.triangles_.size())};
+  for (std::size_t v = 0; v < surface.vertices_.size(); ++v)
+    mesh.points.col(static_cast<Eigen::Index>(v)) = surface.vertices_[v];
+  for (std::size_t t = 0; t < surface.triangles_.size(); ++t)
+    mesh.triangles.col(static_cast<Eigen::Index>(t)) = surface.triangles_[t];
   return mesh;
 }
 
 /// Radii as in Open3D's tutorial on surface reconstruction.
-PeerResult ballPivoting(const Points& points) {
+PeerResult ballPivoting(const Positions& points) {
   PeerResult result;
   Stopwatch stopwatch;
   const PointCloud cloud = estimateNormals(points);
@@ -70,7 +65,7 @@ PeerResult ballPivoting(const Points& points) {
   return result;
 }
 
-PeerResult poisson(const Points& points) {
+PeerResult poisson(const Positions& points) {
   PeerResult result;
   Stopwatch stopwatch;
   const PointCloud cloud = estimateNormals(points);
@@ -99,9 +94,6 @@ void letWaitingThreadsSleep(char** argv) {
 
 int main(int argc, char** argv) {
   letWaitingThreadsSleep(argv);
-  return runPeer(argc, argv,
-                 {"benchmark_peer_open3d",
-                  "Open3D " OPEN3D_VERSION,
-                  {{"ball_pivoting", "Open3D ball pivoting", true, ballPivoting},
-                   {"poisson", "Open3D Poisson", false, poisson}}});
+  return runPeer(argc, argv, "Open3D " OPEN3D_VERSION,
+                 {{"ball_pivoting", ballPivoting}, {"poisson", poisson}});
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/point_data.h"
+#include "ply_file.h"
 
 #include <chrono>
 #include <string>
@@ -8,32 +8,20 @@
 
 namespace spherical_param::benchmark {
 
-using Points = std::vector<tools::Point>;
-
-/// Neighbours along which all libraries turn normals to one side. The 18 to 100 of their manuals
-/// connect sheets of the surface that are close to each other, and whole parts get turned.
-constexpr int orientation_neighbors = 10;
+/// Neighbours along which all libraries orient normals. The 18 to 100 of their manuals connect
+/// sheets of the surface that are close to each other, which orients whole parts the wrong way.
+constexpr int kOrientationNeighbors = 10;
 
 /// What a method of a library makes of points.
 struct PeerResult {
-  tools::TriangleMesh mesh;      ///< vertices that belong to no triangle are allowed
+  Mesh mesh;                     ///< vertices without triangles are allowed
   std::string parameters;        ///< all that was set, in one line
-  double normals_seconds = 0.0;  ///< estimating and orienting them [s], 0 if there are none
+  double normals_seconds = 0.0;  ///< to estimate and orient normals, if the method needs them [s]
 };
 
-/// A method of a library, as the benchmark knows it.
 struct PeerMethod {
   std::string name;
-  std::string label;
-  bool through_points = false;  ///< the vertices of the mesh are points of the input
-  PeerResult (*reconstruct)(const Points& points) = nullptr;
-};
-
-/// A library and its methods.
-struct Peer {
-  std::string tool;     ///< name of the executable
-  std::string library;  ///< with version
-  std::vector<PeerMethod> methods;
+  PeerResult (*reconstruct)(const Positions& points) = nullptr;
 };
 
 /// Measures wall time.
@@ -41,19 +29,20 @@ class Stopwatch {
 public:
   /// Time since the construction or the last call [s].
   double lap() {
-    const Clock::time_point now = Clock::now();
-    const std::chrono::duration<double> seconds = now - begin_;
-    begin_ = now;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
+    begin_ = std::chrono::steady_clock::now();
     return seconds.count();
   }
 
 private:
-  using Clock = std::chrono::steady_clock;
-
-  Clock::time_point begin_ = Clock::now();
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// The main() of all peers: reads the points, reconstructs, writes the mesh, prints the report.
-int runPeer(int argc, char** argv, const Peer& peer);
+/// The main() of all peers, PROGRAM METHOD POINTS.ply MESH.ply REPORT.json: reads the points,
+/// reconstructs, writes the mesh and a report.
+///
+/// \param library with its version.
+int runPeer(int argc, char** argv, const std::string& library,
+            const std::vector<PeerMethod>& methods);
 
 }  // namespace spherical_param::benchmark

@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Triangles that are thinner than this part of their length have no plane in double precision.
-/// They are no nearer to anything than their neighbours along the longest side.
+/// Triangles that are thinner than this fraction of their length, needles, have no plane in double
+/// precision. They are left out: their neighbours along the longest side are as near.
 constexpr double kNeedle = 1e-9;
 
 /// The area of each triangle, its longest side and its unit normal, zero where there is no area.
@@ -68,14 +68,14 @@ double uniform(std::mt19937_64& random) {
 
 /// One sample in each of `count` parts of equal area; in its triangle at random (R. Osada et al.,
 /// "Shape Distributions", 2002, equation 1).
-Samples spread(const Mesh& mesh, const Eigen::VectorXd& areas, Count count, std::uint64_t seed) {
+Samples spread(const Mesh& mesh, const Eigen::VectorXd& areas, int count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const double part = areas.sum() / static_cast<double>(count);
   Samples samples{Positions(3, count), {}};
   samples.triangles.reserve(static_cast<std::size_t>(count));
   Eigen::Index t = 0;
   double before = 0.0;  // area of the triangles before t
-  for (Count i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i) {
     const double place = (static_cast<double>(i) + uniform(random)) * part;
     while (t + 1 < areas.size() && before + areas[t] <= place)
       before += areas[t++];
@@ -96,7 +96,7 @@ struct Nearest {
 };
 
 /// The nearest point of a triangle that is no needle (C. Ericson, "Real-Time Collision Detection",
-/// 2005, section 5.1.5): which corner, side or inner part it is in is told by signs of products.
+/// 2005, section 5.1.5). Signs of products tell the corner, the side or the inside.
 Vector3d nearestPoint(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d ab = b - a;
   const Vector3d ac = c - a;
@@ -128,8 +128,7 @@ Vector3d nearestPoint(const Vector3d& p, const Vector3d& a, const Vector3d& b, c
 
 using Tree = Eigen::KdBVH<double, 3, Eigen::Index>;
 
-/// Finds nearest points with Eigen's tree of bounding boxes. The locators of VTK are grids, and
-/// take minutes where the meshes are far from each other.
+/// Finds nearest points with Eigen's tree of bounding boxes.
 class Surface {
 public:
   Surface(const Mesh& mesh, const Faces& faces) : mesh_(mesh) {
@@ -183,82 +182,60 @@ private:
 /// What the samples of one mesh tell about the other.
 struct OneWay {
   double largest = 0.0;
-  double sum = 0.0;
   double sum_of_squares = 0.0;
   double sum_of_angles = 0.0;  ///< [degrees]
-  Count angles = 0;
-  Count angles_over_30 = 0;
+  int angles = 0;
 };
 
-/// Positions of the vertices that triangles name, degenerate ones too.
-Positions verticesOf(const Mesh& mesh) {
-  std::vector<char> used(static_cast<std::size_t>(mesh.points.cols()), 0);
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      used[static_cast<std::size_t>(mesh.triangles(k, t))] = 1;
-  Positions vertices(3, std::count(used.begin(), used.end(), 1));
-  Eigen::Index end = 0;
-  for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v] != 0)
-      vertices.col(end++) = mesh.points.col(static_cast<Eigen::Index>(v));
-  return vertices;
-}
-
 OneWay compare(const Mesh& from, const Faces& from_faces, const Mesh& to, const Faces& to_faces,
-               Count sample_count, std::uint64_t seed) {
-  constexpr double half_turn = 180.0;
-  const double pi = std::acos(-1.0);
+               int count, std::uint64_t seed) {
+  const double degrees = 180.0 / std::acos(-1.0);
   const Surface surface(to, to_faces);
-  const Samples samples = spread(from, from_faces.areas, sample_count, seed);
+  const Samples samples = spread(from, from_faces.areas, count, seed);
   OneWay found;
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
     const Nearest nearest = surface.nearest(samples.points.col(i));
-    const double distance = std::sqrt(nearest.squared_distance);
-    found.largest = std::max(found.largest, distance);
-    found.sum += distance;
+    found.largest = std::max(found.largest, nearest.squared_distance);
     found.sum_of_squares += nearest.squared_distance;
     const Vector3d normal = from_faces.normals.col(samples.triangles[static_cast<std::size_t>(i)]);
     const Vector3d other = to_faces.normals.col(nearest.triangle);
     if (normal.isZero(0.0) || other.isZero(0.0))
       continue;
-    const double angle = std::acos(std::min(1.0, std::abs(normal.dot(other)))) * half_turn / pi;
-    found.sum_of_angles += angle;
-    found.angles_over_30 += angle > 30.0 ? 1 : 0;
+    found.sum_of_angles += degrees * std::acos(std::min(1.0, std::abs(normal.dot(other))));
     ++found.angles;
   }
-  const Positions vertices = verticesOf(from);
-  for (Eigen::Index i = 0; i < vertices.cols(); ++i)
-    found.largest =
-        std::max(found.largest, std::sqrt(surface.nearest(vertices.col(i)).squared_distance));
+  std::vector<char> done(static_cast<std::size_t>(from.points.cols()), 0);
+  for (const Index v : from.triangles.reshaped())
+    if (done[static_cast<std::size_t>(v)]++ == 0)
+      found.largest = std::max(found.largest, surface.nearest(from.points.col(v)).squared_distance);
+  found.largest = std::sqrt(found.largest);
   return found;
 }
 
 }  // namespace
 
-double Distances::bothHausdorff() const {
-  return std::max(hausdorff.mesh_to_truth, hausdorff.truth_to_mesh);
+std::vector<double> distancesTo(const Mesh& mesh, const Positions& points) {
+  const Surface surface(mesh, Faces(mesh));
+  std::vector<double> distances;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    distances.push_back(std::sqrt(surface.nearest(points.col(i)).squared_distance));
+  return distances;
 }
 
-std::optional<Distances> measureDistances(const Mesh& mesh, const Mesh& truth,
-                                          const DistanceOptions& options) {
+std::optional<Distances> measureDistances(const Mesh& mesh, const Mesh& truth, int samples,
+                                          std::uint64_t seed) {
   const Faces faces(mesh);
-  const Faces truth_faces(truth);
-  if (faces.allNeedles() || truth_faces.allNeedles())
+  const Faces true_faces(truth);
+  if (faces.allNeedles() || true_faces.allNeedles())
     return std::nullopt;
-  const OneWay there = compare(mesh, faces, truth, truth_faces, options.samples, options.seed);
-  const OneWay back = compare(truth, truth_faces, mesh, faces, options.samples, options.seed + 1);
-  const auto samples = static_cast<double>(options.samples);
-  const auto angles = static_cast<double>(std::max<Count>(1, there.angles + back.angles));
-  Distances distances;
-  distances.hausdorff = {there.largest, back.largest};
-  distances.rms = {std::sqrt(there.sum_of_squares / samples),
-                   std::sqrt(back.sum_of_squares / samples)};
-  distances.both_rms = std::sqrt((there.sum_of_squares + back.sum_of_squares) / (2.0 * samples));
-  distances.both_mean = (there.sum + back.sum) / (2.0 * samples);
-  distances.normal_deviation = (there.sum_of_angles + back.sum_of_angles) / angles;
-  distances.normal_deviation_over_30 =
-      static_cast<double>(there.angles_over_30 + back.angles_over_30) / angles;
-  return distances;
+  const OneWay there = compare(mesh, faces, truth, true_faces, samples, seed);
+  const OneWay back = compare(truth, true_faces, mesh, faces, samples, seed + 1);
+  const double percent =
+      100.0 / (truth.points.rowwise().maxCoeff() - truth.points.rowwise().minCoeff()).norm();
+  return Distances{
+      percent * std::max(there.largest, back.largest),
+      percent * std::sqrt((there.sum_of_squares + back.sum_of_squares) / (2.0 * samples)),
+      (there.sum_of_angles + back.sum_of_angles) / std::max(1, there.angles + back.angles)};
 }
 
 }  // namespace spherical_param::benchmark

@@ -36,11 +36,11 @@ Sides sidesOf(const Positions& points, const Triangles& triangles, Eigen::Index 
   return {points.col(triangles(1, t)) - corner, points.col(triangles(2, t)) - corner};
 }
 
-/// A triangle's value and its weight.
+/// The value of a triangle and its weight.
 using Weighted = std::pair<double, double>;
 
-/// The least value up to which there is a share of all weight.
-double percentile(std::vector<Weighted>& values, double share) {
+/// The smallest value up to which there is a fraction of all weight.
+double percentile(std::vector<Weighted>& values, double fraction) {
   std::sort(values.begin(), values.end());
   double total = 0.0;
   for (const auto& [value, weight] : values)
@@ -48,15 +48,15 @@ double percentile(std::vector<Weighted>& values, double share) {
   double sum = 0.0;
   for (const auto& [value, weight] : values) {
     sum += weight;
-    if (sum >= share * total)
+    if (sum >= fraction * total)
       return value;
   }
   return values.back().first;
 }
 
-/// Least distance of a corner of a spherical triangle from the great circle through the others [as
-/// sine], negative if the triangle is seen clockwise from outside.
-double leastAltitude(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
+/// Smallest distance of a corner of a spherical triangle from the great circle through the others
+/// [as sine], negative if the triangle is seen clockwise from outside.
+double smallestAltitude(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
   const Sides sides = sidesOf(sphere, triangles, t);
   const Vector3d corner = sphere.col(triangles(0, t));
   const Vector3d next = sphere.col(triangles(1, t));
@@ -67,9 +67,15 @@ double leastAltitude(const Positions& sphere, const Triangles& triangles, Eigen:
   return widest > 0.0 ? corner.dot(sides.first.cross(sides.second)) / widest : 0.0;
 }
 
-/// A triangle whose least altitude is not more than this may have been turned over by the rounding
-/// to float alone. Coordinates up to 1 are rounded by 2^-25 at most, positions by sqrt(3) times
-/// that; and an altitude changes by what its corner and the side opposite to it move.
+/// Six times the volume of the tetrahedron of a triangle and an apex.
+double signedVolume(const Mesh& mesh, Eigen::Index t, const Vector3d& apex) {
+  const Sides sides = sidesOf(mesh.points, mesh.triangles, t);
+  return (mesh.points.col(mesh.triangles(0, t)) - apex).dot(sides.first.cross(sides.second));
+}
+
+/// A triangle whose smallest altitude is not more than this may have been turned over by the
+/// rounding to float alone. Coordinates up to 1 are rounded by 2^-25 at most, positions by sqrt(3)
+/// times that; and an altitude changes by what its corner and the side opposite to it move.
 constexpr double kRoundedAway = 0x1p-23;
 
 }  // namespace
@@ -77,22 +83,24 @@ constexpr double kRoundedAway = 0x1p-23;
 MapDistortion measureMapDistortion(const Mesh& mesh, const Positions& on_sphere) {
   // A length that is only nearly 1 would tilt small triangles.
   const Positions sphere = on_sphere.colwise().normalized();
-  const double outward = signedVolume(mesh, boundsOf(mesh).center()) < 0.0 ? -1.0 : 1.0;
+  const Vector3d center = mesh.points.rowwise().mean();
+  double volume = 0.0;
   double area_in_space = 0.0;
   double area_on_sphere = 0.0;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     area_in_space += sidesOf(mesh.points, mesh.triangles, t).area();
     area_on_sphere += sidesOf(sphere, mesh.triangles, t).area();
+    volume += signedVolume(mesh, t, center);
   }
+  const double outward = volume < 0.0 ? -1.0 : 1.0;
 
   MapDistortion distortion;
   std::vector<Weighted> angles;
-  std::vector<Weighted> areas;
   double weights = 0.0;
   double angle_sum = 0.0;
   double area_sum = 0.0;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const double altitude = outward * leastAltitude(sphere, mesh.triangles, t);
+    const double altitude = outward * smallestAltitude(sphere, mesh.triangles, t);
     if (!(std::abs(altitude) > kRoundedAway)) {
       ++distortion.collapsed_triangles;
       continue;
@@ -110,7 +118,6 @@ MapDistortion measureMapDistortion(const Mesh& mesh, const Positions& on_sphere)
     if (!std::isfinite(angle) || !std::isfinite(area))
       continue;
     angles.emplace_back(angle, weight);
-    areas.emplace_back(area, weight);
     weights += weight;
     angle_sum += weight * angle;
     area_sum += weight * area * area;
@@ -118,11 +125,8 @@ MapDistortion measureMapDistortion(const Mesh& mesh, const Positions& on_sphere)
   if (angles.empty())
     return distortion;
   distortion.angle_mean = angle_sum / weights;
-  distortion.angle_median = percentile(angles, 0.5);
   distortion.angle_p95 = percentile(angles, 0.95);
   distortion.area_rms_log2 = std::sqrt(area_sum / weights);
-  distortion.area_p05_log2 = percentile(areas, 0.05);
-  distortion.area_p95_log2 = percentile(areas, 0.95);
   return distortion;
 }
 

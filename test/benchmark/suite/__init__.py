@@ -1,1 +1,1 @@
-"""The benchmark suite: the paper's tables and figures, quality, scaling and peers in one report."""
+"""What tools/benchmark.sh runs: a module for each section of the report."""

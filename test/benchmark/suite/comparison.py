@@ -3,270 +3,99 @@
 import json
 import statistics
 
-from .pictures import Panels
-from .processes import in_turn, median_seconds, run
-from .readme import OURS
-from .report import Figure, Section
-from .tables import Column, Table
+from .programs import Failure, in_turn, median_seconds
+from .report import Figure, Section, Table
 
-PEERS = ("benchmark_peer_cgal", "benchmark_peer_pcl", "benchmark_peer_open3d")
-
-QUALITY = [
-    Column("model", "cloud"),
-    Column("method", "method"),
-    Column("points", "points", quoted=False),
-    Column("sphere", "closed, manifold, genus 0"),
-    Column("used", "points used [%]", 2),
-    Column("intersections", "self-intersections"),
-    Column("rms", "RMS [%]", 4),
-    Column("hausdorff", "Hausdorff [%]", 3),
-    Column("normals", "normals off by [deg]", 2),
-    Column("edges", "true edges [%]", 1, quoted=False),
-    Column("min_angle", "mean least angle [deg]", 1, quoted=False),
-    Column("needles", "triangles below 10 deg [%]", 1, quoted=False),
-    Column("seconds", "time [s]", 2, exact=False),
-    Column("reconstruction", "of it reconstruction [s]", 2, exact=False, quoted=False),
-    Column("megabytes", "memory [MB]", 0, exact=False),
-    Column("failure", "remark", quoted=False),
+OURS = "ours"
+PEERS = [  # label, program, method
+    ("CGAL advancing front", "benchmark_peer_cgal", "advancing_front"),
+    ("CGAL advancing front, filled", "benchmark_peer_cgal", "advancing_front_filled"),
+    ("CGAL Poisson", "benchmark_peer_cgal", "poisson"),
+    ("CGAL alpha wrap", "benchmark_peer_cgal", "alpha_wrap"),
+    ("PCL greedy projection", "benchmark_peer_pcl", "gp3"),
+    ("PCL Poisson", "benchmark_peer_pcl", "poisson"),
+    ("Open3D ball pivoting", "benchmark_peer_open3d", "ball_pivoting"),
+    ("Open3D Poisson", "benchmark_peer_open3d", "poisson"),
 ]
 
-MAP = [
-    Column("model", "cloud"),
-    Column("method", "map"),
-    Column("residual", "Laplacian left"),
-    Column("angle", "angle distortion, mean", 3),
-    Column("angle_95", "95 %", 2, quoted=False),
-    Column("area", "area distortion, rms log2", 2),
-    Column("inverted", "inverted triangles [%]", 3),
-    Column("collapsed", "collapsed in single precision", quoted=False),
-]
+QUALITY = [("model", "cloud"), ("method", "method"), ("sphere", "closed, manifold, genus 0"),
+           ("used", "points used [%]", 2), ("intersections", "self-intersections"),
+           ("rms", "RMS [%]", 4), ("hausdorff", "Hausdorff [%]", 3),
+           ("normals", "normals off by [deg]", 2), ("seconds", "time [s]", 2),
+           ("megabytes", "memory [MB]", 0), ("failure", "remark")]  # fmt: skip
+SUMMARY = [("method", "method"), ("clouds", "clouds"),
+           ("spheres", "closed, manifold, genus 0, all points"),
+           ("clean", "of these without self-intersections"),
+           ("rms", "RMS, times ours (median)", 2), ("hausdorff", "Hausdorff, times ours (median)", 2),
+           ("edges", "true edges (mean) [%]", 1), ("seconds", "time, times ours (median)", 2),
+           ("megabytes", "memory, times ours (median)", 2)]  # fmt: skip
+RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "ours, one thread [s]", 2),
+        ("gain", "one thread / all", 2), ("peer", "CGAL advancing front [s]", 2),
+        ("ratio", "ours / advancing front", 2)]  # fmt: skip
+
+TEXT = """Each method gets the points alone. Methods that need normals estimate them with their own
+library; that is part of the time. *Closed, manifold, genus 0* is judged by a referee of the suite on
+the file that was written. Self-intersections are pairs of triangles, in exact arithmetic. *True edges*
+are those of the mesh whose vertices are the points of the cloud.
+"""
+# Pictures of larger meshes take long to draw and show no more.
+MAX_DRAWN_BYTES = 200000
 
 
-def peers(programs):
-    """(label, program, method) of every peer that was built, and what is missing."""
-    found, missing = [], []
-    for name in PEERS:
-        program = programs.optional(name)
-        listed = run([program, "-list"]) if program else None
-        if listed and listed.good:
-            found += [(one["label"], program, one["method"]) for one in json.loads(listed.output)]
-        else:
-            missing.append(name.rpartition("_")[2])
-    return found, missing
+def _run_ours(context, cloud, mesh, report):
+    return [context.programs.reconstruction, cloud.points, mesh, "-quiet", "-json", report]
 
 
-def quality_row(quality):
-    """The columns of QUALITY that come from the referee."""
-    return {
-        "points": quality["cloud_points"],
-        "sphere": quality["closed_manifold_genus0"],
-        "used": quality["points_used_percent"],
-        "intersections": quality["self_intersecting_pairs"],
-        "rms": quality.get("rms_percent"),
-        "hausdorff": quality.get("hausdorff_percent"),
-        "normals": quality.get("normal_deviation_degrees"),
-        "edges": quality.get("edges_reproduced_percent"),
-        "min_angle": quality["min_angle_mean_degrees"],
-        "needles": quality["min_angle_below_10_percent"],
-    }
-
-
-def _compare(context, cloud, with_peers, tables, parameters, panels=None):
-    """All methods on one cloud; `panels` for pictures of what they make.
-
-    Our own maps to the sphere as well, with and without the optimisation of the mesh.
-    """
-    table, maps = tables
-    methods = [(OURS, None, None), *with_peers]
+def _compare(context, cloud, peers, table, parameters, figures):
+    """Adds a row for each method on one cloud."""
+    methods = [(OURS, None, None), *peers]
     meshes = [context.work / f"compare_{index}.ply" for index in range(len(methods))]
-    sphere = context.work / "compare_sphere.ply"
-    for mesh in meshes:
-        mesh.unlink(missing_ok=True)
-    commands = []
-    for (_, program, method), mesh in zip(methods, meshes):
-        if program is None:
-            commands.append([context.programs.reconstruction, cloud.points, mesh, "-quiet",
-                             "-json", "-"])  # fmt: skip
-        else:
-            commands.append([program, method, cloud.points, mesh])
-    runs = in_turn(commands, context.choose(1, 3), timeout=context.timeout)
-    for (label, program, _), mesh, done in zip(methods, meshes, runs):
+    reports = [mesh.with_suffix(".json") for mesh in meshes]
+    commands = [
+        [program, method, cloud.points, mesh, report] if program
+        else _run_ours(context, cloud, mesh, report)
+        for (_, program, method), mesh, report in zip(methods, meshes, reports)
+    ]  # fmt: skip
+    runs = in_turn(commands, context.choose(1, 3), timeout=60.0)
+    drawn = []
+    for (label, program, _), mesh, report, done in zip(methods, meshes, reports, runs):
         row = {"model": cloud.name, "method": label}
         table.rows.append(row)
-        last = done[-1]
-        if not last.good:
-            said = last.errors.strip().splitlines()
-            row["failure"] = (
-                f"not done after {context.timeout:.0f} s" if last.timed_out
-                else said[0] if said else f"exit code {last.exit_code}"
-            )  # fmt: skip
+        if done[-1].problem:
+            row["failure"] = done[-1].problem
+            if context.quick or not program:
+                raise Failure(f"{label} on {cloud.name}: {done[-1].problem}", "run it alone")
             continue
-        row["seconds"] = statistics.median(one.seconds for one in done)
-        reports = [json.loads(one.output) for one in done]
-        row["megabytes"] = max(report["peak_memory_bytes"] for report in reports) / 1e6
-        if program is not None:
-            row["reconstruction"] = statistics.median(
-                report["seconds"]["reconstruction"] for report in reports
-            )
-            parameters[label] = reports[0]["library"], reports[0]["parameters"]
-        row.update(quality_row(context.programs.measure(mesh, cloud)))
-        if panels:
-            # Ours stand on their z axis; most models that go round have y pointing up.
-            up = "z" if cloud.generated else "y"
-            panels.add(mesh, label, ["-up", up, "-view", "25,15", "-edges", "off"])
-    for name, options in (
-        ("default", ()),
-        ("before the optimisation", ("-optimize", "none")),
-        ("the same, converged", ("-optimize", "none", "-tolerance", "1e-8")),
-    ):
-        _, report = context.programs.reconstruct(
-            cloud.points, meshes[0], "-attempts", "1", *options, sphere=sphere
-        )
-        quality = context.programs.measure_map(meshes[0], sphere)
-        maps.rows.append(
-            {
-                "model": cloud.name,
-                "method": name,
-                "residual": f"{report['residual']:.0e}",
-                **context.distortion(quality),
-            }
-        )
-    for path in (*meshes, sphere):
-        path.unlink(missing_ok=True)
+        told = json.loads(report.read_text())
+        row["seconds"] = median_seconds(done)
+        row["megabytes"] = told["peak_memory_bytes"] / 1e6
+        if program:
+            row["reconstruction_seconds"] = told["reconstruction_seconds"]
+            parameters[label] = {"method": label, "library": told["library"],
+                                 "parameters": told["parameters"]}  # fmt: skip
+        row.update(context.programs.measure(mesh, cloud))
+        drawn.append((mesh, label))
+    if peers and cloud.points.stat().st_size < MAX_DRAWN_BYTES:
+        from .drawing import Pictures
+
+        pictures = Pictures(columns=min(5, len(drawn)))
+        for mesh, label in drawn:
+            pictures.add(mesh, label, up=cloud.up)
+        file = pictures.save(context.out / f"methods_{cloud.name}.png")
+        figures.append(Figure(file, f"{cloud.name}, by each method", "Flat shaded."))
+    for mesh in meshes:
+        mesh.unlink(missing_ok=True)
 
 
-def section(context):
-    found, missing = peers(context.programs)
-    parts = [
-        "Each method gets the points alone. Those that need normals estimate them by their own "
-        "library; that is part of the time. *Closed, manifold, genus 0* is judged by a referee of "
-        "the suite on the file that was written, not by the product; self-intersections are pairs "
-        "of triangles, in exact arithmetic. `true edges` are those of the mesh that the cloud's "
-        "points were taken from, where they were.\n"
-    ]
-    if missing:
-        parts.append(f"Not built here, hence not compared: {', '.join(missing)}.\n")
-    parameters = {}
-    if context.models:
-        context.say(f"{len(context.models)} models, {len(found) + 1} methods")
-        tables = Table("models", QUALITY, keys=2), Table("models_map", MAP, keys=2)
-        figures = []
-        for cloud in context.models:
-            context.say(f"  {cloud.name}")
-            panels = Panels(context.renderer, context.work)
-            _compare(context, cloud, found, tables, parameters, panels)
-            figures.append(_figure(context, cloud, panels))
-        parts += ["### Models\n", _summary(tables[0]), tables[0], tables[1], *figures]
-    tables = Table("generated", QUALITY, keys=2), Table("generated_map", MAP, keys=2)
-    names = context.choose(("hand_5000", "animal_5000"),
-                           ("hand_10000", "animal_10000", "star_10000", "plate_10000",
-                            "tweety", "max", "igea"))  # fmt: skip
-    contested = context.choose(("animal_5000",), ("hand_10000", "tweety", "igea"))
-    figures = []
-    for name in names:
-        cloud = context.scan(name)
-        others = found if name in contested else []
-        context.say(f"generated scan {name}: {len(others) + 1} methods")
-        panels = Panels(context.renderer, context.work)
-        _compare(context, cloud, others, tables, parameters, panels if others else None)
-        if others:
-            figures.append(_figure(context, cloud, panels))
-    parts += ["### Generated scans\n", _summary(tables[0]), tables[0], tables[1], *figures]
-    context.say("in turn with the fastest peer")
-    by_size = sorted(context.models, key=lambda cloud: cloud.points.stat().st_size)
-    names = context.choose(("animal_5000",), ("hand_10000", "head_134345", "head_1000000"))
-    scans = [context.scan(name, truth=False) for name in names]
-    parts += _race(context, by_size[-1:] + scans)
-    used = Table("peers", [Column("method", "method"), Column("library", "library"),
-                           Column("parameters", "parameters")])  # fmt: skip
-    for label, (library, text) in parameters.items():
-        used.rows.append({"method": label, "library": library, "parameters": text})
-    parts += ["### Parameters of the peers\n", used]
-    return Section("Quality, and the peers", parts)
-
-
-def _figure(context, cloud, panels):
-    file = panels.save(
-        context.out / f"methods_{cloud.name}.png", [label for _, label in panels.pictures]
-    )
-    return Figure(
-        file,
-        f"{cloud.name}, by each method",
-        "Flat shaded; where a surface is open or turned inside out, its inside is seen.",
-        context.renderer.problem or "",
-    )
-
-
-def _race(context, clouds):
-    """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
-    peer = context.programs.optional("benchmark_peer_cgal")
-    table = Table(
-        "race",
-        [
-            Column("model", "cloud"),
-            Column("ours", "ours [s]", 2, exact=False),
-            Column("single", "ours, one thread [s]", 2, exact=False),
-            Column("gain", "one thread / all", 2, exact=False),
-            Column("peer", "CGAL advancing front [s]", 2, exact=False),
-            Column("ratio", "ours / advancing front", 2, exact=False),
-        ],
-    )
-    mesh = context.work / "race.ply"
-    for cloud in clouds:
-        ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
-        commands = [ours, ["env", "OMP_NUM_THREADS=1", *ours]]
-        if peer:
-            commands.append([peer, "advancing_front", cloud.points, mesh])
-        runs = in_turn(commands, context.choose(1, 5), timeout=context.timeout)
-        seconds = [median_seconds(done) for done in runs]
-        row = {
-            "model": cloud.name,
-            "ours": seconds[0],
-            "single": seconds[1],
-            "gain": statistics.median(b.seconds / a.seconds for a, b in zip(runs[0], runs[1])),
-        }
-        if peer:
-            row["peer"] = seconds[2]
-            row["ratio"] = statistics.median(
-                a.seconds / b.seconds for a, b in zip(runs[0], runs[2])
-            )
-        table.rows.append(row)
-    mesh.unlink(missing_ok=True)
-    return [
-        "### Against the fastest peer, in turn\n",
-        "Whole processes, one after the other; medians of 5 (one, where it takes longer than 4 s), "
-        "ratios those of the pairs.\n",
-        table,
-    ]
-
-
-def _summary(table):
-    """What each method did on all clouds where it and ours were run."""
-    summary = Table(
-        f"{table.name}_summary",
-        [
-            Column("method", "method"),
-            Column("clouds", "clouds"),
-            Column("spheres", "closed, manifold, genus 0, all points"),
-            Column("clean", "of these without self-intersections"),
-            Column("rms", "RMS, times ours (median)", 2),
-            Column("hausdorff", "Hausdorff, times ours (median)", 2),
-            Column("edges", "true edges (mean) [%]", 1),
-            Column("seconds", "time, times ours (median)", 2, exact=False),
-            Column("megabytes", "memory, times ours (median)", 2, exact=False),
-        ],
-    )
+def summarize(table):
+    """What each method did on all clouds, beside ours on the same cloud."""
     ours = {row["model"]: row for row in table.rows if row["method"] == OURS}
-    methods = dict.fromkeys(row["method"] for row in table.rows)
-    for method in methods:
+    summary = Table(f"{table.name}_summary", SUMMARY)
+    for method in dict.fromkeys(row["method"] for row in table.rows):
         rows = [row for row in table.rows if row["method"] == method]
         good = [row for row in rows if row.get("sphere") and row["used"] == 100.0]
-        entry = {
-            "method": method,
-            "clouds": len(rows),
-            "spheres": len(good),
-            "clean": sum(row["intersections"] == 0 for row in good),
-        }
+        entry = {"method": method, "clouds": len(rows), "spheres": len(good),
+                 "clean": sum(row["intersections"] == 0 for row in good)}  # fmt: skip
         for key in ("rms", "hausdorff", "seconds", "megabytes"):
             ratios = [row[key] / ours[row["model"]][key] for row in rows
                       if row.get(key) and ours[row["model"]].get(key)]  # fmt: skip
@@ -275,3 +104,58 @@ def _summary(table):
         entry["edges"] = statistics.mean(edges) if edges else None
         summary.rows.append(entry)
     return summary
+
+
+def race(context, clouds):
+    """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
+    peer = context.programs.find("benchmark_peer_cgal", required=False)
+    table = Table("race", RACE)
+    mesh = context.work / "race.ply"
+    for cloud in clouds:
+        ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
+        commands = [ours, ["env", "OMP_NUM_THREADS=1", *ours]]
+        if peer:
+            report = mesh.with_suffix(".json")
+            commands.append([peer, "advancing_front", cloud.points, mesh, report])
+        runs = in_turn(commands, context.choose(1, 5), long_run=4.0)
+        seconds = [median_seconds(done) for done in runs]
+        row = {"model": cloud.name, "ours": seconds[0], "single": seconds[1],
+               "gain": seconds[1] / seconds[0]}  # fmt: skip
+        if peer:
+            row.update(peer=seconds[2], ratio=seconds[0] / seconds[2])
+        table.rows.append(row)
+    mesh.unlink(missing_ok=True)
+    return ["### In turn with the fastest peer\n",
+            "Whole processes in turn; medians of 5, or one run if it takes longer than 4 s.\n",
+            table]  # fmt: skip
+
+
+def section(context):
+    programs = context.programs
+    found = [(label, programs.find(name, required=False), method) for label, name, method in PEERS]
+    peers = [peer for peer in found if peer[1]]
+    missing = [label for label, program, _ in found if not program]
+    parts = [TEXT]
+    if missing:
+        parts.append(f"Not built, hence not compared: {', '.join(missing)}.\n")
+    parameters = {}
+    sets = [("models", "Models", [(cloud, peers) for cloud in context.models]),
+            ("generated", "Generated scans",
+             [(programs.scan(name), peers if context.quick or name == "hand_10000" else [])
+              for name in context.choose(("animal_2000",),
+                                         ("hand_10000", "animal_10000", "star_10000", "plate_10000",
+                                          "tweety", "max", "igea"))])]  # fmt: skip
+    for name, title, clouds in sets:
+        table, figures = Table(name, QUALITY), []
+        for cloud, others in clouds:
+            context.say(f"{title.lower()}: {cloud.name}, {len(others) + 1} methods")
+            _compare(context, cloud, others, table, parameters, figures)
+        if clouds:
+            parts += [f"### {title}\n", summarize(table), table, *figures]
+    context.say("in turn with the fastest peer")
+    largest = sorted(context.models, key=lambda cloud: cloud.points.stat().st_size)[-1:]
+    parts += race(context, largest + [programs.scan(name, truth=False) for name in context.choose(
+        ("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))])  # fmt: skip
+    columns = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
+    parts += ["### Parameters of the peers\n", Table("peers", columns, list(parameters.values()))]
+    return Section("Quality and peers", parts)

@@ -1,15 +1,13 @@
 """Where and from what a report was made."""
 
-import dataclasses
 import datetime
 import os
 import pathlib
-import platform
 import re
 import subprocess
 
 
-def _first_match(path, pattern, fallback):
+def _first_match(path, pattern, fallback="unknown"):
     try:
         found = re.search(pattern, pathlib.Path(path).read_text(errors="replace"), re.MULTILINE)
     except OSError:
@@ -21,53 +19,27 @@ def _output(*command):
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError:
-        return None
-    return done.stdout.strip() if done.returncode == 0 else None
-
-
-def _git(root, *arguments):
-    return _output("git", "-C", str(root), *arguments)
-
-
-@dataclasses.dataclass
-class Provenance:
-    """Commit, machine and date, as printed in the report and in the README."""
-
-    commit: str  # short hash, "unknown" outside of a checkout
-    modified: bool  # files of the project differ from that commit
-    date: str
-    processor: str
-    cores: int
-    memory_gib: float
-    system: str
-    compiler: str
-
-    def sentence(self):
-        state = " with changes that are not committed" if self.modified else ""
-        return (
-            f"Measured at commit `{self.commit}`{state} on {self.date}: {self.processor}, "
-            f"{self.cores} cores, {self.memory_gib:.0f} GiB, {self.system}, {self.compiler}."
-        )
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
 
 
 def available_memory():
     """Bytes that a process can use now."""
-    kib = _first_match("/proc/meminfo", r"^MemAvailable:\s*(\d+) kB", "0")
-    return int(kib) * 1024
+    return 1024 * int(_first_match("/proc/meminfo", r"^MemAvailable:\s*(\d+) kB", "0"))
 
 
 def describe(root, build):
-    """The provenance of what is measured now, of a checkout and its build folder."""
+    """A sentence about the commit of a checkout, the machine and the compiler."""
+    git = ("git", "-C", str(root))
+    commit = _output(*git, "rev-parse", "--short=10", "HEAD") or "unknown"
+    changed = _output(*git, "status", "--porcelain", "--untracked-files=no")
     compiler = _first_match(build / "CMakeCache.txt", r"^CMAKE_CXX_COMPILER:\w+=(.+)$", "c++")
-    version = _output(compiler, "--version") or pathlib.Path(compiler).name
-    kib = _first_match("/proc/meminfo", r"^MemTotal:\s*(\d+) kB", "0")
-    return Provenance(
-        commit=_git(root, "rev-parse", "--short=10", "HEAD") or "unknown",
-        modified=bool(_git(root, "status", "--porcelain", "--untracked-files=no")),
-        date=datetime.date.today().isoformat(),
-        processor=_first_match("/proc/cpuinfo", r"^model name\s*:\s*(.+)$", platform.machine()),
-        cores=len(os.sched_getaffinity(0)),
-        memory_gib=int(kib) / 2**20,
-        system=_first_match("/etc/os-release", r'^PRETTY_NAME="?([^"\n]+)', platform.system()),
-        compiler=version.splitlines()[0],
+    memory = int(_first_match("/proc/meminfo", r"^MemTotal:\s*(\d+) kB", "0")) / 2**20
+    version = (_output(compiler, "--version") or pathlib.Path(compiler).name).splitlines()[0]
+    processor = _first_match("/proc/cpuinfo", r"^model name\s*:\s*(.+)$")
+    system = _first_match("/etc/os-release", r'^PRETTY_NAME="?([^"\n]+)')
+    changes = " with changes that are not committed" if changed else ""
+    return (
+        f"Measured at commit `{commit}`{changes} on {datetime.date.today().isoformat()}: {processor}, "
+        f"{len(os.sched_getaffinity(0))} cores, {memory:.0f} GiB, {system}, {version}."
     )

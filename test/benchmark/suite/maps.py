@@ -1,60 +1,56 @@
-"""The map to the sphere: how far it is from an isometry, and what a surface made from it is worth."""
+"""The map to the sphere: its distortion, and the surface that is sampled from it."""
 
 import json
 
-from .processes import require
-from .product import stage_seconds
-from .report import Section
-from .tables import Column, Table
+from .programs import require, stage_seconds
+from .report import Section, Table
 
 SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake",
           "plate", "torus", "bowl", "pair")  # fmt: skip
-REMESH_POINTS = 163842  # a geodesic sphere of frequency 128
-IMAGE_SIDE = 405  # about as many pixels
+# Points of a geodesic sphere of frequency 32 or 128, and the side of an image of about as many pixels.
+GRIDS = (10242, 101), (163842, 405)
+# Stages that belong to the map and what is made from it; all others are the meshing.
+MAP_STAGES = ("read", "map", "atlas", "image", "write")
 
-# Stages that belong to the map and what is made from it, not to the meshing before.
-PRODUCT_STAGES = ("read", "map", "atlas", "image", "write")
+MAPS = [("model", "cloud"), ("vertices", "vertices"),
+        ("flipped_before", "flipped triangles, embedding"), ("flipped", "map"),
+        ("area_before", "area distortion, embedding", 2), ("area", "map", 3), ("area_95", "95 %", 2),
+        ("area_max", "max", 1), ("angle_before", "angle distortion, embedding", 3),
+        ("angle", "map", 3), ("angle_95", "95 %", 2), ("angle_max", "max", 1),
+        ("degrees", "angles off by [deg]", 1), ("stretch", "stretch efficiency", 3),
+        ("seconds", "time [s]", 2), ("ratio", "of the meshing", 1)]  # fmt: skip
+REMESHED = [("model", "cloud"), ("made", "remeshed as"), ("vertices", "points"),
+            ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"),
+            ("rms", "RMS [%]", 4), ("hausdorff", "Hausdorff [%]", 3),
+            ("mesh_rms", "RMS of the mesh [%]", 4), ("mesh_hausdorff", "Hausdorff of the mesh [%]", 3),
+            ("seconds", "time [s]", 1)]  # fmt: skip
 
-MAPS = [
-    Column("model", "cloud"),
-    Column("vertices", "vertices"),
-    Column("flipped_before", "flipped triangles, embedding"),
-    Column("flipped", "map"),
-    Column("area_before", "area distortion, embedding", 2),
-    Column("area", "map", 3),
-    Column("area_95", "95 %", 2),
-    Column("area_max", "max", 1),
-    Column("angle_before", "angle distortion, embedding", 3),
-    Column("angle", "map", 3),
-    Column("angle_95", "95 %", 2),
-    Column("angle_max", "max", 1),
-    Column("degrees", "angles off by [deg]", 1),
-    Column("stretch", "stretch efficiency", 3),
-    Column("seconds", "time [s]", 2, exact=False),
-    Column("ratio", "of the meshing", 1, exact=False),
-]
-
-REMESHED = [
-    Column("model", "cloud"),
-    Column("made", "remeshed as"),
-    Column("points", "points"),
-    Column("sphere", "closed, manifold, genus 0"),
-    Column("intersections", "self-intersections"),
-    Column("rms", "RMS [%]", 4),
-    Column("hausdorff", "Hausdorff [%]", 3),
-    Column("mesh_rms", "RMS of the mesh [%]", 4),
-    Column("mesh_hausdorff", "Hausdorff of the mesh [%]", 3),
-    Column("seconds", "time [s]", 1, exact=False),
-]
+TEXT = """The map of a finished mesh beside the embedding that the mesh came from. The optimisation of the
+mesh moves vertices, so that the embedding has flipped triangles. Area distortion is max(r, 1/r) of the
+ratio r of a triangle's fraction of the area on the sphere to its fraction in space; angle distortion is
+the ratio of the singular values. Both are weighted by area and are 1 without distortion. *Angles off
+by*: mean absolute difference of the angles at corners. Stretch efficiency: Praun and Hoppe 2003.
+"""
+TEXT_REMESHED = """The surface, sampled again from the sphere: {points:,} points of a geodesic grid, and a
+geometry image of {side} x {side} positions that was written and read. Times include the meshing.
+"""
 
 
-def map_row(report):
-    """The columns of MAPS from a report of one of the tools that make a map."""
-    before = report["embedding_distortion"]
-    area, angle = report["area_distortion"], report["angle_distortion"]
+def _remesh(context, *words):
+    """Runs the tool: seconds of the whole process, and the tool's report."""
+    done = require([context.programs.find("pcl_spherical_param_remesh"), *words, "-quiet",
+                    "-json", "-"])  # fmt: skip
+    return done.seconds, json.loads(done.output)
+
+
+def map_row(cloud, report):
+    before, area, angle = (
+        report[key] for key in ("embedding_distortion", "area_distortion", "angle_distortion")
+    )
     seconds = stage_seconds(report)
-    meshing = sum(s for stage, s in seconds.items() if stage not in PRODUCT_STAGES)
+    meshing = sum(s for stage, s in seconds.items() if stage not in MAP_STAGES)
     return {
+        "model": cloud.name,
         "vertices": report["vertices"],
         "flipped_before": before["flipped_triangles"],
         "flipped": report["flipped_triangles"],
@@ -73,80 +69,44 @@ def map_row(report):
     }
 
 
-def measure_map(programs, cloud, work):
-    """What the default map of a cloud is like: a row of MAPS."""
-    mesh = work / "map.glb"
-    words = [programs.texture, cloud.points, mesh, "-size", 16, "-quiet", "-json", "-"]
-    report = json.loads(require(words).output)
-    mesh.unlink(missing_ok=True)
-    return {"model": cloud.name, **map_row(report)}
-
-
-def measure_remeshed(programs, cloud, work):
-    """Rows of REMESHED: a grid on the sphere, and a geometry image read back."""
-    mesh, image = work / "remeshed.ply", work / "image.tif"
-    programs.reconstruct(cloud.points, mesh)
-    of_mesh = programs.measure(mesh, cloud)
-    rows = []
+def _remeshed_rows(context, cloud, points, side):
+    """A grid on the sphere, and a geometry image that is read again."""
+    mesh, image = context.work / "remeshed.ply", context.work / "image.tif"
+    context.programs.reconstruct(cloud, mesh)
+    of_mesh = context.programs.measure(mesh, cloud)
     for made, words in (
-        ("geodesic sphere", [[cloud.points, mesh, "-points", REMESH_POINTS]]),
-        ("geometry image", [[cloud.points, image, "-side", IMAGE_SIDE], [image, mesh]]),
+        ("geodesic sphere", [[cloud.points, mesh, "-points", points]]),
+        ("geometry image", [[cloud.points, image, "-side", side], [image, mesh]]),
     ):
-        seconds = sum(require([programs.remesh, *w, "-quiet"]).seconds for w in words)
-        quality = programs.measure_mesh(mesh, cloud)
-        rows.append(
-            {
-                "model": cloud.name,
-                "made": made,
-                "points": quality["vertices"],
-                "sphere": quality["closed_manifold_genus0"],
-                "intersections": quality["self_intersecting_pairs"],
-                "rms": quality["rms_percent"],
-                "hausdorff": quality["hausdorff_percent"],
-                "mesh_rms": of_mesh["rms_percent"],
-                "mesh_hausdorff": of_mesh["hausdorff_percent"],
-                "seconds": seconds,
-            }
-        )
+        seconds = sum(_remesh(context, *line)[0] for line in words)
+        yield {"model": cloud.name, "made": made, "seconds": seconds, "mesh_rms": of_mesh["rms"],
+               "mesh_hausdorff": of_mesh["hausdorff"],
+               **context.programs.measure(mesh, cloud, over_cloud=False)}  # fmt: skip
     mesh.unlink(missing_ok=True)
     image.unlink(missing_ok=True)
-    return rows
 
 
 def section(context):
-    names = context.choose(("hand_2000", "animal_2000"), [f"{shape}_10000" for shape in SHAPES])
-    generated = Table("maps_generated", MAPS)
-    for name in names:
-        context.say(f"map: {name}")
-        cloud = context.scan(name, truth=False)
-        generated.rows.append(measure_map(context.programs, cloud, context.work))
-    parts = [
-        "The map of a finished mesh, made to be used, beside the embedding that the mesh came from "
-        "(on the finished mesh; where the optimisation of the mesh moved a vertex, the embedding "
-        "has flipped triangles). Area distortion is max(r, 1/r) of the ratio r of a triangle's "
-        "share of the area on the sphere to that in space, angle distortion the ratio of the "
-        "singular values; both weighted by area, 1 where there is none. `angles off by`: mean "
-        "absolute difference of the angles at corners. Stretch efficiency: Praun and Hoppe 2003.\n",
-        generated,
-    ]
-    remeshed = Table("remeshed", REMESHED, keys=2)
-    if context.models:
-        maps = Table("maps", MAPS)
-        for cloud in context.models:
+    programs = context.programs
+    generated = [programs.scan(name, truth=False) for name in context.choose(
+        ("animal_2000",), [f"{shape}_10000" for shape in SHAPES])]  # fmt: skip
+    parts = [TEXT]
+    for name, clouds in (("maps", context.models), ("maps_generated", generated)):
+        table = Table(name, MAPS)
+        for cloud in clouds:
             context.say(f"map: {cloud.name}")
-            maps.rows.append(measure_map(context.programs, cloud, context.work))
-        parts.append(maps)
-    chosen = [cloud for cloud in context.models if cloud.truth] or [
-        context.scan(name) for name in context.choose(("hand_2000",), ("hand_10000", "igea"))
-    ]
-    for cloud in chosen:
+            mesh = context.work / "map.ply"
+            table.rows.append(map_row(cloud, _remesh(context, cloud.points, mesh)[1]))
+        parts += [table] if clouds else []
+    remeshed = Table("remeshed", REMESHED)
+    points, side = context.choose(*GRIDS)
+    by_size = sorted((cloud for cloud in context.models if cloud.truth),
+                     key=lambda cloud: cloud.points.stat().st_size)  # fmt: skip
+    # The smallest, one in the middle, the largest: each takes ten seconds or more.
+    half = len(by_size) // 2
+    for cloud in dict.fromkeys(by_size[:1] + by_size[half : half + 1] + by_size[-1:]) or [
+        programs.scan(name) for name in context.choose(("animal_2000",), ("hand_10000", "igea"))
+    ]:
         context.say(f"remesh: {cloud.name}")
-        remeshed.rows += measure_remeshed(context.programs, cloud, context.work)
-    parts += [
-        f"\nThe surface between the points, sampled anew from the sphere: {REMESH_POINTS:,} points "
-        f"of a geodesic grid, and a geometry image of {IMAGE_SIDE} x {IMAGE_SIDE} positions that "
-        "was written and read back; both beside the true surface. Times are those of the whole "
-        "tool, the meshing included.\n",
-        remeshed,
-    ]
-    return Section("The map to the sphere", parts)
+        remeshed.rows += _remeshed_rows(context, cloud, points, side)
+    return Section("The map to the sphere", [*parts, TEXT_REMESHED.format(points=points, side=side), remeshed])

@@ -1,18 +1,18 @@
-"""Time, memory and throughput over the number of points, and over the number of threads."""
+"""Time and memory over the number of points and of threads, and the stages one by one."""
 
+import json
 import math
 import os
 import statistics
 import time
 
 from .machine import available_memory
-from .product import stage_seconds
-from .report import Figure, Section
-from .tables import Column, Table
+from .programs import require, stage_seconds
+from .report import Figure, Section, Table
 
-# What a stage cannot do without, for each point: bytes that it moves once it has everything at
-# hand, and steps, each some ten arithmetic operations with a comparison (a distance, an orientation,
-# the side of a bisector). By hand, for a mesh of 2 triangles and a graph of 6 neighbours a point.
+# What a stage cannot do without, for each point: bytes that it moves if everything is at hand, and
+# steps of some ten arithmetic operations with a comparison (a distance, an orientation, the side of
+# a bisector). Counted by hand, for a mesh of 2 triangles and a graph of 6 neighbours a point.
 LEAST = {
     "read": (12 + 16, 0, "12 bytes in, 16 out"),
     "neighbors": (6 * 2 * 16 + 14 * 2 * 12, 70, "6 passes of a radix sort, 14 levels of a k-d tree, "
@@ -28,130 +28,86 @@ LEAST = {
               "2 volumes"),
     "write": (12 + 2 * 13, 0, "12 bytes a point, 13 a triangle"),
 }  # fmt: skip
+STAGES = tuple(LEAST)
 STEP = 1.0  # [ns] of one core of some 3 GHz
-
-STAGES = ("read", "neighbors", "graph", "embedding", "triangulation", "optimization", "check",
-          "write")  # fmt: skip
 BYTES_A_POINT = 1500  # more than the product takes: what does not fit is not tried
 
-
-def _stage_columns():
-    return [Column(stage, f"{stage} [s]", 3, exact=False, quoted=False) for stage in STAGES]
+SCALING = [("points", "points"), ("seconds", "time [s]", 2), ("throughput", "points a second", 0),
+           ("unit", "time / (n log2 n) [ns]", 0), ("bytes", "peak memory [bytes a point]", 0),
+           ("intersections", "self-intersections")]  # fmt: skip
+THREADS = [("threads", "threads"), ("seconds", "time [s]", 2), ("speedup", "speedup", 2)]
+BUDGET = [("stage", "stage"), ("one", "one thread [ns a point]", 0),
+          ("all", "all threads [ns a point]", 0), ("least", "least, one thread [ns a point]", 0),
+          ("times", "one thread / least", 1), ("what", "what each point needs")]  # fmt: skip
+SINGLE = [("name", "stage, points, threads"), ("milliseconds", "time [ms]", 3),
+          ("nanoseconds", "a point [ns]", 0)]  # fmt: skip
 
 
 def _measure(context, cloud, repeats, threads=None):
     """Medians of the stages' seconds, of the whole process, and its peak memory."""
     mesh = context.work / "scaling.ply"
-    runs = []
-    for _ in range(repeats):
-        process, report = context.programs.reconstruct(cloud.points, mesh, threads=threads)
-        runs.append((process, stage_seconds(report), report))
-        if process.seconds > 5.0:
-            break
-    row = {s: statistics.median(run[1].get(s, 0.0) for run in runs) for s in STAGES}
-    row["seconds"] = statistics.median(run[0].seconds for run in runs)
-    row["peak"] = max(run[2]["peak_memory_bytes"] for run in runs)
-    row["intersections"] = runs[-1][2]["self_intersections"]
-    row["count"] = runs[-1][2]["vertices"]
-    mesh.unlink(missing_ok=True)
-    return row
+    processes, stages = [], []
+    while len(processes) < repeats and (not processes or processes[-1] < 5.0):
+        process, report = context.programs.reconstruct(cloud, mesh, threads=threads)
+        processes.append(process.seconds)
+        stages.append(stage_seconds(report))
+    mesh.unlink()
+    return {"points": report["vertices"], "seconds": statistics.median(processes),
+            "peak": report["peak_memory_bytes"], "intersections": report["self_intersections"],
+            **{s: statistics.median(run.get(s, 0.0) for run in stages) for s in STAGES}}  # fmt: skip
 
 
 def growth(context):
-    from . import plots
+    from .drawing import Plot
 
-    table = Table(
-        "scaling",
-        [
-            Column("points", "points"),
-            Column("seconds", "time [s]", 2, exact=False),
-            Column("throughput", "points a second", 0, exact=False),
-            Column("unit", "time / (n log2 n) [ns]", 0, exact=False),
-            Column("bytes", "peak memory [bytes a point]", 0, exact=False),
-            Column("intersections", "self-intersections"),
-            *_stage_columns(),
-        ],
-    )
-    sizes = [1000, 10000, 100000] + context.choose([], [134345, 1000000])
-    if context.large:
-        sizes.append(10000000)
-    skipped = []
-    for n in sizes:
+    table = Table("scaling", SCALING)
+    sizes = context.choose([1000, 10000], [1000, 10000, 100000, 134345, 1000000])
+    for n in sizes + ([10000000] if context.large else []):
         if n * BYTES_A_POINT > available_memory():
-            skipped.append(f"{n:,}")
+            context.say(f"scaling: {n:,} points do not fit the memory")
             continue
         context.say(f"scaling: {n:,} points")
-        cloud = context.scan(f"head_{n}", truth=False)
-        row = _measure(context, cloud, 3)
-        if n > 1000000:
-            cloud.points.unlink()
-        row.update(
-            points=n,
-            throughput=n / row["seconds"],
-            unit=1e9 * row["seconds"] / (n * math.log2(n)),
-            bytes=row["peak"] / n,
-        )
+        cloud = context.programs.scan(f"head_{n}", truth=False)
+        row = _measure(context, cloud, context.choose(1, 3))
+        cloud.points.unlink()
+        row.update(throughput=n / row["seconds"], bytes=row["peak"] / n,
+                   unit=1e9 * row["seconds"] / (n * math.log2(n)))  # fmt: skip
         table.rows.append(row)
-    # From 10,000 on: below, the start of a process counts.
-    rows = [row for row in table.rows if row["points"] >= 10000]
-    x = [math.log(row["points"] * math.log(row["points"])) for row in rows]
-    slopes = {}
-    for stage in ("seconds", *STAGES):
-        y = [math.log(max(row[stage], 1e-9)) for row in rows]
-        slopes[stage] = statistics.linear_regression(x, y).slope
-    plot = plots.Lines(panels=2)
+    plot = Plot(panels=2)
     points = [row["points"] for row in table.rows]
     for color, stage in enumerate(STAGES):
         plot.curve(0, points, [row[stage] for row in table.rows], stage, color, "-", "o")
     plot.curve(0, points, [row["seconds"] for row in table.rows], "whole process", 7, "--")
     plot.label(0, "points", "seconds", "time of each stage")
     plot.curve(1, points, [row["bytes"] for row in table.rows], "process, peak", 0, "-", "o")
-    plot.curve(1, points, [2000.0] * len(points), "bound: 2 KB a point", 1, "--")
     plot.label(1, "points", "bytes a point", "memory")
-    left_out = f" Left out, as they do not fit the memory: {', '.join(skipped)}." if skipped else ""
-    return [
-        "### Over the number of points\n",
-        "Generated heads, default options, all threads. An exponent of 1 is a cost of n log n; "
-        f"fitted from 10,000 points up it is {slopes['seconds']:.2f} for the whole process, by "
-        "stage "
-        + ", ".join(f"{stage} {slopes[stage]:.2f}" for stage in STAGES)
-        + f". The memory of a process of 1,000 points is that of its libraries.{left_out}\n",
-        table,
-        Figure(context.save_plot(plot, "scaling"), "Time and memory over n", "Logarithmic axes."),
-    ]
+    return ["### Over the number of points\n",
+            "Generated heads, default options, all threads. The memory of a process of 1,000 points "
+            "is mostly that of its libraries.\n", table,
+            Figure(plot.save(context.out / "scaling.svg"), "Time and memory over n",
+                   "Logarithmic axes.")]  # fmt: skip
 
 
 def threads(context):
-    from . import plots
+    from .drawing import Plot
 
     cores = len(os.sched_getaffinity(0))
-    counts = sorted({1, cores} | {2**i for i in range(12) if 2**i < cores})
-    table = Table(
-        "threads",
-        [
-            Column("threads", "threads"),
-            Column("seconds", "time [s]", 2, exact=False),
-            Column("speedup", "times as fast as one", 2, exact=False),
-            *_stage_columns(),
-        ],
-    )
-    cloud = context.scan(context.choose("head_100000", "igea"), truth=False)
-    for count in counts:
+    cloud = context.programs.scan(context.choose("head_10000", "igea"), truth=False)
+    table = Table("threads", THREADS)
+    for count in sorted({1, cores} | {2**i for i in range(12) if 2**i < cores}):
         context.say(f"scaling: {count} threads")
         row = _measure(context, cloud, context.choose(1, 5), threads=count)
-        row["threads"] = count
-        row["speedup"] = table.rows[0]["seconds"] / row["seconds"] if table.rows else 1.0
+        row.update(threads=count, speedup=(table.rows or [row])[0]["seconds"] / row["seconds"])
         table.rows.append(row)
-    names = [f"{row['threads']} thread{'s' if row['threads'] > 1 else ''}" for row in table.rows]
-    values = {n: [row[s] for s in STAGES] for n, row in zip(names, table.rows)}
-    plots.bars(context.out / "threads.svg", names, STAGES, values, cloud.name, "seconds")
-    return [
-        "### Over the number of threads\n",
-        f"{cloud.name}; the mesh is the same, byte by byte, for any number.\n",
-        table,
-        Figure("threads.svg", "Stages over threads", "Seconds of each stage, one after the other."),
-        *budget(cloud, table.rows),
-    ]
+    plot = Plot(size=(7.5, 0.9 + 0.5 * len(table.rows)))
+    plot.bars([f"threads: {row['threads']}" for row in table.rows], STAGES,
+              [[row[stage] for stage in STAGES] for row in table.rows])  # fmt: skip
+    plot.label(0, "seconds", "", cloud.name, logarithmic=False)
+    return ["### Over the number of threads\n",
+            f"{cloud.name}; the mesh is the same, byte by byte, for any number.\n", table,
+            Figure(plot.save(context.out / "threads.svg"), "Stages over threads",
+                   "Seconds of each stage, one after the other."),
+            *budget(cloud, table.rows[0], table.rows[-1])]  # fmt: skip
 
 
 def _bandwidth():
@@ -166,42 +122,39 @@ def _bandwidth():
     return 2e-9 * len(source) / best
 
 
-def budget(cloud, rows):
+def budget(cloud, single, full):
     """What each stage takes, beside the least that it could take."""
     bandwidth = _bandwidth()
-    table = Table(
-        "budget",
-        [
-            Column("stage", "stage"),
-            Column("one", "one thread [ns a point]", 0, exact=False),
-            Column("all", "all threads [ns a point]", 0, exact=False),
-            Column("least", "least, one thread [ns a point]", 0, exact=False),
-            Column("times", "one thread / least", 1, exact=False),
-            Column("what", "what it cannot do without, for each point"),
-        ],
-    )
-    for stage in STAGES:
-        moved, steps, what = LEAST[stage]
+    table = Table("budget", BUDGET)
+    for stage, (moved, steps, what) in LEAST.items():
         least = moved / bandwidth + STEP * steps
-        one, every = (1e9 * row[stage] / row["count"] for row in (rows[0], rows[-1]))
-        table.rows.append(
-            {
-                "stage": stage,
-                "one": one,
-                "all": every,
-                "least": least,
-                "times": one / least,
-                "what": what,
-            }
-        )
-    return [
-        "### Where the time goes\n",
-        f"{cloud.name}. The least is counted by hand, at {bandwidth:.0f} bytes a nanosecond that "
-        f"one core copies here, and {STEP:.0f} ns a step of some ten operations: what is many times "
-        "as long has something left to gain.\n",
-        table,
-    ]
+        one, every = (1e9 * row[stage] / row["points"] for row in (single, full))
+        table.rows.append({"stage": stage, "one": one, "all": every, "least": least,
+                           "times": one / least, "what": what})  # fmt: skip
+    return ["### Budget of the stages\n",
+            f"{cloud.name}. The least is counted by hand, at {bandwidth:.0f} bytes a nanosecond that "
+            f"one core copies here, and {STEP:.0f} ns a step of some ten operations. A stage that "
+            "takes many times as long can still become faster.\n", table]  # fmt: skip
+
+
+def stages(context):
+    """The stages one by one, by Google Benchmark."""
+    program = context.programs.find("benchmark_stages", required=False)
+    if not program:
+        return ["benchmark_stages is not built: Google Benchmark was not found.\n"]
+    context.say("stages, one by one")
+    output = context.work / "stages.json"
+    require([program, f"--benchmark_out={output}", "--benchmark_out_format=json",
+             *context.choose(["--benchmark_filter=/10000/", "--benchmark_min_time=0.01"], [])])  # fmt: skip
+    table = Table("stages", SINGLE)
+    for one in json.loads(output.read_text())["benchmarks"]:
+        table.rows.append({"name": one["name"].removesuffix("/real_time"),
+                           "milliseconds": one["real_time"],
+                           "nanoseconds": 1e9 / one["items_per_second"]})  # fmt: skip
+    return ["### Stages, one by one\n",
+            "On a generated hand. `benchmark_stages --benchmark_filter=NAME` repeats one of them.\n",
+            table]  # fmt: skip
 
 
 def section(context):
-    return Section("Scaling", growth(context) + threads(context))
+    return Section("Scaling", [*growth(context), *threads(context), *stages(context)])

@@ -1,0 +1,147 @@
+"""Runs the project's tools, the referee and the peers, and measures their time from outside."""
+
+import dataclasses
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import time
+
+# The paper's own method, with all of its iterations.
+ITERATIVE = ("-graph", "knn", "-solver", "iterative", "-optimize", "none", "-attempts", "1",
+             "-stagnation", "0", "-tolerance", "0")  # fmt: skip
+PAPER = (*ITERATIVE, "-hull", "qhull")
+
+
+class Failure(Exception):
+    """Something that the user can repair: a cause and a remedy, a line each."""
+
+    def __init__(self, cause, remedy):
+        super().__init__(cause)
+        self.cause, self.remedy = cause, remedy
+
+
+@dataclasses.dataclass
+class Run:
+    seconds: float  # wall time of the whole process
+    problem: str  # empty if all is well
+    output: str = ""
+
+
+def run(command, timeout=None, threads=None):
+    """Runs a command to its end, for at most `timeout` seconds."""
+    environment = dict(os.environ)
+    if threads:
+        environment["OMP_NUM_THREADS"] = str(threads)
+    start = time.monotonic()
+    try:
+        done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, text=True,
+                              capture_output=True, env=environment, timeout=timeout,
+                              check=False)  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return Run(time.monotonic() - start, f"not done after {timeout:.0f} s")
+    problem = ""
+    if done.returncode != 0:
+        problem = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[0]
+    return Run(time.monotonic() - start, problem, done.stdout)
+
+
+def require(command, threads=None):
+    """run() of what must not fail."""
+    done = run(command, threads=threads)
+    if done.problem:
+        line = " ".join(str(word) for word in command)
+        raise Failure(f"'{line}' failed: {done.problem}", "run that command alone to see more")
+    return done
+
+
+def in_turn(commands, repeats, timeout=None, long_run=1.0):
+    """A list of runs for each command. In turn, so that another load hits all of them alike.
+
+    A command that takes longer than `long_run` seconds, or fails, is not repeated.
+    """
+    runs = [[] for _ in commands]
+    for _ in range(repeats):
+        for command, done in zip(commands, runs):
+            if not done or (not done[-1].problem and done[-1].seconds <= long_run):
+                done.append(run(command, timeout))
+    return runs
+
+
+def median_seconds(runs):
+    return statistics.median(one.seconds for one in runs)
+
+
+def stage_seconds(report):
+    """Seconds of each stage in a report of a tool."""
+    seconds = {}
+    for stage in report["stages"]:
+        seconds[stage["name"]] = seconds.get(stage["name"], 0.0) + stage["seconds"]
+    return seconds
+
+
+@dataclasses.dataclass(frozen=True)
+class Cloud:
+    """Points to mesh, and a mesh of the surface that they are from, if there is one."""
+
+    name: str
+    points: pathlib.Path
+    truth: pathlib.Path | None = None
+    up: str = "z"
+
+
+class Programs:
+    def __init__(self, folder, work, samples):
+        self.folder, self.work, self.samples = folder, work, samples
+        self.reconstruction = self.find("pcl_spherical_param_reconstruction")
+        self.quality = self.find("benchmark_mesh_quality")
+
+    def find(self, name, required=True):
+        path = self.folder / name
+        if path.is_file():
+            return path
+        if required:
+            raise Failure(f"there is no program '{path}'", "run tools/benchmark.sh, which builds it")
+        return None
+
+    def scan(self, name, noise=None, truth=True):
+        """A generated scan, by SHAPE_POINTS or the name of a preset; made once."""
+        shape, _, points = name.partition("_")
+        name = f"{name}_noise_{noise}" if noise else name
+        cloud = Cloud(name, self.work / f"{name}.ply",
+                      self.work / f"{shape}_truth.ply" if truth else None)  # fmt: skip
+        if not cloud.points.is_file() or (truth and not cloud.truth.is_file()):
+            command = [self.find("pcl_spherical_param_scan"), shape, cloud.points]
+            command += ["-points", points] if points else []
+            command += ["-noise", noise] if noise else []
+            command += ["-truth", cloud.truth] if truth else []
+            require(command)
+        return cloud
+
+    def reconstruct(self, cloud, mesh, *options, sphere=None, threads=None):
+        """Runs the tool: the process, and the tool's report."""
+        command = [self.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options]
+        command += ["-sphere", sphere] if sphere else []
+        process = require(command, threads)
+        return process, json.loads(process.output)
+
+    def measure(self, mesh, cloud=None, sphere=None, over_cloud=True):
+        """The referee's measures of a mesh, by the keys of the tables."""
+        command = [self.quality, mesh]
+        if cloud:
+            command += ["-cloud", cloud.points] if over_cloud else []
+            command += ["-truth", cloud.truth, "-samples", self.samples] if cloud.truth else []
+        command += ["-sphere", sphere] if sphere else []
+        return json.loads(require(command).output)
+
+
+def load_clouds(folder):
+    """The models in a folder: points/NAME.ply and, where it is known, truth/NAME.ply."""
+    paths = sorted((folder / "points").glob("*.ply"))
+    if not paths:
+        raise Failure(f"'{folder}' has no points/NAME.ply", "give the folder of the models")
+    truths = [folder / "truth" / path.name for path in paths]
+    # Most models that are distributed have y pointing up.
+    return [Cloud(path.stem, path, truth if truth.is_file() else None, up="y")
+            for path, truth in zip(paths, truths)]  # fmt: skip
