@@ -118,8 +118,6 @@ function(allowed_includes result file)
       # The messages that are generated from our own, and the nodes' helpers.
       list(APPEND allowed "[a-z_]+/[A-Za-z0-9_/]+\\.(h|hpp)" "ros[12]/[a-z_]+\\.h")
     endif()
-  elseif(file STREQUAL "tools/render_views.cpp")
-    set(allowed ${of_eigen_and_std} "vtk[A-Za-z0-9]+\\.h" "X11/Xlib\\.h")
   elseif(file MATCHES "^tools/")
     set(allowed ${of_eigen_and_std} ${ours_any} "(common/)?[a-z_]+\\.h" "sys/[a-z_]+\\.h"
                 "boost/program_options\\.hpp" "boost/program_options/.*" "nlohmann/json\\.hpp"
