@@ -102,7 +102,6 @@ const Names<StopReason> stop_reason_names = {
 };
 
 Settings parseSettings(const CommandLine& command_line) {
-
   Settings settings;
   std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
   requireFormat(settings.input, FileUse::ReadCloud);

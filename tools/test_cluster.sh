@@ -37,7 +37,7 @@ page() {
 }
 
 # Five scans with their meshes; one of the scans is broken, its name has blanks.
-scans() {
+scans() (
   mkdir -p "$work/here/scans" "$work/expected" "$PARALLEL_HOME"
   touch "$PARALLEL_HOME/will-cite"
   cd "$work/here"
@@ -49,7 +49,7 @@ scans() {
       pcl_spherical_param_reconstruction "scans/$shape.ply" "$work/expected/$shape.ply" -quiet ||
       return 1
   done
-}
+)
 
 break_scan() {
   mv "$work/here/scans/a b.ply" "$work/whole" && echo "no scan" >"$work/here/scans/a b.ply"
