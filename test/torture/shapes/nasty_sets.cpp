@@ -229,34 +229,6 @@ Points twoBlobs(Random& random) {
   return points;
 }
 
-Points cantor(Random& random) {
-  const double ratio = random.chance(0.5) ? 1.0 / 3.0 : random.real(0.02, 0.45);
-  const int depth = random.integer(2, 12);
-  const auto coordinate = [&] {
-    double x = 0.0;
-    double step = 1.0;
-    for (int level = 0; level < depth; ++level, step *= ratio)
-      x += random.chance(0.5) ? step : 0.0;
-    return x;
-  };
-  Points points(static_cast<std::size_t>(sizeOfSolid(random)));
-  for (Vector3d& p : points)
-    p << coordinate(), coordinate(), coordinate();
-  return points;
-}
-
-Points copiesOfFew(Random& random) {
-  const int distinct = random.integer(4, 6);
-  Points points;
-  for (int i = 0; i < distinct; ++i)
-    points.push_back(random.inCube());
-  const int copies = random.integer(500, 1000);
-  for (int c = 1; c < copies; ++c)
-    for (int i = 0; i < distinct; ++i)
-      points.push_back(points[static_cast<std::size_t>(i)]);
-  return points;
-}
-
 /// All but one in a plane, or slivers.
 Points fewDegenerate(Random& random) {
   Points points(static_cast<std::size_t>(random.integer(4, 7)));
@@ -320,8 +292,6 @@ const std::vector<Family>& families() {
       {"nearly flat", nearlyFlat},
       {"far outlier", outlier},
       {"two far blobs", twoBlobs},
-      {"Cantor dust", cantor},
-      {"copies of few points", copiesOfFew},
       {"4 to 7 random", [](Random& random) { return inCube(random, random.integer(4, 7)); }},
       {"4 to 7 degenerate", fewDegenerate},
       {"limb", limb},
