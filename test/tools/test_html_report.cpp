@@ -7,7 +7,6 @@
 #include "common/html_report.h"
 #include "common/mesh_writer.h"
 #include "common/output_file.h"
-#include "common/packed_array.h"
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "scan_shapes.h"
@@ -23,12 +22,12 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
-#include <random>
+#include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,11 +48,13 @@ constexpr std::string_view kBarePage = "<html>\n<!--DATA-->\n</html>\n";
 /// An array as the page reads it.
 struct Array {
   std::size_t components = 0;
-  std::size_t count = 0;
   std::vector<std::uint32_t> integers;  ///< row after row
   std::vector<double> values;           ///< the same by min and max, or the integers
 
-  double at(std::size_t row, std::size_t c) const { return values[row * components + c]; }
+  std::size_t rows() const { return integers.size() / components; }
+  Eigen::Vector3d point(std::size_t row) const {
+    return Eigen::Map<const Eigen::Vector3d>(values.data() + 3 * row);
+  }
 };
 
 struct Page {
@@ -87,48 +88,33 @@ std::string decodedBase64(const std::string& text) {
   return bytes;
 }
 
-std::string inflated(const std::string& packed, std::size_t size) {
-  std::string bytes(size + 1, '\0');
+std::string inflated(const std::string& packed) {
+  std::string bytes(std::max<std::size_t>(1 << 22, 40 * packed.size()), '\0');
   auto length = static_cast<uLongf>(bytes.size());
   EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &length,
                        reinterpret_cast<const Bytef*>(packed.data()),
                        static_cast<uLong>(packed.size())),
             Z_OK);
-  EXPECT_EQ(length, size);
-  bytes.resize(size);
+  bytes.resize(length);
   return bytes;
 }
 
-Array decodedArray(const json& info, const std::string& text) {
+Array decodedArray(const json& about, const std::string& bytes) {
   Array array;
-  array.components = info.at("components");
-  array.count = info.at("count");
-  const std::string type = info.at("type");
-  const std::size_t bytes = type == "u8" ? 1 : type == "u16" ? 2 : 4;
-  const std::string planes = inflated(decodedBase64(text), array.components * array.count * bytes);
-  array.integers.resize(array.components * array.count);
-  const double largest = type == "u8" ? 255.0 : 65535.0;
-  for (std::size_t c = 0; c < array.components; ++c) {
-    std::uint64_t value = 0;
-    for (std::size_t row = 0; row < array.count; ++row) {
-      std::uint64_t difference = 0;
-      for (std::size_t b = 0; b < bytes; ++b) {
-        const auto byte = static_cast<unsigned char>(planes[(c * bytes + b) * array.count + row]);
-        difference |= static_cast<std::uint64_t>(byte) << (8 * b);
-      }
-      value = (value + difference) % (std::uint64_t{1} << (8 * bytes));
-      array.integers[row * array.components + c] = static_cast<std::uint32_t>(value);
+  array.components = about.at("components");
+  const unsigned bits = about.at("bits");
+  const std::uint32_t largest = 0xffffffffU >> (32 - bits);
+  for (std::size_t i = 0; 8 * i < 8 * bytes.size() / (bits / 8); ++i) {
+    std::uint32_t value = i < array.components ? 0 : array.integers[i - array.components];
+    for (std::size_t b = 0; b < bits / 8; ++b) {
+      value += std::uint32_t{static_cast<unsigned char>(bytes[i * (bits / 8) + b])} << (8 * b);
     }
-  }
-  for (std::size_t i = 0; i < array.integers.size(); ++i) {
-    const double q = array.integers[i];
-    if (info.contains("min")) {
-      const double min = info["min"][i % array.components];
-      const double max = info["max"][i % array.components];
-      array.values.push_back(min + q / largest * (max - min));
-    } else {
-      array.values.push_back(q);
-    }
+    array.integers.push_back(value & largest);
+    const std::size_t c = i % array.components;
+    const double min = about.contains("min") ? about["min"][c].get<double>() : 0.0;
+    const double max = about.contains("max") ? about["max"][c].get<double>() : largest;
+    array.values.push_back(min +
+                           array.integers.back() / static_cast<double>(largest) * (max - min));
   }
   return array;
 }
@@ -137,17 +123,17 @@ Array decodedArray(const json& info, const std::string& text) {
 Page decoded(const std::string& html) {
   Page page;
   page.size = html.size();
-  const auto element = [&](const std::string& type, const std::string& id) {
-    const std::string start = "<script type=\"" + type + "\" id=\"" + id + "\">";
+  const auto element = [&](const std::string& id) {
+    const std::string start = "<script type=\"text/plain\" id=\"" + id + "\">";
     const std::size_t begin = html.find(start);
     EXPECT_NE(begin, std::string::npos) << id;
     const std::size_t end = html.find("</script>", begin);
     return html.substr(begin + start.size(), end - begin - start.size());
   };
-  page.data = json::parse(element("application/json", "report-data"));
-  for (const auto& [name, info] : page.data.at("arrays").items()) {
-    page.texts[name] = element("text/plain", "array-" + name);
-    page.arrays[name] = decodedArray(info, page.texts[name]);
+  page.data = json::parse(inflated(decodedBase64(element("data"))));
+  for (const auto& [name, about] : page.data.at("arrays").items()) {
+    page.texts[name] = element("array-" + name);
+    page.arrays[name] = decodedArray(about, inflated(decodedBase64(page.texts[name])));
   }
   return page;
 }
@@ -155,25 +141,22 @@ Page decoded(const std::string& html) {
 /// A cloud on its way through the parts of the tool.
 struct Shown {
   std::unique_ptr<CloudReconstruction> cloud = std::make_unique<CloudReconstruction>();
+  ReportMesh mesh;
   Page page;
 };
 
-Shown runWith(const TemporaryDirectory& directory, const std::string& input,
-              ReconstructionSettings settings, std::size_t most_triangles = kMostReportTriangles,
-              const Json& more = Json::object(), std::string_view page = kBarePage) {
+Shown runWith(const TemporaryDirectory& directory, ReconstructionSettings settings,
+              std::size_t max_triangles = kMaxReportTriangles) {
   Shown run;
   keepForHtmlReport(settings);
   Console console(false);
-  reconstructCloud(directory.file(input), settings, console, *run.cloud);
+  reconstructCloud(directory.file("in.ply"), settings, console, *run.cloud);
+  const int threads = settings.options.threads;
+  run.mesh = reportMesh(*run.cloud, max_triangles, threads);
   OutputFile file(directory.file("page.html"));
-  HtmlReportInput report;
-  report.tool = "tool";
-  report.command = "tool in out";
-  report.report = {{"input", "a</script><b>"}};
-  report.report.update(more);
-  report.cloud = run.cloud.get();
-  report.threads = settings.options.threads;
-  writeHtmlReport(file, page, report, most_triangles);
+  writeHtmlReport(file, kBarePage,
+                  {"tool", "tool in out", {{"input", "in.ply"}}, run.cloud.get(), threads},
+                  max_triangles);
   file.commit();
   run.page = decoded(tool_test::readFile(directory.file("page.html")));
   return run;
@@ -220,132 +203,104 @@ ReconstructionSettings flipsAlone() {
 }
 
 Triangles trianglesOf(const Array& array) {
-  Triangles triangles(3, static_cast<Index>(array.count));
-  for (std::size_t i = 0; i < array.integers.size(); ++i) {
-    triangles.data()[i] = static_cast<Index>(array.integers[i]);
-  }
+  Triangles triangles(3, static_cast<Index>(array.rows()));
+  std::copy(array.integers.begin(), array.integers.end(), triangles.data());
   return triangles;
+}
+
+double shareOf(double value, double min, double max) {
+  return max > min ? (std::clamp(value, min, max) - min) / (max - min) : 0.0;
+}
+
+/// The page holds what is to be shown, in steps of its arrays.
+void expectShown(const Shown& run) {
+  const Page& page = run.page;
+  const ReportMesh& mesh = run.mesh;
+  const auto v = static_cast<std::size_t>(mesh.positions.cols());
+  EXPECT_EQ(page.data["mesh"]["vertices"], run.cloud->result().vertexCount());
+  EXPECT_EQ(page.data["mesh"]["triangles"], run.cloud->result().triangles.cols());
+  EXPECT_EQ(page.data["mesh"]["shown_vertices"], v);
+  EXPECT_EQ(page.data["mesh"]["shown_triangles"], mesh.triangles.cols());
+  ASSERT_EQ(page["positions"].rows(), v);
+  ASSERT_EQ(page["sphere"].rows(), v);
+  EXPECT_EQ(trianglesOf(page["triangles"]), mesh.triangles);
+  EXPECT_TRUE(spherical_param::checkTopology(mesh.triangles, v).isSphere());
+  EXPECT_EQ(page["suspicious"].integers,
+            std::vector<std::uint32_t>(mesh.marks.begin(), mesh.marks.end()));
+  const Eigen::Vector3d size =
+      mesh.positions.rowwise().maxCoeff() - mesh.positions.rowwise().minCoeff();
+  const Positions vertices = vertexPositions(*run.cloud);
+  for (std::size_t row = 0; row < v; ++row) {
+    const auto column = static_cast<Index>(row);
+    const Index vertex = mesh.vertices[row];
+    EXPECT_EQ(mesh.positions.col(column), vertices.col(vertex));
+    EXPECT_EQ(mesh.sphere.col(column), run.cloud->result().sphere.col(vertex));
+    const Eigen::Vector3d off = page["positions"].point(row) - mesh.positions.col(column);
+    EXPECT_TRUE((off.cwiseAbs().array() <= 0.51 / 65535.0 * size.array()).all());
+    EXPECT_LE((page["sphere"].point(row) - mesh.sphere.col(column)).cwiseAbs().maxCoeff(),
+              1.01 / 65535.0);
+    // Half a step of 255.
+    constexpr double step = 0.51;
+    const auto range = [&](const std::string& name, const std::string& end) {
+      return page.data["arrays"][name][end][0].get<double>();
+    };
+    const double area = mesh.area_distortion[row];
+    const double side = area < 0.0 ? -range("area", "min") : range("area", "max");
+    EXPECT_NEAR(page["area"].integers[row], 255.0 * shareOf(area / side, -1.0, 1.0), step);
+    EXPECT_NEAR(page["angle"].integers[row],
+                255.0 * shareOf(std::log10(mesh.angle_distortion[row]), range("angle", "min"),
+                                range("angle", "max")),
+                step);
+    EXPECT_NEAR(page["residual"].integers[row],
+                255.0 *
+                    shareOf(mesh.residual[row], range("residual", "min"), range("residual", "max")),
+                step);
+  }
+  const std::size_t h = page["history_positions"].rows();
+  EXPECT_EQ(page["history_frames"].rows(), h * page.data["frames"].size());
+  EXPECT_GE(page.data["frames"].size(), 3U);
+  EXPECT_EQ(page.data["frames"].back()["step"], "end");
+  EXPECT_TRUE(spherical_param::checkTopology(trianglesOf(page["history_triangles"]), h).isSphere());
 }
 
 using Corners = std::array<Index, 3>;
 
-/// The triangle from its least vertex on.
-Corners canonical(Corners corners) {
-  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-  return corners;
-}
-
-/// The vertex of the mesh that each vertex of the page is: the place is that up to half a step.
-std::vector<Index> matched(const Page& page, const Positions& vertices) {
-  const Array& positions = page["positions"];
-  const json& info = page.data["arrays"]["positions"];
-  using Key = std::array<std::uint32_t, 3>;
-  std::multimap<Key, Index> by_key;
-  for (Index v = 0; v < vertices.cols(); ++v) {
-    Key key{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double min = info["min"][c];
-      const double max = info["max"][c];
-      const double share = (vertices(static_cast<Index>(c), v) - min) / (max - min);
-      key[c] = static_cast<std::uint32_t>(std::lround(65535.0 * share));
+/// The triangles of a mesh, each from its least vertex on, and their marks.
+std::map<Corners, std::uint8_t> markedTriangles(const Triangles& triangles,
+                                                const std::vector<std::uint8_t>& marks,
+                                                const std::vector<Index>& vertices) {
+  std::map<Corners, std::uint8_t> result;
+  for (Index t = 0; t < triangles.cols(); ++t) {
+    Corners corners{};
+    for (Index k = 0; k < 3; ++k) {
+      corners[static_cast<std::size_t>(k)] = vertices[static_cast<std::size_t>(triangles(k, t))];
     }
-    by_key.emplace(key, v);
-  }
-  std::vector<Index> result;
-  for (std::size_t row = 0; row < positions.count; ++row) {
-    const auto found = by_key.find({positions.integers[3 * row], positions.integers[3 * row + 1],
-                                    positions.integers[3 * row + 2]});
-    EXPECT_NE(found, by_key.end());
-    EXPECT_EQ(by_key.count(found->first), 1U) << "the test's scan is too dense";
-    result.push_back(found->second);
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    result[corners] = marks[static_cast<std::size_t>(t)];
   }
   return result;
 }
 
-/// All that the contract says of the arrays' sizes and ranges.
-void expectConsistent(const Page& page) {
-  const json& mesh = page.data["mesh"];
-  const std::size_t v = mesh["shown_vertices"];
-  const std::size_t t = mesh["shown_triangles"];
-  EXPECT_EQ(page.data["format"], 1);
-  EXPECT_EQ(page["positions"].count, v);
-  EXPECT_EQ(page["sphere"].count, v);
-  EXPECT_EQ(page["triangles"].count, t);
-  EXPECT_EQ(page["suspicious"].count, t);
-  for (const std::string name : {"area_distortion", "angle_distortion", "residual"}) {
-    EXPECT_EQ(page[name].count, v);
-    for (const double value : page[name].values) {
-      ASSERT_TRUE(std::isfinite(value));
-    }
-  }
-  EXPECT_GE(*std::min_element(page["angle_distortion"].values.begin(),
-                              page["angle_distortion"].values.end()),
-            1.0);
-  EXPECT_TRUE(spherical_param::checkTopology(trianglesOf(page["triangles"]), v).isSphere());
-  for (std::size_t row = 0; row < v; ++row) {
-    const double length =
-        std::hypot(page["sphere"].at(row, 0), page["sphere"].at(row, 1), page["sphere"].at(row, 2));
-    ASSERT_NEAR(length, 1.0, 1e-4);
-  }
-  const json& history = page.data["history"];
-  ASSERT_TRUE(history.is_object());
-  const std::size_t h = history["vertices"];
-  EXPECT_EQ(page["history_positions"].count, h);
-  EXPECT_EQ(page["history_triangles"].count, history["triangles"]);
-  EXPECT_EQ(page["history_frames"].count, h * history["frames"].size());
-  EXPECT_GE(history["frames"].size(), 3U);
-  EXPECT_LE(history["frames"].size(), 40U);
-  EXPECT_EQ(history["frames"].back()["step"], "end");
-  EXPECT_EQ(history["frames"].back()["level"], 0);
-  EXPECT_TRUE(spherical_param::checkTopology(trianglesOf(page["history_triangles"]), h).isSphere());
-}
-
 TEST(HtmlReport, HoldsTheMeshUpToRounding) {
   const TemporaryDirectory directory;
-  writeScan(directory.file("in.ply"), Shape::Animal, 3000);
-  const Shown run = runWith(directory, "in.ply", {});
-  const Page& page = run.page;
-  expectConsistent(page);
+  writeScan(directory.file("in.ply"), Shape::Bowl, 3000);
+  const Shown run = runWith(directory, flipsAlone());
+  expectShown(run);
   const spherical_param::Result& result = run.cloud->result();
-  EXPECT_FALSE(page.data["mesh"]["decimated"]);
-  EXPECT_EQ(page.data["mesh"]["vertices"], result.vertexCount());
-  EXPECT_EQ(page.data["mesh"]["triangles"], result.triangles.cols());
-  EXPECT_EQ(page.arrays.count("cloud"), 0U);
-  EXPECT_EQ(page.arrays.count("colors"), 0U);
-  const std::vector<Index> vertices = matched(page, vertexPositions(*run.cloud));
-  EXPECT_EQ(std::set<Index>(vertices.begin(), vertices.end()).size(), result.vertexCount());
-
-  std::map<Corners, Index> triangles;
-  for (Index t = 0; t < result.triangles.cols(); ++t) {
-    triangles[canonical({result.triangles(0, t), result.triangles(1, t), result.triangles(2, t)})] =
-        t;
-  }
-  const Array& shown = page["triangles"];
-  std::set<Index> seen;
-  for (std::size_t row = 0; row < shown.count; ++row) {
-    const auto found = triangles.find(
-        canonical({vertices[shown.integers[3 * row]], vertices[shown.integers[3 * row + 1]],
-                   vertices[shown.integers[3 * row + 2]]}));
-    ASSERT_NE(found, triangles.end());
-    seen.insert(found->second);
-    EXPECT_EQ(page["suspicious"].integers[row],
-              result.diagnosis.triangle_marks[static_cast<std::size_t>(found->second)]);
-  }
-  EXPECT_EQ(seen.size(), triangles.size());
-
-  const json& range = page.data["arrays"]["residual"];
-  for (std::size_t row = 0; row < vertices.size(); ++row) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_NEAR(page["sphere"].at(row, c), result.sphere(static_cast<Index>(c), vertices[row]),
-                  1.01 / 65535.0);
-    }
+  std::vector<Index> all(result.vertexCount());
+  std::iota(all.begin(), all.end(), 0);
+  const auto marked = markedTriangles(result.triangles, result.diagnosis.triangle_marks, all);
+  EXPECT_EQ(markedTriangles(run.mesh.triangles, run.mesh.marks, run.mesh.vertices), marked);
+  EXPECT_TRUE(std::any_of(marked.begin(), marked.end(),
+                          [](const auto& entry) { return entry.second != 0; }));
+  for (std::size_t row = 0; row < all.size(); ++row) {
     const double residual =
-        std::log10(result.vertex_residuals[static_cast<std::size_t>(vertices[row])]);
-    const double min = range["min"][0];
-    const double max = range["max"][0];
-    EXPECT_NEAR(page["residual"].values[row], std::clamp(residual, min, max),
-                0.51 / 255.0 * (max - min));
+        result.vertex_residuals[static_cast<std::size_t>(run.mesh.vertices[row])];
+    EXPECT_DOUBLE_EQ(run.mesh.residual[row], std::log10(std::max(residual, 1e-17)));
   }
+  EXPECT_EQ(run.page.arrays.count("cloud") + run.page.arrays.count("colors") +
+                run.page.arrays.count("outliers"),
+            0U);
 }
 
 TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
@@ -355,23 +310,20 @@ TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
                             spherical_param::EmbeddingMethod::Iterative}) {
     ReconstructionSettings settings = flipsAlone();
     settings.options.solver = solver;
-    const Shown run = runWith(directory, "in.ply", settings);
-    const Page& page = run.page;
-    expectConsistent(page);
-    const Array& positions = page["history_positions"];
-    const Array& frames = page["history_frames"];
+    const Shown run = runWith(directory, settings);
+    expectShown(run);
+    const Array& positions = run.page["history_positions"];
+    const Array& frames = run.page["history_frames"];
     const Positions vertices = vertexPositions(*run.cloud);
-    const std::size_t last = frames.count - positions.count;
+    const std::size_t last = frames.rows() - positions.rows();
     double moved = 0.0;
-    for (std::size_t row = 0; row < positions.count; ++row) {
-      const Eigen::Vector3d place(positions.at(row, 0), positions.at(row, 1), positions.at(row, 2));
+    for (std::size_t row = 0; row < positions.rows(); ++row) {
       Index nearest = 0;
-      (vertices.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
-      for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(frames.at(last + row, c),
-                    run.cloud->result().sphere(static_cast<Index>(c), nearest), 1.01 / 65535.0);
-        moved = std::max(moved, std::abs(frames.at(last + row, c) - frames.at(row, c)));
-      }
+      (vertices.colwise() - positions.point(row)).colwise().squaredNorm().minCoeff(&nearest);
+      const Eigen::Vector3d end = frames.point(last + row);
+      EXPECT_LE((end - run.cloud->result().sphere.col(nearest)).cwiseAbs().maxCoeff(),
+                1.01 / 65535.0);
+      moved = std::max(moved, (end - frames.point(row)).cwiseAbs().maxCoeff());
     }
     EXPECT_GT(moved, 0.1);
   }
@@ -380,104 +332,39 @@ TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
 TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   const TemporaryDirectory directory;
   writeScan(directory.file("in.ply"), Shape::Head, 3000, true, 0.5);
-  ReconstructionSettings settings;
-  settings.options.threads = 2;
+  ReconstructionSettings settings = flipsAlone();
   settings.options.smoothing_steps = 5;
   settings.outlier_sigma = 6.0;
-  const Shown run = runWith(directory, "in.ply", settings);
+  const Shown run = runWith(directory, settings);
+  expectShown(run);
   const Page& page = run.page;
-  expectConsistent(page);
-  const spherical_param::Result& result = run.cloud->result();
-  EXPECT_GT(result.duplicates, 100U);
-  const std::vector<Index> vertices = matched(page, result.smoothed);
-  for (std::size_t row = 0; row < vertices.size(); ++row) {
-    const int index =
-        run.cloud->reconstruction.getVertexIndices()[static_cast<std::size_t>(vertices[row])];
+  const std::vector<Point>& points = run.cloud->data.points;
+  ASSERT_EQ(page["cloud"].rows(), run.mesh.vertices.size());
+  for (std::size_t row = 0; row < run.mesh.vertices.size(); ++row) {
+    const auto index = static_cast<std::size_t>(
+        run.cloud->reconstruction
+            .getVertexIndices()[static_cast<std::size_t>(run.mesh.vertices[row])]);
     for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_EQ(page["colors"].integers[3 * row + c],
-                run.cloud->data.colors[static_cast<std::size_t>(index)][c]);
+      EXPECT_EQ(page["colors"].integers[3 * row + c], run.cloud->data.colors[index][c]);
+      // The object has an extent of about 1.
+      EXPECT_NEAR(page["cloud"].values[3 * row + c], points[index][c], 1e-4);
     }
   }
-  // The cloud as it was read, far points and repeated ones as well.
-  EXPECT_EQ(page["cloud"].count, run.cloud->data.points.size());
-  ASSERT_EQ(page["cloud_removed"].count, page["cloud"].count);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(page["cloud_removed"].integers.begin(),
-                                                page["cloud_removed"].integers.end(), 1U)),
-            run.cloud->outliers->indices.size());
-  EXPECT_GE(run.cloud->outliers->indices.size(), 5U);
-  for (std::size_t row = 0; row < page["cloud"].count; ++row) {
-    if (page["cloud"].at(row, 0) > 2.5) {
-      EXPECT_EQ(page["cloud_removed"].integers[row], 1U);
-    }
+  // Those 3 units off come to the side of a box that is as much larger than the mesh as its
+  // diagonal is long, in its middle.
+  EXPECT_EQ(page.data["outliers"], run.cloud->outliers->indices.size());
+  ASSERT_EQ(page["outliers"].rows(), run.cloud->outliers->indices.size());
+  ASSERT_GE(page["outliers"].rows(), 5U);
+  const Eigen::Vector3d high = run.mesh.positions.rowwise().maxCoeff();
+  const double margin = (high - run.mesh.positions.rowwise().minCoeff()).norm() / 2.0;
+  std::size_t beyond = 0;
+  for (std::size_t row = 0; row < page["outliers"].rows(); ++row) {
+    const auto index = static_cast<std::size_t>(run.cloud->outliers->indices[row]);
+    const double x = std::min<double>(points[index][0], high.x() + margin);
+    EXPECT_NEAR(page["outliers"].point(row).x(), x, 1e-4);
+    beyond += x < points[index][0] ? 1 : 0;
   }
-}
-
-TEST(HtmlReport, AnOutlierFarOffLeavesTheStepsToTheObject) {
-  const TemporaryDirectory directory;
-  ScanOptions options;
-  options.shape = Shape::Head;
-  options.points = 2000;
-  const Positions scan = generateScan(options).points;
-  TriangleMesh mesh;
-  for (Index i = 0; i < scan.cols(); ++i) {
-    mesh.vertices.addPoint({scan(0, i), scan(1, i), scan(2, i)});
-  }
-  mesh.vertices.addPoint({-3000.0F, 1000.0F, 0.0F});
-  OutputFile file(directory.file("in.ply"));
-  writeMesh(file, mesh, FileFormat::Ply, Encoding::Binary);
-  file.commit();
-  ReconstructionSettings settings = flipsAlone();
-  settings.outlier_sigma = 6.0;
-  const Shown run = runWith(directory, "in.ply", settings);
-  const Page& page = run.page;
-  ASSERT_EQ(page["cloud"].count, 2001U);
-  const Eigen::Vector3d low = scan.rowwise().minCoeff();
-  const Eigen::Vector3d high = scan.rowwise().maxCoeff();
-  const double diagonal = (high - low).norm();
-  bool found = false;
-  for (std::size_t row = 0; row < page["cloud"].count; ++row) {
-    const Eigen::Vector3d place(page["cloud"].at(row, 0), page["cloud"].at(row, 1),
-                                page["cloud"].at(row, 2));
-    if (page["cloud_removed"].integers[row] != 0 && place.x() < low.x() - diagonal / 4.0) {
-      // In its direction, but near.
-      EXPECT_NEAR((place - (low + high) / 2.0).norm(), diagonal, 1e-3 * diagonal);
-      EXPECT_NEAR((place - (low + high) / 2.0).y() / (place - (low + high) / 2.0).x(), -1.0 / 3.0,
-                  1e-2);
-      found = true;
-      continue;
-    }
-    EXPECT_LT((scan.colwise() - place).colwise().norm().minCoeff(), 1e-4 * diagonal);
-  }
-  EXPECT_TRUE(found);
-}
-
-TEST(HtmlReport, DistortionHasStepsEnoughForItsColours) {
-  const TemporaryDirectory directory;
-  // Limbs are squeezed by many powers of two; a sphere is not.
-  for (const auto& [shape, type] : {std::pair<Shape, std::string>{Shape::Hand, "u16"},
-                                    std::pair<Shape, std::string>{Shape::Sphere, "u8"}}) {
-    writeScan(directory.file("in.ply"), shape, 4000);
-    const Shown run = runWith(directory, "in.ply", flipsAlone());
-    const ReportMesh mesh = reportMesh(*run.cloud, kMostReportTriangles, 2);
-    const json& arrays = run.page.data["arrays"];
-    EXPECT_EQ(arrays["area_distortion"]["type"], type);
-    const double most_angle = arrays["angle_distortion"]["max"][0];
-    for (std::size_t v = 0; v < mesh.area_distortion.size(); ++v) {
-      const double area = mesh.area_distortion[v];
-      const double min = arrays["area_distortion"]["min"][0];
-      const double max = arrays["area_distortion"]["max"][0];
-      // Less than a hundredth of the colours of its side.
-      const double side = area < 0.0 ? std::abs(min) : std::abs(max);
-      EXPECT_NEAR(run.page["area_distortion"].values[v], std::clamp(area, min, max), side / 100.0);
-      const double angle = std::min(mesh.angle_distortion[v], most_angle);
-      EXPECT_NEAR(std::log(run.page["angle_distortion"].values[v]), std::log(angle),
-                  std::max(0.01, std::log(most_angle) / 100.0));
-    }
-    // One vertex of a hundred has the last colour.
-    const auto beyond = std::count_if(mesh.angle_distortion.begin(), mesh.angle_distortion.end(),
-                                      [&](double angle) { return angle > most_angle; });
-    EXPECT_NEAR(static_cast<double>(beyond), 40.0, 2.0);
-  }
+  EXPECT_GE(beyond, 5U);
 }
 
 TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
@@ -489,7 +376,7 @@ TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
     settings.options.threads = threads;
     settings.options.smoothing_steps = 2;
     settings.outlier_sigma = 8.0;
-    const Shown run = runWith(directory, "in.ply", settings, 3000);
+    const Shown run = runWith(directory, settings, 3000);
     if (threads == 1) {
       first = run.page.texts;
     }
@@ -497,211 +384,60 @@ TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(HtmlReport, IsAboutAsLargeAsTheMeshInBinary) {
+TEST(HtmlReport, HasAboutTwelveBytesForATriangle) {
   const TemporaryDirectory directory;
   writeScan(directory.file("in.ply"), Shape::Head, 50000);
-  // With the program of the page, where this build has it.
-  const Shown run = runWith(directory, "in.ply", flipsAlone(), kMostReportTriangles, Json::object(),
-                            reportPage().empty() ? kBarePage : reportPage());
-  expectConsistent(run.page);
-  OutputFile file(directory.file("mesh.ply"));
-  writeMesh(file, meshOf(*run.cloud), FileFormat::Ply, Encoding::Binary);
-  file.commit();
-  const auto mesh_size =
-      static_cast<double>(std::filesystem::file_size(directory.file("mesh.ply")));
-  EXPECT_LT(static_cast<double>(run.page.size), 1.2 * mesh_size);
+  const Shown run = runWith(directory, flipsAlone());
+  expectShown(run);
+  // The program of the page and the unfolding of large meshes are as large for every mesh.
+  double size = 0.0;
+  for (const auto& [name, text] : run.page.texts) {
+    size += name.rfind("history", 0) == 0 ? 0.0 : static_cast<double>(text.size());
+  }
+  EXPECT_LT(size, 12.5 * static_cast<double>(run.mesh.triangles.cols()));
 }
 
-TEST(HtmlReport, MoreThan300000TrianglesAreDecimatedToAClosedMesh) {
-  const TemporaryDirectory directory;
-  writeScan(directory.file("in.ply"), Shape::Head, 200000);
-  const Shown run = runWith(directory, "in.ply", flipsAlone());
-  const Page& page = run.page;
-  expectConsistent(page);
-  EXPECT_TRUE(page.data["mesh"]["decimated"]);
-  EXPECT_EQ(page.data["mesh"]["vertices"], 200000);
-  EXPECT_EQ(page.data["mesh"]["triangles"], 399996);
-  EXPECT_LE(page.data["mesh"]["shown_triangles"], 300000);
-  EXPECT_GE(page.data["mesh"]["shown_triangles"], 200000);
-  EXPECT_LE(page.data["history"]["vertices"], 5000);
-}
-
-TEST(HtmlReport, DecimatedMeshHasTheShapeAndTheSuspiciousPlaces) {
+TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
   const TemporaryDirectory directory;
   writeScan(directory.file("in.ply"), Shape::Bowl, 8000);
-  const Shown whole = runWith(directory, "in.ply", flipsAlone());
-  const Shown run = runWith(directory, "in.ply", flipsAlone(), 4000);
-  const Page& page = run.page;
-  expectConsistent(page);
-  EXPECT_TRUE(page.data["mesh"]["decimated"]);
-  const spherical_param::Result& result = run.cloud->result();
-  const auto lids = [](const Page& of) {
-    return std::count_if(of["suspicious"].integers.begin(), of["suspicious"].integers.end(),
-                         [](std::uint32_t mark) { return (mark & 2U) != 0; });
+  const Shown whole = runWith(directory, flipsAlone());
+  const Shown run = runWith(directory, flipsAlone(), 4000);
+  expectShown(run);
+  EXPECT_EQ(run.mesh.triangles.cols(), 4000);
+  EXPECT_EQ(std::set<Index>(run.mesh.vertices.begin(), run.mesh.vertices.end()).size(), 2002U);
+  const auto holes = [](const Shown& of) {
+    return std::count_if(of.mesh.marks.begin(), of.mesh.marks.end(),
+                         [](std::uint8_t mark) { return (mark & 2U) != 0; });
   };
-  EXPECT_GT(lids(whole.page), 10);
-  EXPECT_GT(lids(page), lids(whole.page) / 2);
-  const std::vector<Index> vertices = matched(page, vertexPositions(*run.cloud));
-  // What is shown of a vertex is its own, and the area is about that of the whole mesh.
-  for (std::size_t row = 0; row < vertices.size(); ++row) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_NEAR(page["sphere"].at(row, c), result.sphere(static_cast<Index>(c), vertices[row]),
-                  1.01 / 65535.0);
+  EXPECT_GT(holes(whole), 10);
+  EXPECT_GT(holes(run), holes(whole) / 2);
+  const auto area = [](const Shown& of) {
+    double sum = 0.0;
+    for (Index t = 0; t < of.mesh.triangles.cols(); ++t) {
+      const Eigen::Vector3d corner = of.mesh.positions.col(of.mesh.triangles(0, t));
+      sum += (of.mesh.positions.col(of.mesh.triangles(1, t)) - corner)
+                 .cross(of.mesh.positions.col(of.mesh.triangles(2, t)) - corner)
+                 .norm();
     }
-  }
-  double area = 0.0;
-  for (std::size_t row = 0; row < page["triangles"].count; ++row) {
-    std::array<Eigen::Vector3d, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t v = page["triangles"].integers[3 * row + k];
-      corners[k] = {page["positions"].at(v, 0), page["positions"].at(v, 1),
-                    page["positions"].at(v, 2)};
-    }
-    area += (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2.0;
-  }
-  EXPECT_NEAR(area, result.area, 0.1 * result.area);
-}
-
-TEST(HtmlReport, ALongListOfResidualsIsThinnedFromTheFirstToTheLast) {
-  const TemporaryDirectory directory;
-  writeScan(directory.file("in.ply"), Shape::Sphere, 100);
-  const auto shown = [&](std::size_t count) {
-    Json residuals = Json::array();
-    for (std::size_t i = 0; i < count; ++i) {
-      residuals.push_back(i);
-    }
-    const Shown run = runWith(directory, "in.ply", flipsAlone(), kMostReportTriangles,
-                              {{"residuals", residuals}});
-    EXPECT_EQ(run.page.data["residual_count"], count);
-    return run.page.data["report"]["residuals"];
+    return sum;
   };
-  const json few = shown(1600);
-  ASSERT_EQ(few.size(), 1600U);
-  EXPECT_EQ(few[77], 77);
-  const json many = shown(200000);
-  ASSERT_EQ(many.size(), 2000U);
-  EXPECT_EQ(many[0], 0);
-  EXPECT_EQ(many[1000], 100049);
-  EXPECT_EQ(many[1999], 199999);
+  // A fourth of the vertices flattens what is round a little.
+  EXPECT_NEAR(area(run), area(whole), 0.1 * area(whole));
 }
 
 TEST(HtmlReport, TinyCloudsHaveAPage) {
   const TemporaryDirectory directory;
   for (const std::size_t points : {4U, 5U, 12U}) {
     writeScan(directory.file("in.ply"), Shape::Sphere, points);
-    const Shown run = runWith(directory, "in.ply", {});
-    EXPECT_EQ(run.page["triangles"].count, 2 * points - 4);
-    EXPECT_TRUE(run.page.data["history"].is_object());
+    expectShown(runWith(directory, {}));
   }
-}
-
-TEST(PackedArray, ComesBackWhateverTheNumbers) {
-  std::mt19937 random(3);
-  for (const PackedType type : {PackedType::U8, PackedType::U16, PackedType::U32}) {
-    for (const std::size_t rows : {0U, 1U, 2U, 1000U}) {
-      PackedArray array;
-      array.type = type;
-      array.components = 3;
-      const int bits = 8 * static_cast<int>(type);
-      for (std::size_t i = 0; i < 3 * rows; ++i) {
-        array.values.push_back(static_cast<std::uint32_t>(random()) >> (32 - bits));
-      }
-      const json info = {
-          {"type", "u" + std::to_string(bits)}, {"components", 3}, {"count", array.rows()}};
-      EXPECT_EQ(decodedArray(info, textOf(array)).integers, array.values);
-    }
-  }
-}
-
-TEST(PackedArray, QuantisesWithinHalfAStepAndClamps) {
-  const PackedArray array = quantized("a", PackedType::U8, {-5.0, 0.0, 0.1, 1.0, 7.0}, 0.0, 1.0);
-  EXPECT_EQ(array.values, (std::vector<std::uint32_t>{0, 0, 26, 255, 255}));
-  const PackedArray flat = quantized("b", PackedType::U16, 2, {3.0, 1.0, 3.0, 2.0});
-  EXPECT_EQ(flat.values, (std::vector<std::uint32_t>{0, 0, 0, 65535}));
-  EXPECT_EQ(flat.min, (std::vector<double>{3.0, 1.0}));
-}
-
-TEST(PackedArray, Base64IsThatOfTheStandard) {
-  // RFC 4648, section 10.
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-}
-
-TEST(EvenSubset, IsOfTheSizeThatIsAskedForAndKeepsWhatItMust) {
-  ScanOptions options;
-  options.points = 5000;
-  const Positions points = generateScan(options).points;
-  std::vector<bool> kept(5000, false);
-  for (std::size_t i = 0; i < 5000; i += 50) {
-    kept[i] = true;
-  }
-  for (const std::size_t count : {4U, 50U, 500U, 2000U, 4999U, 5000U}) {
-    const std::vector<Index> subset = evenSubset(points, kept, count);
-    EXPECT_LE(subset.size(), count);
-    EXPECT_GE(10 * subset.size(), 8 * count);
-    EXPECT_TRUE(std::is_sorted(subset.begin(), subset.end()));
-    EXPECT_EQ(std::adjacent_find(subset.begin(), subset.end()), subset.end());
-    if (count >= 500) {
-      for (Index i = 0; i < 5000; i += 50) {
-        EXPECT_TRUE(std::binary_search(subset.begin(), subset.end(), i));
-      }
-    }
-  }
-}
-
-TEST(TraversalOrder, AVertexMayHaveHalfOfTheTrianglesAndOthersNone) {
-  // Two cones over one rim, their triangles in any order, and as many vertices of no triangle.
-  constexpr Index rim = 100000;
-  Triangles triangles(3, 2 * rim);
-  std::vector<Index> order(2 * rim);
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), std::mt19937(5));
-  for (Index i = 0; i < rim; ++i) {
-    const Index a = 2 + i;
-    const Index b = 2 + (i + 1) % rim;
-    triangles.col(order[static_cast<std::size_t>(2 * i)]) << 0, a, b;
-    triangles.col(order[static_cast<std::size_t>(2 * i + 1)]) << b, a, 1;
-  }
-  constexpr std::size_t count = 3 * rim;
-  const spherical_param::tools::MeshOrder result = traversalOrder(triangles, count);
-  ASSERT_EQ(result.vertices.size(), count);
-  ASSERT_EQ(result.triangles.size(), std::size_t{2} * rim);
-  EXPECT_EQ(std::set<Index>(result.vertices.begin(), result.vertices.end()).size(), count);
-  EXPECT_EQ(result.vertices[0], 0);
-  // Around the first vertex one after the other.
-  for (Index t = 0; t < rim; ++t) {
-    EXPECT_EQ(result.renumbered(0, t), 0);
-    EXPECT_EQ(result.renumbered(1, t), 1 + t);
-    EXPECT_EQ(result.renumbered(2, t), 1 + (t + 1) % rim);
-  }
-  for (std::size_t t = 0; t < result.triangles.size(); ++t) {
-    const auto column = static_cast<Index>(t);
-    Corners corners{};
-    for (Index k = 0; k < 3; ++k) {
-      corners[static_cast<std::size_t>(k)] =
-          result.vertices[static_cast<std::size_t>(result.renumbered(k, column))];
-    }
-    const auto old = triangles.col(result.triangles[t]);
-    ASSERT_EQ(canonical(corners), canonical({old[0], old[1], old[2]}));
-  }
-}
-
-TEST(ReportMesh, ResidualsThatAreNoNumbersAreTheLeast) {
-  EXPECT_DOUBLE_EQ(residualExponent(1e-5), -5.0);
-  EXPECT_DOUBLE_EQ(residualExponent(0.0), -17.0);
-  EXPECT_DOUBLE_EQ(residualExponent(1e-30), -17.0);
-  EXPECT_DOUBLE_EQ(residualExponent(std::numeric_limits<double>::quiet_NaN()), -17.0);
-  EXPECT_DOUBLE_EQ(residualExponent(std::numeric_limits<double>::infinity()), -17.0);
 }
 
 TEST(ReportMesh, ItsDistortionOfAnglesIsThatOfTheCore) {
   const TemporaryDirectory directory;
   writeScan(directory.file("in.ply"), Shape::Animal, 2000);
-  const Shown run = runWith(directory, "in.ply", flipsAlone());
-  const ReportMesh mesh = reportMesh(*run.cloud, kMostReportTriangles, 1);
+  const Shown run = runWith(directory, flipsAlone());
+  const ReportMesh& mesh = run.mesh;
   std::vector<double> areas(mesh.angle_distortion.size(), 0.0);
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     const Eigen::Vector3d corner = mesh.positions.col(mesh.triangles(0, t));
@@ -784,8 +520,7 @@ TEST_F(ReportTool, WritesThePageWithTheReportOfJson) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const std::string html = tool_test::readFile(directory.file("page.HTML"));
   const Page page = decoded(html);
-  expectConsistent(page);
-  // Nothing but the data is between the two parts of the page.
+  // Nothing but the data is between the two parts of the page, and these are elements of base64.
   const std::string_view whole = reportPage();
   const std::size_t place = whole.find("<!--DATA-->");
   ASSERT_NE(place, std::string::npos);
@@ -793,6 +528,22 @@ TEST_F(ReportTool, WritesThePageWithTheReportOfJson) {
   const std::string_view rest = whole.substr(place + std::string_view("<!--DATA-->").size());
   ASSERT_GT(html.size(), rest.size());
   EXPECT_EQ(html.substr(html.size() - rest.size()), rest);
+  std::istringstream elements(html.substr(place, html.size() - rest.size() - place));
+  for (std::string line; std::getline(elements, line);) {
+    EXPECT_TRUE(std::regex_match(line.substr(0, line.find('>')),
+                                 std::regex("<script type=\"text/plain\" id=\"[a-z_-]+\"")));
+    const std::size_t end = line.size() - std::string_view("</script>").size();
+    EXPECT_EQ(line.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                     "0123456789+/=",
+                                     line.find('>') + 1),
+              end);
+    EXPECT_EQ(line.substr(end), "</script>");
+  }
+  // The page may load nothing, and holds the licence of what it contains of others.
+  EXPECT_NE(whole.find("content=\"default-src 'none'; script-src 'sha256-"), std::string::npos);
+  EXPECT_EQ(std::regex_search(std::string(whole), std::regex("(src|href)=\"(?!data:)")), false);
+  EXPECT_NE(whole.find("three.js authors"), std::string::npos);
+  EXPECT_NE(whole.find("Permission is hereby granted, free of charge"), std::string::npos);
 
   json expected = json::parse(tool_test::readFile(directory.file("report.json")));
   json report = page.data["report"];

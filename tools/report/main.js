@@ -136,6 +136,8 @@ function showFlags(kinds, views, select) {
       let next = 0;
       return make('button', { type: 'button', 'data-bit': kind.bit, onclick: () => {
         select('suspicious');
+        // A triangle may be of several kinds.
+        views.setFlags([kind, ...kinds.filter((other) => other !== kind)]);
         views.lookAt(views.triangles[3 * kind.places[next % kind.places.length][0]]);
         ++next;
       } }, make('span', { class: 'swatch', style: { background: kind.color } }),
