@@ -106,15 +106,4 @@ MeshTopology topologyOf(const Triangles& triangles, Index n) {
   return result;
 }
 
-bool areSame(const MeshTopology& a, const MeshTopology& b) {
-  return a.vertices == b.vertices && a.edges == b.edges && a.triangles == b.triangles &&
-         a.components == b.components && a.euler_characteristic == b.euler_characteristic &&
-         a.faults.boundary_edges == b.faults.boundary_edges &&
-         a.faults.nonmanifold_edges == b.faults.nonmanifold_edges &&
-         a.faults.misoriented_edges == b.faults.misoriented_edges &&
-         a.faults.nonmanifold_vertices == b.faults.nonmanifold_vertices &&
-         a.faults.unused_vertices == b.faults.unused_vertices &&
-         a.faults.degenerate_triangles == b.faults.degenerate_triangles;
-}
-
 }  // namespace spherical_param::reference

@@ -11,7 +11,4 @@ namespace spherical_param::reference {
 /// \param triangles 3 x m, indices in [0, n).
 MeshTopology topologyOf(const Triangles& triangles, Index n);
 
-/// Whether two are the same in all that they tell.
-bool areSame(const MeshTopology& a, const MeshTopology& b);
-
 }  // namespace spherical_param::reference

@@ -78,10 +78,11 @@ def _compare(context, cloud, peers, table, parameters, figures):
     if peers and cloud.points.stat().st_size < MAX_DRAWN_BYTES:
         from .drawing import Pictures
 
-        pictures = Pictures(columns=min(5, len(drawn)))
-        for mesh, label in drawn:
-            pictures.add(mesh, label, up=cloud.up)
-        file = pictures.save(context.out / f"methods_{cloud.name}.png")
+        pictures = Pictures(context.out / f"methods_{cloud.name}.png")
+        for begin in range(0, len(drawn), 5):
+            files, labels = zip(*drawn[begin : begin + 5])
+            pictures.row(files, labels, up=cloud.up)
+        file = pictures.save()
         figures.append(Figure(file, f"{cloud.name}, by each method", "Flat shaded."))
     for mesh in meshes:
         mesh.unlink(missing_ok=True)

@@ -5,6 +5,7 @@ import math
 import pathlib
 
 import matplotlib
+import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen first
@@ -60,34 +61,38 @@ def vertices(path):
 
 
 class Pictures:
-    """Views of meshes, put into the rows of one picture."""
+    """Rows of views of meshes in one picture."""
 
-    def __init__(self, columns, size=300):
-        self.columns, self.size = columns, size
-        self.views, self.captions = [], []
+    SIZE = 300  # of a view [pixels]
 
-    def add(self, mesh, caption, view=(25, 15), up="z", **options):
-        """Other options are those of tools/draw.py: focus, zoom, edges."""
-        points, _, triangles = _draw.read_ply(mesh)
-        self.views.append({"points": points, "colors": None, "triangles": triangles, "view": view,
-                           "up": up, **options})  # fmt: skip
-        self.captions.append(caption)
+    def __init__(self, path):
+        self.path = path
+        self.rows = []
 
-    def add_map(self, sphere, mesh, caption, **options):
-        """The sphere, each vertex in the colour of its direction on the mesh."""
-        self.add(sphere, caption, **options)
-        self.views[-1]["colors"] = _draw.direction_colors(vertices(mesh))
+    def row(self, files, captions, view=((25, 15),), focus=(), zoom=(), up="z", colors=None,
+            edges=False):  # fmt: skip
+        """Options are those of tools/draw.py; a list has a value for each file, or one for all."""
+        words = [self.path, *files, "--up", up, "--size", f"{self.SIZE * len(files)}x{self.SIZE}"]
+        words += [f"--caption={caption}" for caption in captions]
+        for name, values in (("view", view), ("focus", focus), ("zoom", zoom)):
+            words += [f"--{name}={','.join(f'{x:.6f}' for x in value)}" for value in values]
+        words += ["--colors", colors] if colors else []
+        words += ["--edges"] if edges else []
+        _draw.main([str(word) for word in words])
+        self.rows.append(plt.imread(self.path)[:, :, :3])
 
-    def save(self, path):
-        rows = -(-len(self.views) // self.columns)
-        _draw.draw(path, self.views, (self.size * self.columns, self.size * rows), self.columns,
-                   self.captions)  # fmt: skip
-        return path.name
+    def save(self):
+        width = max(row.shape[1] for row in self.rows)
+        rows = [np.pad(row, ((0, 0), (0, width - row.shape[1]), (0, 0)), constant_values=1.0)
+                for row in self.rows]  # fmt: skip
+        plt.imsave(self.path, np.concatenate(rows))
+        return self.path.name
 
 
-def close_up(point, zoom, direction):
-    """Options of a view of the surroundings of a point from a direction."""
-    length = math.hypot(*direction)
-    x, y, z = (c / length for c in direction)
-    view = math.degrees(math.atan2(x, -y)), math.degrees(math.asin(max(-1.0, min(1.0, z))))
-    return {"view": view, "focus": point, "zoom": zoom}
+def close_up(places, factor, directions):
+    """Options of views of the surroundings of places from directions."""
+    views = []
+    for x, y, z in directions:
+        elevation = math.asin(max(-1.0, min(1.0, z / math.hypot(x, y, z))))
+        views.append((math.degrees(math.atan2(x, -y)), math.degrees(elevation)))
+    return {"view": views, "focus": places, "zoom": [(factor,)]}

@@ -52,8 +52,8 @@ layers slowly; on this tail it squeezes them into a line on the sphere and does 
 either weight. The map on the right, for the same weights, begins with a coarse graph that is embedded
 without folds, and has none at any time."""
 TEXT10 = """As in the paper, every mesh is a closed sphere through all points, however noisy, and a few
-steps of smoothing recover a surface. The column on the right shows what the same smoothing makes of
-the connectivity of the paper's way. The table has the self-intersections, and the distance from the
+steps of smoothing recover a surface. The last row shows what the same smoothing makes of the
+connectivity of the paper's way. The table has the self-intersections, and the distance from the
 surface without noise. For noise larger than the distance of neighbours, larger neighbourhoods help:
 there the paper's graph does better than the default."""
 
@@ -165,24 +165,25 @@ def figure8(context):
     methods = {weights: (*PAPER, "-weights", weights) for weights in WEIGHTS}
     methods["default, raw"] = RAW
     table = Table("figure8", FIGURE8)
-    pictures = Pictures(columns=len(methods))
-    made = {}
+    pictures = Pictures(context.out / "figure8.png")
+    meshes, spheres = [], []
     for index, (name, options) in enumerate(methods.items()):
         mesh, sphere, row = _measured(context, cloud, f"figure8_{index}", *options)
         table.rows.append({"method": name, **row})
-        made[name] = mesh, sphere, vertices(sphere)[tip]
-    nose = close_up(points[tip], 5, points[tip] - points.mean(axis=0))
-    for name, (mesh, _, _) in made.items():
-        pictures.add(mesh, name, view=(35, 10))
-    for mesh, _, _ in made.values():
-        pictures.add(mesh, "nose", edges=True, **nose)
-    for mesh, sphere, _ in made.values():
-        pictures.add_map(sphere, mesh, "map", view=(35, 10))
-    for mesh, sphere, place in made.values():
-        pictures.add_map(sphere, mesh, "map of the nose", edges=True, **close_up(place, 5, place))
+        meshes.append(mesh)
+        spheres.append(sphere)
+    count = len(methods)
+    pictures.row(meshes, methods, view=[(35, 10)])
+    pictures.row(meshes, ["nose"] * count, edges=True,
+                 **close_up([points[tip]], 5, [points[tip] - points.mean(axis=0)]))  # fmt: skip
+    # The vertices of all meshes are the points, in their order.
+    pictures.row(spheres, ["map"] * count, view=[(35, 10)], colors=cloud.points)
+    places = [vertices(sphere)[tip] for sphere in spheres]
+    pictures.row(spheres, ["map of the nose"] * count, edges=True, colors=cloud.points,
+                 **close_up(places, 5, places))  # fmt: skip
     title = f"Figure 8, {cloud.name}, k = 25 and 1600 iterations for each weight, and the default"
     return ["### Figure 8: three weights\n",
-            Figure(pictures.save(context.out / "figure8.png"), title, TEXT8), table]  # fmt: skip
+            Figure(pictures.save(), title, TEXT8), table]  # fmt: skip
 
 
 def figure9(context):
@@ -194,24 +195,23 @@ def figure9(context):
     tip = (points[:, 2] - 0.2 * points[:, 0]).argmax()
     table = Table("figure9", FIGURE9)
     states = [f"{count} iterations" for count in (0, 100, 200, 800)] + ["default, raw"]
-    pictures = Pictures(columns=len(states))
+    pictures = Pictures(context.out / "figure9.png")
     for weights in ("uniform", "adaptive"):
-        made = {}
+        meshes, spheres = [], []
         for index, state in enumerate(states):
             options = RAW if state == states[-1] else (*PAPER, "-iterations", state.split()[0])
-            mesh, sphere, row = _measured(context, cloud, f"figure9_{weights}_{index}", *options,
+            mesh, sphere, row = _measured(context, cloud, f"figure9_{index}", *options,
                                           "-weights", weights)  # fmt: skip
             table.rows.append({"method": f"{weights}, {state}", **row})
-            made[state] = mesh, sphere
-        for state, (mesh, _) in made.items():
-            pictures.add(mesh, f"{weights}, {state}", view=(15, 15))
-        for mesh, sphere in made.values():
-            place = vertices(sphere)[tip]
-            pictures.add_map(sphere, mesh, "map of the tail", edges=True,
-                             **close_up(place, 4, place))  # fmt: skip
+            meshes.append(mesh)
+            spheres.append(sphere)
+        pictures.row(meshes, [f"{weights}, {state}" for state in states], view=[(15, 15)])
+        places = [vertices(sphere)[tip] for sphere in spheres]
+        pictures.row(spheres, ["map of the tail"] * len(states), edges=True, colors=cloud.points,
+                     **close_up(places, 4, places))  # fmt: skip
     title = f"Figure 9, {cloud.name}: the tail after 0, 100, 200 and 800 iterations"
     return ["### Figure 9: the folded tail\n",
-            Figure(pictures.save(context.out / "figure9.png"), title, TEXT9), table]  # fmt: skip
+            Figure(pictures.save(), title, TEXT9), table]  # fmt: skip
 
 
 def figure10(context):
@@ -220,31 +220,35 @@ def figure10(context):
 
     name = context.choose("head_2000", "head_10000")
     noises = context.choose((0, 1), (0, 1, 3))
-    pictures = Pictures(columns=4)
+    pictures = Pictures(context.out / "figure10.png")
+    files = {}
     truth = context.programs.scan(name)
     points = vertices(truth.points)
     nose = points[points[:, 0].argmax()]
     table = Table("figure10", FIGURE10)
     for noise in noises:
         cloud = context.programs.scan(name, noise=noise) if noise else truth
-        files = {}
         for method, options in (("paper's iteration", PAPER), ("default", ())):
             row = {"noise": noise, "method": method}
             for prefix, smoothing in (("", ()), ("smooth_", ("-smooth", "5"))):
                 mesh = context.work / f"figure10_{noise}_{method[:5]}_{prefix}.ply"
                 context.programs.reconstruct(cloud, mesh, *options, *smoothing)
-                files[method, prefix] = mesh
+                files[noise, method, prefix] = mesh
                 quality = context.programs.measure(mesh, cloud)
                 row.update({prefix + key: quality[key] for key in ("intersections", "rms")})
             table.rows.append(row)
-        view = {"view": (35, 10)}
-        pictures.add(files["default", ""], f"b = {noise}", edges=True, focus=nose, zoom=2.5, **view)
-        pictures.add(files["default", ""], "flat shaded", **view)
-        pictures.add(files["default", "smooth_"], "5 steps of smoothing", **view)
-        pictures.add(files["paper's iteration", "smooth_"], "the paper's way, 5 steps", **view)
+    for method, prefix, caption, options in (
+        ("default", "", "b = {}", {"edges": True, "focus": [nose], "zoom": [(2.5,)]}),
+        ("default", "", "b = {}, flat shaded", {}),
+        ("default", "smooth_", "b = {}, 5 steps of smoothing", {}),
+        ("paper's iteration", "smooth_", "b = {}, the paper's way, 5 steps", {}),
+    ):
+        pictures.row([files[noise, method, prefix] for noise in noises],
+                     [caption.format(noise) for noise in noises], view=[(35, 10)],
+                     **options)  # fmt: skip
     title = f"Figure 10, {name} with noise b = {', '.join(map(str, noises))}"
     return ["### Figure 10: noise\n",
-            Figure(pictures.save(context.out / "figure10.png"), title, TEXT10), table]  # fmt: skip
+            Figure(pictures.save(), title, TEXT10), table]  # fmt: skip
 
 
 def section(context):
