@@ -135,7 +135,7 @@ def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None
         faces = np.clip(colors[triangles].mean(axis=1) * shade, 0, 1)
         axes.add_collection(collections.PolyCollection(
             corners[:, :, :2], facecolors=faces, antialiaseds=False, closed=False,
-            edgecolors=faces * 0.6 if edges else "none", linewidths=0.4 * SCALE if edges else 0))  # fmt: skip
+            edgecolors=faces * 0.75 if edges else "none", linewidths=0.4 * SCALE if edges else 0))  # fmt: skip
     else:
         depth = (high[2] - seen[:, 2]) / max(high[2] - low[2], 1e-300)
         order = np.argsort(-depth)
