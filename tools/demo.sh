@@ -33,39 +33,26 @@ remedy="see above; tools/packages.txt lists what is needed"
 log="$build/demo-build.log"
 mkdir -p "$build"
 remedy="the output of the build is in $log; remove $build to start afresh"
-echo "demo.sh: building in $build (minutes at first, seconds later)"
+echo "demo.sh: building in $build (a minute or two at first, seconds later)"
 (
   cd "$root"
   cmake --preset release
   cmake --build "$build" --target pcl_spherical_param_scan pcl_spherical_param_reconstruction
 ) >"$log" 2>&1
-# The picture is a courtesy: where VTK cannot render, the demo goes on without.
-can_render=yes
-cmake --build "$build" --target pcl_spherical_param_render >>"$log" 2>&1 || can_render=no
 
 remedy="the message above says why; the tools are in $build/bin"
 "$build/bin/pcl_spherical_param_scan" hand "$out/scan.ply" -points "$points"
 "$build/bin/pcl_spherical_param_reconstruction" "$out/scan.ply" "$out/mesh.ply" \
   -sphere "$out/sphere.ply" -json "$out/report.json"
 
-picture="no picture: $build/bin/pcl_spherical_param_render could not be built, see $log"
-if [ "$can_render" = yes ]; then
-  # A virtual display is preferred: a real one may be remote, or without OpenGL.
-  display=()
-  if command -v xvfb-run >/dev/null; then
-    display=(xvfb-run -a)
-  fi
-  if "${display[@]}" "$build/bin/pcl_spherical_param_render" "$out/demo.png" \
-    "$out/scan.ply" "$out/mesh.ply" "$out/sphere.ply" -colors "$out/sphere.ply" \
-    -size 1320x440 -view 25,20 \
-    -caption "point cloud" -caption "closed mesh" -caption "its map to the sphere" \
-    >"$out/render.log" 2>&1; then
-    picture="$out/demo.png"
-    rm -f "$out/render.log"
-  else
-    rm -f "$out/demo.png"
-    picture="no picture: $(tail -n 1 "$out/render.log")"
-  fi
+# The demo does not fail for the picture.
+if "$root/tools/draw.py" "$out/demo.png" "$out/scan.ply" "$out/mesh.ply" "$out/sphere.ply" \
+  --colors "$out/sphere.ply" --size 1320x440 --view 25,20 \
+  --caption "point cloud" --caption "closed mesh" --caption "its map to the sphere"; then
+  picture="$out/demo.png"
+else
+  rm -f "$out/demo.png"
+  picture="not made; draw.py says why above"
 fi
 
 echo

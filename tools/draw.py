@@ -135,7 +135,7 @@ def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None
         faces = np.clip(colors[triangles].mean(axis=1) * shade, 0, 1)
         axes.add_collection(collections.PolyCollection(
             corners[:, :, :2], facecolors=faces, antialiaseds=False, closed=False,
-            edgecolors=faces * 0.6 if edges else "none", linewidths=0.4 * SCALE if edges else 0))  # fmt: skip
+            edgecolors=faces * 0.75 if edges else "none", linewidths=0.4 * SCALE if edges else 0))  # fmt: skip
     else:
         depth = (high[2] - seen[:, 2]) / max(high[2] - low[2], 1e-300)
         order = np.argsort(-depth)
@@ -148,7 +148,8 @@ def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None
 
 def draw(out, views, size, captions=()):
     """Draws views (dictionaries of draw_view's arguments) side by side."""
-    figure = pyplot.figure(figsize=(size[0] * SCALE / 100, size[1] * SCALE / 100), dpi=100)
+    # In inches; matplotlib rounds the pixels down.
+    figure = pyplot.figure(figsize=[(pixels * SCALE + 0.1) / 100 for pixels in size], dpi=100)
     margin = 34 / size[1] if captions else 0.0
     for i, view in enumerate(views):
         draw_view(figure.add_axes([i / len(views), margin, 1 / len(views), 1 - margin]), **view)

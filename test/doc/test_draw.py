@@ -41,7 +41,7 @@ class Draw(unittest.TestCase):
         said = io.StringIO()
         try:
             with contextlib.redirect_stderr(said):
-                draw.main([str(self.folder / "out.png"), *words, "--size=300x150"])
+                draw.main([str(self.folder / "out.png"), "--size=300x150", *words])
         except SystemExit as end:
             return (1, end.code) if isinstance(end.code, str) else (end.code, said.getvalue())
         return 0, said.getvalue()
@@ -98,6 +98,11 @@ class Draw(unittest.TestCase):
         data = cloud("binary_little_endian", grid) + b"".join(struct.pack("<3f", *corner) for corner in CORNERS)
         data += struct.pack("<BiBBi", 1, 0, 0, 1, 2)
         self.assertTrue((self.picture(self.write("cloud.ply", data)) == plain).all())
+
+    def test_the_picture_has_the_size_that_was_asked_for(self):
+        for width, height in ((340, 113), (57, 51)):
+            good = self.write("good.ply", cloud("ascii") + b"0 0 0 1 0 0 0 1 0 0 0 1")
+            self.assertEqual(self.picture(good, f"--size={width}x{height}").shape, (height, width, 3))
 
     def test_points_that_are_not_finite_are_left_out(self):
         points = "".join("%g %g %g\n" % corner for corner in CORNERS)
