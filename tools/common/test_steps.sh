@@ -16,6 +16,7 @@ use_compiler_cache() {
   if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
     export CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}" CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=yes
+    export CCACHE_SLOPPINESS=pch_defines,time_macros # which precompiled headers need
   fi
 }
 use_compiler_cache
