@@ -23,11 +23,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <numeric>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -200,11 +202,8 @@ const std::vector<Entry> kEntries = {
 };
 
 void addBenchmarks() {
-#ifdef _OPENMP
-  const std::set<int> counts = {1, omp_get_max_threads()};
-#else
-  const std::set<int> counts = {1};
-#endif
+  const std::set<int> counts = {
+      1, static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
   for (const int size : {10000, 100000})
     for (const Entry& entry : kEntries)
       for (const int threads : entry.parallel ? counts : std::set<int>{1})
