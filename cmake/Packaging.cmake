@@ -54,6 +54,7 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
+file(WRITE ${PROJECT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
 set(packaged license)  # the copyright file of each package has its text
 # debian_package(<name> SECTION <section> COMPONENT <component> ABOUT <text>
 #                [SAME_VERSION <package of ours>...] [DEPENDS <package>...])
@@ -77,6 +78,9 @@ macro(debian_package name)
   list(JOIN depends ", " CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${arg_SECTION})
+  if("${arg_SECTION}" STREQUAL "libs")
+    set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
+  endif()
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "meshing by spherical parameterisation - ${arg_ABOUT}
 The library meshes the point cloud of an object without holes through it into
 a closed triangle mesh of genus 0 through every point, by a map to the sphere

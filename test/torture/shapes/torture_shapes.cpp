@@ -30,6 +30,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -112,6 +113,28 @@ Options someOptions(std::mt19937_64& random, bool is_large) {
   return options;
 }
 
+/// Answers by the distances to all points. The points must outlive it.
+NeighborSearch searchIn(const Positions& points) {
+  return [&points](const std::vector<Index>& queries, int count) {
+    NeighborLists lists;
+    std::vector<std::pair<double, Index>> others;
+    for (const Index query : queries) {
+      others.clear();
+      for (Eigen::Index i = 0; i < points.cols(); ++i)
+        if (i != query)
+          others.emplace_back((points.col(i) - points.col(query)).squaredNorm(),
+                              static_cast<Index>(i));
+      const auto end = others.begin() +
+                       std::min<std::ptrdiff_t>(count, static_cast<std::ptrdiff_t>(others.size()));
+      std::partial_sort(others.begin(), end, others.end());
+      for (auto near = others.begin(); near != end; ++near)
+        lists.indices.push_back(near->second);
+      lists.offsets.push_back(lists.indices.size());
+    }
+    return lists;
+  };
+}
+
 Result reconstructBy(bool by_lists, const Positions& points, const Options& options) {
   if (by_lists)
     return reconstruct(points,
@@ -120,10 +143,7 @@ Result reconstructBy(bool by_lists, const Positions& points, const Options& opti
                            : NeighborLists(),
                        options);
   return reconstruct(
-      points,
-      [](const Positions& nodes, const std::vector<Index>&) -> NeighborSearch {
-        return test::bruteForceSearch(nodes);
-      },
+      points, [](const Positions& nodes, const std::vector<Index>&) { return searchIn(nodes); },
       options);
 }
 
