@@ -114,7 +114,11 @@ function findFlags(marks, triangles) {
     marks.forEach((bits, t) => { if (bits & kind.bit) flagged.push(t); });
     const parent = new Map();
     const root = (v) => {
-      while ((parent.get(v) ?? v) !== v) v = parent.get(v);
+      for (let up = parent.get(v) ?? v; up !== v;) {
+        const next = parent.get(up) ?? up;
+        parent.set(v, next); // shortens long ways
+        [v, up] = [up, next];
+      }
       return v;
     };
     for (const t of flagged) {
@@ -123,7 +127,8 @@ function findFlags(marks, triangles) {
     const places = new Map();
     for (const t of flagged) {
       const place = root(triangles[3 * t]);
-      places.set(place, [...(places.get(place) ?? []), t]);
+      if (!places.has(place)) places.set(place, []);
+      places.get(place).push(t);
     }
     return { ...kind, triangles: flagged,
       places: [...places.values()].sort((a, b) => b.length - a.length) };
