@@ -3,8 +3,8 @@
 
     doc/make_pictures.py [NAME...]       default: all of them
 
-Needs the tools of build/release, or of the folder in the environment variable TOOLS. The pictures are
-reduced to 128 colours, to stay small. .github/texture.png and .github/report.png are screenshots.
+Needs the tools of build/release, or of the folder in the environment variable TOOLS. The pictures
+are reduced to 256 colours, to stay small. .github/texture.png and .github/report.png are screenshots.
 """
 
 import json
@@ -51,7 +51,9 @@ def draw(path, size, views, *options):
     for _, caption in views:
         words += ["--caption", caption]
     subprocess.run([ROOT / "tools" / "draw.py", path, *words, f"--size={size}", *options], check=True)
-    Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
+    picture = Image.open(path).convert("RGB")
+    # Without dithering a smooth change of colours becomes patches.
+    picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
     print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1024} KB", flush=True)
 
 
