@@ -8,8 +8,8 @@ An example is a fenced block of sh, cpp or python with the comment
     <!-- test -->    or    <!-- test: ARGUMENTS -->
 
 in the line before it (blank lines may be between). Its exit code must be 0. A sh block runs by
-"bash -euo pipefail" with PREFIX/bin on the PATH. A cpp block is compiled as a program of its own with
-PREFIX and PCL's I/O, and a python block is a script; both run with ARGUMENTS, none by default.
+"bash -euo pipefail" with PREFIX/bin on the PATH. A cpp block is main.cpp of the CMakeLists.txt in the cmake
+block after it. A python block is a script. Both run with ARGUMENTS, none by default.
 
 The examples of a page run one after the other in a scratch folder, which has scan.ply (a hand of
 4,000 points), scan.xyz (the same as text), head.ply and animal.ply (2,000 points each), and what
@@ -25,13 +25,7 @@ import tempfile
 
 MARK = re.compile(r"^<!-- test(?:: (?P<arguments>[^\n]*))? -->\n+(?:```(?P<language>\w+)\n(?P<text>.*?)^```$)?",
                   re.MULTILINE | re.DOTALL)  # fmt: skip
-CMAKE = """cmake_minimum_required(VERSION 3.21)
-project(example CXX)
-find_package(PCL REQUIRED COMPONENTS io)
-find_package(pcl_spherical_param REQUIRED)
-add_executable(example example.cpp)
-target_link_libraries(example PRIVATE pcl_spherical_param::pcl ${PCL_LIBRARIES})
-"""
+CMAKE = re.compile(r"\n*```cmake\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SCANS = """pcl_spherical_param_scan hand scan.ply -points 4000
 pcl_spherical_param_scan hand scan.xyz -points 4000
 pcl_spherical_param_scan head head.ply -points 2000
@@ -48,7 +42,7 @@ def run(command, folder):
     return done.returncode == 0
 
 
-def run_example(language, text, arguments, folder, number, prefix):
+def run_example(language, text, project, arguments, folder, number, prefix):
     if language == "sh":
         return run(["bash", "-euo", "pipefail", "-c", text], folder)
     if language == "python":
@@ -57,12 +51,13 @@ def run_example(language, text, arguments, folder, number, prefix):
         return run(["/usr/bin/python3", str(script), *arguments], folder)
     source, build = folder / f"source_{number}", folder / f"build_{number}"
     source.mkdir()
-    (source / "example.cpp").write_text(text)
-    (source / "CMakeLists.txt").write_text(CMAKE)
+    (source / "main.cpp").write_text(text)
+    (source / "CMakeLists.txt").write_text(project)
+    program = re.search(r"add_executable\((\S+)", project)[1]
     return (run(["cmake", "-S", str(source), "-B", str(build), f"-DCMAKE_PREFIX_PATH={prefix}",
                  "-DCMAKE_BUILD_TYPE=Release"], folder)
             and run(["cmake", "--build", str(build)], folder)
-            and run([str(build / "example"), *arguments], folder))  # fmt: skip
+            and run([str(build / program), *arguments], folder))  # fmt: skip
 
 
 def main(prefix, module_folder, *pages):
@@ -76,8 +71,12 @@ def main(prefix, module_folder, *pages):
                 place = f"{page}:{text.count(chr(10), 0, mark.start()) + 1}"
                 if mark["language"] not in ("sh", "cpp", "python"):
                     sys.exit(f"{place}: no block of sh, cpp or python follows the mark")
+                project = CMAKE.match(text, mark.end())
+                if mark["language"] == "cpp" and not project:
+                    sys.exit(f"{place}: no cmake block follows the program")
                 good = (number > 0 or run(["bash", "-ec", SCANS], folder)) and run_example(
-                    mark["language"], mark["text"], (mark["arguments"] or "").split(), folder, number, prefix)  # fmt: skip
+                    mark["language"], mark["text"], project and project[1], (mark["arguments"] or "").split(),
+                    folder, number, prefix)  # fmt: skip
                 print(f"{place}: {'passed' if good else 'FAILED'}", flush=True)
                 passed, failed = passed + bool(good), failed + (not good)
     print(f"{passed} examples passed, {failed} failed")
