@@ -26,7 +26,7 @@ import tempfile
 MARK = re.compile(r"^<!-- test(?:: (?P<arguments>[^\n]*))? -->\n+(?:```(?P<language>\w+)\n(?P<text>.*?)^```$)?",
                   re.MULTILINE | re.DOTALL)  # fmt: skip
 CMAKE = """cmake_minimum_required(VERSION 3.21)
-project(example CXX)
+project(example LANGUAGES C CXX)
 find_package(PCL REQUIRED COMPONENTS io)
 find_package(pcl_spherical_param REQUIRED)
 add_executable(example example.cpp)
