@@ -102,12 +102,6 @@ class Example(unittest.TestCase):
             check=False,
         )
 
-    def test_it_is_the_one_of_the_readme_and_short(self):
-        text = EXAMPLE.read_text()
-        section = (SOURCE / "README.md").read_text().split("## From Python\n")[1]
-        self.assertEqual(re.search(r"```python\n(.*?)```", section, re.DOTALL)[1], text)
-        self.assertLessEqual(len(text.splitlines()), 10)
-
     def test_it_writes_a_ply_by_itself(self):
         run = self.run_example("scan.xyz", "mesh.ply")
         self.assertEqual((run.returncode, run.stderr), (0, ""))
