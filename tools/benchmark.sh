@@ -12,7 +12,7 @@
 #   --quick       small clouds, and of the other libraries PCL alone: a minute or two
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated
-#   --update-doc  also put the tables into doc/benchmarks.md
+#   --update-doc  also put the tables into doc/benchmarks.md and README.md
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"

@@ -59,7 +59,8 @@ def main(words):
     minutes = (time.monotonic() - context.started) / 60
     tables = write_report(out, f"{provenance} It took {minutes:.1f} minutes.", sections)
     if arguments.update_doc:
-        update_doc(root / "doc" / "benchmarks.md", provenance, tables)
+        for page in ("README.md", "doc/benchmarks.md"):
+            update_doc(root / page, provenance, tables)
     context.say(f"report: {out / 'report.md'}")
 
 
