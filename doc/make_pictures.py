@@ -3,7 +3,7 @@
 
     doc/make_pictures.py [NAME...]       default: all of them
 
-Needs the tools of build/release, or of the folder in the environment variable TOOLS. The pictures
+Needs python3-pil and the tools of build/release, or of the folder in the environment variable TOOLS. The pictures
 are reduced to 256 colours, to stay small. .github/texture.png and .github/report.png are screenshots.
 """
 

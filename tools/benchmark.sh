@@ -25,11 +25,11 @@ if [ "$#" -eq 0 ] || [ "$1" = "-h" ] || [ "$1" = "--help" ]; then
 fi
 
 # CGAL alone compiles for minutes.
-packages=(benchmark peers)
+packages=(peers)
 without_peers=OFF
 for word in "$@"; do
   if [ "$word" = "--quick" ]; then
-    packages=(benchmark)
+    packages=()
     without_peers=ON
   fi
 done
@@ -42,6 +42,7 @@ if ! (
   # As tools/test.sh does, which leaves the peers out.
   cd "$root" &&
     cmake --preset release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
+      -DBUILD_TESTING=ON -DSPHERICAL_PARAM_BUILD_TESTS=ON \
       -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON -DCMAKE_DISABLE_FIND_PACKAGE_CGAL="$without_peers" \
       -DCMAKE_DISABLE_FIND_PACKAGE_Open3D="$without_peers" &&
     cmake --build "$build" --target benchmark_suite

@@ -160,8 +160,13 @@ def draw(out, views, size, captions=()):
     pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].astype(np.uint16)
     pyplot.close(figure)
     pixels = pixels.reshape(size[1], SCALE, size[0], SCALE, 3).mean(axis=(1, 3)).round().astype(np.uint8)
-    image.imsave(f"{out}.part", pixels, format="png")
-    os.replace(f"{out}.part", out)
+    try:
+        image.imsave(f"{out}.part", pixels, format="png")
+        os.replace(f"{out}.part", out)
+    except OSError:
+        if os.path.exists(f"{out}.part"):
+            os.remove(f"{out}.part")
+        raise
 
 
 def numbers(text):

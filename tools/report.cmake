@@ -28,7 +28,6 @@ set(report_inputs page.html style.css loader.js text.js views.js main.js)
 list(TRANSFORM report_inputs PREPEND ${report_folder}/)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_inputs})
 
-set(SPHERICAL_PARAM_HAS_REPORT OFF CACHE INTERNAL "Whether the tools have -report")
 set(report_page "")
 set(report_program "")
 if(NOT SPHERICAL_PARAM_BUILD_REPORT)
@@ -37,7 +36,6 @@ elseif(NOT EXISTS "${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitContro
        NOT SPHERICAL_PARAM_THREE_LICENSE)
   message(STATUS "The tools are built without -report: three.js (libjs-three) was not found")
 else()
-  set(SPHERICAL_PARAM_HAS_REPORT ON CACHE INTERNAL "Whether the tools have -report")
   foreach(script ${SPHERICAL_PARAM_THREE_DIR}/three.min.js
                  ${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitControls.js
                  ${report_folder}/text.js ${report_folder}/views.js ${report_folder}/main.js)

@@ -3,8 +3,6 @@
 # network nor root, if there are none.
 #
 #   tools/setup.sh [NAME...]     those of tools/packages-NAME.txt, too
-#
-# A line "package (command...)" is done, too, if all of the commands are there from elsewhere.
 set -euo pipefail
 
 fail() {
@@ -21,21 +19,7 @@ done
 command -v dpkg-query >/dev/null ||
   fail "this is not Debian: install what ${lists[*]} name by other means"
 
-mapfile -t lines < <(cat "${lists[@]}" |
-  sed -e 's/#.*//' -e 's/[()]/ /g' -e 's/^[[:space:]]*//' -e 's/[[:space:]]*$//' -e '/^$/d' |
-  sort -u)
-have_all() { # <command>...: false if there are none to look for
-  local name
-  [ $# -gt 0 ] || return 1
-  for name in "$@"; do
-    command -v "$name" >/dev/null || return 1
-  done
-}
-wanted=()
-for line in "${lines[@]}"; do
-  read -ra words <<<"$line"
-  have_all "${words[@]:1}" || wanted+=("${words[0]}")
-done
+mapfile -t wanted < <(cat "${lists[@]}" | sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' | sort -u)
 
 # dpkg-query fails for names that it never heard of; those are missing as well.
 installed="$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |

@@ -14,7 +14,7 @@
 # the others.
 set -euo pipefail
 
-if [ "$#" -lt 2 ]; then
+if [ "$#" -lt 2 ] || [ -z "${SLURM_ARRAY_TASK_COUNT:-}" ]; then
   echo "usage: sbatch --array=0-N slurm_array.sh LIST MESHES [option...]" >&2
   exit 2
 fi
@@ -26,7 +26,7 @@ if [ "$((SLURM_ARRAY_TASK_MAX - SLURM_ARRAY_TASK_MIN + 1))" -ne "$shares" ]; the
   echo "slurm_array.sh: the array has gaps; give --array=0-N" >&2
   exit 2
 fi
-mapfile -t scans <"$list"
+mapfile -t scans < <(grep . "$list")
 mkdir -p "$meshes"
 failed=0
 for ((i = share; i < ${#scans[@]}; i += shares)); do

@@ -132,7 +132,7 @@ array_job() {
   job="$(page 3)" || return 2
   wait_for 90 sh -c 'queue="$(squeue -h)" && [ -z "$queue" ]' || return 2
   tail -n 5 "$work"/here/slurm-*.log
-  ! scontrol show job "${job##* }" | grep -q JobState=FAILED
+  [[ "$(scontrol show job "${job##* }")" != *JobState=FAILED* ]]
 }
 
 if check "scans, each meshed alone" scans; then

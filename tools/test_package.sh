@@ -64,8 +64,11 @@ bare_root() {
   done
   # What the mirror has changes from time to time.
   find "${bare%/*}" -name bare.tar -mtime +5 -delete
-  [ -s "$bare" ] || "${as_root[@]}" mmdebstrap --format=tar --variant=minbase \
-    --skip=cleanup/apt/lists "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$bare" "${sources[@]}"
+  [ ! -s "$bare" ] || return 0
+  "${as_root[@]}" mmdebstrap --format=tar --variant=minbase \
+    --skip=cleanup/apt/lists "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$bare.part" \
+    "${sources[@]}" &&
+    "${as_root[@]}" mv "$bare.part" "$bare"
 }
 
 # All but PCL's development files, which would take minutes.

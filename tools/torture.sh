@@ -31,6 +31,7 @@ esac
 work="$PWD/build/torture"
 rm -rf "$work"
 mkdir -p "$work"
+: >"$work/rows"
 export UBSAN_OPTIONS=print_stacktrace=1
 # Clang's OpenMP does not free what it has for each thread.
 echo 'leak:libomp' >"$logs/leaks-of-others"

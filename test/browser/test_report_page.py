@@ -117,7 +117,7 @@ class ReportPage(unittest.TestCase):
         self.assertIn("<img src=x onerror=", self.text("title"))
         self.assertIn("<img src=x onerror=", self.text("command"))
         self.assertEqual(self.browser.find_elements(By.TAG_NAME, "img"), [])
-        # A script that came in all the same would not run.
+        # An injected script would not run.
         self.run_script("const script = document.createElement('script');"
                         "script.textContent = 'window.ran = true'; document.body.append(script);")
         self.assertIsNone(self.run_script("return window.ran"))
@@ -234,7 +234,7 @@ class ReportPage(unittest.TestCase):
         self.assertIn("need WebGL", browser.find_element(By.ID, "note").text)
         self.assertEqual(browser.find_element(By.ID, "verdict-words").text, "A sound mesh")
 
-    def test_a_browser_that_cannot_inflate_is_told_what_is_needed(self):
+    def test_a_browser_that_cannot_inflate_names_what_is_needed(self):
         browser = Browser()
         self.addCleanup(browser.quit)
         browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument",

@@ -96,7 +96,7 @@ if(PKG_CONFIG)
   set(source_of_spherical_param_core consumer_core/main.cpp)
   if("pcl" IN_LIST COMPONENTS)
     list(APPEND names pcl_spherical_param)
-    # The README's line: reading files takes PCL's own library for it.
+    # The line of doc/install.md: reading files takes PCL's own library for it.
     set(packages_of_pcl_spherical_param pcl_io)
     set(source_of_pcl_spherical_param consumer_pcl/read_ply.cpp)
   endif()

@@ -64,7 +64,7 @@ void addField(RecordField field, RecordLayout& layout) {
   layout.fields.push_back(std::move(field));
 }
 
-/// A number in a header. \throw Failure if it is none, or more than points may be.
+/// A number in a header. \throw Failure if it is not a number, or more than points may be.
 std::int64_t requireCount(const std::string& path, std::string_view word, const std::string& what) {
   const std::optional<std::int64_t> count = toInteger(word);
   if (!count || *count < 0 || *count > count_limit) {

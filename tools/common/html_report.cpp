@@ -25,8 +25,8 @@ namespace {
 
 constexpr std::string_view marker = "<!--DATA-->";
 
-/// Vertices and states of the history at most; of small meshes fewer vertices, so that the history
-/// is not larger than the mesh: one of so many, but so many anyhow.
+/// Vertices and states of the history at most. Small meshes keep one vertex in 23, but at least
+/// 1000, so that the history is not larger than the mesh.
 constexpr Index max_history_vertices = 5000;
 constexpr int max_history_frames = 40;
 constexpr std::size_t vertices_for_history = 23;

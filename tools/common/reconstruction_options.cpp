@@ -280,8 +280,7 @@ void requireNoWarnings(
     }
   }
   if (settings.strict && !cause.empty()) {
-    throw Failure(cause, "the files were made all the same: look at them, and leave -strict out if "
-                         "they will do");
+    throw Failure(cause, "the files were written; look at them, or leave out -strict");
   }
 }
 

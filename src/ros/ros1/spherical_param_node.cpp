@@ -1,4 +1,4 @@
-// Meshes clouds of a topic, or of a service. See the README, "In ROS".
+// Meshes clouds of a topic, or of a service. See doc/ros.md.
 
 #include "ros1/reconstruction_server.h"
 

@@ -109,7 +109,7 @@ def summarize(table):
 
 def race(context, clouds):
     """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
-    peer = context.programs.find("benchmark_peer_cgal", required=False)
+    peer = None if context.quick else context.programs.find("benchmark_peer_cgal", required=False)
     table = Table("race", RACE)
     mesh = context.work / "race.ply"
     for cloud in clouds:
@@ -133,7 +133,8 @@ def race(context, clouds):
 
 def section(context):
     programs = context.programs
-    found = [(label, programs.find(name, required=False), method) for label, name, method in PEERS]
+    found = [(label, programs.find(name, required=False), method) for label, name, method in PEERS
+             if name == "benchmark_peer_pcl" or not context.quick]  # fmt: skip
     peers = [peer for peer in found if peer[1]]
     missing = [label for label, program, _ in found if not program]
     parts = [TEXT]

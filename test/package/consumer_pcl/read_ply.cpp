@@ -1,4 +1,4 @@
-// The README's program, compiled with pkg-config alone; the clouds are files.
+// README's program, compiled by the line of doc/install.md.
 
 #include <pcl/io/ply_io.h>
 #include <pcl/surface/spherical_param_reconstruction.h>

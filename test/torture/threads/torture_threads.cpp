@@ -114,7 +114,7 @@ std::size_t differencesTogether(const torture::Arguments& arguments, std::size_t
   return wrong;
 }
 
-/// Clouds of so many points that their work is shared out among threads.
+/// Clouds large enough to be divided among threads.
 std::size_t differencesByThreads(const std::vector<Index>& sizes) {
   std::size_t wrong = 0;
   for (const Index size : sizes)

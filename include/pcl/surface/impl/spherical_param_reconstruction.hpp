@@ -37,7 +37,7 @@ PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t h
 [[noreturn]] PCL_EXPORTS void refuseIndex(std::size_t entry, pcl::index_t index,
                                           std::size_t points);
 
-/** \brief Makes a cloud of so many points from places of vertices, 3 x v; NaN where a point is no
+/** \brief Makes a cloud from the positions of vertices, 3 x v; NaN where a point is no
  * vertex.
  * \param[in] vertex_of_used the vertex of each of the used points */
 PCL_EXPORTS pcl::PointCloud<pcl::PointXYZ>::Ptr
@@ -66,8 +66,8 @@ struct NeighborSource {
 /** \brief Meshes points with the core.
  * \param[in] options their progress callback may throw
  * \param[in] ignored_points points of the cloud that are not finite, for messages
- * \param[in] use_search_method gives the distinct points, of each of which it is told the first of
- * the points, to the user's search object; empty: a k-d tree of our own is used */
+ * \param[in] use_search_method passes the distinct points to the user's search object; its argument
+ * is the first input point of each; empty: a k-d tree of our own is used */
 PCL_EXPORTS spherical_param::Result
 reconstructPoints(const spherical_param::Positions& points, spherical_param::Options options,
                   std::size_t ignored_points,
