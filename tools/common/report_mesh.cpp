@@ -146,6 +146,7 @@ void reduce(std::size_t max_vertices, ReportMesh& mesh) {
     }
   }
   std::vector<Index> vertices;
+  vertices.reserve(kept.size());
   for (const Index v : kept) {
     vertices.push_back(mesh.vertices[at(v)]);
   }
