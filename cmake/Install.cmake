@@ -14,13 +14,13 @@ if(SPHERICAL_PARAM_BUILD_PCL)
 endif()
 foreach(component IN LISTS spherical_param_components)
   if(component STREQUAL "core")
-    set(target spherical_param_core)
+    set(targets spherical_param_core spherical_param_map)
     set(header_dir spherical_param)
   else()
-    set(target pcl_spherical_param)
+    set(targets pcl_spherical_param)
     set(header_dir pcl)
   endif()
-  install(TARGETS ${target} EXPORT pcl_spherical_param_${component}
+  install(TARGETS ${targets} EXPORT pcl_spherical_param_${component}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}_dev
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
             NAMELINK_COMPONENT ${component}_dev

@@ -18,9 +18,9 @@
 #include "common/text.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/morphing.h"
+#include "spherical_param/map/morphing.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_surface.h"
+#include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/version.h"
 
 #include <Eigen/Core>

@@ -20,10 +20,10 @@
 #include "common/text.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/resampling.h"
+#include "spherical_param/map/resampling.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_surface.h"
-#include "spherical_param/spherical_harmonics.h"
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/version.h"
 
 #include <pcl/surface/spherical_param_remesh.h>

@@ -14,7 +14,7 @@
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "common/textured_mesh.h"
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/version.h"
 
 #include <algorithm>

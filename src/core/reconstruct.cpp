@@ -1,9 +1,9 @@
 #include "spherical_param/reconstruct.h"
 
-#include "core/exact_predicates.h"
-#include "core/neighbor_lists.h"
-#include "core/option_checks.h"
-#include "core/ordered_points.h"
+#include "exact_predicates.h"
+#include "neighbor_lists.h"
+#include "option_checks.h"
+#include "ordered_points.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/point_set.h"
 #include "spherical_param/self_intersection.h"

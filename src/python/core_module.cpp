@@ -10,11 +10,11 @@
 #include "spherical_param/outliers.h"
 #include "spherical_param/point_set.h"
 #include "spherical_param/reconstruct.h"
-#include "spherical_param/resampling.h"
+#include "spherical_param/map/resampling.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_map.h"
-#include "spherical_param/sphere_surface.h"
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/version.h"
 
 #include <pybind11/pybind11.h>

@@ -2,8 +2,8 @@
 
 #include "spherical_param/errors.h"
 #include "spherical_param/reconstruct.h"
-#include "spherical_param/sphere_surface.h"
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/map/texture_atlas.h"
 
 #include <array>
 #include <string>

@@ -1,6 +1,6 @@
 #include "python/neighbor_search.h"
 
-#include "core/parallel.h"
+#include "parallel.h"
 #include "search/kd_tree.h"
 
 #include <algorithm>

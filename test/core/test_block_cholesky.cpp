@@ -1,4 +1,4 @@
-#include "core/block_cholesky.h"
+#include "block_cholesky.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-#include "core/component_tree.h"
+#include "component_tree.h"
 
 #include "helpers.h"
 

@@ -1,4 +1,4 @@
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 
 #include <gtest/gtest.h>
 

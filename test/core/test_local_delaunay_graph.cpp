@@ -1,6 +1,6 @@
 #include "spherical_param/neighbor_graph.h"
 
-#include "core/graph_building.h"
+#include "graph_building.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 

@@ -1,7 +1,7 @@
 #include "spherical_param/mesh_optimization.h"
 
-#include "core/mesh_optimizer.h"
-#include "core/sampling_analysis.h"
+#include "mesh_optimizer.h"
+#include "sampling_analysis.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"

@@ -1,6 +1,6 @@
-#include "spherical_param/morphing.h"
+#include "spherical_param/map/morphing.h"
 
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"

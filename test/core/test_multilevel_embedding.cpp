@@ -1,9 +1,9 @@
 #include "spherical_param/sphere_embedding.h"
 
-#include "core/embedding_energy.h"
-#include "core/embedding_newton.h"
-#include "core/multigrid.h"
-#include "core/planar_start.h"
+#include "embedding_energy.h"
+#include "embedding_newton.h"
+#include "multigrid.h"
+#include "planar_start.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/sphere_triangulation.h"

@@ -1,13 +1,13 @@
 #include "helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/morphing.h"
+#include "spherical_param/map/morphing.h"
 #include "spherical_param/outliers.h"
 #include "spherical_param/reconstruct.h"
-#include "spherical_param/resampling.h"
+#include "spherical_param/map/resampling.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_map.h"
-#include "spherical_param/spherical_harmonics.h"
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/spherical_harmonics.h"
+#include "spherical_param/map/texture_atlas.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include "core/ordered_points.h"
+#include "ordered_points.h"
 
-#include "core/radix_sort.h"
-#include "core/space_filling_curve.h"
+#include "radix_sort.h"
+#include "space_filling_curve.h"
 #include "helpers.h"
 #include "reference/distinct_points.h"
 

@@ -1,4 +1,4 @@
-#include "core/parallel.h"
+#include "parallel.h"
 
 #include <gtest/gtest.h>
 

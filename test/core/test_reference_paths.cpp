@@ -1,6 +1,6 @@
 // The fast paths against the plain ones of test/reference, where no other test compares them.
 
-#include "core/mesh_optimizer.h"
+#include "mesh_optimizer.h"
 #include "helpers.h"
 #include "reference/edge_flips.h"
 #include "reference/graph_coarsening.h"

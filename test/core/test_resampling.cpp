@@ -1,4 +1,4 @@
-#include "spherical_param/resampling.h"
+#include "spherical_param/map/resampling.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"

@@ -1,4 +1,4 @@
-#include "core/sampling_analysis.h"
+#include "sampling_analysis.h"
 
 #include "helpers.h"
 

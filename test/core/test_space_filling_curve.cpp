@@ -1,6 +1,6 @@
-#include "core/space_filling_curve.h"
+#include "space_filling_curve.h"
 
-#include "core/ordered_points.h"
+#include "ordered_points.h"
 #include "helpers.h"
 
 #include <gtest/gtest.h>

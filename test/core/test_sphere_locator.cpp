@@ -1,6 +1,6 @@
-#include "core/sphere_locator.h"
+#include "sphere_locator.h"
 
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 #include "helpers.h"
 #include "spherical_param/sphere_triangulation.h"
 

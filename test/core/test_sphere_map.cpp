@@ -1,4 +1,4 @@
-#include "spherical_param/sphere_map.h"
+#include "spherical_param/map/sphere_map.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"

@@ -1,4 +1,4 @@
-#include "core/sphere_mesh.h"
+#include "sphere_mesh.h"
 
 #include "helpers.h"
 #include "spherical_param/mesh_topology.h"

@@ -1,6 +1,6 @@
-#include "spherical_param/sphere_surface.h"
+#include "spherical_param/map/sphere_surface.h"
 
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/sphere_triangulation.h"

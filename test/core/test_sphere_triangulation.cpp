@@ -1,6 +1,6 @@
 #include "spherical_param/sphere_triangulation.h"
 
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"

@@ -1,4 +1,4 @@
-#include "spherical_param/spherical_harmonics.h"
+#include "spherical_param/map/spherical_harmonics.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"

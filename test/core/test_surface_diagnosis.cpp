@@ -1,6 +1,6 @@
 #include "spherical_param/surface_diagnosis.h"
 
-#include "core/graph_cycles.h"
+#include "graph_cycles.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/sphere_triangulation.h"

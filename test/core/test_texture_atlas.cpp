@@ -1,10 +1,10 @@
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/texture_atlas.h"
 
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/sphere_triangulation.h"
 
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 
 #include "helpers.h"
 

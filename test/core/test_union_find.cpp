@@ -1,4 +1,4 @@
-#include "core/union_find.h"
+#include "union_find.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "reference/distinct_points.h"
 
-#include "core/space_filling_curve.h"
+#include "space_filling_curve.h"
 
 #include <algorithm>
 #include <cmath>

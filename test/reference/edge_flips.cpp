@@ -1,7 +1,7 @@
 #include "reference/edge_flips.h"
 
-#include "core/sphere_mesh.h"
-#include "core/surface_energy.h"
+#include "sphere_mesh.h"
+#include "surface_energy.h"
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "reference/self_intersection.h"
 
-#include "core/exact_predicates.h"
+#include "exact_predicates.h"
 
 #include <algorithm>
 #include <cstddef>

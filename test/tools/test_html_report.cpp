@@ -11,7 +11,7 @@
 #include "common/report_page.h"
 #include "scan_shapes.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/sphere_map.h"
+#include "spherical_param/map/sphere_map.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -3,7 +3,7 @@
 #include "tool_runner.h"
 
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/spherical_harmonics.h"
+#include "spherical_param/map/spherical_harmonics.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

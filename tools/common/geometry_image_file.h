@@ -2,7 +2,7 @@
 
 #include "common/block_reader.h"
 #include "common/output_file.h"
-#include "spherical_param/resampling.h"
+#include "spherical_param/map/resampling.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/sphere_surface.h"
+#include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/types.h"
 
 namespace spherical_param::tools {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/cloud_reconstruction.h"
-#include "spherical_param/morphing.h"
+#include "spherical_param/map/morphing.h"
 
 #include <array>
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include "common/json_report.h"
 #include "common/point_data.h"
 #include "common/reconstruction_options.h"
-#include "spherical_param/sphere_map.h"
+#include "spherical_param/map/sphere_map.h"
 
 #include <string>
 #include <vector>

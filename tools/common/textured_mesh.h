@@ -3,7 +3,7 @@
 #include "common/mesh_writer.h"
 #include "common/output_file.h"
 #include "common/point_data.h"
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/types.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <pcl/surface/spherical_param_reconstruction.h>
 
-#include "spherical_param/sphere_map.h"
+#include "spherical_param/map/sphere_map.h"
 #include "spherical_param/types.h"
 
 #include <functional>

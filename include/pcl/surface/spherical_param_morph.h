@@ -6,9 +6,9 @@
 #include <pcl/surface/spherical_param_reconstruction.h>
 #include <pcl/types.h>
 
-#include "spherical_param/morphing.h"
-#include "spherical_param/sphere_map.h"
-#include "spherical_param/sphere_surface.h"
+#include "spherical_param/map/morphing.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/sphere_surface.h"
 
 #include <string>
 #include <utility>

@@ -5,9 +5,9 @@
 #include <pcl/surface/spherical_param_map.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
-#include "spherical_param/resampling.h"
-#include "spherical_param/sphere_map.h"
-#include "spherical_param/sphere_surface.h"
+#include "spherical_param/map/resampling.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/sphere_surface.h"
 
 #include <cstddef>
 

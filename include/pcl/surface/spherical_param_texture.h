@@ -6,8 +6,8 @@
 #include <pcl/surface/spherical_param_map.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
-#include "spherical_param/sphere_map.h"
-#include "spherical_param/texture_atlas.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>

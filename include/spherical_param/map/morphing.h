@@ -1,0 +1,101 @@
+#pragma once
+
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/types.h"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace spherical_param {
+
+/// \addtogroup morphing
+/// @{
+
+/// A pair of vertices, one of each of two meshes, that are to be the same place.
+struct PointPair {
+  Index first = 0;   ///< vertex of the first mesh
+  Index second = 0;  ///< vertex of the second mesh
+};
+
+/// Which sphere mesh carries both shapes of a morph.
+enum class MorphConnectivity {
+  /// Both triangulations of the sphere at once: the vertices of both meshes, and those where their
+  /// edges cross. Each in-between is exact at both ends: every triangle is part of one of the first
+  /// mesh, and of one of the second.
+  AllVertices,
+  /// A geodesic sphere of MorphOptions::samples vertices, of which the nearest to each pair is put
+  /// there.
+  Resampled,
+};
+
+/// Parameters of Morph.
+struct MorphOptions {
+  /// Look for the best of all rotations of one sphere against the other: the least mean squared
+  /// distance between both surfaces, each centred and scaled to the same area; with pairs, the mean
+  /// squared distance of their places on the sphere is added. false: the maps as they are.
+  bool align = true;
+  std::vector<PointPair> pairs;  ///< honoured exactly, or said to be impossible; at most 4096
+  MorphConnectivity connectivity = MorphConnectivity::AllVertices;  ///< of the in-betweens
+  std::size_t samples = 40962;  ///< of MorphConnectivity::Resampled, about; [12, 2^24]
+  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
+  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
+  std::function<bool(double)> progress = {};
+};
+
+/// A pair that cannot be honoured.
+struct ImpossiblePair {
+  std::size_t pair = 0;  ///< index in MorphOptions::pairs
+  std::string reason;    ///< one sentence
+};
+
+/// Two shapes on one mesh.
+struct MorphResult {
+  Triangles triangles;  ///< 3 x (2w - 4): closed, manifold, genus 0, outward
+  Positions first;      ///< 3 x w, the first shape at the vertices [its unit]
+  Positions second;     ///< 3 x w, the second shape at the vertices [its unit]
+  Positions sphere;     ///< 3 x w, unit vectors: directions on the first sphere
+  std::vector<SphereLocation> first_places;   ///< w, of the vertices in the first mesh
+  std::vector<SphereLocation> second_places;  ///< w, of the vertices in the second mesh
+  /// On the second sphere, before the pairs are honoured, R u is what u is on the first.
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  /// Mean squared distance of both surfaces, each centred and scaled to area 1, as rotated.
+  double alignment_error = 0.0;
+  std::vector<ImpossiblePair> impossible;  ///< left out; empty if all pairs are honoured
+  /// Largest distance on the sphere between the places of a pair that is honoured, where the motion
+  /// ended; they are one from then on [rad].
+  double worst_pair = 0.0;
+};
+
+/// Puts two closed genus-0 surfaces on one mesh, by their maps to the sphere (Zwicker and Gotsman
+/// 2004, section 5).
+///
+/// Pairs are honoured by a smooth one-to-one motion of the sphere: landmarks move along arcs,
+/// carrying their surroundings with them. A pair is impossible if its vertices are out of range,
+/// or one of them stands in an earlier pair with a different partner, or no motion was found that
+/// takes it to its place while others stay apart. With SurfaceFit::Linear the first and the second
+/// shape are the two meshes, cut along each other's edges.
+///
+/// \param first surface at the beginning, with its map.
+/// \param second surface at the end, with its map.
+/// \param options alignment, pairs, connectivity, threads, progress
+/// \return both shapes on the triangles of one sphere, and how well they fit.
+/// \throw InvalidInput for options out of range; ComputeError if a map is so near to not being one
+/// to one that a rotation's rounding makes the difference; Cancelled.
+/// The same, bit by bit, for any number of threads.
+MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
+                          const MorphOptions& options = {});
+
+/// Vertices of the in-between at t: (1 - t) first + t second.
+///
+/// \param morph of morphSurfaces().
+/// \param t     any finite number; [0, 1] lies between.
+/// \return 3 x w, for MorphResult::triangles.
+Positions inBetween(const MorphResult& morph, double t);
+
+/// @}
+
+}  // namespace spherical_param

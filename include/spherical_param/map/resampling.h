@@ -1,0 +1,171 @@
+#pragma once
+
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param {
+
+/// \addtogroup resampling
+/// @{
+
+/// Regular triangulations of the unit sphere.
+enum class SphereGrid {
+  Icosahedral,  ///< geodesic: each face of an icosahedron in f^2 triangles; 10 f^2 + 2 vertices
+  Octahedral,   ///< each face of an octahedron in f^2 triangles; 4 f^2 + 2 vertices
+};
+
+/// A triangulated unit sphere.
+struct GridSphere {
+  Positions directions;  ///< 3 x v, unit vectors
+  Triangles triangles;   ///< 3 x (2v - 4), outward
+  int frequency = 0;     ///< f: parts of each edge of the solid
+};
+
+/// The frequency that comes nearest to a number of vertices.
+///
+/// \param grid     the kind of grid.
+/// \param vertices the number.
+/// \return the frequency, at least 1.
+int gridFrequency(SphereGrid grid, std::size_t vertices);
+
+/// Vertices of a grid.
+///
+/// \param grid      the kind of grid.
+/// \param frequency parts of each edge of the solid.
+/// \return their number.
+/// \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
+std::size_t gridVertices(SphereGrid grid, int frequency);
+
+/// A regular triangulation of the sphere.
+///
+/// The octahedral one has its directions where GeometryImage has its pixels.
+///
+/// \param grid the kind of grid.
+/// \param frequency parts of each edge of the solid.
+/// \return the sphere.
+/// \throw InvalidInput for a frequency below 1 or more than 2^29 vertices.
+GridSphere makeGridSphere(SphereGrid grid, int frequency);
+
+/// A mesh, with the directions that its vertices come from.
+struct ResampledMesh {
+  Positions points;      ///< 3 x v [unit of the input]
+  Positions normals;     ///< 3 x v, unit vectors, outward
+  Positions directions;  ///< 3 x v, unit vectors: the map to the sphere goes with it
+  Triangles triangles;   ///< 3 x (2v - 4), outward
+};
+
+/// The surface at the vertices of a triangulated sphere: closed, manifold, genus 0, and a map to
+/// the sphere that is one to one.
+///
+/// \param surface with its map.
+/// \param grid    that of makeGridSphere(), or any other.
+/// \return the mesh, with the triangles of the grid.
+ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
+
+/// What untangle() did.
+struct UntanglingReport {
+  std::size_t before = 0;  ///< pairs of triangles that intersected
+  std::size_t after = 0;   ///< pairs that are left
+  int rounds = 0;          ///< that were made
+  Index moved = 0;         ///< vertices that were slid
+};
+
+/// Slides vertices along the surface, until triangles do not intersect: where they are long and
+/// thin, they cut across folds of the surface. The mesh keeps its triangles, and its map to the
+/// sphere stays one to one; where nothing intersects, nothing changes.
+///
+/// \param surface that the mesh was sampled from.
+/// \param mesh    of resampleSurface(); changed in place. The best that was found is kept.
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \return what was done.
+/// \throw InvalidInput for sizes that do not match, or threads out of range.
+/// The same, bit by bit, for any number of threads.
+UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
+
+/// What removeIntersections() did.
+struct IntersectionRemoval {
+  std::size_t found = 0;  ///< pairs of triangles that intersected
+  std::size_t left = 0;   ///< pairs that still do
+  std::size_t flips = 0;  ///< edges that were flipped
+};
+
+/// Flips edges around triangles that intersect, until none do: where a map is stretched, the edges
+/// of a grid may run across a valley of the surface instead of along it, and its triangles fold.
+///
+/// An edge is flipped if the opposite angles become smaller in space (C. L. Lawson, 1977) and the
+/// new triangles are not flipped on the sphere: the mesh stays closed, manifold, of genus 0, and
+/// its map one to one. Vertices stay, and so do all triangles elsewhere. Normals stay.
+///
+/// \param mesh of resampleSurface(); changed in place.
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \return what was done.
+/// \throw InvalidInput for a mesh that is not as resampleSurface() makes it.
+/// The same for any number of threads.
+IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads = 0);
+
+/// Points spread evenly over a surface, in space.
+struct SurfacePoints {
+  Positions points;                       ///< 3 x n [unit of the input]
+  Positions normals;                      ///< 3 x n, unit vectors, outward
+  std::vector<SphereLocation> locations;  ///< n: where they are in the mesh
+};
+
+/// Spreads points evenly over a surface: random ones by area, of which those that are closest to
+/// others are taken away (Yuksel 2015, "Sample elimination for generating Poisson disk sample
+/// sets").
+///
+/// \param surface with its map.
+/// \param count   number of points, 1 and up, up to 2^24.
+/// \param seed    of the random points.
+/// \return the points, with their normals and places.
+/// \throw InvalidInput for another count.
+/// The same, bit by bit, for the same seed and any number of threads.
+SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed = 1);
+
+/// A surface as an image of positions (Gu, Gortler and Hoppe 2002; the octahedral map of Praun and
+/// Hoppe 2003): side x side pixels, side = 2 f + 1, that cover a square into which an octahedron is
+/// unfolded. Pixels on the border come in pairs that are the same place: (0, j) and (0, side - 1 -
+/// j), likewise on the other sides; all four corners are one.
+struct GeometryImage {
+  int side = 0;         ///< pixels along each side; odd, 3 and up
+  Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
+};
+
+/// The direction of each pixel of a geometry image.
+///
+/// \param side pixels along each side.
+/// \return 3 x side^2, unit vectors, row by row.
+/// \throw InvalidInput for a side that is even or below 3, or above 16385.
+Positions geometryImageDirections(int side);
+
+/// The geometry image of a surface.
+///
+/// \param surface with its map.
+/// \param side    pixels along each side.
+/// \return the image.
+/// \throw InvalidInput as geometryImageDirections().
+GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
+
+/// The geometry image of a mesh that has the vertices and triangles of makeGridSphere() for
+/// SphereGrid::Octahedral, such as that of resampleSurface() or untangle().
+///
+/// \param mesh with such vertices, which may have slid.
+/// \return the image, whose pixels are the vertices.
+/// \throw InvalidInput for another number of vertices.
+GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
+
+/// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Where pixels of the
+/// border that are the same place differ, their mean counts.
+///
+/// \param image of any origin.
+/// \return the mesh, with normals.
+/// \throw InvalidInput for a wrong side or number of pixels, or positions that are not finite.
+ResampledMesh meshOfGeometryImage(const GeometryImage& image);
+
+/// @}
+
+}  // namespace spherical_param

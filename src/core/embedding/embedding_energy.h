@@ -1,0 +1,82 @@
+#pragma once
+
+#include "block_matrix.h"
+#include "tangent_basis.h"
+#include "spherical_param/types.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// \param directions 3 x n, unit vectors.
+std::vector<TangentBasis> tangentBases(const Positions& directions);
+
+/// What a solver lowers: the energy of an embedding u of a graph of points p,
+///
+///   E(u) = sum over edges  f_ij^(p - 2) |u_i - u_j|^p / p   +   barrier,
+///
+/// with f = 1 / |p_i - p_j|, or 1 for uniform weights (any p) and f^1 for p = 2 with inverse
+/// lengths. Its gradient in the tangent plane of u_i is minus the tangential Laplacian of Zwicker
+/// and Gotsman 2004, equation 2, times the sum of the weights at i.
+///
+/// For p = 2 the energy is (up to discretisation) invariant under conformal maps of the sphere,
+/// among them those that draw all points to one place. A barrier -b log(1 - |c|^2) in the centroid
+/// c = sum m_i u_i of masses then keeps it from collapsing.
+class EmbeddingEnergy {
+public:
+  /// \param exponent p, > 2, or 2 for weights that do not depend on u.
+  /// \param graph    must outlive the energy.
+  /// \param threads  that share the work.
+  EmbeddingEnergy(const Graph& graph, bool uniform, double exponent, int threads);
+
+  /// Adds the barrier, b and the masses from an embedding u: b is its energy, the mass of a node
+  /// its mean squared edge. Masses by area, because a limb of tiny area on the sphere would be
+  /// folded by a pull that is the same for all nodes.
+  void addBarrier(const Positions& u);
+
+  bool hasBarrier() const { return masses_.size() > 0; }
+
+  double value(const Positions& u) const;
+
+  /// How far an embedding is from a critical point: means over the nodes.
+  struct Residual {
+    /// Length of the tangential Laplacian, with the barrier's share, if any [radius].
+    double absolute = 0.0;
+    /// The same in units of the node's mean edge on the sphere, in [0, 1]: tells of the smallest
+    /// parts of the embedding as well as of the largest.
+    double relative = 0.0;
+
+    Residual& operator+=(const Residual& other) {
+      absolute += other.absolute;
+      relative += other.relative;
+      return *this;
+    }
+  };
+  /// \param gradient 3 x n, tangent at u.
+  Residual gradient(const Positions& u, Positions& gradient) const;
+
+  /// Second derivatives along geodesics, in tangent bases.
+  struct Hessian {
+
+    BlockMatrix matrix;         ///< positive semi-definite part, in the pattern of the graph
+    Eigen::VectorXd curvature;  ///< n entries: matrix - diag(curvature) is the Hessian ...
+    Eigen::Matrix3d barrier;    ///< ... with this in the centroid of the ambient vectors, if any
+    Eigen::VectorXd masses;     ///< of that centroid; empty without barrier
+  };
+  void hessian(const Positions& u, const std::vector<TangentBasis>& bases, Hessian& result) const;
+
+private:
+  void buildPattern(BlockMatrix& matrix) const;
+  double weight(double length, std::size_t entry) const;
+
+  const Graph& graph_;
+  bool uniform_;
+  double exponent_;
+  double barrier_ = 0.0;
+  Eigen::VectorXd masses_;  ///< n entries, sum 1; empty without barrier
+  int threads_;
+};
+
+}  // namespace spherical_param::internal

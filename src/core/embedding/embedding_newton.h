@@ -1,0 +1,37 @@
+#pragma once
+
+#include "embedding_energy.h"
+#include "multigrid.h"
+#include "spherical_param/types.h"
+
+#include <functional>
+#include <vector>
+
+namespace spherical_param::internal {
+
+struct NewtonOptions {
+  int max_iterations = 100;
+  double tolerance = 0.0;           ///< mean length of the tangential Laplacian [radius]
+  double relative_tolerance = 1.0;  ///< the same in units of each node's mean edge
+  /// Where the mean of all directions is longer, nothing keeps the rest from collapsing: the work
+  /// ends. 1: never.
+  double longest_mean = 1.0;
+  /// Called with (iteration, residual) before each step; throws to end the work.
+  std::function<void(int, double)> progress;
+};
+
+struct NewtonReport {
+  int iterations = 0;
+  int linear_iterations = 0;      ///< conjugate gradient steps
+  std::vector<double> residuals;  ///< absolute, before each step and at the end
+};
+
+/// Lowers the energy of an embedding by Newton's method on the product of spheres, with a line
+/// search: steps in the tangent planes, then back to the sphere. Ends where both residuals are at
+/// most their tolerances, where rounding leaves no step that lowers energy or residual, or where
+/// the embedding collapses.
+NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
+                              MultigridPreconditioner& preconditioner, const NewtonOptions& options,
+                              Positions& directions);
+
+}  // namespace spherical_param::internal

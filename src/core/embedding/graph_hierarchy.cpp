@@ -1,0 +1,384 @@
+#include "spherical_param/graph_hierarchy.h"
+
+#include "graph_checks.h"
+#include "members.h"
+#include "parallel.h"
+#include "progress.h"
+#include "spherical_param/errors.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+using internal::forEachBlock;
+using internal::partOf;
+using internal::ShareReport;
+
+/// A level that keeps more than this share of the nodes is not worth having.
+constexpr double kLeastCoarsening = 0.9;
+
+/// A graph of more neighbours a node is far from planar, as one of k nearest neighbours is, and no
+/// start for an embedding: its aggregates touch only where the surface does.
+constexpr int kPlanarDegree = 12;
+
+/// Shares of the work on a level that are done after its parts, and of these after theirs.
+constexpr double kSetShare = 0.30;
+constexpr double kCellsShare = 0.55;
+constexpr double kGraphShare = 0.75;
+constexpr double kKeysShare = 0.2;
+constexpr double kJudgedShare = 0.7;
+constexpr double kNearShare = 0.3;
+constexpr double kLookedShare = 0.9;
+constexpr double kMembersShare = 0.2;
+constexpr double kRowsShare = 0.7;
+/// Share of the nodes of a level that the next coarser one keeps, about.
+constexpr double kUsualCoarsening = 0.22;
+
+/// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
+/// turning, scaling or renumbering the points changes them only where rounding decides.
+std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
+  const std::size_t n = graph.size();
+  std::vector<double> keys(n);
+  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+        keys[i] += graph.lengths[e];
+  });
+  const double sum = std::accumulate(keys.begin(), keys.end(), 0.0);
+  // About one turn over the spread of the lengths, which is a part of their mean; each seed begins
+  // it elsewhere. More turns would look more random, but let the rounding of the points decide more
+  // often.
+  constexpr double turns = 2.0;
+  constexpr double golden_ratio = 0.6180339887498949;
+  const double factor = turns * static_cast<double>(n) / sum;
+  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double turn = factor * keys[i] + golden_ratio * seed;
+      // Only lengths that are no numbers lead to keys that are none, which have no order.
+      keys[i] = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
+    }
+  });
+  return keys;
+}
+
+/// A maximal independent set, in ascending order: the one that takes each node in turn, by
+/// ascending key, unless a neighbour was taken before it. A node can be judged as soon as its
+/// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
+/// the same set whatever the order and the threads.
+std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
+                                  const ShareReport& report) {
+  const std::size_t n = graph.size();
+  const std::vector<double> keys = scrambledKeys(graph, seed, threads);
+  internal::tell(report, kKeysShare);
+  enum State : unsigned char { Open, Out, Taken };
+  std::vector<std::atomic<unsigned char>> states(n);
+  const auto judge = [&](std::size_t i) {
+    if (states[i].load(std::memory_order_relaxed) != Open)
+      return true;
+    bool waits = false;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+      if (keys[j] > keys[i] || (keys[j] == keys[i] && j > i))
+        continue;
+      const unsigned char state = states[j].load(std::memory_order_relaxed);
+      if (state == Taken) {
+        states[i].store(Out, std::memory_order_relaxed);
+        return true;
+      }
+      waits = waits || state == Open;
+    }
+    if (waits)
+      return false;
+    states[i].store(Taken, std::memory_order_relaxed);
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+      states[static_cast<std::size_t>(graph.neighbors[e])].store(Out, std::memory_order_relaxed);
+    return true;
+  };
+  std::vector<std::vector<Index>> waiting((n + internal::kBlockSize - 1) / internal::kBlockSize);
+  const ShareReport judged = partOf(report, kKeysShare, kJudgedShare);
+  forEachBlock(n, threads, judged, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (!judge(i))
+        waiting[block].push_back(static_cast<Index>(i));
+  });
+  double share = kJudgedShare;
+  for (bool waits = true; waits;) {
+    waits = false;
+    for (std::vector<Index>& nodes : waiting) {
+      nodes.erase(std::remove_if(nodes.begin(), nodes.end(),
+                                 [&](Index i) { return judge(static_cast<std::size_t>(i)); }),
+                  nodes.end());
+      waits = waits || !nodes.empty();
+    }
+    share += (1.0 - share) / 2.0;
+    internal::tell(report, share);
+  }
+  std::vector<Index> taken;
+  for (std::size_t i = 0; i < n; ++i)
+    if (states[i].load(std::memory_order_relaxed) == Taken)
+      taken.push_back(static_cast<Index>(i));
+  return taken;
+}
+
+/// Geodesic Voronoi cells of seeds.
+struct Aggregates {
+  std::vector<Index> of_node;     ///< n entries, positions in `seeds`
+  std::vector<double> distances;  ///< n entries, length of the path to the own seed
+};
+
+/// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
+/// and then all nodes have been looked at, only few change, and those next to them.
+Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads,
+                         const ShareReport& report) {
+  const std::size_t n = graph.size();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Aggregates near{std::vector<Index>(n, -1), std::vector<double>(n, infinity)};
+  // Ties go to the lower seed: the first one here.
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
+    const auto i = static_cast<std::size_t>(seeds[s]);
+    near.of_node[i] = static_cast<Index>(s);
+    near.distances[i] = 0.0;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+      if (graph.lengths[e] < near.distances[j]) {
+        near.distances[j] = graph.lengths[e];
+        near.of_node[j] = static_cast<Index>(s);
+      }
+    }
+  }
+  internal::tell(report, kNearShare);
+  const auto is_nearer = [](double distance, Index seed, double than, Index other) {
+    return distance < than || (distance == than && seed < other);
+  };
+  Aggregates cells{std::vector<Index>(n), std::vector<double>(n)};
+  std::vector<std::vector<Index>> changed((n + internal::kBlockSize - 1) / internal::kBlockSize);
+  const ShareReport looked = partOf(report, kNearShare, kLookedShare);
+  forEachBlock(n, threads, looked, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double nearest = near.distances[i];
+      Index seed = near.of_node[i];
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+        const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+        const double distance = near.distances[j] + graph.lengths[e];
+        if (is_nearer(distance, near.of_node[j], nearest, seed)) {
+          nearest = distance;
+          seed = near.of_node[j];
+        }
+      }
+      cells.distances[i] = nearest;
+      cells.of_node[i] = seed;
+      if (nearest != near.distances[i] || seed != near.of_node[i])
+        changed[block].push_back(static_cast<Index>(i));
+    }
+  });
+  std::vector<Index> queue;
+  for (const std::vector<Index>& nodes : changed)
+    queue.insert(queue.end(), nodes.begin(), nodes.end());
+  for (std::size_t head = 0; head < queue.size(); ++head) {
+    const auto j = static_cast<std::size_t>(queue[head]);
+    for (std::size_t e = graph.offsets[j]; e < graph.offsets[j + 1]; ++e) {
+      const auto i = static_cast<std::size_t>(graph.neighbors[e]);
+      const double distance = cells.distances[j] + graph.lengths[e];
+      if (is_nearer(distance, cells.of_node[j], cells.distances[i], cells.of_node[i])) {
+        cells.distances[i] = distance;
+        cells.of_node[i] = cells.of_node[j];
+        queue.push_back(static_cast<Index>(i));
+      }
+    }
+  }
+  return cells;
+}
+
+/// Rows of entries that were found block by block.
+struct EntryBlock {
+  std::vector<std::size_t> ends;  ///< of the rows, from the first entry of the block
+  std::vector<Index> columns;
+  std::vector<double> values;
+};
+
+/// The number of entries of the blocks before each one, and of all.
+std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
+  std::vector<std::size_t> first{0};
+  for (const EntryBlock& block : blocks)
+    first.push_back(first.back() + block.columns.size());
+  return first;
+}
+
+/// The graph of the aggregates that touch.
+Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
+                  const ShareReport& report) {
+  const internal::Members members(cells.of_node, count);
+  internal::tell(report, kMembersShare);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  struct Scratch {
+    std::vector<double> shortest;
+    std::vector<Index> touched;
+  };
+  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
+  std::vector<EntryBlock> blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
+  const ShareReport found = partOf(report, kMembersShare, 1.0);
+  internal::forEachItem(count, threads, found, [&](std::size_t thread, std::size_t c) {
+    std::vector<double>& shortest = scratch[thread].shortest;
+    std::vector<Index>& touched = scratch[thread].touched;
+    shortest.resize(count, infinity);
+    touched.clear();
+    members.forEach(static_cast<Index>(c), [&](Index member) {
+      const auto i = static_cast<std::size_t>(member);
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+        const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+        const auto other = static_cast<std::size_t>(cells.of_node[j]);
+        if (other == c)
+          continue;
+        if (shortest[other] == infinity)
+          touched.push_back(static_cast<Index>(other));
+        // The sum of the distances first: the same bits from both sides of the edge. It stays a
+        // length where it is beyond the range of double.
+        const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
+        shortest[other] = std::min({shortest[other], length, std::numeric_limits<double>::max()});
+      }
+    });
+    std::sort(touched.begin(), touched.end());
+    EntryBlock& block = blocks[c / internal::kBlockSize];
+    for (const Index other : touched) {
+      block.columns.push_back(other);
+      block.values.push_back(shortest[static_cast<std::size_t>(other)]);
+      shortest[static_cast<std::size_t>(other)] = infinity;
+    }
+    block.ends.push_back(block.columns.size());
+  });
+  const std::vector<std::size_t> first = firstEntries(blocks);
+  Graph coarse;
+  coarse.offsets.reserve(count + 1);
+  coarse.neighbors.reserve(first.back());
+  coarse.lengths.reserve(first.back());
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (const std::size_t end : blocks[b].ends)
+      coarse.offsets.push_back(first[b] + end);
+    coarse.neighbors.insert(coarse.neighbors.end(), blocks[b].columns.begin(),
+                            blocks[b].columns.end());
+    coarse.lengths.insert(coarse.lengths.end(), blocks[b].values.begin(), blocks[b].values.end());
+  }
+  return coarse;
+}
+
+/// Adds an entry to a row that is sorted by seed; of two with the same seed the shorter path stays.
+void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double length) {
+  auto place = row.end();
+  while (place != row.begin() && (place - 1)->first > seed)
+    --place;
+  if (place != row.begin() && (place - 1)->first == seed)
+    (place - 1)->second = std::min((place - 1)->second, length);
+  else
+    row.emplace(place, seed, length);
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& graph,
+                                                                  const Aggregates& cells,
+                                                                  std::size_t count, int threads,
+                                                                  const ShareReport& report) {
+  const std::size_t n = graph.size();
+  std::vector<EntryBlock> blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
+  const ShareReport found = partOf(report, 0.0, kRowsShare);
+  forEachBlock(n, threads, found, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    EntryBlock& block = blocks[b];
+    // About three entries a row.
+    constexpr std::size_t expected = 4 * internal::kBlockSize;
+    block.columns.reserve(expected);
+    block.values.reserve(expected);
+    block.ends.reserve(end - begin);
+    std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
+    for (std::size_t i = begin; i < end; ++i) {
+      row.clear();
+      row.emplace_back(cells.of_node[i], cells.distances[i]);
+      const double own = cells.distances[i];
+      if (own > 0.0)
+        for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+          const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+          addPath(row, cells.of_node[j], cells.distances[j] + graph.lengths[e]);
+        }
+      double sum = 0.0;
+      for (auto& [seed, weight] : row) {
+        weight = own > 0.0 ? own / weight : 1.0;
+        sum += weight;
+      }
+      for (const auto& [seed, weight] : row) {
+        block.columns.push_back(seed);
+        block.values.push_back(weight / sum);
+      }
+      block.ends.push_back(block.columns.size());
+    }
+  });
+  const std::vector<std::size_t> first = firstEntries(blocks);
+  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> result(static_cast<Eigen::Index>(n),
+                                                             static_cast<Eigen::Index>(count));
+  result.resizeNonZeros(static_cast<Eigen::Index>(first.back()));
+  forEachBlock(n, threads, [&](std::size_t b, std::size_t begin, std::size_t) {
+    const EntryBlock& block = blocks[b];
+    for (std::size_t r = 0; r < block.ends.size(); ++r)
+      result.outerIndexPtr()[begin + r + 1] = static_cast<Index>(first[b] + block.ends[r]);
+    std::copy(block.columns.begin(), block.columns.end(), result.innerIndexPtr() + first[b]);
+    std::copy(block.values.begin(), block.values.end(), result.valuePtr() + first[b]);
+  });
+  return result;
+}
+
+HierarchyLevel coarsened(const Graph& graph, const HierarchyOptions& options,
+                         const ShareReport& report) {
+  const int threads =
+      internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold);
+  HierarchyLevel level;
+  level.seeds = independentSet(graph, options.seed, threads, partOf(report, 0.0, kSetShare));
+  Aggregates cells =
+      geodesicCells(graph, level.seeds, threads, partOf(report, kSetShare, kCellsShare));
+  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads,
+                            partOf(report, kCellsShare, kGraphShare));
+  level.prolongation =
+      interpolation(graph, cells, level.seeds.size(), threads, partOf(report, kGraphShare, 1.0));
+  level.aggregate_of = std::move(cells.of_node);
+  return level;
+}
+
+}  // namespace
+
+GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& options) {
+  if (options.coarsest_size < 4)
+    throw InvalidInput("buildGraphHierarchy: coarsest_size = " +
+                       std::to_string(options.coarsest_size) + "; use 4 or more");
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    throw InvalidInput("buildGraphHierarchy: threads = " + std::to_string(options.threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+  internal::checkGraph("buildGraphHierarchy", graph);
+  GraphHierarchy hierarchy;
+  const Graph* finest = &graph;
+  const auto is_dense = [](const Graph& level) {
+    return level.neighbors.size() > static_cast<std::size_t>(kPlanarDegree) * level.size();
+  };
+  const ShareReport report = internal::cancellable(options.progress, "buildGraphHierarchy");
+  double share = 0.0;
+  while (finest->size() > static_cast<std::size_t>(options.coarsest_size) || is_dense(*finest)) {
+    // What is left is done on smaller and smaller levels.
+    const double share_after = share + (1.0 - kUsualCoarsening) * (1.0 - share);
+    HierarchyLevel level = coarsened(*finest, options, partOf(report, share, share_after));
+    share = share_after;
+    // Fewer than 4 nodes cannot be spread over a sphere.
+    if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
+                                      kLeastCoarsening * static_cast<double>(finest->size()))
+      break;
+    hierarchy.levels.push_back(std::move(level));
+    finest = &hierarchy.levels.back().graph;
+  }
+  internal::tell(report, 1.0);
+  return hierarchy;
+}
+
+}  // namespace spherical_param

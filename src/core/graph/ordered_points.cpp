@@ -1,0 +1,108 @@
+#include "ordered_points.h"
+
+#include "parallel.h"
+#include "power_of_two.h"
+#include "radix_sort.h"
+#include "space_filling_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <tuple>
+
+namespace spherical_param::internal {
+namespace {
+
+struct Place {
+  std::uint64_t key;  ///< on the curve
+  Index index;        ///< of the input point
+};
+
+/// All points along the curve; those in one cell of it by their indices.
+std::vector<Place> sortedPlaces(const Positions& points, const MortonCurve& curve, int threads) {
+  std::vector<Place> places(static_cast<std::size_t>(points.cols()));
+  forEachBlock(places.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      places[i] = {curve.key(points.col(static_cast<Eigen::Index>(i))), static_cast<Index>(i)};
+  });
+  radixSort(places);
+  return places;
+}
+
+}  // namespace
+
+OrderedPoints orderPoints(const Positions& points, int threads) {
+  const auto n = static_cast<std::size_t>(points.cols());
+  OrderedPoints result;
+  if (n == 0)
+    return result;
+  threads = threadCount(threads, n, kShortPassThreshold);
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const Eigen::Vector3d high = points.rowwise().maxCoeff();
+  // An axis along which nothing differs may be so far away that it would not stay finite.
+  constexpr int most = 1000;
+  int largest = 0;
+  std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
+  result.exponent = std::max(exponentOfExtent(low, high), largest - most);
+  const PowerOfTwo scaled(-result.exponent);
+  std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
+
+  // Points that are the same lie in one cell; each is replaced by the first of them.
+  std::vector<Index>& vertex_of_input = result.distinct.vertex_of_input;
+  vertex_of_input.resize(n);
+  std::iota(vertex_of_input.begin(), vertex_of_input.end(), Index{0});
+  std::vector<Index>& input_of_node = result.input_of_node;
+  input_of_node.reserve(n);
+  const auto coordinates = [&](Index i) {
+    return std::tuple(points(0, i), points(1, i), points(2, i));
+  };
+  for (std::size_t begin = 0; begin < n;) {
+    std::size_t end = begin + 1;
+    while (end < n && places[end].key == places[begin].key)
+      ++end;
+    const auto of_cell = static_cast<std::ptrdiff_t>(input_of_node.size());
+    if (end - begin > 1)
+      std::sort(places.begin() + static_cast<std::ptrdiff_t>(begin),
+                places.begin() + static_cast<std::ptrdiff_t>(end),
+                [&](const Place& a, const Place& b) {
+                  return std::tuple(coordinates(a.index), a.index) <
+                         std::tuple(coordinates(b.index), b.index);
+                });
+    for (std::size_t i = begin; i < end; ++i) {
+      const Index input = places[i].index;
+      if (i > begin && coordinates(input) == coordinates(input_of_node.back()))
+        vertex_of_input[static_cast<std::size_t>(input)] = input_of_node.back();
+      else
+        input_of_node.push_back(input);
+    }
+    std::sort(input_of_node.begin() + of_cell, input_of_node.end());
+    begin = end;
+  }
+  places = {};
+
+  // Those that are the first of theirs are numbered in their order.
+  result.distinct.input_of_vertex.reserve(input_of_node.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto first = static_cast<std::size_t>(vertex_of_input[i]);
+    if (first == i) {
+      vertex_of_input[i] = static_cast<Index>(result.distinct.input_of_vertex.size());
+      result.distinct.input_of_vertex.push_back(static_cast<Index>(i));
+    } else {
+      vertex_of_input[i] = vertex_of_input[first];  // which comes before
+    }
+  }
+  result.vertex_of_node.resize(input_of_node.size());
+  result.points.resize(3, static_cast<Eigen::Index>(input_of_node.size()));
+  forEachBlock(input_of_node.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      const Index input = input_of_node[node];
+      result.vertex_of_node[node] = vertex_of_input[static_cast<std::size_t>(input)];
+      result.points.col(static_cast<Eigen::Index>(node)) = scaled(points.col(input));
+    }
+  });
+  return result;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "parallel.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/types.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Refuses a mesh with an index out of range, or with more triangles than a CornerTable can number.
+inline void checkTriangles(const char* caller, const Triangles& triangles, Eigen::Index n) {
+  constexpr Eigen::Index most_triangles = Eigen::Index{1} << 30;
+  if (triangles.cols() > most_triangles)
+    throw InvalidInput(std::string(caller) + ": " + std::to_string(triangles.cols()) +
+                       " triangles are more than 2^30; split the mesh");
+  if (triangles.cols() == 0 || (triangles.minCoeff() >= 0 && triangles.maxCoeff() < n))
+    return;
+  Eigen::Index i = 0;
+  while (triangles.data()[i] >= 0 && triangles.data()[i] < n)
+    ++i;
+  throw InvalidInput(std::string(caller) + ": triangle " + std::to_string(i / 3) +
+                     " names vertex " + std::to_string(triangles.data()[i]) + " of " +
+                     std::to_string(n) + "; indices start at 0");
+}
+
+/// The corners of a triangle behind and before corner k. Looked up, as to compute them takes a
+/// remainder, or a branch that no processor can guess.
+inline Index nextCorner(Index k) {
+  constexpr Index next[] = {1, 2, 0};
+  return next[k];
+}
+inline Index previousCorner(Index k) {
+  constexpr Index previous[] = {2, 0, 1};
+  return previous[k];
+}
+
+/// The corners of the triangles, those of each vertex together: 24 bytes for each vertex of a
+/// closed mesh, and 4 more.
+class CornerTable {
+public:
+  /// \param triangles indices in [0, vertex_count), see checkTriangles().
+  CornerTable(const Triangles& triangles, std::size_t vertex_count, int threads)
+      : ends_(vertex_count + 1, 0),
+        // Not zeroed in advance by one thread for all.
+        corners_(new std::uint32_t[static_cast<std::size_t>(triangles.size())]) {
+    forEachCornerOfRange(triangles, threads, vertex_count,
+                         [&](std::size_t v, std::uint32_t) { ++ends_[v + 1]; });
+    std::uint32_t begin = 0;
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+      const std::uint32_t count = ends_[v + 1];
+      ends_[v + 1] = begin;
+      begin += count;
+    }
+    // Now ends_[v + 1] is where the corners of v begin, and moves on to their end.
+    forEachCornerOfRange(
+        triangles, threads, vertex_count,
+        [&](std::size_t v, std::uint32_t corner) { corners_[ends_[v + 1]++] = corner; });
+  }
+
+  std::size_t vertexCount() const { return ends_.size() - 1; }
+
+  std::size_t countAt(Index v) const {
+    return ends_[static_cast<std::size_t>(v) + 1] - ends_[static_cast<std::size_t>(v)];
+  }
+
+  /// Calls visit(triangle, k) for the triangles around v, whose corner k it is, ascending.
+  template <typename Visit>
+  void forEachCorner(Index v, const Visit& visit) const {
+    for (std::uint32_t i = ends_[static_cast<std::size_t>(v)];
+         i < ends_[static_cast<std::size_t>(v) + 1]; ++i)
+      visit(static_cast<Index>(corners_[i] >> 2U), static_cast<Index>(corners_[i] & 3U));
+  }
+
+private:
+  /// Calls work(vertex, corner) for all corners. Each thread has a range of the vertices, goes
+  /// through all corners and takes those of its vertices, which so have the order that one thread
+  /// gives them.
+  template <typename Work>
+  static void forEachCornerOfRange(const Triangles& triangles, int threads,
+                                   std::size_t vertex_count, const Work& work) {
+    const auto count = static_cast<std::ptrdiff_t>(vertex_count);
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
+#endif
+    for (std::ptrdiff_t r = 0; r < threads; ++r) {
+      const auto begin = static_cast<Index>(count * r / threads);
+      const auto end = static_cast<Index>(count * (r + 1) / threads);
+      for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+        for (Eigen::Index k = 0; k < 3; ++k) {
+          const Index v = triangles(k, t);
+          if (v >= begin && v < end)
+            work(static_cast<std::size_t>(v), static_cast<std::uint32_t>(4 * t + k));
+        }
+    }
+  }
+
+  std::vector<std::uint32_t> ends_;           // corners of v: [ends_[v], ends_[v + 1])
+  std::unique_ptr<std::uint32_t[]> corners_;  // 4 * triangle + k
+};
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,757 @@
+#include "mesh_optimizer.h"
+
+#include "bit_mixing.h"
+#include "exact_predicates.h"
+#include "parallel.h"
+#include "self_intersection_of_fans.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Changes of the energy below this are rounding [mean length of the graph's edges].
+constexpr double kLeastGain = 1e-9;
+
+/// Changes of the energy of a few triangles below this share of it are rounding: less than 16
+/// terms, none negative, are added. A flip that gains no more could be made and taken back for
+/// ever.
+constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+/// Candidates of flips between reports.
+constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
+/// Share of the work of flipAll() that finds the first candidates, and of intersections() before
+/// the pairs.
+constexpr double kCandidatesShare = 0.65;
+constexpr double kNeighborsShare = 0.6;  // of what makes an optimiser
+constexpr double kFansShare = 0.12;
+
+/// Neighbours in the graph up to so many mean lengths of a vertex's edges should be near on the
+/// mesh.
+constexpr double kNearNeighbor = 1.5;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// The upper one, if there are two. Changes their order.
+double medianOf(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
+                             const Graph& graph, int threads, const ShareReport& report)
+    : points_(&points), graph_(graph),
+      threads_(
+          threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
+      mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
+      facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
+      stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
+      seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
+  tell(report, kNeighborsShare);
+  double lengths = 0.0;
+  for (const double length : graph_.lengths)
+    lengths += length;
+  if (lengths > 0.0)
+    unit_ = lengths / static_cast<double>(graph_.lengths.size());
+  recomputeFacets(partOf(report, kNeighborsShare, 1.0));
+}
+
+void MeshOptimizer::recomputeFacets(const ShareReport& report) {
+  are_flips_settled_ = false;
+  has_usual_angles_ = false;
+  forEachBlock(facets_.size(), threads_, report,
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i) {
+                   const auto t = static_cast<Index>(i);
+                   facets_[i] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
+                 }
+               });
+}
+
+void MeshOptimizer::reset(const Triangles& triangles) {
+  mesh_ = SphereMesh(triangles, seen_vertices_.size(), threads_);
+  recomputeFacets();
+  energy_ = recomputedEnergy();
+}
+
+void MeshOptimizer::setEnergy(const SurfaceEnergy& energy) {
+  terms_ = energy;
+  energy_ = recomputedEnergy();
+}
+
+void MeshOptimizer::setPoints(const Positions& points) {
+  points_ = &points;
+  recomputeFacets();
+  energy_ = recomputedEnergy();
+}
+
+double MeshOptimizer::recomputedEnergy() const {
+  return sumOfBlocks(facets_.size(), threads_, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      sum += cost(facets_[i]);
+      for (int k = 0; k < 3; ++k) {
+        const Index other = mesh_.neighbor(t, k);
+        if (t < other)
+          sum += edge(mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3), facets_[i],
+                      facetOf(other));
+      }
+    }
+    return sum;
+  });
+}
+
+void MeshOptimizer::setFacet(Index t) {
+  if (is_recording_)
+    old_facets_.emplace_back(t, facetOf(t));
+  changes_[at(t)] = kChangedSinceFlips | kChangedSinceAngles;
+  facets_[at(t)] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
+}
+
+double MeshOptimizer::flipGain(Index t, int k, double floor) const {
+  // (c, a, b) and (d, b, a) would become (c, a, d) and (c, d, b).
+  const Index o = mesh_.neighbor(t, k);
+  const int l = mesh_.oppositeCorner(t, k);
+  const Index c = mesh_.vertex(t, k);
+  const Index a = mesh_.vertex(t, (k + 1) % 3);
+  const Index b = mesh_.vertex(t, (k + 2) % 3);
+  const Index d = mesh_.vertex(o, l);
+  if (c == d)
+    return floor;
+  const Facet& cab = facetOf(t);
+  const Facet& dba = facetOf(o);
+  const Facet& bc = facetOf(mesh_.neighbor(t, (k + 1) % 3));
+  const Facet& ca = facetOf(mesh_.neighbor(t, (k + 2) % 3));
+  const Facet& ad = facetOf(mesh_.neighbor(o, (l + 1) % 3));
+  const Facet& db = facetOf(mesh_.neighbor(o, (l + 2) % 3));
+  const double before = cost(cab) + cost(dba) + edge(a, b, cab, dba) + edge(b, c, cab, bc) +
+                        edge(c, a, cab, ca) + edge(a, d, dba, ad) + edge(d, b, dba, db);
+  // No term is negative, and rounding is monotone: once some of them leave no more than the floor,
+  // all of them leave no more either, to the last bit.
+  const RawFacet raw_cad = rawFacet(c, a, d);
+  const RawFacet raw_cdb = rawFacet(c, d, b);
+  double after = terms_.cost(raw_cad.radius) + terms_.cost(raw_cdb.radius);
+  if (before - after <= floor)
+    return floor;
+  const Facet cad = raw_cad.facet();
+  const Facet cdb = raw_cdb.facet();
+  after += edge(c, d, cad, cdb);
+  after += edge(b, c, cdb, bc);
+  after += edge(c, a, cad, ca);
+  after += edge(a, d, cad, ad);
+  after += edge(d, b, cdb, db);
+  const double gain = std::abs(before - after) > kRounding * before ? before - after : 0.0;
+  // Beyond the range of double the difference is no number, and no gain.
+  return gain > floor ? gain : floor;
+}
+
+void MeshOptimizer::queueFlip(Index t, int k) {
+  const double floor = kLeastGain * unit_;
+  const double gain = flipGain(t, k, floor);
+  if (gain <= floor)
+    return;
+  queue_.push_back(
+      {gain, t, stamps_[3 * at(t) + static_cast<std::size_t>(k)], static_cast<std::uint8_t>(k)});
+}
+
+void MeshOptimizer::queueSides(Index t) {
+  for (int k = 0; k < 3; ++k) {
+    const Index o = mesh_.neighbor(t, k);
+    if (t > o && seen_triangles_[at(o)] == pass_)
+      continue;  // that triangle's turn
+    // Each side has its place in the queue with the lower of its triangles.
+    const Index low = std::min(t, o);
+    const int corner = t < o ? k : mesh_.oppositeCorner(t, k);
+    ++stamps_[3 * at(low) + static_cast<std::size_t>(corner)];
+    const std::size_t size = queue_.size();
+    queueFlip(low, corner);
+    if (queue_.size() > size)
+      std::push_heap(queue_.begin(), queue_.end());
+  }
+}
+
+bool MeshOptimizer::flip(Index t, int k, double gain) {
+  const Index o = mesh_.neighbor(t, k);
+  if (!mesh_.flip(t, k))
+    return false;
+  setFacet(t);
+  setFacet(o);
+  energy_ -= gain;
+  return true;
+}
+
+std::size_t MeshOptimizer::flipQueued(const ShareReport& report) {
+  refused_.clear();
+  std::size_t flips = 0;
+  double share = 0.0;
+  for (std::size_t taken = 1; !queue_.empty(); ++taken) {
+    if (report && taken % kReportedCandidates == 0) {
+      // What is in the queue by now puts in less than it takes out.
+      share =
+          std::max(share, static_cast<double>(taken) / static_cast<double>(taken + queue_.size()));
+      report(share);
+    }
+    const Candidate best = queue_.front();
+    std::pop_heap(queue_.begin(), queue_.end());
+    queue_.pop_back();
+    const Index t = best.triangle;
+    if (stamps_[3 * at(t) + best.corner] != best.stamp)
+      continue;
+    const Index o = mesh_.neighbor(t, best.corner);
+    if (!flip(t, best.corner, best.gain)) {
+      refused_.push_back(t);
+      continue;
+    }
+    ++flips;
+    // All sides whose gain depends on one of the two triangles: theirs, and their neighbours'.
+    std::array<Index, 6> affected{t,
+                                  o,
+                                  mesh_.neighbor(t, 0),
+                                  mesh_.neighbor(t, 2),
+                                  mesh_.neighbor(o, 0),
+                                  mesh_.neighbor(o, 1)};
+    ++pass_;
+    for (const Index i : affected) {
+      seen_triangles_[at(i)] = pass_;
+      for (std::size_t k = 0; k < 3; ++k)
+        ++stamps_[3 * at(i) + k];
+    }
+    std::sort(affected.begin(), affected.end());
+    const auto* end = std::unique(affected.begin(), affected.end());
+    for (const auto* i = affected.begin(); i != end; ++i)
+      queueSides(*i);
+  }
+  return flips;
+}
+
+void MeshOptimizer::flipAround(const std::vector<Index>& triangles) {
+  queue_.clear();
+  ++pass_;
+  for (const Index t : triangles)
+    seen_triangles_[at(t)] = pass_;
+  for (const Index t : triangles)
+    queueSides(t);
+  flipQueued();
+}
+
+bool MeshOptimizer::isNearChange(Index t, std::uint8_t change) const {
+  return ((changes_[at(t)] | changes_[at(mesh_.neighbor(t, 0))] |
+           changes_[at(mesh_.neighbor(t, 1))] | changes_[at(mesh_.neighbor(t, 2))]) &
+          change) != 0;
+}
+
+void MeshOptimizer::unmark(std::uint8_t change) {
+  for (std::uint8_t& marks : changes_)
+    marks &= static_cast<std::uint8_t>(~change);
+}
+
+std::size_t MeshOptimizer::flipAll(const ShareReport& report) {
+  // The gain of a side depends on its two triangles and their neighbours alone.
+  const bool are_most_settled = are_flips_settled_ && settled_terms_ == terms_;
+  const auto is_due = [&](Index t) {
+    return !are_most_settled || isNearChange(t, kChangedSinceFlips);
+  };
+  std::vector<std::vector<Candidate>> found((facets_.size() + kBlockSize - 1) / kBlockSize);
+  const double floor = kLeastGain * unit_;
+  forEachBlock(facets_.size(), threads_, partOf(report, 0.0, kCandidatesShare),
+               [&](std::size_t block, std::size_t begin, std::size_t end) {
+                 for (std::size_t i = begin; i < end; ++i) {
+                   const auto t = static_cast<Index>(i);
+                   if (!is_due(t))
+                     continue;
+                   for (int k = 0; k < 3; ++k) {
+                     const Index o = mesh_.neighbor(t, k);
+                     if (t > o && is_due(o))
+                       continue;  // that triangle's turn
+                     const Index low = std::min(t, o);
+                     const int corner = t < o ? k : mesh_.oppositeCorner(t, k);
+                     const double gain = flipGain(low, corner, floor);
+                     if (gain > floor)
+                       found[block].push_back(
+                           {gain, low, stamps_[3 * at(low) + static_cast<std::size_t>(corner)],
+                            static_cast<std::uint8_t>(corner)});
+                   }
+                 }
+               });
+  queue_.clear();
+  for (const auto& part : found)
+    queue_.insert(queue_.end(), part.begin(), part.end());
+  std::make_heap(queue_.begin(), queue_.end());
+  const std::size_t flips = flipQueued(partOf(report, kCandidatesShare, 1.0));
+  unmark(kChangedSinceFlips);
+  // These would gain, and may not be refused again.
+  for (const Index t : refused_)
+    changes_[at(t)] |= kChangedSinceFlips;
+  are_flips_settled_ = true;
+  settled_terms_ = terms_;
+  return flips;
+}
+
+double MeshOptimizer::splitCost(Index t, Index v, double ceiling) const {
+  const Index a = mesh_.vertex(t, 0);
+  const Index b = mesh_.vertex(t, 1);
+  const Index c = mesh_.vertex(t, 2);
+  const Facet& abc = facetOf(t);
+  const Facet& bc = facetOf(mesh_.neighbor(t, 0));
+  const Facet& ca = facetOf(mesh_.neighbor(t, 1));
+  const Facet& ab = facetOf(mesh_.neighbor(t, 2));
+  const double before = cost(abc) + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
+  // As in flipGain(): the rest only adds to it.
+  const RawFacet raw_vbc = rawFacet(v, b, c);
+  const RawFacet raw_vca = rawFacet(v, c, a);
+  const RawFacet raw_vab = rawFacet(v, a, b);
+  double after =
+      terms_.cost(raw_vbc.radius) + terms_.cost(raw_vca.radius) + terms_.cost(raw_vab.radius);
+  if (after - before >= ceiling)
+    return ceiling;
+  const Facet vbc = raw_vbc.facet();
+  const Facet vca = raw_vca.facet();
+  const Facet vab = raw_vab.facet();
+  after += edge(b, c, vbc, bc);
+  after += edge(c, a, vca, ca);
+  after += edge(a, b, vab, ab);
+  after += edge(v, a, vca, vab);
+  after += edge(v, b, vab, vbc);
+  after += edge(v, c, vbc, vca);
+  return after - before;
+}
+
+bool MeshOptimizer::remove(Index v) {
+  while (mesh_.degree(v) > 3) {
+    // Of the flips that take an edge from the vertex, the one that costs least.
+    double best = -std::numeric_limits<double>::infinity();
+    Index triangle = -1;
+    int corner = 0;
+    mesh_.forEachAround(v, [&](Index t, int corner_of_v) {
+      const int k = (corner_of_v + 1) % 3;
+      const Index c = mesh_.vertex(t, k);
+      const Index d = mesh_.vertex(mesh_.neighbor(t, k), mesh_.oppositeCorner(t, k));
+      if (c == d || mesh_.areJoined(c, d))
+        return;
+      const double gain = flipGain(t, k, best);
+      if (gain > best) {
+        best = gain;
+        triangle = t;
+        corner = k;
+      }
+    });
+    if (triangle < 0 || !flip(triangle, corner, best))
+      return false;
+  }
+  std::array<Index, 3> fan{};
+  std::size_t count = 0;
+  mesh_.forEachAround(v, [&](Index t, int) { fan[count++] = t; });
+  const Index t = mesh_.merge(v);
+  if (t < 0)
+    return false;
+  for (const Index old : fan)
+    if (is_recording_ && old != t)
+      old_facets_.emplace_back(old, facetOf(old));
+  setFacet(t);
+  energy_ -= splitCost(t, v, std::numeric_limits<double>::infinity());
+  return true;
+}
+
+bool MeshOptimizer::insert(Index v, const std::vector<Index>& neighbors) {
+  ++pass_;
+  double least = std::numeric_limits<double>::infinity();
+  Index best = -1;
+  for (const Index w : neighbors) {
+    if (mesh_.triangleAt(w) < 0)
+      continue;
+    mesh_.forEachAround(w, [&](Index t, int) {
+      if (seen_triangles_[at(t)] == pass_)
+        return;
+      seen_triangles_[at(t)] = pass_;
+      const double split_cost = splitCost(t, v, least);
+      if (split_cost < least) {
+        least = split_cost;
+        best = t;
+      }
+    });
+  }
+  if (best < 0)
+    return false;
+  const auto parts = mesh_.split(best, v);
+  changed_.assign(parts.begin(), parts.end());
+  for (const Index t : parts) {
+    setFacet(t);
+    changed_.push_back(mesh_.neighbor(t, 0));
+  }
+  energy_ += least;
+  flipAround(changed_);
+  return true;
+}
+
+void MeshOptimizer::appendNeighbors(Index v, std::vector<Index>& neighbors) const {
+  mesh_.forEachAround(
+      v, [&](Index t, int corner) { neighbors.push_back(mesh_.vertex(t, (corner + 1) % 3)); });
+  neighbors.insert(neighbors.end(),
+                   graph_.neighbors.begin() + static_cast<std::ptrdiff_t>(graph_.offsets[at(v)]),
+                   graph_.neighbors.begin() +
+                       static_cast<std::ptrdiff_t>(graph_.offsets[at(v) + 1]));
+}
+
+void MeshOptimizer::begin() {
+  mesh_.record();
+  is_recording_ = true;
+  energy_before_ = energy_;
+}
+
+void MeshOptimizer::keep() {
+  mesh_.keep();
+  is_recording_ = false;
+  old_facets_.clear();
+}
+
+void MeshOptimizer::takeBack() {
+  mesh_.takeBack();
+  for (auto old = old_facets_.rbegin(); old != old_facets_.rend(); ++old)
+    facets_[at(old->first)] = old->second;
+  energy_ = energy_before_;
+  is_recording_ = false;
+  old_facets_.clear();
+}
+
+bool MeshOptimizer::isGain(double change) {
+  return change < -kLeastGain;
+}
+
+bool MeshOptimizer::relocate(Index v) {
+  around_.clear();
+  appendNeighbors(v, around_);
+  begin();
+  if (remove(v) && insert(v, around_) && isGain(change())) {
+    keep();
+    return true;
+  }
+  takeBack();
+  return false;
+}
+
+bool MeshOptimizer::recreate(const std::vector<Index>& vertices,
+                             const std::function<bool(double)>& accept, std::uint64_t& random) {
+  std::vector<std::vector<Index>> neighbors(vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    appendNeighbors(vertices[i], neighbors[i]);
+  begin();
+  std::vector<std::size_t> removed;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    if (remove(vertices[i]))
+      removed.push_back(i);
+  for (std::size_t i = removed.size(); i > 1; --i) {
+    random = splitmix64(random);
+    std::swap(removed[i - 1], removed[random % i]);
+  }
+  // Vertices none of whose neighbours are back yet wait for them.
+  while (!removed.empty()) {
+    std::vector<std::size_t> waiting;
+    for (const std::size_t i : removed)
+      if (!insert(vertices[i], neighbors[i]))
+        waiting.push_back(i);
+    if (waiting.size() == removed.size())
+      break;
+    removed = std::move(waiting);
+  }
+  if (removed.empty() && accept(change())) {
+    keep();
+    return true;
+  }
+  takeBack();
+  return false;
+}
+
+std::vector<Index> MeshOptimizer::spread(const std::vector<Index>& seeds, std::size_t count,
+                                         std::uint64_t& random) {
+  ++pass_;
+  std::vector<Index> region;
+  std::vector<Index> front;
+  const auto add = [&](Index v) {
+    if (seen_vertices_[at(v)] == pass_)
+      return;
+    seen_vertices_[at(v)] = pass_;
+    front.push_back(v);
+  };
+  for (const Index v : seeds)
+    add(v);
+  const std::size_t distinct_seeds = front.size();
+  std::vector<Index> neighbors;
+  while (!front.empty() && region.size() < count) {
+    std::size_t pick = 0;  // the seeds come first
+    if (region.size() >= distinct_seeds) {
+      random = splitmix64(random);
+      pick = random % front.size();
+    }
+    const Index v = front[pick];
+    if (region.size() >= distinct_seeds) {
+      front[pick] = front.back();
+      front.pop_back();
+    } else {
+      front.erase(front.begin());
+    }
+    region.push_back(v);
+    neighbors.clear();
+    appendNeighbors(v, neighbors);
+    for (const Index w : neighbors)
+      add(w);
+  }
+  return region;
+}
+
+template <typename Condition>
+std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& meets,
+                                         const ShareReport& report) const {
+  std::vector<std::vector<Index>> found((count + kBlockSize - 1) / kBlockSize);
+  forEachBlock(count, threads_, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (meets(static_cast<Index>(i)))
+        found[block].push_back(static_cast<Index>(i));
+  });
+  std::vector<Index> all;
+  for (const auto& part : found)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+std::vector<std::pair<Index, Index>> MeshOptimizer::edgesBelow(double cosine) const {
+  const auto is_below = [&](Index t, int k) {
+    const Index other = mesh_.neighbor(t, k);
+    return t < other && facetOf(t).normal.dot(facetOf(other).normal) < cosine;
+  };
+  std::vector<std::pair<Index, Index>> edges;
+  for (const Index t : filter(facets_.size(), [&](Index i) {
+         return is_below(i, 0) || is_below(i, 1) || is_below(i, 2);
+       }))
+    for (int k = 0; k < 3; ++k)
+      if (is_below(t, k))
+        edges.emplace_back(mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3));
+  return edges;
+}
+
+bool MeshOptimizer::isRough(Index v, double cosine) const {
+  bool is_sharp = false;
+  mesh_.forEachAround(v, [&](Index t, int corner) {
+    const Index next = mesh_.neighbor(t, (corner + 1) % 3);
+    is_sharp = is_sharp || facetOf(t).normal.dot(facetOf(next).normal) < cosine;
+  });
+  if (is_sharp)
+    return true;
+  // Nearly all neighbours in the graph are around the vertex: that is asked first, and quickly.
+  std::array<Index, 16> ring{};
+  std::size_t ring_size = 0;
+  const bool fits = at(mesh_.degree(v)) <= ring.size();
+  if (fits)
+    mesh_.forEachAround(
+        v, [&](Index t, int corner) { ring[ring_size++] = mesh_.vertex(t, (corner + 1) % 3); });
+  const auto is_around = [&](Index w) {
+    if (fits)
+      return std::find(ring.begin(), ring.begin() + ring_size, w) != ring.begin() + ring_size;
+    return mesh_.areJoined(v, w);
+  };
+  // In a graph of many neighbours, most of them are far.
+  double near = -1.0;
+  const auto is_far = [&](double length) {
+    if (near < 0.0) {
+      double lengths = 0.0;
+      mesh_.forEachAround(v, [&](Index t, int corner) {
+        lengths += (points_->col(v) - points_->col(mesh_.vertex(t, (corner + 1) % 3))).norm();
+      });
+      near = kNearNeighbor * lengths / mesh_.degree(v);
+    }
+    return length > near;
+  };
+  for (std::size_t e = graph_.offsets[at(v)]; e < graph_.offsets[at(v) + 1]; ++e) {
+    const Index w = graph_.neighbors[e];
+    if (is_around(w) || is_far(graph_.lengths[e]))
+      continue;
+    bool is_near = false;
+    mesh_.forEachAround(w, [&](Index t, int corner) {
+      is_near = is_near || is_around(mesh_.vertex(t, (corner + 1) % 3));
+    });
+    if (!is_near)
+      return true;
+  }
+  return false;
+}
+
+std::vector<Index> MeshOptimizer::roughVertices(double cosine, const ShareReport& report) const {
+  return filter(
+      seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); }, report);
+}
+
+void MeshOptimizer::gatherCosines(Index v, std::vector<double>& cosines) const {
+  cosines.clear();
+  mesh_.forEachAround(v, [&](Index t, int corner) {
+    for (const int k : {corner, (corner + 1) % 3})
+      cosines.push_back(facetOf(t).normal.dot(facetOf(mesh_.neighbor(t, k)).normal));
+  });
+}
+
+std::vector<double> MeshOptimizer::medianAngles() const {
+  std::vector<double> medians(seen_vertices_.size());
+  forEachBlock(medians.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::vector<double> cosines;
+    for (std::size_t v = begin; v < end; ++v) {
+      gatherCosines(static_cast<Index>(v), cosines);
+      medians[v] = fastAcos(medianOf(cosines));
+    }
+  });
+  return medians;
+}
+
+void MeshOptimizer::updateUsualAngles(double factor, double least) {
+  const bool is_new = !has_usual_angles_ || factor != usual_factor_ || least != least_usual_;
+  usual_angles_.resize(seen_vertices_.size());
+  // A median depends on the triangles around the vertex and their neighbours alone.
+  std::vector<std::uint8_t> is_due(usual_angles_.size(), is_new ? 1 : 0);
+  if (!is_new)
+    for (const Index t :
+         filter(facets_.size(), [&](Index i) { return isNearChange(i, kChangedSinceAngles); }))
+      for (int k = 0; k < 3; ++k)
+        is_due[at(mesh_.vertex(t, k))] = 1;
+  const double flat = SurfaceEnergy::flatFrom(least / factor);
+  std::vector<std::vector<Index>> changed((is_due.size() + kBlockSize - 1) / kBlockSize);
+  forEachBlock(is_due.size(), threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::vector<double> cosines;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_due[i] == 0)
+        continue;
+      gatherCosines(static_cast<Index>(i), cosines);
+      // At flat places, which are most of them, it is enough to know that they are.
+      std::size_t bent = 0;
+      for (const double cosine : cosines)
+        bent += cosine >= flat ? 0 : 1;
+      const double angle = bent <= cosines.size() / 2
+                               ? least
+                               : std::max(factor * fastAcos(medianOf(cosines)), least);
+      if (!is_new && angle != usual_angles_[i])
+        changed[block].push_back(static_cast<Index>(i));
+      usual_angles_[i] = angle;
+    }
+  });
+  for (const std::vector<Index>& part : changed)
+    for (const Index v : part)
+      mesh_.forEachAround(v, [&](Index t, int) { changes_[at(t)] |= kChangedSinceFlips; });
+  unmark(kChangedSinceAngles);
+  if (is_new)
+    are_flips_settled_ = false;
+  has_usual_angles_ = true;
+  usual_factor_ = factor;
+  least_usual_ = least;
+}
+
+void MeshOptimizer::setExcessEnergy(double mu, double factor, double least) {
+  updateUsualAngles(factor, least);
+  SurfaceEnergy energy;
+  energy.bend = SurfaceEnergy::Bend::Excess;
+  energy.mu = mu;
+  energy.usual_angle = usual_angles_.data();
+  energy.flat_cosine = SurfaceEnergy::flatFrom(least);
+  setEnergy(energy);
+}
+
+bool MeshOptimizer::isPlainFan(Index v) const {
+  Eigen::Index axis = 0;
+  facetOf(mesh_.triangleAt(v)).normal.cwiseAbs().maxCoeff(&axis);
+  const Eigen::Index x_axis = (axis + 1) % 3;
+  const Eigen::Index y_axis = (axis + 2) % 3;
+  struct Spoke {
+    double x;
+    double y;
+  };
+  const auto spoke = [&](Index t, int corner) {
+    const auto end = points_->col(mesh_.vertex(t, (corner + 1) % 3));
+    return Spoke{end[x_axis] - (*points_)(x_axis, v), end[y_axis] - (*points_)(y_axis, v)};
+  };
+  const Index first = mesh_.triangleAt(v);
+  const Spoke begin = spoke(first, mesh_.cornerOf(first, v));
+  Spoke last = begin;
+  // The angle between spokes that follow each other is below pi, and always to the same side for
+  // sure. The sign of a difference is that of the rounded one: so is the number of times that they
+  // pass to the left, which is how often they go around.
+  int left_turns = 0;
+  int right_turns = 0;
+  int passes = 0;
+  int sides = 0;
+  const auto pass = [&](const Spoke& from, const Spoke& to) {
+    const double first_product = from.x * to.y;
+    const double second_product = from.y * to.x;
+    const double turn = first_product - second_product;
+    // Each product is of two rounded differences, and rounded, and so is what is left; the last
+    // term is for products that underflow.
+    const double bound =
+        8.0 * kUnitRoundoff * (std::abs(first_product) + std::abs(second_product)) + 1e-290;
+    left_turns += turn > bound ? 1 : 0;
+    right_turns += turn < -bound ? 1 : 0;
+    passes += (from.x < 0.0) != (to.x < 0.0) ? 1 : 0;
+    ++sides;
+  };
+  mesh_.forEachAround(v, [&](Index t, int corner) {
+    if (t == first)
+      return;
+    const Spoke next = spoke(t, corner);
+    pass(last, next);
+    last = next;
+  });
+  pass(last, begin);
+  return (left_turns == sides || right_turns == sides) && passes == 2;
+}
+
+std::vector<std::uint8_t> MeshOptimizer::plainFans(const ShareReport& report) const {
+  std::vector<std::uint8_t> fans(seen_vertices_.size());
+  forEachBlock(fans.size(), threads_, report, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      fans[v] = isPlainFan(static_cast<Index>(v)) ? 1 : 0;
+  });
+  return fans;
+}
+
+std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const ShareReport& report) const {
+  const std::vector<std::uint8_t> fans = plainFans(partOf(report, 0.0, kFansShare));
+  return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_,
+                               partOf(report, kFansShare, 1.0));
+}
+
+std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {
+  ++pass_;
+  numbers_.resize(seen_vertices_.size());
+  std::vector<Index> triangles;
+  std::vector<Index> corners;
+  for (const Index v : vertices)
+    mesh_.forEachAround(v, [&](Index t, int) {
+      if (seen_triangles_[at(t)] == pass_)
+        return;
+      seen_triangles_[at(t)] = pass_;
+      triangles.push_back(t);
+      for (int k = 0; k < 3; ++k) {
+        const Index corner = mesh_.vertex(t, k);
+        if (seen_vertices_[at(corner)] == pass_)
+          continue;
+        seen_vertices_[at(corner)] = pass_;
+        numbers_[at(corner)] = static_cast<Index>(corners.size());
+        corners.push_back(corner);
+      }
+    });
+  Positions points(3, static_cast<Eigen::Index>(corners.size()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    points.col(i) = points_->col(corners[static_cast<std::size_t>(i)]);
+  Triangles part(3, static_cast<Eigen::Index>(triangles.size()));
+  for (Eigen::Index i = 0; i < part.cols(); ++i)
+    for (int k = 0; k < 3; ++k)
+      part(k, i) = numbers_[at(mesh_.vertex(triangles[static_cast<std::size_t>(i)], k))];
+  std::vector<std::uint8_t> fans(corners.size());
+  for (std::size_t i = 0; i < fans.size(); ++i)
+    fans[i] = isPlainFan(corners[i]) ? 1 : 0;
+  return findSelfIntersections(points, part, fans, 1).size();
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,185 @@
+#pragma once
+
+#include "progress.h"
+#include "sphere_mesh.h"
+#include "surface_energy.h"
+#include "spherical_param/types.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Moves that lower the energy of a closed genus-0 mesh on fixed points. What does not lower it is
+/// taken back, to the last index and bit. The running total of the energy is kept.
+class MeshOptimizer {
+public:
+  /// All but the triangles and the report, which is told of the share of this that is done, must
+  /// outlive this. Has no energy before it is told which.
+  MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
+                int threads, const ShareReport& report = {});
+
+  const SphereMesh& mesh() const { return mesh_; }
+
+  /// Begins anew with as many triangles.
+  void reset(const Triangles& triangles);
+
+  /// Begins to work with another energy, or with other positions of the points.
+  ///
+  /// \param energy its usual angles must not change; \see setExcessEnergy.
+  void setEnergy(const SurfaceEnergy& energy);
+  /// The same for Bend::Excess, with angles that are usual on the mesh as it is now: `factor` times
+  /// the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks only at
+  /// what has changed.
+  void setExcessEnergy(double mu, double factor, double least);
+  const SurfaceEnergy& terms() const { return terms_; }
+  void setPoints(const Positions& points);
+
+  double energy() const { return energy_; }  ///< running total
+  double recomputedEnergy() const;           ///< the same from the mesh
+
+  /// Flips edges, the one that gains most first, until none gains. Returns the number of flips.
+  /// Asked again with the same energy, it looks only at what has changed.
+  ///
+  /// \param report told of the share that is done: an estimate, for a flip may make others gain.
+  /// What it throws leaves a sound mesh of which the energy is as it should be.
+  std::size_t flipAll(const ShareReport& report = {});
+
+  /// Takes a vertex out and puts it back where it costs least, among the triangles around its
+  /// neighbours in mesh and graph; keeps that if the energy falls: returns whether it did.
+  bool relocate(Index v);
+
+  /// Takes vertices out and puts them back in random order; keeps that if `accept` says so of the
+  /// change of the energy [mean length of the graph's edges].
+  bool recreate(const std::vector<Index>& vertices, const std::function<bool(double)>& accept,
+                std::uint64_t& random);
+
+  /// Whether a change of the energy is a gain beyond rounding [mean length of the graph's edges].
+  static bool isGain(double change);
+
+  /// `count` vertices, or all there are, that spread from the seeds at random, over the edges of
+  /// mesh and graph.
+  std::vector<Index> spread(const std::vector<Index>& seeds, std::size_t count,
+                            std::uint64_t& random);
+
+  /// Edges whose triangles' normals have a cosine below the bound.
+  std::vector<std::pair<Index, Index>> edgesBelow(double cosine) const;
+
+  /// Tells whether a vertex has an edge whose triangles' normals have a cosine below the bound, or
+  /// is more than two edges away from a near neighbour in the graph.
+  bool isRough(Index v, double cosine) const;
+  /// All such vertices, ascending.
+  std::vector<Index> roughVertices(double cosine, const ShareReport& report = {}) const;
+
+  /// n entries: the median of the angles at a vertex's edges and those opposite to it [rad].
+  std::vector<double> medianAngles() const;
+
+  /// All pairs of triangles that intersect, by their places in the mesh; none may be free.
+  std::vector<std::array<Index, 2>> intersections(const ShareReport& report = {}) const;
+  /// For each vertex, 1 if the triangles around it are evidently such that no two of them
+  /// intersect: seen along an axis, they go around it once.
+  std::vector<std::uint8_t> plainFans(const ShareReport& report = {}) const;
+  /// Pairs that intersect among the triangles around some vertices.
+  std::size_t intersectionsAround(const std::vector<Index>& vertices);
+
+private:
+  /// A flip that gains. Void if its side has another stamp by now.
+  struct Candidate {
+    double gain;
+    Index triangle;
+    std::uint32_t stamp;
+    std::uint8_t corner;
+
+    bool operator<(const Candidate& other) const {
+      return gain != other.gain
+                 ? gain < other.gain
+                 : std::pair(triangle, corner) > std::pair(other.triangle, other.corner);
+    }
+  };
+
+  const Facet& facetOf(Index t) const { return facets_[static_cast<std::size_t>(t)]; }
+  RawFacet rawFacet(Index a, Index b, Index c) const {
+    return RawFacet(points_->col(a), points_->col(b), points_->col(c));
+  }
+  Facet facet(Index a, Index b, Index c) const { return rawFacet(a, b, c).facet(); }
+  double cost(const Facet& facet) const { return terms_.cost(facet.radius); }
+  void setFacet(Index t);
+  /// Whether a triangle or one of its neighbours has a mark in changes_.
+  bool isNearChange(Index t, std::uint8_t change) const;
+  void unmark(std::uint8_t change);
+  bool isPlainFan(Index v) const;
+  /// Of the angles of medianAngles().
+  void gatherCosines(Index v, std::vector<double>& cosines) const;
+  void updateUsualAngles(double factor, double least);
+  void recomputeFacets(const ShareReport& report = {});
+  /// The items of [0, count) that meet a condition, ascending.
+  template <typename Condition>
+  std::vector<Index> filter(std::size_t count, const Condition& meets,
+                            const ShareReport& report = {}) const;
+  double edge(Index v, Index w, const Facet& f, const Facet& g) const {
+    return terms_.edge(v, w, points_->col(v), points_->col(w), f.normal, g.normal);
+  }
+
+  /// What the energy falls by if a side is flipped, or no more than `floor` if that is so.
+  double flipGain(Index t, int k, double floor) const;
+  bool flip(Index t, int k, double gain);
+  /// Puts the flips of a triangle's sides in the queue, and declares void what was there of them.
+  void queueSides(Index t);
+  void queueFlip(Index t, int k);
+  /// Flips around some triangles until none gains.
+  void flipAround(const std::vector<Index>& triangles);
+  std::size_t flipQueued(const ShareReport& report = {});
+
+  /// What the energy rises by if a triangle is split, or no less than `ceiling` if that is so.
+  double splitCost(Index t, Index v, double ceiling) const;
+  bool remove(Index v);
+  bool insert(Index v, const std::vector<Index>& neighbors);
+  void appendNeighbors(Index v, std::vector<Index>& neighbors) const;
+
+  void begin();
+  void keep();
+  void takeBack();
+  /// Change of the energy since begin() [mean length of the graph's edges].
+  double change() const { return (energy_ - energy_before_) / unit_; }
+
+  const Positions* points_;
+  const Graph& graph_;
+  const int threads_;
+  SphereMesh mesh_;
+  SurfaceEnergy terms_;
+  double unit_ = 1.0;  ///< mean length of the graph's edges
+  double energy_ = 0.0;
+  double energy_before_ = 0.0;
+  std::vector<Facet> facets_;
+  bool is_recording_ = false;
+  std::vector<std::pair<Index, Facet>> old_facets_;
+
+  static constexpr std::uint8_t kChangedSinceFlips = 1;
+  static constexpr std::uint8_t kChangedSinceAngles = 2;
+  /// Marks of triangles that may have changed since flipAll(), in settled_terms_, left no flip that
+  /// gains, and since usual_angles_ were found.
+  std::vector<std::uint8_t> changes_;
+  bool are_flips_settled_ = false;
+  SurfaceEnergy settled_terms_;
+  bool has_usual_angles_ = false;
+  double usual_factor_ = 0.0;
+  double least_usual_ = 0.0;
+  std::vector<double> usual_angles_;
+
+  std::vector<Candidate> queue_;       ///< a heap
+  std::vector<Index> refused_;         ///< triangles of flips that would have joined twice
+  std::vector<std::uint32_t> stamps_;  ///< of each side of each triangle
+  /// Marks of what a pass has seen: those equal to `pass_`.
+  std::vector<std::uint32_t> seen_triangles_;
+  std::vector<std::uint32_t> seen_vertices_;
+  std::uint32_t pass_ = 0;
+  std::vector<Index> numbers_;  ///< of vertices in a part, working memory of intersectionsAround()
+  std::vector<Index> around_;   ///< working memory of insert() and relocate()
+  std::vector<Index> changed_;
+};
+
+}  // namespace spherical_param::internal

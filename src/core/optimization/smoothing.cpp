@@ -1,0 +1,339 @@
+#include "spherical_param/smoothing.h"
+
+#include "option_checks.h"
+#include "parallel.h"
+#include "spherical_param/errors.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// No eigenvalue of the uniform Laplacian of a closed mesh, D^-1 (D - A) with degrees D and
+/// adjacency A, exceeds 3/2: each edge is in two triangles, so that x' (D + A) x is half the sum
+/// over the triangles of (x_i + x_j)^2 + (x_j + x_k)^2 + (x_k + x_i)^2 >= x_i^2 + x_j^2 + x_k^2,
+/// and a vertex is in as many triangles as it has neighbours: x' (D + A) x >= x' D x / 2.
+constexpr double kHighestFrequency = 1.5;
+
+/// Any detail is long gone by then.
+constexpr int kMostSteps = 10000;
+
+/// To this, relative to the size of what is filtered, the filter of SmoothingMethod::Biharmonic is
+/// exact: far below any noise that is worth smoothing.
+constexpr double kFilterAccuracy = 1e-7;
+
+[[noreturn]] void fail(const std::string& what) {
+  throw InvalidInput("smoothSurface: " + what);
+}
+
+/// Taubin's second factor, negative; 1 / lambda + 1 / mu is the pass band (Taubin 1995, section 3).
+double muOf(const SmoothingOptions& options) {
+  return 1.0 / (options.taubin_pass_band - 1.0 / options.taubin_lambda);
+}
+
+void checkOptions(const SmoothingOptions& options) {
+  internal::checkEnum("smoothSurface: method", options.method, SmoothingMethod::Biharmonic);
+  if (options.steps < 0 || options.steps > kMostSteps)
+    fail("steps = " + std::to_string(options.steps) + " is out of range; use 0 (no change) to " +
+         std::to_string(kMostSteps));
+  if (!(options.umbrella_lambda > 0.0 && options.umbrella_lambda <= 1.0))
+    fail("umbrella_lambda = " + std::to_string(options.umbrella_lambda) +
+         " is out of range; use a value in (0, 1]");
+  if (!(options.taubin_lambda > 0.0 && options.taubin_lambda <= 1.0))
+    fail("taubin_lambda = " + std::to_string(options.taubin_lambda) +
+         " is out of range; use a value in (0, 1]");
+  if (!(options.taubin_pass_band >= 0.0 && options.taubin_pass_band < 1.0))
+    fail("taubin_pass_band = " + std::to_string(options.taubin_pass_band) +
+         " is out of range; use a value in [0, 1)");
+  const double gain =
+      (1.0 - options.taubin_lambda * kHighestFrequency) * (1.0 - muOf(options) * kHighestFrequency);
+  // At lambda = 1 and a pass band of nearly 1, mu is without bound: !(<=) also refuses what is not
+  // a number.
+  if (!(std::abs(gain) <= 1.0))
+    fail("taubin_lambda = " + std::to_string(options.taubin_lambda) +
+         " and taubin_pass_band = " + std::to_string(options.taubin_pass_band) +
+         " amplify the highest frequencies; use a smaller lambda or pass band");
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
+         std::to_string(internal::kMostThreads));
+}
+
+/// The triangles around each vertex. Vertex i has those with the other corners next[e], previous[e]
+/// (counter-clockwise), e in [offsets[i], offsets[i + 1]). As the fans of a closed manifold are
+/// cycles, `next` alone names each neighbour once.
+struct Fans {
+  std::vector<std::size_t> offsets;
+  std::vector<Index> next;
+  std::vector<Index> previous;
+
+  std::size_t size() const { return offsets.size() - 1; }
+};
+
+Fans collectFans(const Triangles& triangles, std::size_t n) {
+  const Eigen::Index m = triangles.cols();
+  Fans fans;
+  fans.offsets.assign(n + 1, 0);
+  for (Eigen::Index t = 0; t < m; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Index v = triangles(k, t);
+      if (v < 0 || static_cast<std::size_t>(v) >= n)
+        fail("triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+             std::to_string(n) + "; indices must be in [0, n)");
+      ++fans.offsets[static_cast<std::size_t>(v) + 1];
+    }
+  for (std::size_t v = 0; v < n; ++v)
+    fans.offsets[v + 1] += fans.offsets[v];
+  fans.next.resize(fans.offsets[n]);
+  fans.previous.resize(fans.offsets[n]);
+  std::vector<std::size_t> end(fans.offsets.begin(), fans.offsets.end() - 1);
+  for (Eigen::Index t = 0; t < m; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t e = end[static_cast<std::size_t>(triangles(k, t))]++;
+      fans.next[e] = triangles((k + 1) % 3, t);
+      fans.previous[e] = triangles((k + 2) % 3, t);
+    }
+  return fans;
+}
+
+/// Refuses meshes in which the triangles around some vertex are not one cycle. Where they are at
+/// all vertices, the mesh is closed, manifold and consistently oriented.
+void checkFans(const Fans& fans) {
+  // Where the list of the vertex at hand names each of its neighbours; left over elsewhere.
+  std::vector<std::size_t> entry_of(fans.size(), 0);
+  for (std::size_t v = 0; v < fans.size(); ++v) {
+    const std::size_t begin = fans.offsets[v];
+    const std::size_t end = fans.offsets[v + 1];
+    if (begin == end)
+      continue;
+    bool sound = true;
+    for (std::size_t e = begin; e < end; ++e) {
+      entry_of[static_cast<std::size_t>(fans.next[e])] = e;
+      sound = sound && static_cast<std::size_t>(fans.next[e]) != v;
+    }
+    // A cycle through all entries is as long as the list; a neighbour named twice shortens it.
+    std::size_t e = begin;
+    std::size_t length = 0;
+    do {
+      const auto previous = static_cast<std::size_t>(fans.previous[e]);
+      e = entry_of[previous];
+      sound = sound && previous != v && e >= begin && e < end &&
+              static_cast<std::size_t>(fans.next[e]) == previous;
+      ++length;
+    } while (sound && e != begin && length <= end - begin);
+    if (!sound || length != end - begin)
+      fail("the triangles around vertex " + std::to_string(v) +
+           " are not one closed fan; the mesh must be closed, manifold and consistently oriented "
+           "(checkTopology() tells where it is not)");
+  }
+}
+
+/// Filters and volume of one mesh, on several threads.
+class Filter {
+public:
+  Filter(const Fans& fans, int requested_threads)
+      : fans_(fans), threads_(internal::threadCount(requested_threads, fans.size(),
+                                                    internal::kShortPassThreshold)) {}
+
+  /// Moves each point by a share of its Laplacian, all at once; `scratch` is overwritten.
+  void step(Positions& points, double share, Positions& scratch) const {
+    forEachPoint(
+        [&](Eigen::Index i) { scratch.col(i) = points.col(i) + share * laplacian(points, i); });
+    points.swap(scratch);
+  }
+
+  void biharmonicFlow(Positions& points, int steps) const;
+
+  /// Signed volume, by the divergence theorem.
+  double volume(const Positions& points) const {
+    // Each triangle is visited from its three corners.
+    return sum([&](Eigen::Index i) { return points.col(i).dot(normal(points, i)); }) / 18.0;
+  }
+
+  void restoreVolume(Positions& points, double volume) const;
+
+  template <typename Term>
+  double sum(const Term& term) const {
+    return internal::sumOfBlocks(fans_.size(), threads_, 0.0,
+                                 [&](std::size_t begin, std::size_t end) {
+                                   double total = 0.0;
+                                   for (std::size_t i = begin; i < end; ++i)
+                                     total += term(static_cast<Eigen::Index>(i));
+                                   return total;
+                                 });
+  }
+
+  template <typename Work>
+  void forEachPoint(const Work& work) const {
+    internal::forEachItem(fans_.size(), threads_,
+                          [&](std::size_t, std::size_t i) { work(static_cast<Eigen::Index>(i)); });
+  }
+
+private:
+  /// The mean of the neighbours of point i minus the point; 0 for a point of no triangle.
+  Eigen::Vector3d laplacian(const Positions& points, Eigen::Index i) const {
+    const std::size_t begin = fans_.offsets[static_cast<std::size_t>(i)];
+    const std::size_t end = fans_.offsets[static_cast<std::size_t>(i) + 1];
+    if (begin == end)
+      return Eigen::Vector3d::Zero();
+    Eigen::Vector3d total = Eigen::Vector3d::Zero();
+    for (std::size_t e = begin; e < end; ++e)
+      total += points.col(fans_.next[e]);
+    return total / static_cast<double>(end - begin) - points.col(i);
+  }
+
+  /// The sum of the normals of the triangles around point i, as long as twice their areas: six
+  /// times the gradient of the volume.
+  Eigen::Vector3d normal(const Positions& points, Eigen::Index i) const {
+    const Eigen::Vector3d center = points.col(i);
+    Eigen::Vector3d total = Eigen::Vector3d::Zero();
+    for (std::size_t e = fans_.offsets[static_cast<std::size_t>(i)];
+         e < fans_.offsets[static_cast<std::size_t>(i) + 1]; ++e)
+      total += (points.col(fans_.next[e]) - center).cross(points.col(fans_.previous[e]) - center);
+    return total;
+  }
+
+  const Fans& fans_;
+  int threads_;
+};
+
+/// The Chebyshev coefficients of 2^-(k / c)^2, c = 1 - 2^(-1 / steps), in x = 4/3 k - 1 of [-1, 1].
+std::vector<double> biharmonicSeries(int steps) {
+  const double pi = std::acos(-1.0);
+  const double cutoff = -std::expm1(-std::log(2.0) / steps);
+  // In the angle of the nodes the filter is as wide as sqrt(c): so many resolve it to 1e-9.
+  const auto nodes = static_cast<std::size_t>(16.0 + 16.0 / std::sqrt(cutoff));
+  std::vector<double> coefficients(nodes, 0.0);
+  for (std::size_t q = 0; q < nodes; ++q) {
+    const double angle = pi * (static_cast<double>(q) + 0.5) / static_cast<double>(nodes);
+    const double k = kHighestFrequency / 2.0 * (1.0 + std::cos(angle));
+    const double value = std::exp2(-(k / cutoff) * (k / cutoff)) / static_cast<double>(nodes);
+    for (std::size_t i = 0; i < nodes; ++i)
+      coefficients[i] += (i == 0 ? 1.0 : 2.0) * value * std::cos(static_cast<double>(i) * angle);
+  }
+  double omitted = 0.0;
+  while (coefficients.size() > 2 && omitted + std::abs(coefficients.back()) < kFilterAccuracy) {
+    omitted += std::abs(coefficients.back());
+    coefficients.pop_back();
+  }
+  // What does not vary must stay: the gain at k = 0, where T_i(-1) = (-1)^i, is 1.
+  double gain = 0.0;
+  for (std::size_t i = 0; i < coefficients.size(); ++i)
+    gain += i % 2 == 0 ? coefficients[i] : -coefficients[i];
+  coefficients[0] += 1.0 - gain;
+  return coefficients;
+}
+
+/// Runs the biharmonic flow. As all k lie in [0, 3/2], its gain is a short Chebyshev series of the
+/// Laplacian: cheaper than solving with 1 + L^2 / c^2, and the same for any number of threads.
+void Filter::biharmonicFlow(Positions& points, int steps) const {
+  const std::vector<double> coefficients = biharmonicSeries(steps);
+  const double half = kHighestFrequency / 2.0;
+  // x applied to the points is -4/3 of the Laplacian minus the points.
+  Positions before = points;  // T_0
+  Positions last = -points;   // T_1
+  step(last, 1.0 / half, points);
+  points = coefficients[0] * before + coefficients[1] * last;
+  for (std::size_t degree = 2; degree < coefficients.size(); ++degree) {
+    forEachPoint([&](Eigen::Index i) {
+      before.col(i) = -2.0 * (laplacian(last, i) / half + last.col(i)) - before.col(i);
+      points.col(i) += coefficients[degree] * before.col(i);
+    });
+    before.swap(last);
+  }
+}
+
+/// Moves all points by one distance along their normals so that the volume becomes the given one:
+/// Newton's method, as long as it gets nearer.
+void Filter::restoreVolume(Positions& points, double volume) const {
+  constexpr int max_iterations = 8;
+  double error = volume - this->volume(points);
+  Positions moved(3, points.cols());
+  for (int i = 0; i < max_iterations && std::abs(error) > 1e-12 * std::abs(volume); ++i) {
+    const double slope = sum([&](Eigen::Index v) { return normal(points, v).norm(); }) / 6.0;
+    const double distance = error / slope;
+    if (!std::isfinite(distance))
+      return;
+    forEachPoint([&](Eigen::Index v) {
+      const Eigen::Vector3d direction = normal(points, v);
+      const double length = direction.norm();
+      moved.col(v) = points.col(v);
+      if (length > 0.0)
+        moved.col(v) += distance / length * direction;
+    });
+    const double new_error = volume - this->volume(moved);
+    if (!(std::abs(new_error) < std::abs(error)))
+      return;
+    points.swap(moved);
+    error = new_error;
+  }
+}
+
+}  // namespace
+
+Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
+                        const SmoothingOptions& options) {
+  checkOptions(options);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (!points.col(i).allFinite())
+      fail("point " + std::to_string(i) + " is not finite; remove such points first");
+  const Fans fans = collectFans(triangles, static_cast<std::size_t>(points.cols()));
+  checkFans(fans);
+
+  Smoothing result;
+  result.points = points;
+  if (triangles.cols() == 0)
+    return result;
+  const Filter filter(fans, options.threads);
+
+  // About a point of the mesh, so that a far origin costs no digits.
+  const Eigen::Vector3d origin = points.col(triangles(0, 0));
+  Positions smooth = points.colwise() - origin;
+  result.volume_before = filter.volume(smooth);
+  result.volume_after = result.volume_before;
+  if (options.steps == 0)
+    return result;
+
+  Positions scratch(3, points.cols());
+  switch (options.method) {
+  case SmoothingMethod::Umbrella:
+    for (int s = 0; s < options.steps; ++s)
+      filter.step(smooth, options.umbrella_lambda, scratch);
+    break;
+  case SmoothingMethod::Taubin:
+    for (int s = 0; s < options.steps; ++s) {
+      filter.step(smooth, options.taubin_lambda, scratch);
+      filter.step(smooth, muOf(options), scratch);
+    }
+    break;
+  case SmoothingMethod::Biharmonic:
+    filter.biharmonicFlow(smooth, options.steps);
+    break;
+  }
+  if (options.restore_volume)
+    filter.restoreVolume(smooth, result.volume_before);
+  result.volume_after = filter.volume(smooth);
+
+  double used = 0.0;
+  double squared = 0.0;
+  for (std::size_t v = 0; v < fans.size(); ++v) {
+    if (fans.offsets[v] == fans.offsets[v + 1])
+      continue;
+    const auto i = static_cast<Eigen::Index>(v);
+    result.points.col(i) = smooth.col(i) + origin;
+    const double distance = (result.points.col(i) - points.col(i)).norm();
+    result.max_displacement = std::max(result.max_displacement, distance);
+    result.mean_displacement += distance;
+    squared += distance * distance;
+    used += 1.0;
+  }
+  result.mean_displacement /= used;
+  result.rms_displacement = std::sqrt(squared / used);
+  return result;
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,254 @@
+#include "spherical_param/map/sphere_map.h"
+
+#include "corner_table.h"
+#include "exact_predicates.h"
+#include "parallel.h"
+#include "spherical_param/errors.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Twice an area below this many times the longest side squared is rounding of the cross product.
+constexpr double kLeastArea = 16.0 * std::numeric_limits<double>::epsilon();
+/// What is not finite counts as this, so that means are finite: a triangle that is collapsed on the
+/// sphere has no finite distortion.
+constexpr double kMost = 1e300;
+
+double bounded(double value) {
+  return value < kMost ? value : kMost;
+}
+
+/// A triangle by two of its sides, from the same corner.
+struct Sides {
+  Vector3d first;
+  Vector3d second;
+  double twice_area;
+
+  Sides(const Positions& points, const Triangles& triangles, Eigen::Index t, double scale)
+      : first((points.col(triangles(1, t)) - points.col(triangles(0, t))) * scale),
+        second((points.col(triangles(2, t)) - points.col(triangles(0, t))) * scale),
+        twice_area(first.cross(second).norm()) {}
+
+  double longestSquared() const {
+    return std::max({first.squaredNorm(), second.squaredNorm(), (second - first).squaredNorm()});
+  }
+  bool isDegenerate() const { return !(twice_area > kLeastArea * longestSquared()); }
+
+  /// Angles at the corners [rad].
+  Vector3d angles() const {
+    const Vector3d third = second - first;
+    return {std::atan2(twice_area, first.dot(second)), std::atan2(twice_area, -first.dot(third)),
+            std::atan2(twice_area, second.dot(third))};
+  }
+};
+
+/// The sides of a triangle in its plane: the first is (length, 0), the second (x, height).
+struct InPlane {
+  double length;
+  double x;
+  double height;
+
+  explicit InPlane(const Sides& sides)
+      : length(sides.first.norm()),
+        x(length > 0.0 ? sides.first.dot(sides.second) / length : sides.second.norm()),
+        height(length > 0.0 ? sides.twice_area / length : 0.0) {}
+};
+
+/// The greater singular value of the linear map from one triangle, not degenerate, to another, and
+/// its determinant without sign.
+struct LinearMap {
+  double sigma_1;
+  double determinant;
+
+  LinearMap(const Sides& from, const Sides& to) {
+    const InPlane source(from);
+    const InPlane image(to);
+    const double a = image.length / source.length;
+    const double b = (image.x - a * source.x) / source.height;
+    const double d = image.height / source.height;
+    // sigma_1 + sigma_2 and sigma_1 - sigma_2 are the moduli of the conformal and the anticonformal
+    // part.
+    sigma_1 = 0.5 * (std::hypot(a + d, b) + std::hypot(a - d, b));
+    determinant = to.twice_area / from.twice_area;
+  }
+};
+
+/// Area of the spherical triangle between the corners of an image, without sign: the solid angle
+/// (A. van Oosterom and J. Strackee, 1983).
+double areaOnSphere(const Vector3d& corner, const Sides& sides) {
+  const double determinant = corner.dot(sides.first.cross(sides.second));
+  // 1 + ab + bc + ca of unit vectors, by differences.
+  const double denominator = 4.0 - 0.5 * (sides.first.squaredNorm() + sides.second.squaredNorm() +
+                                          (sides.second - sides.first).squaredNorm());
+  return 2.0 * std::atan2(std::abs(determinant), denominator);
+}
+
+/// A triangle's value and its weight.
+using Weighted = std::pair<double, double>;
+
+DistortionStatistics statisticsOf(std::vector<Weighted>& values) {
+  DistortionStatistics statistics;
+  if (values.empty())
+    return statistics;
+  std::sort(values.begin(), values.end());
+  double total = 0.0;
+  for (const auto& [value, weight] : values)
+    total += weight;
+  double sum = 0.0;
+  statistics.max = values.back().first;
+  statistics.p95 = statistics.max;
+  bool found = false;
+  for (const auto& [value, weight] : values) {
+    statistics.mean += weight / total * value;
+    sum += weight;
+    if (!found && sum >= 0.95 * total) {
+      statistics.p95 = value;
+      found = true;
+    }
+  }
+  return statistics;
+}
+
+/// Sums over triangles.
+struct Sums {
+  double in_space = 0.0;   // twice the area of those with an area
+  double on_sphere = 0.0;  // the same of their flat images
+  double covered = 0.0;    // area on the sphere of these
+  std::size_t counted = 0;
+  Index flipped = 0;
+  Index degenerate = 0;
+
+  Sums& operator+=(const Sums& other) {
+    in_space += other.in_space;
+    on_sphere += other.on_sphere;
+    covered += other.covered;
+    counted += other.counted;
+    flipped += other.flipped;
+    degenerate += other.degenerate;
+    return *this;
+  }
+};
+
+void checkPositions(const Positions& points, const Triangles& triangles, const Positions& sphere) {
+  const std::string caller = "measureMapDistortion: ";
+  if (points.cols() != sphere.cols())
+    throw InvalidInput(caller + "there are " + std::to_string(points.cols()) + " points, but " +
+                       std::to_string(sphere.cols()) +
+                       " directions on the sphere; give one for each point");
+  internal::checkTriangles("measureMapDistortion", triangles, points.cols());
+  if (!points.allFinite() || !sphere.allFinite())
+    throw InvalidInput(caller + "a coordinate is not finite; remove such points first");
+}
+
+}  // namespace
+
+MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,
+                                   const Positions& sphere, int threads) {
+  if (threads < 0 || threads > internal::kMostThreads)
+    throw InvalidInput("measureMapDistortion: threads = " + std::to_string(threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+  checkPositions(points, triangles, sphere);
+  MapDistortion distortion;
+  const auto m = static_cast<std::size_t>(triangles.cols());
+  if (m == 0)
+    return distortion;
+  const int most = internal::threadCount(threads, m, internal::kParallelThreshold);
+  // No square of a length leaves the range of double.
+  const double extent = points.cwiseAbs().maxCoeff();
+  const double scale = extent > 0.0 ? 1.0 / extent : 1.0;
+
+  std::vector<Sums> of_blocks((m + internal::kBlockSize - 1) / internal::kBlockSize);
+  internal::forEachBlock(m, most, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    Sums& sums = of_blocks[block];
+    const Vector3d center = Vector3d::Zero();
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Eigen::Index>(i);
+      const Sides solid(points, triangles, t, scale);
+      if (internal::orientation3d(center, sphere.col(triangles(0, t)), sphere.col(triangles(1, t)),
+                                  sphere.col(triangles(2, t))) <= 0)
+        ++sums.flipped;
+      if (solid.isDegenerate()) {
+        ++sums.degenerate;
+        continue;
+      }
+      ++sums.counted;
+      sums.in_space += solid.twice_area;
+      const Sides flat(sphere, triangles, t, 1.0);
+      sums.on_sphere += flat.twice_area;
+      sums.covered += areaOnSphere(sphere.col(triangles(0, t)), flat);
+    }
+  });
+  // Where the values of a block begin; the sums follow the order of the blocks.
+  std::vector<std::size_t> first(of_blocks.size());
+  Sums sums;
+  for (std::size_t b = 0; b < of_blocks.size(); ++b) {
+    first[b] = sums.counted;
+    sums += of_blocks[b];
+  }
+  distortion.flipped_triangles = sums.flipped;
+  distortion.degenerate_triangles = sums.degenerate;
+  if (sums.counted == 0)
+    return distortion;
+
+  std::vector<Weighted> angles(sums.counted);
+  std::vector<Weighted> areas(sums.counted);
+  // Of the blocks: differences of angles [rad], and the squares of stretch.
+  std::vector<std::pair<double, double>> of_block(of_blocks.size());
+  internal::forEachBlock(m, most, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::size_t k = first[block];
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Eigen::Index>(i);
+      const Sides solid(points, triangles, t, scale);
+      if (solid.isDegenerate())
+        continue;
+      const Sides flat(sphere, triangles, t, 1.0);
+      const LinearMap map(solid, flat);
+      const double weight = solid.twice_area / sums.in_space;
+      const double area = areaOnSphere(sphere.col(triangles(0, t)), flat) / sums.covered / weight;
+      // Written so that what is not a number, of 0 / 0, counts as unbounded.
+      angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
+      areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
+      ++k;
+      // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
+      const double sigma_2 = map.determinant / map.sigma_1;
+      const double stretch = 0.5 * (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
+                             (sums.on_sphere / sums.in_space);
+      of_block[block].second += weight * bounded(stretch);
+      of_block[block].first += (solid.angles() - flat.angles()).cwiseAbs().sum();
+    }
+  });
+  double difference = 0.0;
+  double stretch = 0.0;
+  for (const auto& [angle, square] : of_block) {
+    difference += angle;
+    stretch += square;
+  }
+  constexpr double degrees = 57.29577951308232;
+  distortion.mean_angle_difference =
+      difference * degrees / (3.0 * static_cast<double>(sums.counted));
+  // Area(M) / (4 pi) / L2(M)^2 with Sander et al.'s L2(M), their equation 3, which weights with the
+  // areas in space.
+  distortion.stretch_efficiency = std::min(1.0, 1.0 / stretch);
+  internal::forEachTask(2, std::min(most, 2), [&](std::size_t, std::size_t task) {
+    if (task == 0)
+      distortion.angle = statisticsOf(angles);
+    else
+      distortion.area = statisticsOf(areas);
+  });
+  return distortion;
+}
+
+}  // namespace spherical_param

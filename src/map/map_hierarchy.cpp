@@ -1,0 +1,516 @@
+#include "map_hierarchy.h"
+
+#include "corner_table.h"
+#include "parallel.h"
+#include "radix_sort.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Triangles stand for this share of the mean at least: the image of a cluster of points, however
+/// small it is in space, is one that coordinates of double tell apart.
+constexpr double kLeastMass = 1e-6;
+/// A vertex of more neighbours is only taken out if there are too few others.
+constexpr Index kMostCoarseNeighbors = 8;
+/// This share of the candidates, the cheapest, is considered for a batch.
+constexpr double kShareOfCandidates = 0.7;
+/// With fewer vertices than this they are taken out one at a time.
+constexpr Index kFewVertices = 64;
+
+double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+/// A mesh under half-edge collapses: corner 3 t + k is corner k of triangle t, and each knows the
+/// corner on the other side of the edge opposite to it.
+class CollapsibleMesh {
+public:
+  CollapsibleMesh(const Positions& points, const Triangles& triangles, std::vector<double> masses,
+                  int threads)
+      : points_(points), vertex_(triangles.data(), triangles.data() + triangles.size()),
+        opposite_(vertex_.size()), corner_of_(static_cast<std::size_t>(points.cols())),
+        valence_(static_cast<std::size_t>(points.cols())),
+        mark_(static_cast<std::size_t>(points.cols()), 0), masses_(std::move(masses)) {
+    const CornerTable corners(triangles, static_cast<std::size_t>(points.cols()), threads);
+    forEachBlock(corners.vertexCount(), threads,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   std::vector<std::pair<Index, Index>> behind;
+                   for (std::size_t v = begin; v < end; ++v)
+                     connectAround(static_cast<Index>(v), corners, behind);
+                 });
+  }
+
+  Index valence(Index v) const { return valence_[static_cast<std::size_t>(v)]; }
+  bool isAlive(std::size_t t) const { return vertex_[3 * t] >= 0; }
+  Index vertex(std::size_t corner) const { return vertex_[corner]; }
+  double mass(std::size_t t) const { return masses_[t]; }
+  std::size_t triangleCount() const { return masses_.size(); }
+
+  /// Calls visit(corner, neighbor) for the triangles around v counter-clockwise, each with its
+  /// corner at v and its vertex behind that.
+  template <typename Visit>
+  void forEachAround(Index v, const Visit& visit) const {
+    const Index first = corner_of_[static_cast<std::size_t>(v)];
+    Index corner = first;
+    do {
+      const Index following = after(opposite(after(corner)));
+      visit(corner, vertex_[static_cast<std::size_t>(after(corner))]);
+      corner = following;
+    } while (corner != first);
+  }
+
+  /// Whether the mesh stays a manifold if w is moved to its neighbour v, and is no tetrahedron.
+  bool canCollapse(Index w, Index v) {
+    ++stamp_;
+    forEachAround(
+        w, [&](Index, Index neighbor) { mark_[static_cast<std::size_t>(neighbor)] = stamp_; });
+    int shared = 0;
+    forEachAround(v, [&](Index, Index neighbor) {
+      shared += mark_[static_cast<std::size_t>(neighbor)] == stamp_ ? 1 : 0;
+    });
+    return shared == 2;
+  }
+
+  /// Moves w to its neighbour v; the ring of w is left in ring(), from v on, with the masses of the
+  /// triangles in ringMasses().
+  void collapse(Index w, Index v) {
+    ring_.clear();
+    star_.clear();
+    forEachAround(w, [&](Index corner, Index neighbor) {
+      star_.push_back(corner);
+      ring_.push_back(neighbor);
+    });
+    const auto at = std::find(ring_.begin(), ring_.end(), v) - ring_.begin();
+    std::rotate(ring_.begin(), ring_.begin() + at, ring_.end());
+    std::rotate(star_.begin(), star_.begin() + at, star_.end());
+    ring_masses_.clear();
+    double mass = 0.0;
+    for (const Index corner : star_) {
+      ring_masses_.push_back(masses_[static_cast<std::size_t>(corner / 3)]);
+      mass += ring_masses_.back();
+    }
+    // The triangles with both w and v are the first and the last.
+    const Index first = star_.front();
+    const Index last = star_.back();
+    join(opposite(first), opposite(after(first)));
+    join(opposite(last), opposite(before(last)));
+    remove(first / 3);
+    remove(last / 3);
+    const std::size_t k = star_.size();
+    valence_[static_cast<std::size_t>(v)] += static_cast<Index>(k) - 4;
+    --valence_[static_cast<std::size_t>(ring_[1])];
+    --valence_[static_cast<std::size_t>(ring_[k - 1])];
+
+    double area = 0.0;
+    for (std::size_t i = 1; i + 1 < k; ++i)
+      area += areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
+    const auto count = static_cast<double>(k - 2);
+    for (std::size_t i = 1; i + 1 < k; ++i) {
+      const Index corner = star_[i];
+      vertex_[static_cast<std::size_t>(corner)] = v;
+      corner_of_[static_cast<std::size_t>(v)] = corner;
+      corner_of_[static_cast<std::size_t>(ring_[i])] = after(corner);
+      corner_of_[static_cast<std::size_t>(ring_[i + 1])] = before(corner);
+      // A part is shared evenly, so that a triangle without area has some of it.
+      constexpr double even = 0.1;
+      const double share = areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
+      masses_[static_cast<std::size_t>(corner / 3)] =
+          mass * (area > 0.0 ? even / count + (1.0 - even) * share / area : 1.0 / count);
+    }
+  }
+
+  const std::vector<Index>& ring() const { return ring_; }
+  const std::vector<double>& ringMasses() const { return ring_masses_; }
+
+private:
+  static Index after(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+  static Index before(Index corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+  Index opposite(Index corner) const { return opposite_[static_cast<std::size_t>(corner)]; }
+
+  void join(Index a, Index b) {
+    opposite_[static_cast<std::size_t>(a)] = b;
+    opposite_[static_cast<std::size_t>(b)] = a;
+  }
+
+  void remove(Index triangle) { vertex_[3 * static_cast<std::size_t>(triangle)] = -1; }
+
+  /// Finds the opposite corners over the edges of v.
+  ///
+  /// \param behind to work in: the vertex behind v, and the corner at v, of each triangle.
+  void connectAround(Index v, const CornerTable& corners,
+                     std::vector<std::pair<Index, Index>>& behind) {
+    behind.clear();
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      const Index corner = 3 * t + k;
+      behind.emplace_back(vertex_[static_cast<std::size_t>(after(corner))], corner);
+    });
+    std::sort(behind.begin(), behind.end());
+    for (const auto& [neighbor, corner] : behind) {
+      const Index end = vertex_[static_cast<std::size_t>(before(corner))];
+      const auto next = std::lower_bound(behind.begin(), behind.end(), std::pair(end, Index{0}));
+      // Over the edge of v and `end`, of which the other side is written at `end`.
+      opposite_[static_cast<std::size_t>(after(corner))] = before(next->second);
+    }
+    corner_of_[static_cast<std::size_t>(v)] = behind.front().second;
+    valence_[static_cast<std::size_t>(v)] = static_cast<Index>(behind.size());
+  }
+
+  const Positions& points_;
+  std::vector<Index> vertex_;    // of each corner; the first of a triangle that is gone: -1
+  std::vector<Index> opposite_;  // of each corner
+  std::vector<Index> corner_of_;
+  std::vector<Index> valence_;
+  std::vector<std::uint32_t> mark_;
+  std::vector<double> masses_;
+  std::uint32_t stamp_ = 0;
+  // Of the last collapse.
+  std::vector<Index> star_;
+  std::vector<Index> ring_;
+  std::vector<double> ring_masses_;
+};
+
+/// A vertex that may be taken out; the key sorts by cost.
+struct Candidate {
+  std::uint32_t key;
+  Index vertex;
+  Index target;
+};
+
+std::uint32_t keyOf(double cost) {
+  const float value = cost < 1e30 ? static_cast<float>(cost) : 1e30F;
+  std::uint32_t key = 0;
+  std::memcpy(&key, &value, sizeof key);
+  return key;
+}
+
+/// Cost of moving w to ring[j]: the longest edge that this makes, squared, more if triangles become
+/// needles, if their normals leave that of the star, or if the valence grows.
+double costOf(const Positions& points, const std::vector<Index>& ring, std::size_t j,
+              const Vector3d& normal, Index valence) {
+  constexpr double worst_shape = 100.0;
+  const std::size_t k = ring.size();
+  const Vector3d v = points.col(ring[j]);
+  double longest = 0.0;
+  double shape = 1.0;
+  double least_cosine = 1.0;
+  Vector3d side = points.col(ring[(j + 1) % k]) - v;
+  longest = side.squaredNorm();
+  for (std::size_t i = 1; i + 1 < k; ++i) {
+    const Vector3d next = points.col(ring[(j + i + 1) % k]) - v;
+    const double next_squared = next.squaredNorm();
+    const Vector3d cross = side.cross(next);
+    const double area = cross.norm();
+    const double widest = std::max({side.squaredNorm(), next_squared, (next - side).squaredNorm()});
+    // 1 for an equilateral triangle.
+    shape = std::max(shape, area * worst_shape > widest ? 0.866 * widest / area : worst_shape);
+    least_cosine = std::min(least_cosine, area > 0.0 ? cross.dot(normal) / area : -1.0);
+    longest = std::max(longest, next_squared);
+    side = next;
+  }
+  const double more = std::max(0.0, static_cast<double>(valence) - 7.0);
+  return longest * shape * (1.0 + 8.0 * (1.0 - least_cosine)) * (1.0 + 0.1 * more * more);
+}
+
+/// The numbering of the vertices by breadth-first search: what is near is near in memory, whatever
+/// the order of the input, and the frame does not matter.
+std::vector<Index> breadthFirst(const Triangles& triangles, std::size_t n, int threads) {
+  const CornerTable corners(triangles, n, threads);
+  std::vector<Index> order;
+  order.reserve(n);
+  std::vector<char> known(n, 0);
+  order.push_back(0);
+  known[0] = 1;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    corners.forEachCorner(order[i], [&](Index t, Index k) {
+      const Index next = triangles(nextCorner(k), t);
+      if (known[static_cast<std::size_t>(next)] == 0) {
+        known[static_cast<std::size_t>(next)] = 1;
+        order.push_back(next);
+      }
+    });
+  return order;
+}
+
+std::vector<Index> inverseOf(const std::vector<Index>& order) {
+  std::vector<Index> rank(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    rank[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+  return rank;
+}
+
+Triangles renumbered(const Triangles& triangles, const std::vector<Index>& rank) {
+  return triangles.unaryExpr([&](Index v) { return rank[static_cast<std::size_t>(v)]; });
+}
+
+Positions ordered(const Positions& points, const std::vector<Index>& order) {
+  Positions result(3, points.cols());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    result.col(static_cast<Eigen::Index>(i)) = points.col(order[i]);
+  return result;
+}
+
+std::vector<double> massesOf(const Positions& points, const Triangles& triangles, int threads) {
+  const auto m = static_cast<std::size_t>(triangles.cols());
+  std::vector<double> masses(m);
+  const double sum = sumOfBlocks(m, threads, 0.0, [&](std::size_t begin, std::size_t end) {
+    double part = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Eigen::Index>(i);
+      masses[i] = areaOf(points.col(triangles(0, t)), points.col(triangles(1, t)),
+                         points.col(triangles(2, t)));
+      part += masses[i];
+    }
+    return part;
+  });
+  if (!(sum > 0.0)) {
+    std::fill(masses.begin(), masses.end(), 1.0 / static_cast<double>(m));
+    return masses;
+  }
+  for (double& mass : masses)
+    mass = std::max(mass / sum, kLeastMass / static_cast<double>(m));
+  return masses;
+}
+
+/// Takes out vertices, and writes down how.
+class Coarsening {
+public:
+  Coarsening(const Positions& points, const Triangles& triangles, int requested, int threads)
+      : points_(points), requested_threads_(requested),
+        mesh_(points, triangles, massesOf(points, triangles, threads), threads),
+        blocked_(static_cast<std::size_t>(points.cols()), 0) {
+    for (Index v = 0; v < points.cols(); ++v)
+      alive_.push_back(v);
+    keepMesh();
+  }
+
+  MapHierarchy run(const ShareReport& report) {
+    const auto n = static_cast<double>(alive_.size());
+    Index most_neighbors = kMostCoarseNeighbors;
+    while (alive_.size() > 4) {
+      const std::size_t before = alive_.size();
+      takeOut(most_neighbors);
+      const std::size_t gone = before - alive_.size();
+      // With more than 4 vertices there is an edge that can be contracted.
+      if (gone == 0 || (gone < before / 20 && before > static_cast<std::size_t>(kFewVertices)))
+        most_neighbors = most_neighbors < (Index{1} << 29) ? 2 * most_neighbors : most_neighbors;
+      else
+        most_neighbors = std::max(kMostCoarseNeighbors, most_neighbors / 2);
+      const auto kept = static_cast<double>(hierarchy_.meshes.back().vertex_count);
+      const double ratio = kept > 1000.0 ? 0.5 : 0.8;
+      if (static_cast<double>(alive_.size()) <= ratio * kept || alive_.size() == 4)
+        keepMesh();
+      tell(report, 1.0 - static_cast<double>(alive_.size()) / n);
+    }
+    number();
+    return std::move(hierarchy_);
+  }
+
+private:
+  void takeOut(Index most_neighbors) {
+    findCandidates(most_neighbors);
+    const std::size_t count =
+        alive_.size() <= static_cast<std::size_t>(kFewVertices)
+            ? candidates_.size()
+            : static_cast<std::size_t>(
+                  std::ceil(kShareOfCandidates * static_cast<double>(candidates_.size())));
+    const std::size_t most = alive_.size() <= static_cast<std::size_t>(kFewVertices)
+                                 ? 1
+                                 : alive_.size() - static_cast<std::size_t>(kFewVertices);
+    const std::size_t first = removed_.size();
+    ++batch_;
+    for (std::size_t i = 0; i < count && removed_.size() - first < most; ++i) {
+      Candidate candidate = candidates_[i];
+      if (blocked_[static_cast<std::size_t>(candidate.vertex)] == batch_ ||
+          !chooseTarget(candidate))
+        continue;
+      mesh_.collapse(candidate.vertex, candidate.target);
+      for (const Index neighbor : mesh_.ring())
+        blocked_[static_cast<std::size_t>(neighbor)] = batch_;
+      removed_.push_back({candidate.vertex, static_cast<std::uint32_t>(ring_.size())});
+      ring_.insert(ring_.end(), mesh_.ring().begin(), mesh_.ring().end());
+      for (const double mass : mesh_.ringMasses())
+        ring_masses_.push_back(static_cast<float>(mass));
+      gone_.push_back(candidate.vertex);
+    }
+    if (removed_.size() == first)
+      return;
+    batch_begin_.push_back(first);
+    std::sort(gone_.begin(), gone_.end());
+    alive_.erase(
+        std::remove_if(alive_.begin(), alive_.end(),
+                       [&](Index v) { return std::binary_search(gone_.begin(), gone_.end(), v); }),
+        alive_.end());
+    gone_.clear();
+  }
+
+  void findCandidates(Index most_neighbors) {
+    constexpr Index none = -1;
+    found_.resize(alive_.size());
+    const int threads = threadCount(requested_threads_, alive_.size(), kParallelThreshold);
+    forEachBlock(alive_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::vector<Index> ring;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Index w = alive_[i];
+        found_[i] = {0, w, none};
+        if (mesh_.valence(w) > most_neighbors)
+          continue;
+        const Vector3d normal = ringOf(w, ring);
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < ring.size(); ++j) {
+          const double cost =
+              costOf(points_, ring, j, normal, mesh_.valence(ring[j]) + mesh_.valence(w) - 4);
+          if (cost < least || found_[i].target == none) {
+            least = cost;
+            found_[i].target = ring[j];
+          }
+        }
+        found_[i].key = keyOf(least);
+      }
+    });
+    candidates_.clear();
+    for (const Candidate& candidate : found_)
+      if (candidate.target != none)
+        candidates_.push_back(candidate);
+    radixSort(candidates_);
+  }
+
+  /// The neighbours of w, and the mean normal of its triangles, a unit vector or zero.
+  Vector3d ringOf(Index w, std::vector<Index>& ring) const {
+    ring.clear();
+    mesh_.forEachAround(w, [&](Index, Index neighbor) { ring.push_back(neighbor); });
+    const Vector3d at = points_.col(w);
+    Vector3d normal = Vector3d::Zero();
+    Vector3d side = points_.col(ring.back()) - at;
+    for (const Index neighbor : ring) {
+      const Vector3d next = points_.col(neighbor) - at;
+      normal += side.cross(next);
+      side = next;
+    }
+    const double length = normal.norm();
+    return length > 0.0 ? Vector3d(normal / length) : Vector3d(Vector3d::Zero());
+  }
+
+  /// Whether the candidate can be taken out; to another neighbour if not to its target.
+  bool chooseTarget(Candidate& candidate) {
+    const Index w = candidate.vertex;
+    if (mesh_.canCollapse(w, candidate.target))
+      return true;
+    const Vector3d normal = ringOf(w, work_ring_);
+    double least = std::numeric_limits<double>::infinity();
+    bool found = false;
+    for (std::size_t j = 0; j < work_ring_.size(); ++j) {
+      const double cost = costOf(points_, work_ring_, j, normal,
+                                 mesh_.valence(work_ring_[j]) + mesh_.valence(w) - 4);
+      if ((cost < least || !found) && mesh_.canCollapse(w, work_ring_[j])) {
+        least = cost;
+        candidate.target = work_ring_[j];
+        found = true;
+      }
+    }
+    return found;
+  }
+
+  void keepMesh() {
+    MapMesh mesh;
+    mesh.vertex_count = static_cast<Index>(alive_.size());
+    mesh.triangles.resize(3, 2 * mesh.vertex_count - 4);
+    mesh.masses.reserve(static_cast<std::size_t>(mesh.triangles.cols()));
+    Eigen::Index t = 0;
+    for (std::size_t i = 0; i < mesh_.triangleCount(); ++i)
+      if (mesh_.isAlive(i)) {
+        mesh.triangles.col(t++) << mesh_.vertex(3 * i), mesh_.vertex(3 * i + 1),
+            mesh_.vertex(3 * i + 2);
+        mesh.masses.push_back(static_cast<float>(mesh_.mass(i)));
+      }
+    hierarchy_.meshes.push_back(std::move(mesh));
+  }
+
+  /// Numbers the vertices, those that were taken out last first; of a batch in their order here.
+  void number() {
+    std::vector<Index>& order = hierarchy_.order;
+    order = alive_;
+    hierarchy_.ring_begin.push_back(0);
+    hierarchy_.ring.reserve(ring_.size());
+    hierarchy_.ring_masses.reserve(ring_.size());
+    batch_begin_.push_back(removed_.size());
+    std::size_t end = removed_.size();
+    for (std::size_t b = batch_begin_.size() - 1; b-- > 0;) {
+      hierarchy_.batches.push_back(static_cast<Index>(order.size()));
+      std::vector<std::pair<Index, std::size_t>> batch;
+      for (std::size_t i = batch_begin_[b]; i < end; ++i)
+        batch.emplace_back(removed_[i].vertex, i);
+      end = batch_begin_[b];
+      std::sort(batch.begin(), batch.end());
+      for (const auto& [vertex, i] : batch) {
+        order.push_back(vertex);
+        const std::size_t ring_end =
+            i + 1 < removed_.size() ? removed_[i + 1].ring_begin : ring_.size();
+        for (std::size_t k = removed_[i].ring_begin; k < ring_end; ++k) {
+          hierarchy_.ring.push_back(ring_[k]);
+          hierarchy_.ring_masses.push_back(ring_masses_[k]);
+        }
+        hierarchy_.ring_begin.push_back(static_cast<std::uint32_t>(hierarchy_.ring.size()));
+      }
+    }
+    hierarchy_.batches.push_back(static_cast<Index>(order.size()));
+    const std::vector<Index> rank = inverseOf(order);
+    for (Index& v : hierarchy_.ring)
+      v = rank[static_cast<std::size_t>(v)];
+    for (MapMesh& mesh : hierarchy_.meshes)
+      mesh.triangles = renumbered(mesh.triangles, rank);
+    hierarchy_.points = ordered(points_, order);
+  }
+
+  struct Removed {
+    Index vertex;
+    std::uint32_t ring_begin;
+  };
+
+  const Positions& points_;
+  int requested_threads_;
+  CollapsibleMesh mesh_;
+  std::vector<Index> alive_;
+  std::vector<std::uint32_t> blocked_;  // the last batch that changes something at the vertex
+  std::uint32_t batch_ = 0;
+  std::vector<Candidate> found_;
+  std::vector<Candidate> candidates_;
+  std::vector<Index> work_ring_;
+  std::vector<Index> gone_;
+  std::vector<Removed> removed_;
+  std::vector<std::size_t> batch_begin_;
+  std::vector<Index> ring_;
+  std::vector<float> ring_masses_;
+  MapHierarchy hierarchy_;
+};
+
+}  // namespace
+
+MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
+                               const ShareReport& report) {
+  const auto n = static_cast<std::size_t>(points.cols());
+  const int most = threadCount(threads, n, kParallelThreshold);
+  // Squares of lengths are in the range of double, whatever the unit.
+  const Vector3d center = 0.5 * points.rowwise().minCoeff() + 0.5 * points.rowwise().maxCoeff();
+  const double extent = (points.colwise() - center).cwiseAbs().maxCoeff();
+  const std::vector<Index> order = breadthFirst(triangles, n, most);
+  Positions scaled = ordered(points, order).colwise() - center;
+  if (extent > 0.0)
+    scaled /= extent;
+  MapHierarchy hierarchy =
+      Coarsening(scaled, renumbered(triangles, inverseOf(order)), threads, most).run(report);
+  for (Index& v : hierarchy.order)
+    v = order[static_cast<std::size_t>(v)];
+  return hierarchy;
+}
+
+}  // namespace spherical_param::internal

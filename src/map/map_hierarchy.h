@@ -1,0 +1,48 @@
+#pragma once
+
+#include "progress.h"
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A mesh of the hierarchy, of the vertices [0, vertex_count) of its numbering.
+struct MapMesh {
+  Index vertex_count = 0;
+  Triangles triangles;
+  /// Area in space that each triangle stands for [unit of the input squared].
+  std::vector<float> masses;
+};
+
+/// A closed mesh of genus 0 and ever coarser ones, down to a tetrahedron, which stand for the same
+/// surface: where a vertex was taken out, the triangles that fill the hole have the masses of those
+/// that were there. So the tip of a limb keeps its share of the sphere when all that is left of it
+/// is a triangle.
+struct MapHierarchy {
+  /// The vertices of the input in the numbering of the hierarchy: the coarser meshes first.
+  std::vector<Index> order;
+  /// 3 x v, the vertices in that order.
+  Positions points;
+  /// Some of the meshes, finest first; the last is a tetrahedron.
+  std::vector<MapMesh> meshes;
+  /// Ascending, the first 4: the vertices from one number to the next were taken out together, no
+  /// two of them neighbours of each other.
+  std::vector<Index> batches;
+  /// Ring of vertex v, v >= 4, when it was taken out: [ring_begin[v - 4], ring_begin[v - 3]) of
+  /// `ring`, counter-clockwise; the first is that which the triangles of the hole have in common.
+  /// ring_masses has the mass of the triangle of v and that entry and the next.
+  std::vector<std::uint32_t> ring_begin;
+  std::vector<Index> ring;
+  std::vector<float> ring_masses;
+};
+
+/// Takes out vertices by half-edge collapses, level by level.
+///
+/// \param triangles a closed, manifold, consistently oriented mesh of genus 0 in one piece.
+MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
+                               const ShareReport& report = {});
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,423 @@
+#include "map_relaxation.h"
+
+#include "corner_table.h"
+#include "exact_predicates.h"
+#include "parallel.h"
+#include "tangent_basis.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Triangles thinner than this, height to longest side, count as such.
+constexpr double kThinnest = 0.05;
+/// Logarithms of ratios of areas below this count by their squares rather.
+constexpr double kSmallLog = 0.05;
+/// Vertices of a colour for several threads: to move one takes about a microsecond.
+constexpr std::size_t kLeastOfColor = 2048;
+
+/// A triangle of vertex u and two neighbours, on the sphere.
+struct Image {
+  Vector3d cross;
+  /// Half the determinant: the area of a small triangle, and 0 where a triangle of any size begins
+  /// to be flipped.
+  double determinant;
+  /// The tangent of half the area is determinant / quotient.
+  double quotient;
+  double area;  ///< of the spherical triangle (A. van Oosterom and J. Strackee, 1983)
+  /// 1/4 of the sum of squared sides times cotangents: the area at least, and just that if the map
+  /// is conformal (U. Pinkall and K. Polthier, 1993).
+  double dirichlet;
+
+  Image(const Vector3d& u, const Vector3d& to_first, const Vector3d& to_next,
+        const MapCorner& corner)
+      : cross(to_first.cross(to_next)), determinant(0.5 * u.dot(cross)) {
+    const double first_squared = to_first.squaredNorm();
+    const double next_squared = to_next.squaredNorm();
+    const double opposite_squared = (to_next - to_first).squaredNorm();
+    dirichlet = 0.25 * (corner.cot_vertex * opposite_squared + corner.cot_neighbor * next_squared +
+                        corner.cot_next * first_squared);
+    // Half of 1 + ab + bc + ca, by differences.
+    quotient = 2.0 - 0.25 * (first_squared + next_squared + opposite_squared);
+    area = 2.0 * arcTangent(determinant, quotient);
+  }
+
+private:
+  /// atan2(y, x) for y > 0; by its series where that is exact to 1e-13, as for nearly all
+  /// triangles.
+  static double arcTangent(double y, double x) {
+    constexpr double small = 0.015;
+    if (!(y < small * x))
+      return std::atan2(y, x);
+    const double tangent = y / x;
+    const double squared = tangent * tangent;
+    return tangent * (1.0 - squared * (1.0 / 3.0 - squared * 0.2));
+  }
+};
+
+/// Whether the sign of the determinant is beyond doubt. The differences are rounded by half a unit
+/// in the last place each, the determinant by a few more.
+bool isSurelyPositive(const Vector3d& to_first, const Vector3d& to_next, double determinant) {
+  constexpr double unit = 32.0 * kUnitRoundoff;
+  return determinant > 0.0 &&
+         determinant * determinant > unit * unit * to_first.squaredNorm() * to_next.squaredNorm();
+}
+
+bool isPositive(const Vector3d& u, const Vector3d& first, const Vector3d& next) {
+  return orientation3d(Vector3d::Zero(), u, first, next) > 0;
+}
+
+/// What the ratio of an area to its target costs, and the derivatives by the ratio's logarithm.
+struct AreaTerm {
+  double value;
+  double slope;
+  double curvature;
+
+  AreaTerm(double ratio, const MapEnergy& energy) {
+    const double inverse = 1.0 / ratio;
+    value = energy.ratio_weight * 0.5 * (ratio + inverse);
+    slope = energy.ratio_weight * 0.5 * (ratio - inverse);
+    curvature = value;
+    if (energy.log_weight > 0.0) {
+      const double log = std::log(ratio);
+      const double root = std::sqrt(kSmallLog * kSmallLog + log * log);
+      value += energy.log_weight * (1.0 - kSmallLog + root);
+      slope += energy.log_weight * log / root;
+      curvature += energy.log_weight * (kSmallLog * kSmallLog) / (root * root * root);
+    }
+  }
+};
+
+/// For the angles MIPS (K. Hormann and G. Greiner, 2000), the mean of sigma_1 / sigma_2 and its
+/// inverse; over the determinant, so that it grows beyond all bounds before a triangle is flipped,
+/// however large that is. For the areas terms as the statistics of the distortion have: they grow
+/// with the ratio and its inverse; and the logarithm makes them sharp where the ratio is near 1.
+double termOf(const Image& image, double mass, const MapEnergy& energy) {
+  return mass * (energy.angle_weight * image.dirichlet / image.determinant +
+                 AreaTerm(image.area / (mass * energy.area_of_mass), energy).value);
+}
+
+/// Energy of the triangles around a vertex that is at u; infinite if one is flipped.
+double energyAround(const Positions& sphere, const MapCorner* corners, std::size_t count,
+                    const Vector3d& u, const MapEnergy& energy) {
+  double sum = 0.0;
+  Vector3d to_first = sphere.col(corners[0].neighbor) - u;
+  const Vector3d to_begin = to_first;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_last = i + 1 == count;
+    const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(corners[i + 1].neighbor) - u);
+    const Image image(u, to_first, to_next, corners[i]);
+    if (!isSurelyPositive(to_first, to_next, image.determinant) &&
+        !(image.determinant > 0.0 && isPositive(u, sphere.col(corners[i].neighbor),
+                                                sphere.col(corners[is_last ? 0 : i + 1].neighbor))))
+      return std::numeric_limits<double>::infinity();
+    sum += termOf(image, corners[i].mass, energy);
+    to_first = to_next;
+  }
+  return sum;
+}
+
+/// Energy, gradient and Hessian in a tangent basis.
+struct Model {
+  double value = 0.0;
+  Vector2d gradient = Vector2d::Zero();
+  Matrix2d hessian = Matrix2d::Zero();  ///< the lower triangle
+
+  /// Adds f(a) where a has this gradient, and a Hessian of so much times the identity.
+  void addFunctionOf(double slope, double curvature, const Vector2d& of_gradient,
+                     double of_hessian) {
+    gradient += slope * of_gradient;
+    hessian(0, 0) += curvature * of_gradient.x() * of_gradient.x() + slope * of_hessian;
+    hessian(1, 0) += curvature * of_gradient.x() * of_gradient.y();
+    hessian(1, 1) += curvature * of_gradient.y() * of_gradient.y() + slope * of_hessian;
+  }
+  /// Adds the mixed second derivative of a function of two values with these gradients.
+  void addMixed(double derivative, const Vector2d& a, const Vector2d& b) {
+    hessian(0, 0) += 2.0 * derivative * a.x() * b.x();
+    hessian(1, 0) += derivative * (a.x() * b.y() + a.y() * b.x());
+    hessian(1, 1) += 2.0 * derivative * a.y() * b.y();
+  }
+};
+
+Model modelAround(const Positions& sphere, const MapCorner* corners, std::size_t count,
+                  const Vector3d& u, const TangentBasis& basis, const MapEnergy& energy) {
+  Model model;
+  const Vector3d x = basis.col(0);
+  const Vector3d y = basis.col(1);
+  Vector3d to_first = sphere.col(corners[0].neighbor) - u;
+  const Vector3d to_begin = to_first;
+  Vector2d first(x.dot(to_first), y.dot(to_first));
+  const Vector2d begin = first;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_last = i + 1 == count;
+    const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(corners[i + 1].neighbor) - u);
+    const Vector2d next = is_last ? begin : Vector2d(x.dot(to_next), y.dot(to_next));
+    const MapCorner& corner = corners[i];
+    const double mass = corner.mass;
+    const Image image(u, to_first, to_next, corner);
+    // A step of x in the tangent plane takes u to u + x - |x|^2 / 2 u, to second order. The
+    // determinant is linear in u.
+    const Vector2d edge = next - first;
+    const Vector2d determinant_gradient(0.5 * (x.dot(image.cross) - edge.y()),
+                                        0.5 * (y.dot(image.cross) + edge.x()));
+    const double determinant_hessian = -image.determinant;
+    const Vector2d dirichlet_gradient =
+        -0.5 * (corner.cot_neighbor * next + corner.cot_next * first);
+    const double dirichlet_hessian = 0.25 * (corner.cot_neighbor * (2.0 - to_next.squaredNorm()) +
+                                             corner.cot_next * (2.0 - to_first.squaredNorm()));
+    // The derivative of the arc tangent; ab + ca has the gradient b + c. How the gradient changes
+    // is left out: next to its square it does not count.
+    const Vector2d area_gradient =
+        2.0 / (image.determinant * image.determinant + image.quotient * image.quotient) *
+        (image.quotient * determinant_gradient - 0.5 * image.determinant * (first + next));
+
+    const double angle_weight = mass * energy.angle_weight;
+    const double by_determinant = 1.0 / image.determinant;
+    const double angle = angle_weight * image.dirichlet * by_determinant;
+    const AreaTerm term(image.area / (mass * energy.area_of_mass), energy);
+    const double by_area = 1.0 / image.area;
+    model.value += angle + mass * term.value;
+    model.addFunctionOf(angle_weight * by_determinant, 0.0, dirichlet_gradient, dirichlet_hessian);
+    model.addFunctionOf(-angle * by_determinant, 2.0 * angle * by_determinant * by_determinant,
+                        determinant_gradient, determinant_hessian);
+    model.addMixed(-angle_weight * by_determinant * by_determinant, determinant_gradient,
+                   dirichlet_gradient);
+    model.addFunctionOf(mass * term.slope * by_area,
+                        mass * std::max(0.0, term.curvature - term.slope) * by_area * by_area,
+                        area_gradient, 0.0);
+    to_first = to_next;
+    first = next;
+  }
+  return model;
+}
+
+/// -H^-1 g with the absolute values of H's eigenvalues: downhill.
+Vector2d newtonStep(const Model& model) {
+  const double a = model.hessian(0, 0);
+  const double b = model.hessian(1, 0);
+  const double c = model.hessian(1, 1);
+  const double middle = 0.5 * (a + c);
+  const double radius = std::hypot(0.5 * (a - c), b);
+  const double larger = std::abs(middle) + radius;
+  if (!(larger > 0.0) || !std::isfinite(larger))
+    return Vector2d::Zero();
+  const double least = 1e-6 * larger;
+  const double high = std::max(std::abs(middle + radius), least);
+  const double low = std::max(std::abs(middle - radius), least);
+  // The eigenvector of middle + radius, unless the eigenvalues are equal.
+  Vector2d axis(0.5 * (a - c) + radius, b);
+  if (a < c)
+    axis << b, radius - 0.5 * (a - c);
+  const double length = axis.norm();
+  if (!(length > 0.0))
+    return -model.gradient / high;
+  axis /= length;
+  const Vector2d across(-axis.y(), axis.x());
+  return -(axis * (axis.dot(model.gradient) / high) + across * (across.dot(model.gradient) / low));
+}
+
+}  // namespace
+
+Vector3d mapCotangents(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const std::array<Vector3d, 3> corners = {a, b, c};
+  // The longest side is the base: the corners next to it are acute.
+  std::size_t top = 0;
+  double longest = -1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double squared = (corners[(k + 2) % 3] - corners[(k + 1) % 3]).squaredNorm();
+    if (squared > longest) {
+      longest = squared;
+      top = k;
+    }
+  }
+  Vector3d cotangents = Vector3d::Constant(std::sqrt(1.0 / 3.0));
+  if (!(longest > 0.0))
+    return cotangents;
+  const Vector3d& left = corners[(top + 1) % 3];
+  const Vector3d base = (corners[(top + 2) % 3] - left) / std::sqrt(longest);
+  const Vector3d side = (corners[top] - left) / std::sqrt(longest);
+  const double x = std::clamp(base.dot(side), 0.0, 1.0);
+  const double height = std::max(base.cross(side).norm(), kThinnest);
+  const auto at = [&](std::size_t k) -> double& {
+    return cotangents[static_cast<Eigen::Index>((top + k) % 3)];
+  };
+  at(0) = (height * height - x * (1.0 - x)) / height;
+  at(1) = x / height;
+  at(2) = (1.0 - x) / height;
+  return cotangents;
+}
+
+MapRows makeMapRows(const Positions& points, const Triangles& triangles,
+                    const std::vector<float>& masses, Index vertex_count, int requested) {
+  const auto n = static_cast<std::size_t>(vertex_count);
+  const auto m = static_cast<std::size_t>(triangles.cols());
+  const int threads = threadCount(requested, n, kParallelThreshold);
+  std::vector<std::array<float, 3>> cotangents(m);
+  forEachItem(m, threads, [&](std::size_t, std::size_t i) {
+    const auto t = static_cast<Eigen::Index>(i);
+    const Vector3d of_corners = mapCotangents(
+        points.col(triangles(0, t)), points.col(triangles(1, t)), points.col(triangles(2, t)));
+    for (std::size_t k = 0; k < 3; ++k)
+      cotangents[i][k] = static_cast<float>(of_corners[static_cast<Eigen::Index>(k)]);
+  });
+  const CornerTable corners(triangles, n, threads);
+
+  // Colours: the lowest that no neighbour has.
+  std::vector<Index> color(n, -1);
+  std::vector<Index> taken_by;  // of each colour, the last vertex with a neighbour that has it
+  for (Index v = 0; v < vertex_count; ++v) {
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      const Index other = color[static_cast<std::size_t>(triangles(nextCorner(k), t))];
+      if (other >= 0)
+        taken_by[static_cast<std::size_t>(other)] = v;
+    });
+    Index c = 0;
+    while (static_cast<std::size_t>(c) < taken_by.size() &&
+           taken_by[static_cast<std::size_t>(c)] == v)
+      ++c;
+    if (static_cast<std::size_t>(c) == taken_by.size())
+      taken_by.push_back(-1);
+    color[static_cast<std::size_t>(v)] = c;
+  }
+
+  MapRows rows;
+  rows.colors.assign(taken_by.size() + 1, 0);
+  for (const Index c : color)
+    ++rows.colors[static_cast<std::size_t>(c) + 1];
+  for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c)
+    rows.colors[c + 1] += rows.colors[c];
+  rows.vertices.resize(n);
+  std::vector<std::uint32_t> next(rows.colors.begin(), rows.colors.end() - 1);
+  for (Index v = 0; v < vertex_count; ++v)
+    rows.vertices[next[static_cast<std::size_t>(color[static_cast<std::size_t>(v)])]++] = v;
+  rows.begin.resize(n + 1);
+  rows.begin[0] = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    rows.begin[i + 1] =
+        rows.begin[i] + static_cast<std::uint32_t>(corners.countAt(rows.vertices[i]));
+  rows.corners.resize(rows.begin[n]);
+  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::vector<std::pair<Index, std::uint32_t>> behind;  // vertex behind, corner
+    for (std::size_t i = begin; i < end; ++i) {
+      behind.clear();
+      corners.forEachCorner(rows.vertices[i], [&](Index t, Index k) {
+        behind.emplace_back(triangles(nextCorner(k), t), static_cast<std::uint32_t>(4 * t + k));
+      });
+      std::sort(behind.begin(), behind.end());
+      Index neighbor = behind.front().first;
+      for (std::uint32_t r = rows.begin[i]; r < rows.begin[i + 1]; ++r) {
+        const auto at =
+            std::lower_bound(behind.begin(), behind.end(), std::pair(neighbor, std::uint32_t{0}));
+        const std::size_t t = at->second >> 2U;
+        const auto k = static_cast<Index>(at->second & 3U);
+        const std::array<float, 3>& cot = cotangents[t];
+        rows.corners[r] = {neighbor, masses[t], cot[static_cast<std::size_t>(k)],
+                           cot[static_cast<std::size_t>(nextCorner(k))],
+                           cot[static_cast<std::size_t>(previousCorner(k))]};
+        neighbor = triangles(previousCorner(k), static_cast<Eigen::Index>(t));
+      }
+    }
+  });
+  return rows;
+}
+
+bool isMapValid(const Positions& sphere, const MapCorner* corners, std::size_t count,
+                const Vector3d& at) {
+  for (std::size_t i = 0; i < count; ++i)
+    if (!isPositive(at, sphere.col(corners[i].neighbor),
+                    sphere.col(corners[i + 1 == count ? 0 : i + 1].neighbor)))
+      return false;
+  return true;
+}
+
+double relaxMapVertex(Positions& sphere, Index v, const MapCorner* corners, std::size_t count,
+                      const MapEnergy& energy) {
+  const Vector3d u = sphere.col(v);
+  const TangentBasis basis = tangentBasis(u);
+  const Model model = modelAround(sphere, corners, count, u, basis, energy);
+  const Vector2d step = newtonStep(model);
+  const double slope = model.gradient.dot(step);
+  // What cannot be gained is not worth the evaluation.
+  constexpr double least_gain = 1e-7;
+  if (!(-slope > least_gain * model.value))
+    return 0.0;
+  const Vector3d direction = basis * step;
+  constexpr int most_halvings = 8;
+  double length = 1.0;
+  for (int k = 0; k < most_halvings; ++k) {
+    const Vector3d moved = (u + length * direction).normalized();
+    const double value = energyAround(sphere, corners, count, moved, energy);
+    constexpr double sufficient = 1e-2;
+    if (value <= model.value + sufficient * length * slope) {
+      sphere.col(v) = moved;
+      return model.value - value;
+    }
+    length *= 0.5;
+  }
+  return 0.0;
+}
+
+double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy, int requested) {
+  double gain = 0.0;
+  for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c) {
+    const std::size_t first = rows.colors[c];
+    const std::size_t count = rows.colors[c + 1] - first;
+    const int threads = threadCount(requested, count, kLeastOfColor);
+    gain += sumOfBlocks(count, threads, 0.0, [&](std::size_t begin, std::size_t end) {
+      double part = 0.0;
+      for (std::size_t i = first + begin; i < first + end; ++i)
+        part += relaxMapVertex(sphere, rows.vertices[i], &rows.corners[rows.begin[i]],
+                               rows.begin[i + 1] - rows.begin[i], energy);
+      return part;
+    });
+  }
+  return gain;
+}
+
+namespace {
+
+/// A third of the sum of term(image, mass) over all corners.
+template <typename Term>
+double sumOverTriangles(const Positions& sphere, const MapRows& rows, int requested,
+                        const Term& term) {
+  const std::size_t n = rows.vertices.size();
+  const int threads = threadCount(requested, n, kParallelThreshold);
+  return sumOfBlocks(
+             n, threads, 0.0,
+             [&](std::size_t begin, std::size_t end) {
+               double part = 0.0;
+               for (std::size_t i = begin; i < end; ++i) {
+                 const Vector3d u = sphere.col(rows.vertices[i]);
+                 for (std::uint32_t r = rows.begin[i]; r < rows.begin[i + 1]; ++r) {
+                   const std::uint32_t next = r + 1 == rows.begin[i + 1] ? rows.begin[i] : r + 1;
+                   part += term(Image(u, sphere.col(rows.corners[r].neighbor) - u,
+                                      sphere.col(rows.corners[next].neighbor) - u, rows.corners[r]),
+                                rows.corners[r].mass);
+                 }
+               }
+               return part;
+             }) /
+         3.0;
+}
+
+}  // namespace
+
+double mapEnergy(const Positions& sphere, const MapRows& rows, const MapEnergy& energy,
+                 int threads) {
+  return sumOverTriangles(sphere, rows, threads, [&](const Image& image, double mass) {
+    return termOf(image, mass, energy);
+  });
+}
+
+}  // namespace spherical_param::internal

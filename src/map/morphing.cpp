@@ -1,0 +1,361 @@
+#include "spherical_param/map/morphing.h"
+
+#include "exact_predicates.h"
+#include "option_checks.h"
+#include "parallel.h"
+#include "progress.h"
+#include "rotation_search.h"
+#include "space_filling_curve.h"
+#include "sphere_overlay.h"
+#include "sphere_warp.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/map/resampling.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+/// Shares of the work that are done after its parts.
+constexpr double kRotatedShare = 0.3;
+constexpr double kWarpedShare = 0.6;
+
+constexpr std::size_t kLeastSamples = 12;
+constexpr std::size_t kMostSamples = std::size_t{1} << 24U;
+/// The motion solves dense systems of twice the size.
+constexpr std::size_t kMostPairs = 4096;
+/// Vertices of both meshes become one if they are nearer than this share of the shortest of their
+/// edges: it moves the map by less than a mesh can show, and both shapes keep all their vertices.
+constexpr double kSameVertex = 0.1;
+
+[[noreturn]] void fail(const std::string& what) {
+  throw InvalidInput("morphSurfaces: " + what);
+}
+
+void checkOptions(const MorphOptions& options) {
+  internal::checkEnum("morphSurfaces: connectivity", options.connectivity,
+                      MorphConnectivity::Resampled);
+  if (options.samples < kLeastSamples || options.samples > kMostSamples)
+    fail("samples = " + std::to_string(options.samples) + " is out of range; use " +
+         std::to_string(kLeastSamples) + " to " + std::to_string(kMostSamples));
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
+         std::to_string(internal::kMostThreads));
+  if (options.pairs.size() > kMostPairs)
+    fail(std::to_string(options.pairs.size()) + " pairs are too many; use " +
+         std::to_string(kMostPairs) + " at most");
+}
+
+/// The pairs that may be honoured, each once.
+struct PairChoice {
+  std::vector<PointPair> pairs;
+  std::vector<std::vector<std::size_t>> numbers;  ///< of each: where it is in the options
+};
+
+PairChoice choosePairs(const SphereSurface& first, const SphereSurface& second,
+                       const std::vector<PointPair>& pairs,
+                       std::vector<ImpossiblePair>& impossible) {
+  PairChoice choice;
+  std::unordered_map<Index, std::size_t> of_first;
+  std::unordered_map<Index, std::size_t> of_second;
+  const auto out_of_range = [](Index vertex, const SphereSurface& surface, const char* which) {
+    return "vertex " + std::to_string(vertex) + " is not in the " + which + " mesh, which has " +
+           std::to_string(surface.points().cols());
+  };
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const PointPair& pair = pairs[i];
+    if (pair.first < 0 || pair.first >= first.points().cols()) {
+      impossible.push_back({i, out_of_range(pair.first, first, "first")});
+      continue;
+    }
+    if (pair.second < 0 || pair.second >= second.points().cols()) {
+      impossible.push_back({i, out_of_range(pair.second, second, "second")});
+      continue;
+    }
+    const auto a = of_first.find(pair.first);
+    const auto b = of_second.find(pair.second);
+    if (a != of_first.end() && b != of_second.end() && a->second == b->second) {
+      choice.numbers[a->second].push_back(i);
+      continue;
+    }
+    if (a != of_first.end() || b != of_second.end()) {
+      const bool is_first = a != of_first.end();
+      const std::size_t earlier = choice.numbers[is_first ? a->second : b->second].front();
+      impossible.push_back({i, "vertex " + std::to_string(is_first ? pair.first : pair.second) +
+                                   " of the " + (is_first ? "first" : "second") +
+                                   " mesh has another partner in pair " + std::to_string(earlier)});
+      continue;
+    }
+    of_first[pair.first] = of_second[pair.second] = choice.pairs.size();
+    choice.pairs.push_back(pair);
+    choice.numbers.push_back({i});
+  }
+  return choice;
+}
+
+double shortestEdgeAt(const Positions& sphere, const Triangles& triangles,
+                      const std::vector<std::vector<Index>>& triangles_at, Index v) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Index t : triangles_at[static_cast<std::size_t>(v)])
+    for (int k = 0; k < 3; ++k)
+      if (triangles(k, t) != v)
+        shortest = std::min(shortest, (sphere.col(triangles(k, t)) - sphere.col(v)).squaredNorm());
+  return std::sqrt(shortest);
+}
+
+std::vector<std::vector<Index>> trianglesAt(const Triangles& triangles, Eigen::Index n) {
+  std::vector<std::vector<Index>> at(static_cast<std::size_t>(n));
+  for (Index t = 0; t < static_cast<Index>(triangles.cols()); ++t)
+    for (int k = 0; k < 3; ++k)
+      at[static_cast<std::size_t>(triangles(k, t))].push_back(t);
+  return at;
+}
+
+/// Moves a vertex on the sphere, unless that would flip one of its triangles.
+bool moveVertex(Positions& sphere, const Triangles& triangles, const std::vector<Index>& around,
+                Index v, const Eigen::Vector3d& place) {
+  const Eigen::Vector3d old = sphere.col(v);
+  sphere.col(v) = place;
+  for (const Index t : around)
+    if (internal::orientation3d(Eigen::Vector3d::Zero(), sphere.col(triangles(0, t)),
+                                sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0) {
+      sphere.col(v) = old;
+      return false;
+    }
+  return true;
+}
+
+/// Puts vertices of the second mesh that are next to one of the first at its place.
+void joinVertices(const SphereSurface& first, const Triangles& triangles, Positions& sphere,
+                  std::vector<Index>& partner) {
+  const Eigen::Index a = first.sphere().cols();
+  const Eigen::Index b = sphere.cols();
+  Positions points(3, a + b);
+  points << first.sphere(), sphere;
+  std::vector<char> is_taken(static_cast<std::size_t>(a), 0);
+  for (const Index i : partner)
+    if (i >= 0)
+      is_taken[static_cast<std::size_t>(i)] = 1;
+  std::vector<Index> queries;
+  for (const Index i : internal::mortonOrder(sphere))
+    if (partner[static_cast<std::size_t>(i)] < 0)
+      queries.push_back(static_cast<Index>(a) + i);
+  const std::vector<SphereLocation> places =
+      internal::locateAll(points, first.triangles(), queries);
+  const auto at_first = trianglesAt(first.triangles(), a);
+  const auto at_second = trianglesAt(triangles, b);
+  for (std::size_t q = 0; q < places.size(); ++q) {
+    const Index v = queries[q] - static_cast<Index>(a);
+    Eigen::Index corner = 0;
+    places[q].weights.maxCoeff(&corner);
+    const Index other = first.triangles()(corner, places[q].triangle);
+    const Eigen::Vector3d place = first.sphere().col(other);
+    if (is_taken[static_cast<std::size_t>(other)] != 0 ||
+        (place - sphere.col(v)).norm() >
+            kSameVertex *
+                std::min(shortestEdgeAt(first.sphere(), first.triangles(), at_first, other),
+                         shortestEdgeAt(sphere, triangles, at_second, v)))
+      continue;
+    if (moveVertex(sphere, triangles, at_second[static_cast<std::size_t>(v)], v, place)) {
+      partner[static_cast<std::size_t>(v)] = other;
+      is_taken[static_cast<std::size_t>(other)] = 1;
+    }
+  }
+}
+
+/// Positions at places of a surface; of the vertices as they are.
+Positions positionsAt(const SphereSurface& surface, const std::vector<SphereLocation>& places,
+                      int threads) {
+  Positions positions(3, static_cast<Eigen::Index>(places.size()));
+  internal::forEachItem(
+      places.size(), internal::threadCount(threads, places.size(), internal::kParallelThreshold),
+      [&](std::size_t, std::size_t i) {
+        const SphereLocation& place = places[i];
+        Eigen::Index corner = 0;
+        const bool is_vertex = place.weights.maxCoeff(&corner) == 1.0;
+        positions.col(static_cast<Eigen::Index>(i)) =
+            is_vertex
+                ? Eigen::Vector3d(surface.points().col(surface.triangles()(corner, place.triangle)))
+                : surface.evaluate(place).position;
+      });
+  return positions;
+}
+
+/// Cuts the faces of an overlay in triangles, by the diagonals that are short in both shapes: any
+/// are right, as each face is flat in both.
+Triangles triangulateFaces(const internal::SphereOverlay& overlay, const MorphResult& morph,
+                           double first_scale, double second_scale) {
+  Triangles triangles(3, 2 * overlay.directions.cols() - 4);
+  Eigen::Index t = 0;
+  std::vector<Index> face;
+  const auto squared_length = [&](Index i, Index j) {
+    return first_scale * (morph.first.col(i) - morph.first.col(j)).squaredNorm() +
+           second_scale * (morph.second.col(i) - morph.second.col(j)).squaredNorm();
+  };
+  for (std::size_t f = 0; f + 1 < overlay.offsets.size(); ++f) {
+    face.assign(overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.offsets[f]),
+                overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.offsets[f + 1]));
+    for (std::size_t n = face.size(); n > 3; --n) {
+      std::size_t ear = 0;
+      double shortest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < n; ++i) {
+        const double length = squared_length(face[(i + n - 1) % n], face[(i + 1) % n]);
+        if (length < shortest) {
+          shortest = length;
+          ear = i;
+        }
+      }
+      triangles.col(t++) << face[(ear + n - 1) % n], face[ear], face[(ear + 1) % n];
+      face.erase(face.begin() + static_cast<std::ptrdiff_t>(ear));
+    }
+    triangles.col(t++) << face[0], face[1], face[2];
+  }
+  return triangles;
+}
+
+double inverseArea(const SphereSurface& surface) {
+  return surface.area() > 0.0 ? 1.0 / surface.area() : 1.0;
+}
+
+/// A geodesic sphere with vertices at the places of pairs.
+GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Eigen::Vector3d>& places) {
+  GridSphere grid = makeGridSphere(SphereGrid::Icosahedral,
+                                   gridFrequency(SphereGrid::Icosahedral, options.samples));
+  if (places.empty())
+    return grid;
+  const auto around = trianglesAt(grid.triangles, grid.directions.cols());
+  std::vector<char> is_taken(around.size(), 0);
+  const Positions regular = grid.directions;
+  for (const Eigen::Vector3d& place : places) {
+    Eigen::Index nearest = 0;
+    (regular.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
+    const auto v = static_cast<std::size_t>(nearest);
+    if (is_taken[v] == 0 &&
+        moveVertex(grid.directions, grid.triangles, around[v], static_cast<Index>(nearest), place))
+      is_taken[v] = 1;
+  }
+  return grid;
+}
+
+void sampleBoth(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
+                MorphResult& morph) {
+  const Eigen::Index w = morph.sphere.cols();
+  const std::vector<Index> order = internal::mortonOrder(morph.sphere);
+  const auto locate = [&](const Positions& of_mesh, const Triangles& triangles) {
+    const Eigen::Index n = of_mesh.cols();
+    Positions points(3, n + w);
+    points << of_mesh, morph.sphere;
+    std::vector<Index> queries(order);
+    for (Index& query : queries)
+      query += static_cast<Index>(n);
+    const std::vector<SphereLocation> found = internal::locateAll(points, triangles, queries);
+    if (found.empty())
+      throw ComputeError("morphSurfaces: a triangulation of the sphere does not cover it once; "
+                         "use maps that are one to one");
+    std::vector<SphereLocation> places(found.size());
+    for (std::size_t q = 0; q < found.size(); ++q)
+      places[static_cast<std::size_t>(order[q])] = found[q];
+    return places;
+  };
+  morph.first_places = locate(first.sphere(), first.triangles());
+  morph.second_places = locate(sphere, second.triangles());
+}
+
+}  // namespace
+
+MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
+                          const MorphOptions& options) {
+  checkOptions(options);
+  const internal::ShareReport report = internal::cancellable(options.progress, "morphSurfaces");
+  internal::tell(report, 0.0);
+  MorphResult morph;
+  const PairChoice choice = choosePairs(first, second, options.pairs, morph.impossible);
+
+  if (options.align) {
+    std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> directions;
+    for (const PointPair& pair : choice.pairs)
+      directions.emplace_back(first.sphere().col(pair.first), second.sphere().col(pair.second));
+    morph.rotation = internal::searchRotation(first, second, directions, options.threads,
+                                              internal::partOf(report, 0.0, kRotatedShare));
+  }
+  morph.alignment_error = internal::alignmentError(first, second, morph.rotation, options.threads);
+
+  // The second sphere, turned onto the first.
+  Positions sphere = second.sphere();
+  if (options.align)
+    sphere = (morph.rotation.transpose() * sphere).colwise().normalized();
+  std::vector<internal::Landmark> landmarks;
+  for (const PointPair& pair : choice.pairs)
+    landmarks.push_back({pair.second, first.sphere().col(pair.first)});
+  internal::SphereWarp warp =
+      internal::moveLandmarks(sphere, second.triangles(), landmarks, options.threads,
+                              internal::partOf(report, kRotatedShare, kWarpedShare));
+  if (internal::countFlipped(warp.sphere, second.triangles(), options.threads) > 0)
+    throw ComputeError("morphSurfaces: the second map has triangles that rounding flips when it "
+                       "is rotated; use a map of less distortion, or align = false");
+  sphere = std::move(warp.sphere);
+  morph.worst_pair = warp.worst;
+
+  std::vector<Index> partner(static_cast<std::size_t>(sphere.cols()), -1);
+  std::vector<Eigen::Vector3d> places;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (!warp.reasons[i].empty()) {
+      for (const std::size_t number : choice.numbers[i])
+        morph.impossible.push_back({number, warp.reasons[i]});
+      continue;
+    }
+    partner[static_cast<std::size_t>(choice.pairs[i].second)] = choice.pairs[i].first;
+    places.push_back(landmarks[i].target);
+  }
+  std::sort(morph.impossible.begin(), morph.impossible.end(),
+            [](const auto& one, const auto& other) { return one.pair < other.pair; });
+
+  if (options.connectivity == MorphConnectivity::AllVertices) {
+    joinVertices(first, second.triangles(), sphere, partner);
+    internal::tell(report, 0.65);
+    internal::SphereOverlay overlay = internal::overlaySpheres(
+        first.sphere(), first.triangles(), sphere, second.triangles(), partner,
+        internal::threadCount(options.threads, static_cast<std::size_t>(sphere.cols()),
+                              internal::kParallelThreshold));
+    internal::tell(report, 0.9);
+    morph.first_places = std::move(overlay.first);
+    morph.second_places = std::move(overlay.second);
+    morph.first = positionsAt(first, morph.first_places, options.threads);
+    morph.second = positionsAt(second, morph.second_places, options.threads);
+    morph.triangles = triangulateFaces(overlay, morph, inverseArea(first), inverseArea(second));
+    morph.sphere = std::move(overlay.directions);
+  } else {
+    GridSphere grid = gridWithPairs(options, places);
+    morph.triangles = std::move(grid.triangles);
+    morph.sphere = std::move(grid.directions);
+    sampleBoth(first, second, sphere, morph);
+    internal::tell(report, 0.9);
+    morph.first = positionsAt(first, morph.first_places, options.threads);
+    morph.second = positionsAt(second, morph.second_places, options.threads);
+  }
+  internal::tell(report, 1.0);
+  return morph;
+}
+
+Positions inBetween(const MorphResult& morph, double t) {
+  if (!std::isfinite(t))
+    throw InvalidInput("inBetween: t = " + std::to_string(t) + " is not finite; use 0 to 1");
+  if (morph.first.cols() != morph.second.cols())
+    throw InvalidInput("inBetween: " + std::to_string(morph.first.cols()) + " and " +
+                       std::to_string(morph.second.cols()) +
+                       " vertices; use what morphSurfaces() returned");
+  if (t == 0.0)
+    return morph.first;
+  if (t == 1.0)
+    return morph.second;
+  return (1.0 - t) * morph.first + t * morph.second;
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,559 @@
+#include "spherical_param/map/resampling.h"
+
+#include "bit_mixing.h"
+#include "corner_table.h"
+#include "exact_predicates.h"
+#include "option_checks.h"
+#include "parallel.h"
+#include "sample_elimination.h"
+#include "sphere_mesh.h"
+#include "vertex_normals.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kMostVertices = std::size_t{1} << 29;
+constexpr int kLargestSide = 16385;
+
+/// A grid has `factor` f^2 + 2 vertices.
+std::size_t factorOf(SphereGrid grid) {
+  return grid == SphereGrid::Icosahedral ? 10 : 4;
+}
+
+// --- The icosahedron -----------------------------------------------------------------------------
+
+constexpr std::array<std::array<Index, 3>, 20> kIcosahedron{
+    {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+
+Positions icosahedronCorners() {
+  const double phi = 0.5 * (1.0 + std::sqrt(5.0));
+  Positions corners(3, 12);
+  for (Index i = 0; i < 4; ++i) {
+    const double one = i % 2 == 0 ? -1.0 : 1.0;
+    const double other = i < 2 ? phi : -phi;
+    corners.col(i) << one, other, 0.0;
+    corners.col(4 + i) << 0.0, one, other;
+    corners.col(8 + i) << other, 0.0, one;
+  }
+  return corners.colwise().normalized();
+}
+
+/// The vertices of a geodesic grid: the corners of the icosahedron, those on its edges, those in
+/// its faces.
+class Geodesic {
+public:
+  explicit Geodesic(int frequency) : frequency_(frequency), corners_(icosahedronCorners()) {
+    Index count = 0;
+    for (const auto& face : kIcosahedron)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = face[k];
+        const Index b = face[(k + 1) % 3];
+        if (a < b)
+          edges_[place(a, b)] = count++;
+      }
+    // sin(x i) for the corner's weight i / f, where x is the angle of an edge: great circles with
+    // equal steps along the edges, and areas in the faces that differ less than those of plain
+    // barycentric coordinates.
+    const double angle = std::acos(1.0 / std::sqrt(5.0));
+    for (int i = 0; i <= frequency; ++i)
+      sines_.push_back(std::sin(angle * i / frequency));
+  }
+
+  GridSphere grid() const {
+    const auto f = static_cast<Index>(frequency_);
+    const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Icosahedral, frequency_));
+    GridSphere grid{Positions(3, n), Triangles(3, 2 * n - 4), frequency_};
+    grid.directions.leftCols(12) = corners_;
+    Eigen::Index t = 0;
+    for (std::size_t face = 0; face < kIcosahedron.size(); ++face) {
+      const auto& [a, b, c] = kIcosahedron[face];
+      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+        for (Index i = 1; from < to && i < f; ++i)
+          grid.directions.col(onEdge(from, to, i)) = direction(from, f - i, to, i, from, 0);
+      for (Index i = 0; i < f; ++i)
+        for (Index j = 0; i + j < f; ++j) {
+          if (i > 0 && j > 0)
+            grid.directions.col(vertex(face, i, j)) = direction(a, f - i - j, b, i, c, j);
+          grid.triangles.col(t++) << vertex(face, i, j), vertex(face, i + 1, j),
+              vertex(face, i, j + 1);
+          if (i + j + 1 < f)
+            grid.triangles.col(t++) << vertex(face, i + 1, j), vertex(face, i + 1, j + 1),
+                vertex(face, i, j + 1);
+        }
+    }
+    return grid;
+  }
+
+private:
+  static std::size_t place(Index a, Index b) {
+    return 12 * static_cast<std::size_t>(a) + static_cast<std::size_t>(b);
+  }
+
+  /// Vertex i of f on the edge from a to b.
+  Index onEdge(Index a, Index b, Index i) const {
+    if (a > b)
+      return onEdge(b, a, frequency_ - i);
+    return 12 + edges_[place(a, b)] * (frequency_ - 1) + i - 1;
+  }
+
+  /// The vertex with the weights f - i - j, i and j of a face's corners.
+  Index vertex(std::size_t face, Index i, Index j) const {
+    const auto& [a, b, c] = kIcosahedron[face];
+    const Index f = frequency_;
+    if (i == 0)
+      return j == 0 ? a : j == f ? c : onEdge(a, c, j);
+    if (j == 0)
+      return i == f ? b : onEdge(a, b, i);
+    if (i + j == f)
+      return onEdge(b, c, j);
+    // Row i has f - i - 1 inner vertices.
+    const Index in_rows_before = (i - 1) * (f - 1) - i * (i - 1) / 2;
+    return 12 + 30 * (f - 1) + static_cast<Index>(face) * ((f - 1) * (f - 2) / 2) + in_rows_before +
+           j - 1;
+  }
+
+  Vector3d direction(Index a, Index weight_a, Index b, Index weight_b, Index c,
+                     Index weight_c) const {
+    return (sine(weight_a) * corners_.col(a) + sine(weight_b) * corners_.col(b) +
+            sine(weight_c) * corners_.col(c))
+        .normalized();
+  }
+  double sine(Index weight) const { return sines_[static_cast<std::size_t>(weight)]; }
+
+  Index frequency_;
+  Positions corners_;
+  std::array<Index, 144> edges_{};  ///< number of the edge from a to b > a
+  std::vector<double> sines_;
+};
+
+// --- The octahedron, unfolded into a square ------------------------------------------------------
+
+/// The pixels of a geometry image. Seen from the middle of the image, column and row are x to the
+/// right and y upwards, from -f to f.
+class OctahedralSquare {
+public:
+  explicit OctahedralSquare(int frequency) : f_(frequency) {}
+
+  Index side() const { return 2 * f_ + 1; }
+  Eigen::Index pixelCount() const { return Eigen::Index{side()} * side(); }
+  Eigen::Index pixel(Index x, Index y) const { return Eigen::Index{f_ - y} * side() + (x + f_); }
+
+  /// The same bits for pixels that are the same place.
+  Vector3d direction(Index x, Index y) const {
+    const Index z = f_ - std::abs(x) - std::abs(y);
+    if (z >= 0)
+      return Vector3d(x, y, z).normalized();
+    return Vector3d(x < 0 ? std::abs(y) - f_ : f_ - std::abs(y),
+                    y < 0 ? std::abs(x) - f_ : f_ - std::abs(x), z)
+        .normalized();
+  }
+  Vector3d direction(Eigen::Index pixel) const {
+    return direction(static_cast<Index>(pixel % side()) - f_,
+                     f_ - static_cast<Index>(pixel / side()));
+  }
+
+  /// The first pixel that is the same place.
+  Eigen::Index firstPixel(Index x, Index y) const {
+    if (std::abs(x) == f_ && std::abs(y) == f_)
+      return 0;
+    if (std::abs(y) == f_)
+      return pixel(-std::abs(x), y);
+    if (std::abs(x) == f_)
+      return pixel(x, std::abs(y));
+    return pixel(x, y);
+  }
+
+  /// The vertex of each pixel: the first pixels of all places, in their order.
+  std::vector<Index> vertices() const {
+    std::vector<Index> result;
+    result.reserve(static_cast<std::size_t>(pixelCount()));
+    Index count = 0;
+    forEachPixel([&](Index x, Index y) {
+      const Eigen::Index first = firstPixel(x, y);
+      result.push_back(first == pixel(x, y) ? count++ : result[static_cast<std::size_t>(first)]);
+    });
+    return result;
+  }
+
+  /// Two triangles for each square of four pixels, between which the edges of the octahedron run.
+  Triangles triangles(const std::vector<Index>& vertices) const {
+    Triangles result(3, Eigen::Index{8} * f_ * f_);
+    Eigen::Index t = 0;
+    const auto at = [&](Index x, Index y) {
+      return vertices[static_cast<std::size_t>(pixel(x, y))];
+    };
+    for (Index y = f_ - 1; y >= -f_; --y)
+      for (Index x = -f_; x < f_; ++x) {
+        const Index a = at(x, y);
+        const Index b = at(x + 1, y);
+        const Index c = at(x + 1, y + 1);
+        const Index d = at(x, y + 1);
+        if ((x < 0) == (y < 0)) {
+          result.col(t++) << a, b, d;
+          result.col(t++) << b, c, d;
+        } else {
+          result.col(t++) << a, b, c;
+          result.col(t++) << a, c, d;
+        }
+      }
+    return result;
+  }
+
+  GridSphere grid() const {
+    const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Octahedral, f_));
+    const std::vector<Index> vertex = vertices();
+    GridSphere grid{Positions(3, n), triangles(vertex), f_};
+    for (Eigen::Index i = 0; i < pixelCount(); ++i)
+      grid.directions.col(vertex[static_cast<std::size_t>(i)]) = direction(i);
+    return grid;
+  }
+
+private:
+  template <typename Visit>
+  void forEachPixel(const Visit& visit) const {
+    for (Index y = f_; y >= -f_; --y)
+      for (Index x = -f_; x <= f_; ++x)
+        visit(x, y);
+  }
+
+  Index f_;
+};
+
+// --- Random points -------------------------------------------------------------------------------
+
+constexpr std::size_t kMostSamples = std::size_t{1} << 24;
+
+/// Points by area for each that is kept: five are enough for a good distribution (Yuksel 2015,
+/// section 4); fewer where they would take much memory.
+std::size_t candidateCount(std::size_t count) {
+  constexpr std::size_t many = std::size_t{1} << 20;
+  return (count <= many ? 5 : 3) * count;
+}
+
+/// Numbers in [0, 1) that follow from their place alone, whichever thread asks.
+class RandomNumbers {
+public:
+  explicit RandomNumbers(std::uint32_t seed) : start_(internal::splitmix64(seed)) {}
+  double at(std::uint64_t i) const {
+    constexpr double unit = 1.0 / static_cast<double>(std::uint64_t{1} << 53U);
+    return static_cast<double>(internal::splitmix64(start_ + i) >> 11U) * unit;
+  }
+
+private:
+  std::uint64_t start_;
+};
+
+/// The sums of the areas up to each triangle, and in the end of all.
+std::vector<double> sumsOfAreas(const SphereSurface& surface) {
+  const Positions& points = surface.points();
+  const Triangles& triangles = surface.triangles();
+  std::vector<double> sums{0.0};
+  sums.reserve(static_cast<std::size_t>(triangles.cols()) + 1);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Vector3d a = points.col(triangles(0, t));
+    const Vector3d normal =
+        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
+    sums.push_back(sums.back() + 0.5 * normal.norm());
+  }
+  return sums;
+}
+
+/// Points of a surface by area: one from each of as many parts of equal area.
+SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
+  const std::vector<double> sums = sumsOfAreas(surface);
+  const RandomNumbers random(seed);
+  SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
+                       Positions(3, static_cast<Eigen::Index>(count)),
+                       std::vector<SphereLocation>(count)};
+  internal::forEachItem(count, internal::threadCount(0, count, internal::kParallelThreshold),
+                        [&](std::size_t, std::size_t i) {
+                          const double place = (static_cast<double>(i) + random.at(3 * i)) /
+                                               static_cast<double>(count) * sums.back();
+                          // The last triangle that begins at or before the place: one with an area.
+                          const auto next =
+                              std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
+                          SphereLocation location;
+                          location.triangle = static_cast<Index>(next - sums.begin() - 1);
+                          const double root = std::sqrt(random.at(3 * i + 1));
+                          const double share = random.at(3 * i + 2);
+                          location.weights << 1.0 - root, root * (1.0 - share), root * share;
+                          const SurfaceSample sample = surface.evaluate(location);
+                          result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
+                          result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
+                          result.locations[i] = location;
+                        });
+  return result;
+}
+
+void checkSide(const char* function, int side) {
+  if (side < 3 || side > kLargestSide || side % 2 == 0)
+    throw InvalidInput(std::string(function) + ": side = " + std::to_string(side) +
+                       " is not possible; use an odd number from 3 to " +
+                       std::to_string(kLargestSide));
+}
+
+Positions pixelDirections(int side) {
+  const OctahedralSquare square(side / 2);
+  Positions directions(3, square.pixelCount());
+  for (Eigen::Index i = 0; i < directions.cols(); ++i)
+    directions.col(i) = square.direction(i);
+  return directions;
+}
+
+// --- Edges around triangles that intersect -------------------------------------------------------
+
+double angleBetween(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A resampled mesh whose edges are flipped.
+class FlippableMesh {
+public:
+  FlippableMesh(const ResampledMesh& mesh, int threads)
+      : points_(mesh.points), directions_(mesh.directions),
+        mesh_(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), threads) {}
+
+  bool isSphere(int threads) const { return mesh_.isSphere(threads); }
+  Triangles triangles() const { return mesh_.triangles(); }
+
+  /// The triangles that have a corner in common with some, so many times over; ascending.
+  std::vector<Index> around(std::vector<Index> triangles, int rings) const {
+    for (int ring = 0; ring < rings; ++ring) {
+      std::vector<Index> wider;
+      for (const Index t : triangles)
+        for (int k = 0; k < 3; ++k)
+          mesh_.forEachAround(mesh_.vertex(t, k), [&](Index near, int) { wider.push_back(near); });
+      std::sort(wider.begin(), wider.end());
+      wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+      triangles = std::move(wider);
+    }
+    return triangles;
+  }
+
+  /// Flips sides of some triangles as long as that makes angles smaller; returns how often.
+  std::size_t flipSidesOf(const std::vector<Index>& triangles) {
+    constexpr int most_sweeps = 20;
+    std::size_t flips = 0;
+    bool is_changed = true;
+    for (int sweep = 0; sweep < most_sweeps && is_changed; ++sweep) {
+      is_changed = false;
+      for (const Index t : triangles)
+        for (int k = 0; k < 3; ++k)
+          if (isBetterFlipped(t, k) && mesh_.flip(t, k)) {
+            is_changed = true;
+            ++flips;
+            break;
+          }
+    }
+    return flips;
+  }
+
+private:
+  /// Sum of the angles opposite to the edge from b to c.
+  double oppositeAngles(Index a, Index b, Index c, Index d) const {
+    const auto angle_at = [&](Index v) {
+      return angleBetween(points_.col(b) - points_.col(v), points_.col(c) - points_.col(v));
+    };
+    return angle_at(a) + angle_at(d);
+  }
+  bool isOutward(Index a, Index b, Index c) const {
+    return internal::orientation3d(Vector3d::Zero(), directions_.col(a), directions_.col(b),
+                                   directions_.col(c)) > 0;
+  }
+  bool isBetterFlipped(Index triangle, int corner) const {
+    const Index a = mesh_.vertex(triangle, corner);
+    const Index b = mesh_.vertex(triangle, (corner + 1) % 3);
+    const Index c = mesh_.vertex(triangle, (corner + 2) % 3);
+    const Index d =
+        mesh_.vertex(mesh_.neighbor(triangle, corner), mesh_.oppositeCorner(triangle, corner));
+    // Rounding must not flip an edge forth and back.
+    constexpr double least_gain = 1e-9;
+    return oppositeAngles(b, a, d, c) < oppositeAngles(a, b, c, d) - least_gain &&
+           isOutward(a, b, d) && isOutward(a, d, c);
+  }
+
+  const Positions& points_;
+  const Positions& directions_;
+  internal::SphereMesh mesh_;
+};
+
+}  // namespace
+
+int gridFrequency(SphereGrid grid, std::size_t vertices) {
+  const auto factor = static_cast<double>(factorOf(grid));
+  const double most = std::floor(std::sqrt(static_cast<double>(kMostVertices - 2) / factor));
+  const double wanted = std::max(0.0, static_cast<double>(vertices) - 2.0) / factor;
+  // Nearest in vertices: between f and f + 1, the middle of their squares.
+  double f = std::floor(std::sqrt(wanted));
+  if (wanted - f * f > (f + 1.0) * (f + 1.0) - wanted)
+    f += 1.0;
+  return static_cast<int>(std::clamp(f, 1.0, most));
+}
+
+std::size_t gridVertices(SphereGrid grid, int frequency) {
+  const std::size_t factor = factorOf(grid);
+  internal::checkEnum("gridVertices: grid", grid, SphereGrid::Octahedral);
+  const auto f = static_cast<std::size_t>(std::max(frequency, 0));
+  if (frequency < 1 || f * f > (kMostVertices - 2) / factor)
+    throw InvalidInput("gridVertices: frequency = " + std::to_string(frequency) +
+                       " is not possible; use 1 to " +
+                       std::to_string(gridFrequency(grid, kMostVertices)));
+  return factor * f * f + 2;
+}
+
+GridSphere makeGridSphere(SphereGrid grid, int frequency) {
+  gridVertices(grid, frequency);  // refuses what is too much
+  return grid == SphereGrid::Icosahedral ? Geodesic(frequency).grid()
+                                         : OctahedralSquare(frequency).grid();
+}
+
+ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid) {
+  SurfaceSamples samples = surface.evaluate(grid.directions);
+  return {std::move(samples.positions), std::move(samples.normals), grid.directions,
+          grid.triangles};
+}
+
+IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
+  if (threads < 0 || threads > internal::kMostThreads)
+    throw InvalidInput("removeIntersections: threads = " + std::to_string(threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+  if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
+    throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
+                       " points need as many directions, all finite");
+  internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
+  SelfIntersectionOptions options;
+  options.threads = threads;
+  auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
+  IntersectionRemoval result{pairs.size(), pairs.size(), 0};
+  const int workers = internal::threadCount(
+      threads, static_cast<std::size_t>(mesh.triangles.cols()), internal::kShortPassThreshold);
+  FlippableMesh flippable(mesh, workers);
+  if (!flippable.isSphere(workers))
+    throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
+                       "consistently oriented mesh of genus 0 over all points");
+  // Around what is left, farther and farther.
+  constexpr int most_rounds = 6;
+  for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {
+    std::vector<Index> triangles;
+    for (const auto& pair : pairs)
+      triangles.insert(triangles.end(), pair.begin(), pair.end());
+    triangles = flippable.around(std::move(triangles), round);
+    const std::size_t flips = flippable.flipSidesOf(triangles);
+    if (flips == 0)
+      continue;
+    result.flips += flips;
+    mesh.triangles = flippable.triangles();
+    pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
+    result.left = pairs.size();
+  }
+  return result;
+}
+
+SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
+  if (count < 1 || count > kMostSamples)
+    throw InvalidInput("sampleEvenly: count = " + std::to_string(count) +
+                       " is out of range; use 1 to 2^24");
+  if (!(surface.area() > 0.0))
+    throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
+  const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
+  const std::vector<Index> kept =
+      internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
+  SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
+                       Positions(3, static_cast<Eigen::Index>(count)),
+                       std::vector<SphereLocation>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    result.points.col(static_cast<Eigen::Index>(i)) = all.points.col(kept[i]);
+    result.normals.col(static_cast<Eigen::Index>(i)) = all.normals.col(kept[i]);
+    result.locations[i] = all.locations[static_cast<std::size_t>(kept[i])];
+  }
+  return result;
+}
+
+Positions geometryImageDirections(int side) {
+  checkSide("geometryImageDirections", side);
+  return pixelDirections(side);
+}
+
+GeometryImage makeGeometryImage(const SphereSurface& surface, int side) {
+  checkSide("makeGeometryImage", side);
+  return {side, surface.evaluate(pixelDirections(side)).positions};
+}
+
+GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
+  const auto count = static_cast<std::size_t>(mesh.points.cols());
+  const int frequency = gridFrequency(SphereGrid::Octahedral, count);
+  const int side = 2 * frequency + 1;
+  if (side > kLargestSide || gridVertices(SphereGrid::Octahedral, frequency) != count)
+    throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
+                       " vertices are not those of an octahedral grid; use makeGridSphere()");
+  const OctahedralSquare square(frequency);
+  const std::vector<Index> vertex = square.vertices();
+  GeometryImage image{side, Positions(3, square.pixelCount())};
+  for (Eigen::Index i = 0; i < square.pixelCount(); ++i)
+    image.positions.col(i) = mesh.points.col(vertex[static_cast<std::size_t>(i)]);
+  return image;
+}
+
+ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
+  checkSide("meshOfGeometryImage", image.side);
+  const OctahedralSquare square(image.side / 2);
+  if (image.positions.cols() != square.pixelCount())
+    throw InvalidInput("meshOfGeometryImage: " + std::to_string(image.positions.cols()) +
+                       " pixels; an image of side " + std::to_string(image.side) + " has " +
+                       std::to_string(square.pixelCount()));
+  for (Eigen::Index i = 0; i < image.positions.cols(); ++i)
+    if (!image.positions.col(i).allFinite())
+      throw InvalidInput("meshOfGeometryImage: pixel " + std::to_string(i) +
+                         " is not finite; every pixel needs a position");
+
+  const std::vector<Index> vertex = square.vertices();
+  ResampledMesh mesh;
+  const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Octahedral, image.side / 2));
+  mesh.directions.resize(3, n);
+  mesh.points.resize(3, n);
+  mesh.triangles = square.triangles(vertex);
+  for (Eigen::Index i = 0; i < square.pixelCount(); ++i) {
+    mesh.directions.col(vertex[static_cast<std::size_t>(i)]) = square.direction(i);
+    mesh.points.col(vertex[static_cast<std::size_t>(i)]) = image.positions.col(i);
+  }
+  // Sums of two and of four equal numbers are exact: where pixels agree, nothing changes.
+  const Index f = image.side / 2;
+  const auto at = [&](Index x, Index y) { return image.positions.col(square.pixel(x, y)); };
+  const auto point = [&](Index x, Index y) {
+    return mesh.points.col(vertex[static_cast<std::size_t>(square.pixel(x, y))]);
+  };
+  for (Index i = 1; i < f; ++i) {
+    point(i, f) = 0.5 * (at(i, f) + at(-i, f));
+    point(i, -f) = 0.5 * (at(i, -f) + at(-i, -f));
+    point(f, i) = 0.5 * (at(f, i) + at(f, -i));
+    point(-f, i) = 0.5 * (at(-f, i) + at(-f, -i));
+  }
+  point(f, f) = 0.25 * ((at(f, f) + at(-f, f)) + (at(f, -f) + at(-f, -f)));
+
+  const auto count = static_cast<std::size_t>(n);
+  const internal::CornerTable corners(
+      mesh.triangles, count, internal::threadCount(0, count, internal::kShortPassThreshold));
+  mesh.normals = internal::vertexNormals(mesh.points, mesh.triangles, mesh.directions, corners, 0);
+  return mesh;
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,232 @@
+#include "sphere_locator.h"
+
+#include "exact_predicates.h"
+#include "parallel.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace spherical_param::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kLeafSize = 4;   ///< triangles, at most
+constexpr unsigned kSerialLevels = 4;  ///< whose nodes are split level by level, then by subtrees
+
+/// Of the coordinates of a unit vector after its normalisation, and of a corner after its own:
+/// each less than 1e-15.
+constexpr double kRounding = 4e-15;
+
+/// The sign of the determinant | a, b, c |, exact.
+int sideOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return orientation3d(Vector3d::Zero(), a, b, c);
+}
+
+/// The direction with a largest coordinate of 1/2 to 1, exactly the same, but that coordinates
+/// whose products would underflow, so that no triangle might hold it, are 0.
+Vector3d scaled(const Vector3d& direction) {
+  constexpr double least = 1e-100;
+  int exponent = 0;
+  std::frexp(direction.cwiseAbs().maxCoeff(), &exponent);
+  return direction.unaryExpr([exponent](double coordinate) {
+    const double x = std::ldexp(coordinate, -exponent);
+    return std::abs(x) < least ? 0.0 : x;
+  });
+}
+
+/// The direction itself if it is of unit length, up to rounding: a vertex stays that vertex.
+Vector3d unitVector(const Vector3d& direction) {
+  constexpr double tolerance = 1e-9;
+  if (std::abs(direction.squaredNorm() - 1.0) <= tolerance)
+    return direction;
+  return scaled(direction).normalized();
+}
+
+}  // namespace
+
+SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles, int threads)
+    : sphere_(&sphere), triangles_(&triangles) {
+  const auto count = static_cast<std::size_t>(triangles.cols());
+  while (count > kLeafSize << levels_)
+    ++levels_;
+  order_.resize(count);
+  std::iota(order_.begin(), order_.end(), Index{0});
+  boxes_.resize(std::size_t{2} << levels_);
+  Positions centers(3, triangles.cols());
+  threads = threadCount(threads, count, kParallelThreshold);
+  forEachBlock(count, threads, [&](std::size_t, std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const auto t = static_cast<Eigen::Index>(i);
+      centers.col(t) =
+          sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
+    }
+  });
+  const unsigned serial_levels = std::min(levels_, kSerialLevels);
+  for (unsigned level = 0; level < serial_levels; ++level)
+    forEachTask(std::size_t{1} << level, threads, [&](std::size_t, std::size_t i) {
+      split((std::size_t{1} << level) + i, level, level, centers);
+    });
+  forEachTask(std::size_t{1} << serial_levels, threads, [&](std::size_t, std::size_t i) {
+    split((std::size_t{1} << serial_levels) + i, serial_levels, levels_, centers);
+  });
+  for (std::size_t node = (std::size_t{1} << serial_levels) - 1; node > 0; --node)
+    makeBox(node);
+}
+
+std::size_t SphereLocator::begin(std::size_t leaf) const {
+  return order_.size() * leaf >> levels_;
+}
+
+void SphereLocator::split(std::size_t node, unsigned level, unsigned last_level,
+                          const Positions& centers) {
+  const std::size_t leaves = std::size_t{1} << (levels_ - level);
+  const std::size_t first_leaf = (node << (levels_ - level)) - (std::size_t{1} << levels_);
+  if (level == levels_) {
+    makeBox(node);
+    return;
+  }
+  const auto at = [&](std::size_t leaf) {
+    return order_.begin() + static_cast<std::ptrdiff_t>(begin(leaf));
+  };
+  const auto first = at(first_leaf);
+  const auto end = at(first_leaf + leaves);
+  Vector3d lower = centers.col(*first);
+  Vector3d upper = lower;
+  for (auto i = first; i != end; ++i) {
+    lower = lower.cwiseMin(centers.col(*i));
+    upper = upper.cwiseMax(centers.col(*i));
+  }
+  Eigen::Index axis = 0;
+  (upper - lower).maxCoeff(&axis);
+  std::nth_element(first, at(first_leaf + leaves / 2), end, [&](Index a, Index b) {
+    const double at_a = centers(axis, a);
+    const double at_b = centers(axis, b);
+    return at_a != at_b ? at_a < at_b : a < b;
+  });
+  if (level == last_level)
+    return;
+  split(2 * node, level + 1, last_level, centers);
+  split(2 * node + 1, level + 1, last_level, centers);
+  makeBox(node);
+}
+
+void SphereLocator::makeBox(std::size_t node) {
+  const std::size_t first_leaf = std::size_t{1} << levels_;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  const auto add = [&](const Box& part) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = std::min(box.lower[axis], part.lower[axis]);
+      box.upper[axis] = std::max(box.upper[axis], part.upper[axis]);
+    }
+  };
+  if (node < first_leaf) {
+    add(boxes_[2 * node]);
+    add(boxes_[2 * node + 1]);
+  } else {
+    for (std::size_t i = begin(node - first_leaf); i < begin(node - first_leaf + 1); ++i)
+      add(boxOf(order_[i]));
+  }
+  boxes_[node] = box;
+}
+
+SphereLocator::Box SphereLocator::boxOf(Index triangle) const {
+  std::array<Vector3d, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k)
+    corners[k] = sphere_->col((*triangles_)(static_cast<Eigen::Index>(k), triangle)).normalized();
+  const auto& [a, b, c] = corners;
+  // A point of the flat triangle with the weights w is by w_a w_b |a - b|^2 + w_b w_c |b - c|^2 +
+  // w_c w_a |c - a|^2 <= |longest side|^2 / 3 shorter than the sphere's radius, squared, and its
+  // image on the sphere is as far away as its length is less than 1.
+  const double longest =
+      std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()});
+  const double share = std::min(1.0, longest / 3.0);
+  // 1 - sqrt(1 - share), without cancellation.
+  const double margin = share / (1.0 + std::sqrt(1.0 - share)) + kRounding;
+  const Vector3d lower = a.cwiseMin(b).cwiseMin(c);
+  const Vector3d upper = a.cwiseMax(b).cwiseMax(c);
+  Box box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = lower[axis] - margin;
+    box.upper[axis] = upper[axis] + margin;
+  }
+  return box;
+}
+
+SphereHit SphereLocator::locate(const Vector3d& direction) const {
+  const Vector3d unit = unitVector(direction);
+  const Vector3d exact = scaled(direction);
+  const Vector3d place = unit.normalized();
+  const double x = place.x();
+  const double y = place.y();
+  const double z = place.z();
+  const auto contains = [&](const Box& box) {
+    return static_cast<bool>(
+        static_cast<unsigned>(box.lower[0] <= x) & static_cast<unsigned>(x <= box.upper[0]) &
+        static_cast<unsigned>(box.lower[1] <= y) & static_cast<unsigned>(y <= box.upper[1]) &
+        static_cast<unsigned>(box.lower[2] <= z) & static_cast<unsigned>(z <= box.upper[2]));
+  };
+
+  SphereHit hit;
+  std::array<int, 3> hit_sides{};
+  const std::size_t first_leaf = std::size_t{1} << levels_;
+  std::array<std::size_t, std::numeric_limits<Index>::digits + 2> stack{};
+  std::size_t size = 0;
+  stack[size++] = 1;
+  bool is_inside = false;
+  while (size > 0 && !is_inside) {
+    const std::size_t node = stack[--size];
+    if (node < first_leaf) {
+      for (const std::size_t part : {2 * node + 1, 2 * node})
+        if (contains(boxes_[part]))
+          stack[size++] = part;
+      continue;
+    }
+    for (std::size_t i = begin(node - first_leaf); i < begin(node - first_leaf + 1); ++i) {
+      const Index t = order_[i];
+      if (hit.triangle >= 0 && hit.triangle < t)
+        continue;
+      const Vector3d a = sphere_->col((*triangles_)(0, t));
+      const Vector3d b = sphere_->col((*triangles_)(1, t));
+      const Vector3d c = sphere_->col((*triangles_)(2, t));
+      std::array<int, 3> sides{};
+      if ((sides[0] = sideOf(exact, b, c)) < 0 || (sides[1] = sideOf(exact, c, a)) < 0 ||
+          (sides[2] = sideOf(exact, a, b)) < 0)
+        continue;
+      hit.triangle = t;
+      hit_sides = sides;
+      is_inside = sides[0] > 0 && sides[1] > 0 && sides[2] > 0;
+      if (is_inside)
+        break;
+    }
+  }
+  if (hit.triangle < 0)
+    return hit;
+
+  // Differences from the direction keep the digits in a tiny triangle. The weights are those of
+  // where the ray meets the plane of the corners.
+  std::array<Vector3d, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k)
+    corners[k] = sphere_->col((*triangles_)(static_cast<Eigen::Index>(k), hit.triangle)) - unit;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double volume = unit.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3]));
+    hit.weights[static_cast<Eigen::Index>(k)] = hit_sides[k] > 0 ? std::max(0.0, volume) : 0.0;
+  }
+  double sum = hit.weights.sum();
+  if (!(sum > 0.0)) {
+    // All is rounding: the middle of what is not excluded.
+    for (std::size_t k = 0; k < 3; ++k)
+      hit.weights[static_cast<Eigen::Index>(k)] = hit_sides[k] > 0 ? 1.0 : 0.0;
+    sum = hit.weights.sum();
+  }
+  hit.weights /= sum;
+  return hit;
+}
+
+}  // namespace spherical_param::internal

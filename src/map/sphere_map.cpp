@@ -1,0 +1,340 @@
+#include "spherical_param/map/sphere_map.h"
+
+#include "exact_predicates.h"
+#include "map_hierarchy.h"
+#include "map_relaxation.h"
+#include "parallel.h"
+#include "progress.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/mesh_topology.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+using internal::MapCorner;
+using internal::MapEnergy;
+using internal::MapHierarchy;
+using internal::MapMesh;
+using internal::MapRows;
+
+void checkOptions(const SphereMapOptions& options) {
+  const std::string caller = "computeSphereMap: ";
+  if (!(options.area_weight >= 0.0 && options.area_weight <= 1.0))
+    throw InvalidInput(caller + "area_weight = " + std::to_string(options.area_weight) +
+                       " is out of range; use 0 to 1");
+  constexpr int most_sweeps = 1000;
+  if (options.sweeps < 0 || options.sweeps > most_sweeps)
+    throw InvalidInput(caller + "sweeps = " + std::to_string(options.sweeps) +
+                       " is out of range; use 0 to " + std::to_string(most_sweeps));
+  if (options.threads < 0 || options.threads > internal::kMostThreads)
+    throw InvalidInput(caller + "threads = " + std::to_string(options.threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+}
+
+void checkMesh(const Positions& points, const Triangles& triangles, const Positions& start,
+               int threads) {
+  const std::string caller = "computeSphereMap: ";
+  if (points.cols() < 4)
+    throw InvalidInput(caller + std::to_string(points.cols()) +
+                       " vertices make no closed mesh; give at least 4");
+  constexpr Eigen::Index most_vertices = Eigen::Index{1} << 28;
+  if (points.cols() > most_vertices)
+    throw InvalidInput(caller + std::to_string(points.cols()) +
+                       " vertices are more than 2^28; simplify the mesh");
+  if (start.cols() != points.cols())
+    throw InvalidInput(caller + "there are " + std::to_string(points.cols()) +
+                       " vertices, but the start has " + std::to_string(start.cols()) +
+                       "; give a unit vector for each");
+  if (!points.allFinite())
+    throw InvalidInput(caller + "a coordinate of a vertex is not finite; remove such points first");
+  // Also what was rounded to float passes.
+  constexpr double tolerance = 1e-3;
+  for (Eigen::Index v = 0; v < start.cols(); ++v)
+    if (!(std::abs(start.col(v).norm() - 1.0) <= tolerance))
+      throw InvalidInput(caller + "the start of vertex " + std::to_string(v) + " has length " +
+                         std::to_string(start.col(v).norm()) + "; normalise it");
+  const MeshTopology topology =
+      checkTopology(triangles, static_cast<std::size_t>(points.cols()), {threads});
+  if (topology.isSphere())
+    return;
+  std::string fault = "it is no topological sphere";
+  if (!topology.closed)
+    fault = "it is not closed";
+  else if (!topology.manifold())
+    fault = "it is not manifold";
+  else if (!topology.oriented)
+    fault = "its triangles are not oriented consistently";
+  else if (!topology.faults.unused_vertices.empty())
+    fault = "vertex " + std::to_string(topology.faults.unused_vertices.front()) +
+            " belongs to no triangle";
+  else if (topology.components != 1)
+    fault = "it has " + std::to_string(topology.components) + " pieces";
+  else if (topology.genus)
+    fault = "its genus is " + std::to_string(*topology.genus);
+  throw InvalidInput(caller + "the mesh does not map to a sphere: " + fault +
+                     "; give a closed manifold mesh of genus 0 in one piece, each vertex used");
+}
+
+/// Buffers of a thread.
+struct Insertion {
+  std::vector<MapCorner> corners;
+  std::vector<Vector3d> polygon;
+  std::vector<Vector3d> clipped;
+};
+
+/// A point well inside the kernel of a spherical polygon, all of which the first of its vertices
+/// sees: from there each edge runs counter-clockwise. Zero if rounding leaves none.
+Vector3d kernelPoint(const Positions& sphere, Insertion& work) {
+  const std::vector<MapCorner>& ring = work.corners;
+  const std::size_t k = ring.size();
+  const auto at = [&](std::size_t i) -> Vector3d { return sphere.col(ring[i % k].neighbor); };
+  // As rays. What the two edges at the first vertex leave of the sphere is a lune, from that vertex
+  // to its antipode; on its sides are the points at a right angle to both ends.
+  const Vector3d apex = at(0);
+  const Vector3d side_behind = at(1) - apex * apex.dot(at(1));
+  const Vector3d side_before = at(k - 1) - apex * apex.dot(at(k - 1));
+  // The interior is to the left of the edge out, and to the left of the edge in.
+  const Vector3d out = side_behind.normalized();
+  const Vector3d in = side_before.normalized();
+  std::vector<Vector3d>& polygon = work.polygon;
+  const bool is_reflex = apex.dot(out.cross(in)) < 0.0;
+  if (is_reflex)
+    polygon = {apex, Vector3d(-in), Vector3d(-apex), Vector3d(-out)};
+  else
+    polygon = {apex, out, Vector3d(-apex), in};
+  for (std::size_t i = 1; i + 1 < k && !polygon.empty(); ++i) {
+    const Vector3d a = at(i);
+    // By the difference: the sides of the ring may be short.
+    const Vector3d normal = a.cross(at(i + 1) - a).normalized();
+    work.clipped.clear();
+    for (std::size_t p = 0; p < polygon.size(); ++p) {
+      const Vector3d& ray = polygon[p];
+      const Vector3d& next = polygon[p + 1 == polygon.size() ? 0 : p + 1];
+      // Likewise.
+      const double here = normal.dot(ray - a * (a.dot(ray)));
+      const double there = normal.dot(next - a * (a.dot(next)));
+      if (here >= 0.0)
+        work.clipped.push_back(ray);
+      if ((here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0))
+        work.clipped.push_back(((ray * std::abs(there) + next * std::abs(here))).normalized());
+    }
+    polygon.swap(work.clipped);
+  }
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& ray : polygon)
+    sum += ray;
+  const double length = sum.norm();
+  return length > 0.0 ? Vector3d(sum / length) : Vector3d(Vector3d::Zero());
+}
+
+/// Puts the vertex back into its ring.
+///
+/// \return false: there is no room for it.
+bool insertVertex(const MapHierarchy& hierarchy, Index v, const MapEnergy& energy,
+                  Positions& sphere, Insertion& work) {
+  const auto i = static_cast<std::size_t>(v) - 4;
+  const std::size_t begin = hierarchy.ring_begin[i];
+  const std::size_t end = hierarchy.ring_begin[i + 1];
+  work.corners.clear();
+  for (std::size_t r = begin; r < end; ++r) {
+    const Index first = hierarchy.ring[r];
+    const Index next = hierarchy.ring[r + 1 == end ? begin : r + 1];
+    const Vector3d cotangents = internal::mapCotangents(
+        hierarchy.points.col(v), hierarchy.points.col(first), hierarchy.points.col(next));
+    work.corners.push_back({first, hierarchy.ring_masses[r], static_cast<float>(cotangents[0]),
+                            static_cast<float>(cotangents[1]), static_cast<float>(cotangents[2])});
+  }
+  const Vector3d point = kernelPoint(sphere, work);
+  if (!internal::isMapValid(sphere, work.corners.data(), work.corners.size(), point))
+    return false;
+  sphere.col(v) = point;
+  constexpr int steps = 4;
+  for (int step = 0; step < steps; ++step)
+    if (!(internal::relaxMapVertex(sphere, v, work.corners.data(), work.corners.size(), energy) >
+          0.0))
+      break;
+  return true;
+}
+
+/// A regular tetrahedron, with the orientation of the triangles.
+void placeTetrahedron(const MapMesh& mesh, Positions& sphere) {
+  const double c = std::sqrt(1.0 / 3.0);
+  sphere.col(0) << c, c, c;
+  sphere.col(1) << -c, -c, c;
+  sphere.col(2) << -c, c, -c;
+  sphere.col(3) << c, -c, -c;
+  if (internal::orientation3d(Vector3d::Zero(), sphere.col(mesh.triangles(0, 0)),
+                              sphere.col(mesh.triangles(1, 0)),
+                              sphere.col(mesh.triangles(2, 0))) < 0)
+    sphere.col(2).swap(sphere.col(3));
+}
+
+/// The rotation that brings the map as near to the start as can be, each vertex weighted by its
+/// share of the area (W. Kabsch, 1976); the identity if no rotation is better than others.
+Eigen::Matrix3d rotationTo(const Positions& start, const Positions& sphere, const Positions& points,
+                           const Triangles& triangles) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  const double scale = points.cwiseAbs().maxCoeff();
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const Vector3d corner = points.col(triangles(0, t)) / scale;
+    const Vector3d u = points.col(triangles(1, t)) / scale - corner;
+    const Vector3d v = points.col(triangles(2, t)) / scale - corner;
+    const double area = u.cross(v).norm();
+    for (int k = 0; k < 3; ++k)
+      sum += area * start.col(triangles(k, t)) * sphere.col(triangles(k, t)).transpose();
+  }
+  if (!sum.allFinite())
+    return Eigen::Matrix3d::Identity();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3d& singular = svd.singularValues();
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  constexpr double distinct = 1e-9;
+  if (!(singular[1] + sign * singular[2] > distinct * singular[0]))
+    return Eigen::Matrix3d::Identity();
+  return svd.matrixU() * Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// From a tetrahedron to the finest mesh.
+class Refinement {
+public:
+  Refinement(const MapHierarchy& hierarchy, const SphereMapOptions& options)
+      : hierarchy_(hierarchy), options_(options), sphere_(3, hierarchy.points.cols()) {
+    for (const float mass : hierarchy.meshes.front().masses)
+      mass_ += static_cast<double>(mass);
+    const double area = options.area_weight;
+    const double angle = std::max(1.0 - area, kLeastAngleWeight);
+    const double area_of_mass = kAreaOfSphere / mass_;
+    final_ = {angle, (1.0 - kRatioShare) * area, kRatioShare * area, area_of_mass};
+    const double mild_area = std::min(area, kMildAreaWeight);
+    mild_ = {1.0 - mild_area, 0.0, mild_area, area_of_mass};
+  }
+
+  Positions run(std::vector<SphereMapLevel>& levels, const internal::ShareReport& report) {
+    placeTetrahedron(hierarchy_.meshes.back(), sphere_);
+    double work = 0.0;
+    for (const MapMesh& mesh : hierarchy_.meshes)
+      work += static_cast<double>(mesh.vertex_count);
+    double done = 0.0;
+    std::size_t batch = 0;
+    for (std::size_t l = hierarchy_.meshes.size(); l-- > 0;) {
+      const MapMesh& mesh = hierarchy_.meshes[l];
+      while (hierarchy_.batches[batch] < mesh.vertex_count) {
+        insert(hierarchy_.batches[batch], hierarchy_.batches[batch + 1]);
+        ++batch;
+      }
+      const double share = static_cast<double>(mesh.vertex_count);
+      levels.push_back(relax(mesh, internal::partOf(report, done / work, (done + share) / work)));
+      done += share;
+    }
+    std::reverse(levels.begin(), levels.end());
+    return std::move(sphere_);
+  }
+
+private:
+  /// Areas alone do not say where in its ring a vertex is best.
+  static constexpr double kLeastAngleWeight = 0.02;
+  static constexpr double kAreaOfSphere = 12.566370614359172;  // 4 pi
+  /// Share of the ratio in the weight of areas, the logarithm has the rest. The more of that, the
+  /// more triangles have just their areas, but the rougher is the map: others next to them are
+  /// sheared for it.
+  static constexpr double kRatioShare = 0.7;
+  /// Areas weigh no more than this while there are vertices that came just now: triangles that all
+  /// have their areas leave each other no room to move, whatever their shapes are.
+  static constexpr double kMildAreaWeight = 0.7;
+  static constexpr int kMildSweeps = 2;
+
+  void insert(Index first, Index end) {
+    const auto count = static_cast<std::size_t>(end - first);
+    const int threads =
+        internal::threadCount(options_.threads, count, internal::kParallelThreshold);
+    std::atomic<Index> failed{0};
+    internal::forEachBlock(count, threads, [&](std::size_t, std::size_t begin, std::size_t stop) {
+      Insertion work;
+      for (std::size_t i = begin; i < stop; ++i)
+        if (!insertVertex(hierarchy_, first + static_cast<Index>(i), mild_, sphere_, work))
+          ++failed;
+    });
+    if (failed > 0)
+      throw ComputeError("computeSphereMap: no room on the sphere for " + std::to_string(failed) +
+                         " vertices; remesh the surface, its triangles are too thin");
+  }
+
+  SphereMapLevel relax(const MapMesh& mesh, const internal::ShareReport& report) {
+    const MapRows rows = internal::makeMapRows(hierarchy_.points, mesh.triangles, mesh.masses,
+                                               mesh.vertex_count, options_.threads);
+    SphereMapLevel level;
+    level.vertices = static_cast<std::size_t>(mesh.vertex_count);
+    for (; level.sweeps < std::min(kMildSweeps, options_.sweeps); ++level.sweeps) {
+      internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      internal::sweepMap(sphere_, rows, mild_, options_.threads);
+    }
+    double value = internal::mapEnergy(sphere_, rows, final_, options_.threads);
+    bool goes_on = true;
+    for (; goes_on && level.sweeps < options_.sweeps; ++level.sweeps) {
+      internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      const double gain = internal::sweepMap(sphere_, rows, final_, options_.threads);
+      value -= gain;
+      goes_on = gain > kLeastGain * value;
+    }
+    level.energy = value / mass_;
+    return level;
+  }
+
+  /// A sweep that gains less, relative to the energy, is the last of its level.
+  static constexpr double kLeastGain = 1e-4;
+
+  const MapHierarchy& hierarchy_;
+  const SphereMapOptions& options_;
+  Positions sphere_;
+  MapEnergy mild_{};
+  MapEnergy final_{};
+  double mass_ = 0.0;
+};
+
+}  // namespace
+
+SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
+                           const Positions& start, const SphereMapOptions& options) {
+  checkOptions(options);
+  checkMesh(points, triangles, start, options.threads);
+  const internal::ShareReport report = internal::cancellable(options.progress, "computeSphereMap");
+  internal::tell(report, 0.0);
+  const MapHierarchy hierarchy = internal::buildMapHierarchy(points, triangles, options.threads,
+                                                             internal::partOf(report, 0.0, 0.2));
+  SphereMap map;
+  const Positions refined =
+      Refinement(hierarchy, options).run(map.levels, internal::partOf(report, 0.2, 0.9));
+  Positions sphere(3, points.cols());
+  for (std::size_t i = 0; i < hierarchy.order.size(); ++i)
+    sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));
+  const Positions unit_start = start.colwise().normalized();
+  map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
+  internal::tell(report, 0.95);
+  const Eigen::Matrix3d rotation = rotationTo(unit_start, sphere, points, triangles);
+  map.sphere = (rotation * sphere).colwise().normalized();
+  map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);
+  if (map.distortion.flipped_triangles > 0) {
+    // By the rounding of the rotation alone.
+    map.sphere = sphere;
+    map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);
+  }
+  internal::tell(report, 1.0);
+  return map;
+}
+
+}  // namespace spherical_param

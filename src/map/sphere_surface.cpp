@@ -1,0 +1,271 @@
+#include "spherical_param/map/sphere_surface.h"
+
+#include "corner_table.h"
+#include "exact_predicates.h"
+#include "option_checks.h"
+#include "parallel.h"
+#include "pi.h"
+#include "sphere_locator.h"
+#include "vertex_normals.h"
+#include "vertex_quadrics.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/mesh_topology.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+
+using internal::kPi;
+
+/// Throws InvalidInput for the first column of positions that check() does not pass.
+template <typename Check>
+void requireAll(const Positions& positions, const Check& check, const std::string& what,
+                const std::string& remedy) {
+  for (Eigen::Index i = 0; i < positions.cols(); ++i)
+    if (!check(positions.col(i)))
+      throw InvalidInput(what + " " + std::to_string(i) + " " + remedy);
+}
+
+bool isFlipped(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
+  return internal::orientation3d(Vector3d::Zero(), sphere.col(triangles(0, t)),
+                                 sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0;
+}
+
+/// The solid angle of a triangle on the unit sphere (A. van Oosterom and J. Strackee, 1983).
+double solidAngle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return 2.0 * std::atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
+}
+
+void checkInput(const Positions& points, const Triangles& triangles, const Positions& sphere,
+                int threads) {
+  if (threads < 0 || threads > internal::kMostThreads)
+    throw InvalidInput("SphereSurface: threads = " + std::to_string(threads) +
+                       " is out of range; use 0 (all) to " +
+                       std::to_string(internal::kMostThreads));
+  if (points.cols() != sphere.cols())
+    throw InvalidInput("SphereSurface: " + std::to_string(points.cols()) + " points, but " +
+                       std::to_string(sphere.cols()) + " on the sphere; they must be the same");
+  internal::checkTriangles("SphereSurface", triangles, points.cols());
+  requireAll(
+      points, [](const Vector3d& p) { return p.allFinite(); }, "SphereSurface: point",
+      "is not finite; leave such points out before the mesh is made");
+  constexpr double tolerance = 1e-9;
+  requireAll(
+      sphere, [](const Vector3d& u) { return std::abs(u.squaredNorm() - 1.0) <= tolerance; },
+      "SphereSurface: vertex", "is not of unit length on the sphere; normalise the sphere first");
+  TopologyOptions options;
+  options.threads = threads;
+  if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), options).isSphere())
+    throw InvalidInput("SphereSurface: the triangles must be a closed, manifold, consistently "
+                       "oriented mesh of genus 0 over all points; see checkTopology()");
+
+  const auto count = static_cast<std::size_t>(triangles.cols());
+  const int workers = internal::threadCount(threads, count, internal::kParallelThreshold);
+  struct Sums {
+    double angle = 0.0;
+    std::size_t flipped = 0;
+    std::size_t first = 0;  ///< that is flipped, if one is
+    Sums& operator+=(const Sums& other) {
+      first = flipped > 0 ? first : other.first;
+      angle += other.angle;
+      flipped += other.flipped;
+      return *this;
+    }
+  };
+  const Sums sums =
+      internal::sumOfBlocks(count, workers, Sums(), [&](std::size_t begin, std::size_t end) {
+        Sums sum;
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto t = static_cast<Eigen::Index>(i);
+          if (isFlipped(sphere, triangles, t))
+            sum += Sums{0.0, 1, i};
+          else
+            sum.angle += solidAngle(sphere.col(triangles(0, t)), sphere.col(triangles(1, t)),
+                                    sphere.col(triangles(2, t)));
+        }
+        return sum;
+      });
+  if (sums.flipped > 0)
+    throw InvalidInput("SphereSurface: triangle " + std::to_string(sums.first) +
+                       " is flipped on the sphere or has no area there, as " +
+                       std::to_string(sums.flipped) + " of " + std::to_string(count) +
+                       " are; make a map that is one to one by computeSphereMap()");
+  // Without a flip the map may still wind round some vertices more than once.
+  if (sums.angle > 6.0 * kPi)
+    throw InvalidInput("SphereSurface: the triangles cover the sphere " +
+                       std::to_string(std::lround(sums.angle / (4.0 * kPi))) +
+                       " times; make a map that is one to one by computeSphereMap()");
+}
+
+double areaOf(const Positions& points, const Triangles& triangles, int threads) {
+  const auto count = static_cast<std::size_t>(triangles.cols());
+  return internal::sumOfBlocks(
+      count, internal::threadCount(threads, count, internal::kShortPassThreshold), 0.0,
+      [&](std::size_t begin, std::size_t end) {
+        double sum = 0.0;
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto t = static_cast<Eigen::Index>(i);
+          const Vector3d a = points.col(triangles(0, t));
+          sum +=
+              0.5 * (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a).norm();
+        }
+        return sum;
+      });
+}
+
+}  // namespace
+
+struct SphereSurface::Data {
+  Data(const Positions& points_in, const Triangles& triangles_in, const Positions& sphere_in,
+       const SphereSurfaceOptions& options_in)
+      : options(options_in), points(points_in), triangles(triangles_in), sphere(sphere_in),
+        area(areaOf(points, triangles, options.threads)),
+        locator(sphere, triangles, options.threads) {
+    const auto count = static_cast<std::size_t>(points.cols());
+    const int threads =
+        internal::threadCount(options.threads, count, internal::kShortPassThreshold);
+    const internal::CornerTable corners(triangles, count, threads);
+    normals = internal::vertexNormals(points, triangles, sphere, corners, options.threads);
+    if (options.fit == SurfaceFit::Smooth)
+      quadrics.emplace(points, triangles, normals, corners, options.threads);
+  }
+
+  /// \param location with a triangle of the mesh.
+  SurfaceSample at(const SphereLocation& location) const {
+    SurfaceSample sample;
+    sample.location = location;
+    if (quadrics) {
+      const internal::VertexQuadrics::Point point =
+          quadrics->at(location.triangle, location.weights);
+      sample.position = point.position;
+      sample.normal = unitNormal(point.normal, location);
+      return sample;
+    }
+    Vector3d normal = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Index v = triangles(k, location.triangle);
+      sample.position += location.weights[k] * points.col(v);
+      normal += location.weights[k] * normals.col(v);
+    }
+    sample.normal = unitNormal(normal, location);
+    return sample;
+  }
+
+  /// A normal of unit length, also where those of the corners cancel.
+  Vector3d unitNormal(const Vector3d& normal, const SphereLocation& location) const {
+    constexpr double least = 1e-6;
+    const double length = normal.norm();
+    if (length > least)
+      return normal / length;
+    Eigen::Index nearest = 0;
+    location.weights.maxCoeff(&nearest);
+    return normals.col(triangles(nearest, location.triangle));
+  }
+
+  SphereSurfaceOptions options;
+  Positions points;
+  Triangles triangles;
+  Positions sphere;
+  Positions normals;  ///< of the vertices
+  double area;
+  internal::SphereLocator locator;
+  std::optional<internal::VertexQuadrics> quadrics;  ///< for SurfaceFit::Smooth
+};
+
+SphereSurface::SphereSurface(const Positions& points, const Triangles& triangles,
+                             const Positions& sphere, const SphereSurfaceOptions& options) {
+  internal::checkEnum("SphereSurface: fit", options.fit, SurfaceFit::Smooth);
+  checkInput(points, triangles, sphere, options.threads);
+  data_ = std::make_unique<const Data>(points, triangles, sphere, options);
+}
+
+SphereSurface::~SphereSurface() = default;
+SphereSurface::SphereSurface(SphereSurface&& other) noexcept = default;
+SphereSurface& SphereSurface::operator=(SphereSurface&& other) noexcept = default;
+
+const Positions& SphereSurface::points() const {
+  return data_->points;
+}
+
+const Triangles& SphereSurface::triangles() const {
+  return data_->triangles;
+}
+
+const Positions& SphereSurface::sphere() const {
+  return data_->sphere;
+}
+
+double SphereSurface::area() const {
+  return data_->area;
+}
+
+namespace {
+
+bool isDirection(const Vector3d& direction) {
+  return direction.allFinite() && !direction.isZero(0.0);
+}
+
+void requireHit(const internal::SphereHit& hit) {
+  if (hit.triangle < 0)
+    throw ComputeError("SphereSurface: no triangle holds a direction, as coordinates on the sphere "
+                       "are too small for exact signs; turn the sphere a little");
+}
+
+}  // namespace
+
+SphereLocation SphereSurface::locate(const Vector3d& direction) const {
+  if (!isDirection(direction))
+    throw InvalidInput("SphereSurface: the direction is zero or not finite; any other will do");
+  const internal::SphereHit hit = data_->locator.locate(direction);
+  requireHit(hit);
+  return {hit.triangle, hit.weights};
+}
+
+SurfaceSample SphereSurface::evaluate(const Vector3d& direction) const {
+  return data_->at(locate(direction));
+}
+
+SurfaceSample SphereSurface::evaluate(const SphereLocation& location) const {
+  if (location.triangle < 0 || location.triangle >= data_->triangles.cols())
+    throw InvalidInput("SphereSurface: location in triangle " + std::to_string(location.triangle) +
+                       " of " + std::to_string(data_->triangles.cols()) +
+                       "; use one of locate() of this surface");
+  return data_->at(location);
+}
+
+SurfaceSamples SphereSurface::evaluate(const Positions& directions) const {
+  requireAll(directions, isDirection, "SphereSurface: direction",
+             "is zero or not finite; any other will do");
+  const auto count = static_cast<std::size_t>(directions.cols());
+  SurfaceSamples samples;
+  samples.positions.resize(3, directions.cols());
+  samples.normals.resize(3, directions.cols());
+  samples.locations.resize(count);
+  internal::forEachItem(
+      count, internal::threadCount(data_->options.threads, count, internal::kParallelThreshold),
+      [&](std::size_t, std::size_t i) {
+        const auto column = static_cast<Eigen::Index>(i);
+        const internal::SphereHit hit = data_->locator.locate(directions.col(column));
+        samples.locations[i] = {hit.triangle, hit.weights};
+        if (hit.triangle < 0)
+          return;
+        const SurfaceSample sample = data_->at(samples.locations[i]);
+        samples.positions.col(column) = sample.position;
+        samples.normals.col(column) = sample.normal;
+      });
+  for (const SphereLocation& location : samples.locations)
+    requireHit({location.triangle, location.weights});
+  return samples;
+}
+
+}  // namespace spherical_param

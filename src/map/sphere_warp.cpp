@@ -1,0 +1,550 @@
+#include "sphere_warp.h"
+
+#include "exact_predicates.h"
+#include "parallel.h"
+#include "pi.h"
+#include "tangent_basis.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+/// A step x -> (x + s(x)) / |x + s(x)| of a tangential field is locally one to one where |s|^2 +
+/// |Ds|^2 < 1, as I + (s, Ds) then has an inverse; and a map of the sphere that is so everywhere is
+/// one to one. The field is examined at some places: the bound leaves room for those between.
+constexpr double kMostSlope = 0.4;
+/// Landmarks collide if they come nearer to each other than this share of the least of their
+/// distances at the beginning and the end.
+constexpr double kLeastApproach = 0.25;
+/// Places on their ways where their distances are examined.
+constexpr std::size_t kPathSamples = 48;
+/// Detours that are tried [rad at the middle, as a share of the way and 0.1].
+constexpr double kDetours[] = {0.0, 0.2, -0.2, 0.45, -0.45, 0.9, -0.9};
+constexpr int kDetourRounds = 6;
+/// Shortest step, as a share of the way.
+constexpr double kShortestStep = 1e-3;
+/// A field's support, in distances [chord]: of landmarks, and ways that they go.
+constexpr double kSupportOfDistance = 3.0;
+constexpr double kSupportOfWay = 4.0;
+/// Rounds over flipped triangles after each step, and at the end.
+constexpr int kStepRounds = 4;
+constexpr int kEndRounds = 30;
+/// Places besides the landmarks where a field is examined.
+constexpr int kSpread = 512;
+
+/// The way of a landmark: an arc, pushed aside most in its middle.
+struct Path {
+  Eigen::Vector3d from, to;
+  Eigen::Vector3d axis;                                   ///< of the arc
+  double angle = 0.0;                                     ///< of the arc [rad]
+  double detour = 0.0;                                    ///< [rad]
+  std::array<Eigen::Vector3d, kPathSamples - 1> samples;  ///< evenly, without the ends
+
+  Path(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) : from(begin), to(end) {
+    const Eigen::Vector3d cross = begin.cross(end);
+    angle = std::atan2(cross.norm(), begin.dot(end));
+    // Between antipodes any arc will do, and without a way any axis.
+    axis = cross.norm() > 1e-12 ? Eigen::Vector3d(cross.normalized())
+                                : Eigen::Vector3d(tangentBasis(begin).col(0));
+    bend(0.0);
+  }
+
+  void bend(double aside) {
+    detour = aside;
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      samples[s] = at(static_cast<double>(s + 1) / kPathSamples);
+  }
+
+  /// No place on it is farther from its beginning [rad].
+  double reach() const { return angle + std::abs(detour); }
+
+  Eigen::Vector3d at(double t) const {
+    if (t >= 1.0)
+      return to;
+    const Eigen::Vector3d along = axis.cross(from).normalized();
+    const Eigen::Vector3d on_arc = std::cos(t * angle) * from + std::sin(t * angle) * along;
+    const double aside = detour * std::sin(kPi * t);
+    return (std::cos(aside) * on_arc + std::sin(aside) * axis).normalized();
+  }
+};
+
+/// How much too near to each other two ways come: 0 for not at all, 1 for a crash.
+double conflictOf(const Path& one, const Path& other) {
+  const double apart =
+      kLeastApproach * std::min((one.from - other.from).norm(), (one.to - other.to).norm());
+  if ((one.from - other.from).norm() - one.reach() - other.reach() > apart)
+    return 0.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; s < one.samples.size(); ++s)
+    nearest = std::min(nearest, (one.samples[s] - other.samples[s]).squaredNorm());
+  nearest = std::sqrt(nearest);
+  return nearest < apart ? 1.0 - nearest / apart : 0.0;
+}
+
+/// Sends landmarks that would collide on detours. \return which still would, most of all
+std::ptrdiff_t planPaths(std::vector<Path>& paths, const std::vector<std::size_t>& active,
+                         int threads) {
+  const std::size_t n = active.size();
+  const auto conflict_of = [&](std::size_t i) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < n; ++j)
+      if (j != i)
+        sum += conflictOf(paths[active[i]], paths[active[j]]);
+    return sum;
+  };
+  std::vector<double> conflicts(n);
+  const auto examine = [&] {
+    const int used = threadCount(threads, n * n, kParallelThreshold);
+    forEachTask(n, used, [&](std::size_t, std::size_t i) { conflicts[i] = conflict_of(i); });
+    return std::max_element(conflicts.begin(), conflicts.end()) - conflicts.begin();
+  };
+  std::ptrdiff_t worst = examine();
+  for (int round = 0; round < kDetourRounds && conflicts[static_cast<std::size_t>(worst)] > 0.0;
+       ++round) {
+    for (std::size_t i = 0; i < n; ++i) {
+      double least = conflict_of(i);
+      if (least == 0.0)
+        continue;
+      Path& path = paths[active[i]];
+      double best = path.detour;
+      for (const double share : kDetours) {
+        path.bend(share * (path.angle + 0.1));
+        const double conflict = conflict_of(i);
+        if (conflict < least) {
+          least = conflict;
+          best = path.detour;
+        }
+      }
+      path.bend(best);
+    }
+    worst = examine();
+  }
+  return conflicts[static_cast<std::size_t>(worst)] > 0.0
+             ? static_cast<std::ptrdiff_t>(active[static_cast<std::size_t>(worst)])
+             : -1;
+}
+
+/// A tangential field on the sphere: the sum of vectors of which each counts the less the farther
+/// its centre is, without the part along the radius.
+class Field {
+public:
+  /// The field that has given tangential values at its centres. \param support [chord]
+  Field(const Positions& centers, const Positions& values, double support)
+      : centers_(centers), inverse_support_(1.0 / support) {
+    const Eigen::Index n = centers.cols();
+    std::vector<TangentBasis> bases;
+    for (Eigen::Index i = 0; i < n; ++i)
+      bases.push_back(tangentBasis(centers.col(i)));
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+    Eigen::VectorXd wanted(2 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const TangentBasis& basis = bases[static_cast<std::size_t>(i)];
+      wanted.segment<2>(2 * i) = basis.transpose() * values.col(i);
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        const double r = (centers.col(i) - centers.col(j)).norm() * inverse_support_;
+        if (r < 1.0)
+          gram.block<2, 2>(2 * i, 2 * j) =
+              kernel(r) * (basis.transpose() * bases[static_cast<std::size_t>(j)]);
+      }
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> solver(gram);
+    Eigen::VectorXd weights = solver.solve(wanted);
+    // Refined: the conditions are to hold to the last digits, though centres may be near.
+    for (int i = 0; i < 2; ++i)
+      weights += solver.solve(wanted - gram.selfadjointView<Eigen::Lower>() * weights);
+    weights_.resize(3, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      weights_.col(i) = bases[static_cast<std::size_t>(i)] * weights.segment<2>(2 * i);
+    is_finite_ = weights_.allFinite();
+  }
+
+  bool isFinite() const { return is_finite_; }
+
+  Eigen::Vector3d at(const Eigen::Vector3d& x) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Eigen::Index j = 0; j < centers_.cols(); ++j) {
+      const double squared =
+          (x - centers_.col(j)).squaredNorm() * inverse_support_ * inverse_support_;
+      if (squared < 1.0)
+        sum += kernel(std::sqrt(squared)) * weights_.col(j);
+    }
+    return sum - x.dot(sum) * x;
+  }
+
+  /// |s|^2 + |Ds|^2, the Frobenius norm.
+  double slopeAt(const Eigen::Vector3d& x) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d derivative = Eigen::Matrix3d::Zero();
+    for (Eigen::Index j = 0; j < centers_.cols(); ++j) {
+      const Eigen::Vector3d from = (x - centers_.col(j)) * inverse_support_;
+      const double r = from.norm();
+      if (r >= 1.0)
+        continue;
+      sum += kernel(r) * weights_.col(j);
+      // phi'(r) / r = -20 (1 - r)^3
+      const double fall = -20.0 * (1.0 - r) * (1.0 - r) * (1.0 - r) * inverse_support_;
+      derivative += fall * weights_.col(j) * from.transpose();
+    }
+    const TangentBasis basis = tangentBasis(x);
+    const double along = x.dot(sum);
+    double squared = (sum - along * x).squaredNorm();
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector3d e = basis.col(k);
+      const Eigen::Vector3d d = derivative * e;
+      squared += (d - (x.dot(d) + e.dot(sum)) * x - along * e).squaredNorm();
+    }
+    return squared;
+  }
+
+private:
+  static double kernel(double r) {
+    const double rest = (1.0 - r) * (1.0 - r);
+    return rest * rest * (4.0 * r + 1.0);
+  }
+
+  Positions centers_;
+  Positions weights_;
+  double inverse_support_;
+  bool is_finite_ = true;
+};
+
+bool isFlipped(const Positions& sphere, Index a, Index b, Index c) {
+  return orientation3d(Eigen::Vector3d::Zero(), sphere.col(a), sphere.col(b), sphere.col(c)) <= 0;
+}
+
+/// Mends flipped triangles by moves of single vertices.
+class Untangler {
+public:
+  Untangler(const Triangles& triangles, Eigen::Index n, const std::vector<char>& is_fixed)
+      : triangles_(triangles), is_fixed_(is_fixed), offsets_(static_cast<std::size_t>(n) + 1, 0),
+        corners_(static_cast<std::size_t>(triangles.size())) {
+    for (Eigen::Index i = 0; i < triangles.size(); ++i)
+      ++offsets_[static_cast<std::size_t>(triangles.data()[i]) + 1];
+    for (std::size_t v = 0; v + 1 < offsets_.size(); ++v)
+      offsets_[v + 1] += offsets_[v];
+    std::vector<std::size_t> end(offsets_.begin(), offsets_.end() - 1);
+    for (Index i = 0; i < static_cast<Index>(triangles.size()); ++i)
+      corners_[end[static_cast<std::size_t>(triangles.data()[i])]++] = i;
+  }
+
+  /// Flipped triangles, ascending.
+  std::vector<Index> flipped(const Positions& sphere, int threads) const {
+    const auto m = static_cast<std::size_t>(triangles_.cols());
+    std::vector<std::vector<Index>> of_block((m + kBlockSize - 1) / kBlockSize);
+    forEachBlock(m, threadCount(threads, m, kShortPassThreshold),
+                 [&](std::size_t block, std::size_t begin, std::size_t end) {
+                   for (std::size_t t = begin; t < end; ++t) {
+                     const auto corners = triangles_.col(static_cast<Eigen::Index>(t));
+                     if (isFlipped(sphere, corners[0], corners[1], corners[2]))
+                       of_block[block].push_back(static_cast<Index>(t));
+                   }
+                 });
+    std::vector<Index> all;
+    for (const std::vector<Index>& some : of_block)
+      all.insert(all.end(), some.begin(), some.end());
+    return all;
+  }
+
+  /// Mends what it can. \return the triangles that are still flipped
+  std::vector<Index> mend(Positions& sphere, int rounds, int threads, Index& moved) const {
+    std::vector<Index> bad = flipped(sphere, threads);
+    for (int round = 0; round < rounds && !bad.empty(); ++round) {
+      std::vector<Index> vertices;
+      for (const Index t : bad)
+        for (int k = 0; k < 3; ++k)
+          vertices.push_back(triangles_(k, t));
+      if (round > 3) {
+        // Their neighbours make room.
+        for (std::size_t i = 0, n = vertices.size(); i < n; ++i)
+          forEachSide(vertices[i], [&](Index a, Index) { vertices.push_back(a); });
+      }
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      for (const Index v : vertices)
+        if (is_fixed_[static_cast<std::size_t>(v)] == 0 && relax(sphere, v))
+          ++moved;
+      bad = flipped(sphere, threads);
+    }
+    return bad;
+  }
+
+private:
+  template <typename Visit>
+  void forEachSide(Index v, const Visit& visit) const {
+    for (std::size_t i = offsets_[static_cast<std::size_t>(v)];
+         i < offsets_[static_cast<std::size_t>(v) + 1]; ++i) {
+      const Index t = corners_[i] / 3;
+      const Index k = corners_[i] % 3;
+      visit(triangles_((k + 1) % 3, t), triangles_((k + 2) % 3, t));
+    }
+  }
+
+  int flippedAround(const Positions& sphere, Index v) const {
+    int count = 0;
+    forEachSide(v, [&](Index a, Index b) { count += isFlipped(sphere, v, a, b) ? 1 : 0; });
+    return count;
+  }
+
+  /// Moves a vertex towards its neighbours' mean, or to where its triangle with the least margin
+  /// has most, if fewer triangles around are flipped then, or as many and it is in between.
+  bool relax(Positions& sphere, Index v) const {
+    const Eigen::Vector3d old = sphere.col(v);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    forEachSide(v, [&](Index a, Index) { mean += sphere.col(a); });
+    mean.normalize();
+    const int before = flippedAround(sphere, v);
+    Eigen::Vector3d best = old;
+    int least = before;
+    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+      sphere.col(v) = ((1.0 - share) * old + share * mean).normalized();
+      const int count = flippedAround(sphere, v);
+      if (count < least) {
+        least = count;
+        best = sphere.col(v);
+      }
+    }
+    if (least > 0) {
+      // The middle of the kernel of the polygon of neighbours, by steps off the nearest of its
+      // sides.
+      Eigen::Vector3d place = mean;
+      for (int step = 0; step < 40 && least > 0; ++step) {
+        double nearest = std::numeric_limits<double>::infinity();
+        Eigen::Vector3d inward = Eigen::Vector3d::Zero();
+        double size = 0.0;
+        forEachSide(v, [&](Index a, Index b) {
+          const Eigen::Vector3d normal = sphere.col(a).cross(sphere.col(b));
+          const double length = normal.norm();
+          size = std::max(size, (sphere.col(a) - place).norm());
+          if (length > 0.0 && normal.dot(place) / length < nearest) {
+            nearest = normal.dot(place) / length;
+            inward = normal / length;
+          }
+        });
+        place = (place + size * 0.5 / (step + 2) * inward).normalized();
+        sphere.col(v) = place;
+        const int count = flippedAround(sphere, v);
+        if (count < least) {
+          least = count;
+          best = place;
+        }
+      }
+    }
+    if (least == before && before > 0)
+      best = (0.5 * old + 0.5 * mean).normalized();  // loosens what is stuck
+    sphere.col(v) = best;
+    return best != old;
+  }
+
+  const Triangles& triangles_;
+  const std::vector<char>& is_fixed_;
+  std::vector<std::size_t> offsets_;
+  std::vector<Index> corners_;
+};
+
+/// Directions that are spread evenly.
+Positions spreadDirections(int n) {
+  Positions directions(3, n);
+  for (int i = 0; i < n; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / n;
+    const double angle = kPi * (3.0 - std::sqrt(5.0)) * i;
+    const double radius = std::sqrt(1.0 - z * z);
+    directions.col(i) << radius * std::cos(angle), radius * std::sin(angle), z;
+  }
+  return directions;
+}
+
+/// Distance of each column to the nearest other one; of a single one 2, the largest there is.
+std::vector<double> nearestDistances(const Positions& places) {
+  std::vector<double> nearest(static_cast<std::size_t>(places.cols()), 2.0);
+  for (Eigen::Index i = 0; i < places.cols(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double distance = (places.col(i) - places.col(j)).norm();
+      for (const Eigen::Index k : {i, j})
+        nearest[static_cast<std::size_t>(k)] =
+            std::min(nearest[static_cast<std::size_t>(k)], distance);
+    }
+  return nearest;
+}
+
+/// The largest slope of a field over some places, and at which landmark it is, about.
+std::pair<double, std::size_t> steepestOf(const Field& field, const Positions& places,
+                                          const Positions& spread, int threads) {
+  const std::vector<double> nearest = nearestDistances(places);
+  const Eigen::Index n = places.cols();
+  constexpr int around = 6;
+  const std::size_t near_count = static_cast<std::size_t>(n) * (2 * around + 1);
+  std::vector<double> slopes(near_count + static_cast<std::size_t>(spread.cols()));
+  forEachItem(
+      slopes.size(),
+      threadCount(threads, slopes.size() * static_cast<std::size_t>(n), kShortPassThreshold),
+      [&](std::size_t, std::size_t s) {
+        if (s >= near_count) {
+          slopes[s] = field.slopeAt(spread.col(static_cast<Eigen::Index>(s - near_count)));
+          return;
+        }
+        const auto i = s / (2 * around + 1);
+        const auto k = static_cast<int>(s % (2 * around + 1));
+        Eigen::Vector3d x = places.col(static_cast<Eigen::Index>(i));
+        if (k > 0) {
+          const TangentBasis basis = tangentBasis(x);
+          const double angle = kPi / 3.0 * k;
+          const double far = nearest[i] * (k <= around ? 0.5 : 0.25);
+          x = (x + far * (std::cos(angle) * basis.col(0) + std::sin(angle) * basis.col(1)))
+                  .normalized();
+        }
+        slopes[s] = field.slopeAt(x);
+      });
+  const auto steepest = std::max_element(slopes.begin(), slopes.end());
+  const auto s = static_cast<std::size_t>(steepest - slopes.begin());
+  return {*steepest, s < near_count ? s / (2 * around + 1) : static_cast<std::size_t>(n)};
+}
+
+}  // namespace
+
+Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads) {
+  const auto m = static_cast<std::size_t>(triangles.cols());
+  return sumOfBlocks(m, threadCount(threads, m, kShortPassThreshold), Index{0},
+                     [&](std::size_t begin, std::size_t end) {
+                       Index count = 0;
+                       for (std::size_t t = begin; t < end; ++t) {
+                         const auto corners = triangles.col(static_cast<Eigen::Index>(t));
+                         count += isFlipped(sphere, corners[0], corners[1], corners[2]) ? 1 : 0;
+                       }
+                       return count;
+                     });
+}
+
+SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
+                         const std::vector<Landmark>& landmarks, int threads,
+                         const ShareReport& report) {
+  SphereWarp warp;
+  warp.reasons.resize(landmarks.size());
+  double told = 0.0;  // what is done again must not fall back
+  const Positions spread = spreadDirections(kSpread);
+  std::vector<char> is_fixed(static_cast<std::size_t>(sphere.cols()), 0);
+  const Untangler untangler(triangles, sphere.cols(), is_fixed);
+  const auto give_up = [&](std::size_t i, const char* reason) {
+    warp.reasons[i] = reason;
+    is_fixed[static_cast<std::size_t>(landmarks[i].vertex)] = 0;
+  };
+
+  for (;;) {
+    std::vector<std::size_t> active;
+    std::vector<Path> paths;
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      paths.emplace_back(sphere.col(landmarks[i].vertex), landmarks[i].target);
+      if (warp.reasons[i].empty()) {
+        active.push_back(i);
+        is_fixed[static_cast<std::size_t>(landmarks[i].vertex)] = 1;
+      }
+    }
+    for (std::ptrdiff_t worst = 0; !active.empty() && worst >= 0;) {
+      worst = planPaths(paths, active, threads);
+      if (worst < 0)
+        break;
+      give_up(static_cast<std::size_t>(worst),
+              "no way was found to its place that keeps it apart from the other pairs");
+      active.erase(std::find(active.begin(), active.end(), static_cast<std::size_t>(worst)));
+    }
+
+    warp.sphere = sphere;
+    warp.steps = 0;
+    warp.worst = 0.0;
+    warp.untangled = 0;
+    const auto n = static_cast<Eigen::Index>(active.size());
+    Positions places(3, n);
+    Positions ends(3, n);
+    double longest = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Path& path = paths[active[static_cast<std::size_t>(i)]];
+      places.col(i) = path.from;
+      ends.col(i) = path.to;
+      longest = std::max(longest, path.angle + 2.0 * std::abs(path.detour));
+    }
+    double support = 0.0;
+    for (const Positions& where : {places, ends})
+      for (const double distance : nearestDistances(where))
+        support = std::max(support, kSupportOfDistance * distance);
+    // Wider than what is moved, so that it is not squeezed; more than the diameter is no use.
+    support = std::min(2.0, std::max(support, kSupportOfWay * longest));
+
+    std::ptrdiff_t stuck = -1;
+    double t = 0.0;
+    double step = 0.25;
+    std::vector<Index> bad = untangler.mend(warp.sphere, kEndRounds, threads, warp.untangled);
+    // The last step goes nowhere but to the targets, from where rounding has left the landmarks.
+    for (bool is_last = n == 0; !is_last;) {
+      is_last = t >= 1.0;
+      const double goal = is_last ? 1.0 : std::min(1.0, t + step);
+      Positions values(3, n);
+      double farthest = 0.0;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Vector3d place = places.col(i);
+        const Eigen::Vector3d next = paths[active[static_cast<std::size_t>(i)]].at(goal);
+        values.col(i) = next / std::max(0.5, next.dot(place)) - place;
+        values.col(i) -= place.dot(values.col(i)) * place;
+        farthest = std::max(farthest, (next - place).norm());
+      }
+      if (is_last && farthest == 0.0)
+        break;
+      const Field field(places, values, support);
+      const auto [slope, where] = steepestOf(field, places, spread, threads);
+      if (farthest > 0.25 || !field.isFinite() || !(slope <= kMostSlope * kMostSlope)) {
+        step = 0.5 * (goal - t);
+        if (is_last || step < kShortestStep) {
+          stuck = static_cast<std::ptrdiff_t>(active[std::min(where, active.size() - 1)]);
+          break;
+        }
+        continue;
+      }
+      const auto count = static_cast<std::size_t>(warp.sphere.cols());
+      forEachItem(count, threadCount(threads, count * active.size(), kShortPassThreshold),
+                  [&](std::size_t, std::size_t v) {
+                    const auto i = static_cast<Eigen::Index>(v);
+                    const Eigen::Vector3d x = warp.sphere.col(i);
+                    warp.sphere.col(i) = (x + field.at(x)).normalized();
+                  });
+      for (Eigen::Index i = 0; i < n; ++i)
+        places.col(i) = warp.sphere.col(landmarks[active[static_cast<std::size_t>(i)]].vertex);
+      bad = untangler.mend(warp.sphere, kStepRounds, threads, warp.untangled);
+      ++warp.steps;
+      t = goal;
+      step *= 1.5;
+      told = std::max(told, 0.99 * t);
+      tell(report, told);
+    }
+    if (stuck < 0 && n > 0) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        warp.worst = std::max(warp.worst, (places.col(i) - ends.col(i)).norm());
+        warp.sphere.col(landmarks[active[static_cast<std::size_t>(i)]].vertex) = ends.col(i);
+      }
+      bad = untangler.mend(warp.sphere, kEndRounds, threads, warp.untangled);
+      if (!bad.empty()) {
+        // The landmark that is nearest to a triangle that cannot be mended is in the way.
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+        for (int k = 0; k < 3; ++k)
+          middle += warp.sphere.col(triangles(k, bad[0]));
+        Eigen::Index nearest = 0;
+        (ends.colwise() - middle.normalized()).colwise().squaredNorm().minCoeff(&nearest);
+        stuck = static_cast<std::ptrdiff_t>(active[static_cast<std::size_t>(nearest)]);
+      }
+    }
+    if (stuck < 0)
+      break;
+    give_up(static_cast<std::size_t>(stuck),
+            "no motion of the sphere was found that takes it to its place without a fold");
+  }
+  tell(report, 1.0);
+  return warp;
+}
+
+}  // namespace spherical_param::internal

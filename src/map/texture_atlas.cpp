@@ -1,0 +1,438 @@
+#include "spherical_param/map/texture_atlas.h"
+
+#include "spherical_param/errors.h"
+#include "spherical_param/mesh_topology.h"
+
+#include "exact_predicates.h"
+#include "option_checks.h"
+#include "sphere_cutting.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+using internal::CellSide;
+using internal::CutSphere;
+using internal::PlaneSigns;
+using internal::SphereCells;
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Planes of sphere_cutting.h.
+constexpr int x_plane = 0;
+constexpr int y_plane = 1;
+constexpr int z_plane = 2;
+
+/// A face of the cube: right, up and outward are a right-handed frame of axes.
+struct CubeFace {
+  std::array<int, 3> right;
+  std::array<int, 3> up;
+  std::array<int, 3> outward;
+};
+
+/// In rows of three, the upper row first.
+constexpr std::array<CubeFace, 6> cube_faces = {{
+    {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}},
+    {{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}},
+    {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+    {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+    {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
+    {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
+}};
+
+double along(const std::array<int, 3>& axis, const Eigen::Vector3d& point) {
+  return axis[0] * point.x() + axis[1] * point.y() + axis[2] * point.z();
+}
+
+/// A chart is smooth in each of its cells. Those of the octahedral chart and of the cube map are
+/// whole octants and faces: the charts are projective there, so that they keep great circles
+/// straight and turn no triangle over, however large it is. A triangle over the border of two
+/// octants would not wrap round, but it could be turned over. Longitude and latitude are cut along
+/// three more half meridians than they need: it is there that triangles take up the poles.
+SphereCells cellsOf(SphereChart chart) {
+  SphereCells cells;
+  switch (chart) {
+  case SphereChart::Equirectangular:
+    for (const int y : {1, -1})
+      for (const int x : {1, -1})
+        cells.push_back({{x_plane, x}, {y_plane, y}});
+    break;
+  case SphereChart::Octahedral:
+    for (const int z : {1, -1})
+      for (const int y : {1, -1})
+        for (const int x : {1, -1})
+          cells.push_back({{x_plane, x}, {y_plane, y}, {z_plane, z}});
+    break;
+  case SphereChart::CubeMap: {
+    // x - y, x + y, x - z, x + z, y - z and y + z are planes 3 to 8.
+    constexpr std::array<std::array<std::array<int, 2>, 4>, 6> sides = {{
+        {{{3, 1}, {4, 1}, {5, 1}, {6, 1}}},
+        {{{3, -1}, {4, -1}, {5, -1}, {6, -1}}},
+        {{{3, -1}, {4, 1}, {7, 1}, {8, 1}}},
+        {{{3, 1}, {4, -1}, {7, -1}, {8, -1}}},
+        {{{5, -1}, {6, 1}, {7, -1}, {8, 1}}},
+        {{{5, 1}, {6, -1}, {7, 1}, {8, -1}}},
+    }};
+    for (const auto& face : sides) {
+      cells.emplace_back();
+      for (const auto& [plane, sign] : face)
+        cells.back().push_back({plane, sign});
+    }
+    break;
+  }
+  }
+  return cells;
+}
+
+/// The place of a point, of any length, that is in a cell.
+Eigen::Vector2d coordinatesIn(const TextureAtlasOptions& options, const std::vector<CellSide>& cell,
+                              std::size_t index, const Eigen::Vector3d& point) {
+  switch (options.chart) {
+  case SphereChart::Equirectangular: {
+    const double y_sign = cell[1].sign;
+    // The cell decides between both ends of the image.
+    const double longitude = point.y() == 0.0 && point.x() < 0.0 ? y_sign * pi
+                             : point.x() == 0.0 && point.y() == 0.0
+                                 ? 0.0
+                                 : std::atan2(point.y(), point.x());
+    const double latitude = std::atan2(point.z(), std::hypot(point.x(), point.y()));
+    return {std::clamp((1.0 + longitude / pi) / 2.0, 0.0, 1.0),
+            std::clamp(0.5 + latitude / pi, 0.0, 1.0)};
+  }
+  case SphereChart::Octahedral: {
+    const double sum = point.cwiseAbs().sum();
+    Eigen::Vector2d place(point.x() / sum, point.y() / sum);
+    if (point.z() < 0.0)
+      place = {cell[0].sign * (1.0 - std::abs(point.y()) / sum),
+               cell[1].sign * (1.0 - std::abs(point.x()) / sum)};
+    return ((Eigen::Vector2d::Ones() + place) / 2.0).cwiseMax(0.0).cwiseMin(1.0);
+  }
+  case SphereChart::CubeMap: {
+    const CubeFace& face = cube_faces[index];
+    const double depth = along(face.outward, point);
+    const double free = 1.0 - 2.0 * options.margin;
+    const auto place = [&](const std::array<int, 3>& axis) {
+      return options.margin +
+             free * (1.0 + std::clamp(along(axis, point) / depth, -1.0, 1.0)) / 2.0;
+    };
+    const auto column = static_cast<double>(index % 3);
+    const double row = index < 3 ? 1.0 : 0.0;
+    return {(column + place(face.right)) / 3.0, (row + place(face.up)) / 2.0};
+  }
+  }
+  return Eigen::Vector2d::Zero();
+}
+
+bool isPole(const Eigen::Vector3d& point) {
+  return point.x() == 0.0 && point.y() == 0.0;
+}
+
+/// Places of the corners of triangles.
+class Places {
+public:
+  Places(const TextureAtlasOptions& options, const SphereCells& cells, const CutSphere& sphere)
+      : options_(options), cells_(cells), sphere_(sphere) {}
+
+  std::array<Eigen::Vector2d, 3> of(std::size_t t) const {
+    const std::array<Index, 3>& triangle = sphere_.triangles[t];
+    std::array<Eigen::Vector2d, 3> places;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto cell = static_cast<std::size_t>(sphere_.cells[t]);
+      places[k] = coordinatesIn(options_, cells_[cell], cell,
+                                sphere_.points[static_cast<std::size_t>(triangle[k])]);
+    }
+    // A pole is the whole upper or lower side of the image; each triangle has its part of that.
+    for (std::size_t k = 0; k < 3; ++k)
+      if (hasPoleAt(t, k))
+        places[k].x() = (places[(k + 1) % 3].x() + places[(k + 2) % 3].x()) / 2.0;
+    return places;
+  }
+
+  bool hasPoleAt(std::size_t t, std::size_t corner) const {
+    return options_.chart == SphereChart::Equirectangular &&
+           isPole(sphere_.points[static_cast<std::size_t>(sphere_.triangles[t][corner])]);
+  }
+
+private:
+  const TextureAtlasOptions& options_;
+  const SphereCells& cells_;
+  const CutSphere& sphere_;
+};
+
+/// Splits edges until no triangle is turned over in a chart where great circles are not straight.
+///
+/// Three corners that are nearly on a great circle change their orientation there with its
+/// curvature. The edge opposite to the middle one is split beside that: of both parts, each has
+/// nearly a right angle, and so has its image.
+class Straightening {
+public:
+  Straightening(const Places& places, CutSphere& sphere) : places_(places), sphere_(sphere) {}
+
+  void run() {
+    std::vector<std::size_t> turned;
+    for (std::size_t t = 0; t < sphere_.triangles.size(); ++t)
+      if (isTurnedOver(t))
+        turned.push_back(t);
+    if (turned.empty())
+      return;
+    for (std::size_t t = 0; t < sphere_.triangles.size(); ++t)
+      addSides(t);
+    // Each split shortens edges, whose images then are straighter. What is left after so many is
+    // as small as rounding.
+    std::size_t budget = 64 * sphere_.triangles.size() + 4096;
+    while (!turned.empty() && budget > 0) {
+      const std::size_t t = turned.back();
+      turned.pop_back();
+      if (!isTurnedOver(t))
+        continue;
+      --budget;
+      for (const std::size_t part : split(t))
+        if (isTurnedOver(part))
+          turned.push_back(part);
+    }
+  }
+
+private:
+  bool isTurnedOver(std::size_t t) const {
+    const std::array<Eigen::Vector2d, 3> p = places_.of(t);
+    const Eigen::Vector2d b = p[1] - p[0];
+    const Eigen::Vector2d c = p[2] - p[0];
+    const double doubled_area = b.x() * c.y() - b.y() * c.x();
+    // Places are rounded: below this nothing can be said, nor mended.
+    const double rounding =
+        4.0 * internal::kUnitRoundoff * std::sqrt(std::max(b.squaredNorm(), c.squaredNorm()));
+    return doubled_area < -rounding;
+  }
+
+  void addSides(std::size_t t) {
+    const std::array<Index, 3>& triangle = sphere_.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k)
+      left_of_[{triangle[k], triangle[(k + 1) % 3]}] = t;
+  }
+
+  const Eigen::Vector3d& pointOf(Index v) const {
+    return sphere_.points[static_cast<std::size_t>(v)];
+  }
+
+  /// Splits the longest side of a triangle. \return the triangles that there are now instead.
+  std::vector<std::size_t> split(std::size_t t) {
+    const std::array<Index, 3> triangle = sphere_.triangles[t];
+    std::size_t longest = 0;
+    double length = -1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double other =
+          (pointOf(triangle[k]).normalized() - pointOf(triangle[(k + 1) % 3]).normalized())
+              .squaredNorm();
+      if (other > length) {
+        length = other;
+        longest = k;
+      }
+    }
+    const Index a = triangle[longest];
+    const Index b = triangle[(longest + 1) % 3];
+    const Index c = triangle[(longest + 2) % 3];
+    const auto across = left_of_.find({b, a});
+    if (across == left_of_.end())
+      return {};
+    const std::size_t other = across->second;
+    const double share = shareBeside(pointOf(a), pointOf(b), pointOf(c));
+    const Index middle = addVertex(a, b, share);
+    if (middle < 0)
+      return {};
+    const std::size_t new_part = replace(t, a, b, middle);
+    const std::size_t new_other = replace(other, b, a, middle);
+    return {t, new_part, other, new_other};
+  }
+
+  /// How far along from a to b the point is that is closest to c.
+  static double shareBeside(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                            const Eigen::Vector3d& c) {
+    const Eigen::Vector3d normal = a.cross(b);
+    const double of_a = c.cross(b).dot(normal);
+    const double of_b = a.cross(c).dot(normal);
+    const double share = of_b / (of_a + of_b);
+    // NaN where the edge has no length.
+    return share > 0.02 && share < 0.98 ? share : 0.5;
+  }
+
+  /// A new vertex on an edge, -1 if there is no room for one.
+  Index addVertex(Index a, Index b, double share) {
+    const Eigen::Vector3d point = (1.0 - share) * pointOf(a) + share * pointOf(b);
+    if (point == pointOf(a) || point == pointOf(b))
+      return -1;
+    // Both ends are in one triangle of the mesh.
+    std::array<std::pair<Index, double>, 3> parts;
+    std::size_t count = 0;
+    for (const auto& [end, weight] : {std::pair(a, 1.0 - share), std::pair(b, share)}) {
+      const CutVertex& vertex = sphere_.vertices[static_cast<std::size_t>(end)];
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Index v = vertex.vertices[static_cast<std::size_t>(k)];
+        if (vertex.weights[k] == 0.0)
+          continue;
+        const auto known = std::find_if(parts.begin(), parts.begin() + count,
+                                        [v](const auto& part) { return part.first == v; });
+        if (known == parts.end() || known == parts.begin() + count)
+          parts[count++] = {v, weight * vertex.weights[k]};
+        else
+          known->second += weight * vertex.weights[k];
+      }
+    }
+    CutVertex vertex;
+    for (std::size_t k = 0; k < 3; ++k) {
+      vertex.vertices[k] = parts[std::min(k, count - 1)].first;
+      vertex.weights[static_cast<Eigen::Index>(k)] = k < count ? parts[k].second : 0.0;
+    }
+    sphere_.vertices.push_back(vertex);
+    sphere_.points.push_back(point);
+    return static_cast<Index>(sphere_.points.size()) - 1;
+  }
+
+  /// Replaces the triangle left of the edge from a to b by two. \return the new one.
+  std::size_t replace(std::size_t t, Index a, Index b, Index middle) {
+    std::array<Index, 3>& triangle = sphere_.triangles[t];
+    left_of_.erase({a, b});
+    std::array<Index, 3> part = triangle;
+    *std::find(triangle.begin(), triangle.end(), b) = middle;
+    *std::find(part.begin(), part.end(), a) = middle;
+    sphere_.triangles.push_back(part);
+    sphere_.cells.push_back(sphere_.cells[t]);
+    sphere_.source.push_back(sphere_.source[t]);
+    addSides(t);
+    addSides(sphere_.triangles.size() - 1);
+    return sphere_.triangles.size() - 1;
+  }
+
+  const Places& places_;
+  CutSphere& sphere_;
+  std::map<std::pair<Index, Index>, std::size_t> left_of_;  // directed edge -> triangle
+};
+
+void checkOptions(const TextureAtlasOptions& options, const std::string& function) {
+  internal::checkEnum((function + ": chart").c_str(), options.chart, SphereChart::CubeMap);
+  if (!(options.margin >= 0.0 && options.margin < 0.25))
+    throw InvalidInput(function + ": margin is " + std::to_string(options.margin) +
+                       "; give a share of the side of a face in [0, 0.25)");
+}
+
+void checkMesh(const Triangles& triangles, const Positions& sphere) {
+  const std::string function = "makeTextureAtlas";
+  if (!checkTopology(triangles, static_cast<std::size_t>(sphere.cols())).isSphere())
+    throw InvalidInput(function +
+                       ": the triangles are no closed, oriented sphere over all vertices; give a "
+                       "mesh as reconstruct() makes it");
+  constexpr double tolerance = 1e-6;  // that of single precision, and no more
+  for (Eigen::Index v = 0; v < sphere.cols(); ++v)
+    if (!(std::abs(sphere.col(v).norm() - 1.0) <= tolerance))
+      throw InvalidInput(function + ": vertex " + std::to_string(v) +
+                         " is not of unit length; give directions");
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    if (internal::orientation3d(Eigen::Vector3d::Zero(), sphere.col(triangles(0, t)),
+                                sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0)
+      throw InvalidInput(function + ": triangle " + std::to_string(t) +
+                         " is flipped on the sphere; give a map that is one to one, as "
+                         "computeSphereMap() makes it");
+}
+
+}  // namespace
+
+TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& sphere,
+                              const TextureAtlasOptions& options) {
+  checkOptions(options, "makeTextureAtlas");
+  checkMesh(triangles, sphere);
+
+  const bool has_poles = options.chart == SphereChart::Equirectangular;
+  const SphereCells cells = cellsOf(options.chart);
+  CutSphere cut = internal::cutSphere(triangles, sphere, cells, has_poles ? y_plane : -1);
+  const Places places(options, cells, cut);
+  if (has_poles)
+    Straightening(places, cut).run();
+
+  TextureAtlas atlas;
+  atlas.chart = options.chart;
+  const auto count = static_cast<Eigen::Index>(cut.triangles.size());
+  atlas.triangles.resize(3, count);
+  atlas.coordinate_triangles.resize(3, count);
+  std::vector<Eigen::Vector2d> columns;
+  columns.reserve(cut.vertices.size());
+  // The columns of a vertex are a list that begins at the first.
+  std::vector<Index> first(cut.vertices.size(), -1);
+  std::vector<Index> next;
+  next.reserve(cut.vertices.size());
+  for (Eigen::Index t = 0; t < count; ++t) {
+    const std::array<Eigen::Vector2d, 3> corners = places.of(static_cast<std::size_t>(t));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index vertex = cut.triangles[static_cast<std::size_t>(t)][k];
+      Index* column = &first[static_cast<std::size_t>(vertex)];
+      while (*column >= 0 && columns[static_cast<std::size_t>(*column)] != corners[k])
+        column = &next[static_cast<std::size_t>(*column)];
+      if (*column < 0) {
+        *column = static_cast<Index>(columns.size());
+        columns.push_back(corners[k]);
+        atlas.coordinate_triangles(static_cast<Eigen::Index>(k), t) = *column;
+        next.push_back(-1);
+      } else {
+        atlas.coordinate_triangles(static_cast<Eigen::Index>(k), t) = *column;
+      }
+      atlas.triangles(static_cast<Eigen::Index>(k), t) = vertex;
+    }
+  }
+  atlas.coordinates.resize(2, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    atlas.coordinates.col(static_cast<Eigen::Index>(i)) = columns[i];
+  atlas.vertices = std::move(cut.vertices);
+  atlas.source = std::move(cut.source);
+  return atlas;
+}
+
+Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& values) {
+  Index last = -1;
+  for (const CutVertex& vertex : atlas.vertices)
+    if (*std::min_element(vertex.vertices.begin(), vertex.vertices.end()) < 0)
+      throw InvalidInput("atCutVertices: the atlas names a vertex below 0; use one that "
+                         "makeTextureAtlas() made");
+  for (const CutVertex& vertex : atlas.vertices)
+    last = std::max(last, *std::max_element(vertex.vertices.begin(), vertex.vertices.end()));
+  if (values.cols() != last + 1)
+    throw InvalidInput("atCutVertices: there are values of " + std::to_string(values.cols()) +
+                       " vertices, the mesh has " + std::to_string(last + 1) +
+                       "; give one column for each");
+  Eigen::MatrixXd result(values.rows(), static_cast<Eigen::Index>(atlas.vertices.size()));
+  for (std::size_t i = 0; i < atlas.vertices.size(); ++i) {
+    const CutVertex& vertex = atlas.vertices[i];
+    auto column = result.col(static_cast<Eigen::Index>(i));
+    // What has no weight has no say, be it no number.
+    if (vertex.weights[0] == 1.0) {
+      column = values.col(vertex.vertices[0]);
+      continue;
+    }
+    column.setZero();
+    for (Eigen::Index k = 0; k < 3; ++k)
+      if (vertex.weights[k] > 0.0)
+        column += vertex.weights[k] * values.col(vertex.vertices[static_cast<std::size_t>(k)]);
+  }
+  return result;
+}
+
+Eigen::Vector2d chartCoordinates(const TextureAtlasOptions& options,
+                                 const Eigen::Vector3d& direction) {
+  checkOptions(options, "chartCoordinates");
+  if (!direction.allFinite() || direction.isZero(0.0))
+    throw InvalidInput("chartCoordinates: the direction is zero or not finite; give a vector with "
+                       "a length");
+  const SphereCells cells = cellsOf(options.chart);
+  const PlaneSigns signs = internal::planeSigns(direction);
+  std::size_t cell = 0;
+  while (!internal::isInCell(signs, cells[cell]))
+    ++cell;
+  return coordinatesIn(options, cells[cell], cell, direction);
+}
+
+}  // namespace spherical_param

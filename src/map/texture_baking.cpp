@@ -1,0 +1,304 @@
+#include "spherical_param/map/texture_atlas.h"
+
+#include "spherical_param/errors.h"
+
+#include "corner_table.h"
+#include "exact_predicates.h"
+#include "option_checks.h"
+#include "parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+namespace spherical_param {
+namespace {
+
+/// Images are worked on in bands of so many rows or columns, each by one thread.
+constexpr int band_height = 32;
+
+int widthOf(SphereChart chart, int height) {
+  switch (chart) {
+  case SphereChart::Equirectangular:
+    return 2 * height;
+  case SphereChart::Octahedral:
+    return height;
+  case SphereChart::CubeMap:
+    return (3 * height + 1) / 2;
+  }
+  return height;
+}
+
+void checkOptions(const std::string& function, const BakeOptions& options) {
+  const auto check = [&](const char* name, int value, int lowest, int highest) {
+    if (value < lowest || value > highest)
+      throw InvalidInput(function + ": " + name + " is " + std::to_string(value) +
+                         "; give a number from " + std::to_string(lowest) + " to " +
+                         std::to_string(highest));
+  };
+  check("height", options.height, 16, 16384);
+  check("gutter", options.gutter, 0, 256);
+  check("threads", options.threads, 0, internal::kMostThreads);
+}
+
+/// Refuses what no makeTextureAtlas() made.
+void checkAtlas(const char* function, const TextureAtlas& atlas) {
+  internal::checkEnum((std::string(function) + ": chart").c_str(), atlas.chart,
+                      SphereChart::CubeMap);
+  internal::checkTriangles(function, atlas.triangles,
+                           static_cast<Eigen::Index>(atlas.vertices.size()));
+  internal::checkTriangles(function, atlas.coordinate_triangles, atlas.coordinates.cols());
+  if (atlas.triangles.cols() != atlas.coordinate_triangles.cols() ||
+      !(atlas.coordinates.array() >= 0.0 && atlas.coordinates.array() <= 1.0).all())
+    throw InvalidInput(std::string(function) +
+                       ": the atlas has no place in [0, 1] for each corner of its triangles; use "
+                       "one that makeTextureAtlas() made");
+}
+
+using Color = std::array<std::uint8_t, 3>;
+
+class Painter {
+public:
+  Painter(const TextureAtlas& atlas, const BakeOptions& options) : atlas_(atlas) {
+    image_.height = options.height;
+    image_.width = widthOf(atlas.chart, options.height);
+    image_.pixels.assign(3 * size(), 0);
+    image_.covered.assign(size(), 0);
+    threads_ = internal::threadCount(options.threads, size(), internal::kParallelThreshold);
+  }
+
+  /// \param color of a triangle and weights of its corners.
+  template <typename ColorOf>
+  void paintTriangles(const ColorOf& color) {
+    const int bands = (image_.height + band_height - 1) / band_height;
+    // The triangles that may reach into a band, ascending.
+    std::vector<std::vector<Index>> of_band(static_cast<std::size_t>(bands));
+    for (Eigen::Index t = 0; t < atlas_.coordinate_triangles.cols(); ++t) {
+      double lowest = 1.0;
+      double highest = 0.0;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double v = atlas_.coordinates(1, atlas_.coordinate_triangles(k, t));
+        lowest = std::min(lowest, v);
+        highest = std::max(highest, v);
+      }
+      const int first = firstPixel(1.0 - highest, image_.height);
+      const int last = lastPixel(1.0 - lowest, image_.height);
+      for (int band = first / band_height; first <= last && band <= last / band_height; ++band)
+        of_band[static_cast<std::size_t>(band)].push_back(static_cast<Index>(t));
+    }
+    internal::forEachTask(static_cast<std::size_t>(bands), threads_,
+                          [&](std::size_t, std::size_t band) {
+                            const int first = static_cast<int>(band) * band_height;
+                            const int last = std::min(first + band_height, image_.height) - 1;
+                            for (const Index t : of_band[band])
+                              paintTriangle(t, first, last, color);
+                          });
+  }
+
+  /// Gives pixels up to so far away from the triangles the colour of the nearest in one.
+  void paintGutter(int gutter) {
+    if (gutter == 0)
+      return;
+    // Of each pixel, the row of the nearest one in its column that is covered.
+    std::vector<int> nearest(size(), -1);
+    forEachLine(image_.width, [&](int x) {
+      int above = -1;
+      for (int y = 0; y < image_.height; ++y) {
+        const std::size_t i = at(x, y);
+        above = image_.covered[i] == 1 ? y : above;
+        nearest[i] = above;
+      }
+      int below = -1;
+      for (int y = image_.height - 1; y >= 0; --y) {
+        const std::size_t i = at(x, y);
+        below = image_.covered[i] == 1 ? y : below;
+        if (below >= 0 && (nearest[i] < 0 || below - y < y - nearest[i]))
+          nearest[i] = below;
+      }
+    });
+    const bool wraps = atlas_.chart == SphereChart::Equirectangular;
+    forEachLine(image_.height, [&](int y) {
+      for (int x = 0; x < image_.width; ++x) {
+        if (image_.covered[at(x, y)] == 1)
+          continue;
+        int best = gutter * gutter + 1;
+        std::size_t source = 0;
+        for (int step = 0; step <= gutter && step * step < best; ++step)
+          for (const int side : {-1, 1}) {
+            int column = x + side * step;
+            if (wraps)
+              column = ((column % image_.width) + image_.width) % image_.width;
+            if (column < 0 || column >= image_.width)
+              continue;
+            const int other = nearest[at(column, y)];
+            if (other < 0)
+              continue;
+            const int rows = std::min(std::abs(other - y), gutter + 1);
+            const int squared = step * step + rows * rows;
+            if (squared < best) {
+              best = squared;
+              source = at(column, other);
+            }
+          }
+        if (best > gutter * gutter)
+          continue;
+        const std::size_t i = at(x, y);
+        image_.covered[i] = 2;
+        std::copy_n(image_.pixels.begin() + static_cast<std::ptrdiff_t>(3 * source), 3,
+                    image_.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+      }
+    });
+  }
+
+  TextureImage take() { return std::move(image_); }
+
+private:
+  std::size_t size() const {
+    return static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.height);
+  }
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
+           static_cast<std::size_t>(x);
+  }
+  /// The first and last pixel whose centre may be on a side of a coordinate, with one to spare for
+  /// rounding.
+  static int firstPixel(double low, int count) {
+    return std::clamp(static_cast<int>(std::floor(low * count - 0.5)), 0, count - 1);
+  }
+  static int lastPixel(double high, int count) {
+    return std::clamp(static_cast<int>(std::ceil(high * count - 0.5)), 0, count - 1);
+  }
+
+  /// Calls work(line) for rows or columns, several next to each other by one thread.
+  template <typename Work>
+  void forEachLine(int count, const Work& work) {
+    const auto bands = static_cast<std::size_t>((count + band_height - 1) / band_height);
+    internal::forEachTask(bands, threads_, [&](std::size_t, std::size_t band) {
+      const int first = static_cast<int>(band) * band_height;
+      for (int line = first; line < std::min(first + band_height, count); ++line)
+        work(line);
+    });
+  }
+
+  /// Paints the pixels whose centres are in a triangle, its border included, unless one before it
+  /// has done so: borders then have no gaps, as the test is exact.
+  template <typename ColorOf>
+  void paintTriangle(Index t, int first_row, int last_row, const ColorOf& color) {
+    std::array<Eigen::Vector2d, 3> p;
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = atlas_.coordinates.col(atlas_.coordinate_triangles(static_cast<Eigen::Index>(k), t));
+    if (internal::orientation2d(p[0], p[1], p[2]) <= 0)
+      return;
+    const auto [left, right] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
+    const auto [low, high] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
+    first_row = std::max(first_row, firstPixel(1.0 - high, image_.height));
+    last_row = std::min(last_row, lastPixel(1.0 - low, image_.height));
+    const int first_column = firstPixel(left, image_.width);
+    const int last_column = lastPixel(right, image_.width);
+    for (int y = first_row; y <= last_row; ++y)
+      for (int x = first_column; x <= last_column; ++x) {
+        const std::size_t i = at(x, y);
+        if (image_.covered[i] != 0)
+          continue;
+        const Eigen::Vector2d center((x + 0.5) / image_.width, 1.0 - (y + 0.5) / image_.height);
+        Eigen::Vector3d weights;
+        bool is_inside = true;
+        for (std::size_t k = 0; is_inside && k < 3; ++k) {
+          const Eigen::Vector2d& a = p[(k + 1) % 3];
+          const Eigen::Vector2d& b = p[(k + 2) % 3];
+          is_inside = internal::orientation2d(a, b, center) >= 0;
+          weights[static_cast<Eigen::Index>(k)] =
+              std::max(0.0, (a.x() - center.x()) * (b.y() - center.y()) -
+                                (a.y() - center.y()) * (b.x() - center.x()));
+        }
+        if (!is_inside)
+          continue;
+        const double sum = weights.sum();
+        weights = sum > 0.0 ? Eigen::Vector3d(weights / sum)
+                            : Eigen::Vector3d(Eigen::Vector3d::Constant(1.0 / 3.0));
+        const Color painted = color(t, weights);
+        image_.covered[i] = 1;
+        std::copy(painted.begin(), painted.end(),
+                  image_.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+      }
+  }
+
+  const TextureAtlas& atlas_;
+  int threads_ = 1;
+  TextureImage image_;
+};
+
+/// Light for every other square, dark otherwise, of a hue for each octant.
+Color checkerColor(const Eigen::Vector3d& direction, int cells) {
+  // Squares of equal angles on the six sides of a cube.
+  constexpr double half_side = 0.78539816339744830962;
+  Eigen::Index axis = 0;
+  const double depth = direction.cwiseAbs().maxCoeff(&axis);
+  int squares = 0;
+  for (const Eigen::Index other : {(axis + 1) % 3, (axis + 2) % 3}) {
+    const double angle = depth > 0.0 ? std::atan(direction[other] / depth) : 0.0;
+    const double place = (angle + half_side) / (2.0 * half_side) * cells;
+    squares += std::clamp(static_cast<int>(std::floor(place)), 0, cells - 1);
+  }
+  // Three squares meet at a corner of the cube: along some of its edges, equal ones have to.
+  const bool is_light = squares % 2 == 0;
+  Color color{};
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    const bool is_positive = direction[d] >= 0.0;
+    color[static_cast<std::size_t>(d)] =
+        static_cast<std::uint8_t>(is_light ? (is_positive ? 255 : 205) : (is_positive ? 150 : 45));
+  }
+  return color;
+}
+
+}  // namespace
+
+TextureImage bakeColors(const TextureAtlas& atlas,
+                        const Eigen::Matrix<double, 3, Eigen::Dynamic>& colors,
+                        const BakeOptions& options) {
+  checkOptions("bakeColors", options);
+  checkAtlas("bakeColors", atlas);
+  if (!(colors.array() >= 0.0 && colors.array() <= 255.0).all())
+    throw InvalidInput("bakeColors: a colour is out of range or not finite; give channels from 0 "
+                       "to 255");
+  const Eigen::MatrixXd at_vertices = atCutVertices(atlas, colors);
+  Painter painter(atlas, options);
+  painter.paintTriangles([&](Index t, const Eigen::Vector3d& weights) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k)
+      sum += weights[k] * at_vertices.col(atlas.triangles(k, t));
+    Color color{};
+    for (Eigen::Index c = 0; c < 3; ++c)
+      color[static_cast<std::size_t>(c)] =
+          static_cast<std::uint8_t>(std::clamp(std::floor(sum[c] + 0.5), 0.0, 255.0));
+    return color;
+  });
+  painter.paintGutter(options.gutter);
+  return painter.take();
+}
+
+TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere, int cells,
+                              const BakeOptions& options) {
+  checkOptions("bakeCheckerboard", options);
+  checkAtlas("bakeCheckerboard", atlas);
+  if (cells < 1 || cells > 4096)
+    throw InvalidInput("bakeCheckerboard: cells is " + std::to_string(cells) +
+                       "; give a number from 1 to 4096");
+  if (!sphere.allFinite())
+    throw InvalidInput("bakeCheckerboard: a vertex on the sphere is not finite; give unit vectors");
+  // In the flat triangles of the mesh: pieces of a triangle have the pattern of the whole.
+  const Eigen::MatrixXd at_vertices = atCutVertices(atlas, sphere);
+  Painter painter(atlas, options);
+  painter.paintTriangles([&](Index t, const Eigen::Vector3d& weights) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < 3; ++k)
+      sum += weights[k] * at_vertices.col(atlas.triangles(k, t));
+    return checkerColor(sum, cells);
+  });
+  painter.paintGutter(options.gutter);
+  return painter.take();
+}
+
+}  // namespace spherical_param

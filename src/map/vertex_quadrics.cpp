@@ -1,0 +1,173 @@
+#include "vertex_quadrics.h"
+
+#include "parallel.h"
+#include "tangent_basis.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace spherical_param::internal {
+namespace {
+
+using Eigen::Vector3d;
+using Matrix5d = Eigen::Matrix<double, 5, 5>;
+using Vector5d = Eigen::Matrix<double, 5, 1>;
+
+/// Neighbours of a vertex with more triangles do not add their own: a hub would have all vertices
+/// count for all.
+constexpr std::size_t kMostAround = 32;
+/// Heights of neighbours that leave something to be seen of how well five coefficients fit.
+constexpr std::size_t kLeastNeighbors = 7;
+/// Root mean square of the residual in shares of that of the heights: a quadric is sure below the
+/// first, and means nothing above the second. A fold of a plane has 0.2 to 0.4.
+constexpr double kSureResidual = 0.08;
+constexpr double kWrongResidual = 0.25;
+/// Residuals below this share of the length of the edges are no reason to be unsure.
+constexpr double kSmallResidual = 1e-3;
+/// Cosines between the normals of a vertex and of its triangles: likewise.
+constexpr double kSureCosine = 0.9;
+constexpr double kWrongCosine = 0.65;
+/// Ratio of the pivots of the equations: likewise.
+constexpr double kSurePivots = 1e-2;
+constexpr double kWrongPivots = 1e-3;
+/// The surface leaves the triangles by no more than this share of the length of the edges: the
+/// height of an arc over its chord, for an arc of 90 degrees.
+constexpr double kMostDisplacement = 0.2;
+
+/// 0 for x at `zero`, 1 at `one` and beyond, in between a smooth step.
+double smoothStep(double zero, double one, double x) {
+  const double t = std::clamp((x - zero) / (one - zero), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+Vector5d monomials(double x, double y) {
+  Vector5d result;
+  result << x, y, x * x, x * y, y * y;
+  return result;
+}
+
+}  // namespace
+
+VertexQuadrics::VertexQuadrics(const Positions& points, const Triangles& triangles,
+                               const Positions& normals, const CornerTable& corners, int threads)
+    : points_(points), triangles_(triangles), normals_(normals),
+      quadrics_(static_cast<std::size_t>(points.cols())) {
+  forEachBlock(quadrics_.size(), threadCount(threads, quadrics_.size(), kParallelThreshold),
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 std::vector<Index> around;
+                 for (std::size_t i = begin; i < end; ++i)
+                   quadrics_[i] = fit(static_cast<Index>(i), corners, around);
+               });
+}
+
+VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& corners,
+                                            std::vector<Index>& around) const {
+  Quadric quadric;
+  around.clear();
+  const auto add_neighbors = [&](Index v) {
+    corners.forEachCorner(
+        v, [&](Index t, Index k) { around.push_back(triangles_(nextCorner(k), t)); });
+  };
+  add_neighbors(vertex);
+  const std::size_t nearest = around.size();
+  for (const Index v : around)
+    quadric.size += (points_.col(v) - points_.col(vertex)).norm();
+  quadric.size /= static_cast<double>(nearest);
+  if (!(quadric.size > 0.0))
+    return quadric;
+  for (std::size_t i = 0; i < nearest; ++i)
+    if (corners.countAt(around[i]) <= kMostAround)
+      add_neighbors(around[i]);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  around.erase(std::remove(around.begin(), around.end(), vertex), around.end());
+  if (around.size() < kLeastNeighbors)
+    return quadric;
+
+  const Vector3d normal = normals_.col(vertex);
+  const TangentBasis basis = tangentBasis(normal);
+  Matrix5d matrix = Matrix5d::Zero();
+  Vector5d right = Vector5d::Zero();
+  double sum_of_squares = 0.0;
+  double sum_of_weights = 0.0;
+  for (const Index v : around) {
+    const Vector3d p = (points_.col(v) - points_.col(vertex)) / quadric.size;
+    const double square = p.squaredNorm();
+    // Those next to the vertex count about thirty times as much as those of the second ring.
+    const double weight = 1.0 / (1.0 + square * square * square);
+    const Vector5d row = monomials(basis.col(0).dot(p), basis.col(1).dot(p));
+    const double height = normal.dot(p);
+    matrix += weight * row * row.transpose();
+    right += weight * height * row;
+    sum_of_squares += weight * height * height;
+    sum_of_weights += weight;
+  }
+  const Eigen::LDLT<Matrix5d> factors(matrix);
+  const Vector5d pivots = factors.vectorD();
+  if (!(pivots.minCoeff() > kWrongPivots * pivots.maxCoeff()))
+    return quadric;
+  const Vector5d solution = factors.solve(right);
+  Eigen::Map<Vector5d>(quadric.coefficients.data()) = solution;
+
+  // What is left of the squares, for as many heights as are not used up.
+  const double n = static_cast<double>(around.size());
+  const double residual = std::sqrt(std::max(0.0, sum_of_squares - solution.dot(right)) /
+                                    sum_of_weights * n / (n - 5.0));
+  const double height = std::sqrt(sum_of_squares / sum_of_weights);
+  quadric.reliability =
+      smoothStep(kWrongResidual, kSureResidual,
+                 std::max(0.0, residual - kSmallResidual) / (height + kSmallResidual)) *
+      smoothStep(kWrongCosine, kSureCosine, spreadOfNormals(vertex, corners)) *
+      smoothStep(kWrongPivots, kSurePivots, pivots.minCoeff() / pivots.maxCoeff());
+  return quadric;
+}
+
+/// The least cosine between the normal of a vertex and those of its triangles.
+double VertexQuadrics::spreadOfNormals(Index vertex, const CornerTable& corners) const {
+  double least = 1.0;
+  corners.forEachCorner(vertex, [&](Index t, Index) {
+    const Vector3d a = points_.col(triangles_(0, t));
+    const Vector3d normal =
+        (points_.col(triangles_(1, t)) - a).cross(points_.col(triangles_(2, t)) - a);
+    const double length = normal.norm();
+    if (length > 0.0)
+      least = std::min(least, normal.dot(normals_.col(vertex)) / length);
+  });
+  return least;
+}
+
+VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights) const {
+  Vector3d linear = Vector3d::Zero();
+  for (Index k = 0; k < 3; ++k)
+    linear += weights[k] * points_.col(triangles_(k, triangle));
+  Vector3d moved = Vector3d::Zero();
+  Vector3d normal = Vector3d::Zero();
+  for (Index k = 0; k < 3; ++k) {
+    const Index v = triangles_(k, triangle);
+    const Vector3d vertex_normal = normals_.col(v);
+    const Quadric& quadric = quadrics_[static_cast<std::size_t>(v)];
+    normal += (1.0 - quadric.reliability) * weights[k] * vertex_normal;
+    if (quadric.reliability == 0.0 || weights[k] == 0.0)
+      continue;
+    const double share = quadric.reliability * weights[k] * weights[k] / weights.squaredNorm();
+    const TangentBasis basis = tangentBasis(vertex_normal);
+    const Vector3d p = (linear - points_.col(v)) / quadric.size;
+    const double x = basis.col(0).dot(p);
+    const double y = basis.col(1).dot(p);
+    const auto& c = quadric.coefficients;
+    const double height = c[0] * x + c[1] * y + c[2] * x * x + c[3] * x * y + c[4] * y * y;
+    const double displacement =
+        std::clamp(height - vertex_normal.dot(p), -kMostDisplacement, kMostDisplacement);
+    moved += share * quadric.size * displacement * vertex_normal;
+    normal += share * (vertex_normal - (c[0] + 2.0 * c[2] * x + c[3] * y) * basis.col(0) -
+                       (c[1] + c[3] * x + 2.0 * c[4] * y) * basis.col(1))
+                          .normalized();
+  }
+  return {linear + moved, normal};
+}
+
+}  // namespace spherical_param::internal
