@@ -25,11 +25,6 @@ struct MeshMeasures {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 
-/// Parameters of measureMesh().
-struct MeasureOptions {
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-};
-
 /// Measures a closed mesh: exact integrals over the polyhedron, by the divergence theorem (Mirtich
 /// 1996: Fast and accurate computation of polyhedral mass properties; in the closed form of Eberly
 /// 2002: Polyhedral mass properties (revisited)).
@@ -38,11 +33,11 @@ struct MeasureOptions {
 /// mesh intersects itself, regions count as often as it winds around them.
 ///
 /// \param points    3 x n; \param triangles 3 x m, consistently oriented, each edge twice.
-/// \param options threads
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return all zero for a mesh without triangles; the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for an index or threads out of range. Cost: O(m).
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
-                         const MeasureOptions& options = {});
+                         int threads = 0);
 
 /// Normals of the vertices of a mesh, those of its triangles weighted by their areas.
 ///

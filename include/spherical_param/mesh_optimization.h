@@ -1,11 +1,11 @@
 #pragma once
 
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,26 +25,14 @@ enum class OptimizationMethod {
 /// Parameters of optimizeMesh().
 struct OptimizationOptions {
   OptimizationMethod method = OptimizationMethod::Full;  ///< how far
-  std::uint32_t seed = 1;  ///< of the random choice of parts that are taken out
-  int threads = 0;         ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-  /// Given a mesh of the points that is rough because they are noisy, and a number of smoothing
-  /// steps, answers with less noisy positions (3 x n) in their place, on which the mesh is then
-  /// optimised. Asked a few times, with more and more steps, by OptimizationMethod::Full. May be
-  /// empty: noise then costs time, and leaves self-intersections.
-  std::function<Positions(const Triangles&, int steps)> smoother;
-  /// After work on positions of `smoother`, untangle on the given points too, if that is not in
-  /// vain.
+  /// After work on smoothed positions of a noisy cloud, untangle on the given points too, if that
+  /// is not in vain.
   bool finish_on_points = true;
-  /// Told the share of the work that is done, in [0, 1), which never falls; about in proportion to
-  /// the time where nothing has to be untangled. May throw to end the work. May be empty. Called
-  /// from the calling thread only.
-  std::function<void(double)> progress;
 };
 
 /// What one phase of the optimisation did.
 struct OptimizationPhase {
-  /// "flips", "relocate", "recreate", "untangle", "polish", or "unpolish": the polish was taken
-  /// back
+  /// "flips", "relocate", "ruin and recreate", "untangle", "polish", or "roll back": of the polish
   std::string name;
   std::size_t tried = 0;       ///< vertices or parts that were taken out
   std::size_t moves = 0;       ///< flips, or of these those that stayed at another place
@@ -55,20 +43,27 @@ struct OptimizationPhase {
   double seconds = 0.0;  ///< wall time [s]
 };
 
-/// An optimised mesh, and how it came about.
-struct MeshOptimization {
-  Triangles triangles;                    ///< 3 x m, as many as before
+/// How a mesh was optimised.
+struct OptimizationReport {
   std::vector<OptimizationPhase> phases;  ///< in the order of the work
   double energy = 0.0;  ///< equation (1) of optimizeMesh(), on the given points [their unit]
-  /// Pairs of triangles that intersect, on the given points; with `smoothing_steps` and without
-  /// OptimizationOptions::finish_on_points, on the smoothed ones. \see findSelfIntersections
-  std::vector<std::array<Index, 2>> self_intersections;
-  /// With `smoothing_steps`: pairs that intersected on the smoothed points, before the finish.
+  double rough = 0.0;   ///< fraction of rough vertices after the first flips, in [0, 1]
+  /// Steps of smoothing of the positions that the mesh was optimised on because the cloud is noisy;
+  /// 0: it is not.
+  int noise_steps = 0;
+  /// With `noise_steps`: pairs that intersected on the smoothed points, before the finish.
   std::size_t smoothed_self_intersections = 0;
-  double rough = 0.0;       ///< share of rough vertices after the first flips, in [0, 1]
-  int smoothing_steps = 0;  ///< optimised on positions of OptimizationOptions::smoother; 0: not
   double alignment = 0.0;   ///< how far the sampling follows the curvature, in [-1, 1]
   double unevenness = 0.0;  ///< relative deviation of the distances of a point's neighbours
+};
+
+/// An optimised mesh.
+struct MeshOptimization {
+  Triangles triangles;  ///< 3 x m, as many as before
+  /// Pairs of triangles that intersect, on the given points; with `noise_steps` and without
+  /// OptimizationOptions::finish_on_points, on the smoothed ones. \see findSelfIntersections
+  std::vector<std::array<Index, 2>> self_intersections;
+  OptimizationReport report;  ///< how it came about
 };
 
 /// Changes the triangles of a closed genus-0 mesh on fixed points, for the least energy
@@ -78,11 +73,11 @@ struct MeshOptimization {
 /// with the angle between the normals of an edge's triangles [rad], the circumradius R, and mu =
 /// 0.3: the total absolute mean curvature, and what keeps triangles from becoming needles.
 ///
-/// Flips:    the edge that gains most, until none gains; in terms that suit the cloud, as in the
+/// Flips: the edge that gains most, until none gains; in terms that suit the cloud, as in the
 ///           polish, but mu = 0.3 where that has 0.8.
 /// Relocate: vertices at sharp edges, or far on the mesh from their neighbours in the graph, are
 ///           taken out and put back where they cost least.
-/// Recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put back in
+/// Ruin and recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put back in
 ///           random order.
 /// Untangle: the same with up to 96 vertices around triangles that intersect, until none do.
 /// Polish:   flips (and relocation) again, in terms that suit the cloud. Where the sampling follows
@@ -90,7 +85,7 @@ struct MeshOptimization {
 ///           mu = 0.8.
 ///           Elsewhere (scans, even samplings) angles count only beyond what is usual at a place,
 ///           and mu = 4: nearly the Delaunay triangulation on the surface, but for sharp edges.
-///           Triangles that intersect thereafter are untangled, or else the polish is taken back.
+///           Triangles that intersect thereafter are untangled, or else the polish is rolled back.
 ///
 /// Only three moves touch the mesh - an edge is flipped whose new ends are not joined yet, a
 /// triangle is split by a vertex, three triangles around a vertex are merged - and each keeps it
@@ -99,16 +94,19 @@ struct MeshOptimization {
 /// \param points    3 x n, finite, distinct; extent about 1, or such that areas are numbers.
 /// \param triangles 3 x (2n - 4), over all points; closed, manifold, oriented, of genus 0.
 /// \param graph     n nodes, the neighbours of each point.
-/// \param options how far, seed, threads, what takes noise off, progress
+/// \param options how far
+/// \param seed  of the random choice of parts that are taken out.
+/// \param execution threads, progress
 /// \return the mesh: the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for sizes that disagree, an index or option out of range, or a mesh that is
-///        not as said.
+///        not as said; Cancelled.
 ///
 /// Not guaranteed: that no triangles intersect; that the energy is the least.
 /// Cost: O(n log n), typically; untangling is given up after a number of attempts that is
 /// proportional to n.
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
-                              const Graph& graph, const OptimizationOptions& options = {});
+                              const Graph& graph, const OptimizationOptions& options = {},
+                              std::uint32_t seed = 1, const Execution& execution = {});
 
 /// @}
 

@@ -48,21 +48,16 @@ struct MeshTopology {
   }
 };
 
-/// Parameters of checkTopology().
-struct TopologyOptions {
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-};
-
 /// Examines a mesh by its indices alone.
 ///
 /// \param triangles    3 x m, any order, m at most 2^30.
 /// \param vertex_count vertices are [0, vertex_count).
-/// \param options threads
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return the same for any number of threads.
 /// \throw InvalidInput for an index out of range, more triangles than that, or threads out of
 /// range. Cost: O(m + n), and memory of 12 m + 8 n bytes.
 MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
-                           const TopologyOptions& options = {});
+                           int threads = 0);
 
 /// Signed volume enclosed by a closed mesh [cubed unit of the input], by the divergence theorem;
 /// positive if the triangles are oriented outward. Meaningless for an open mesh.

@@ -1,24 +1,15 @@
 #pragma once
 
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace spherical_param {
 
 /// \addtogroup checks
 /// @{
-
-/// Parameters of findSelfIntersections().
-struct SelfIntersectionOptions {
-  /// Threads to use; 0: as many as OpenMP would, at most 1024. The answer is the same for any.
-  int threads = 0;
-  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
-  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
-  std::function<bool(double)> progress = {};
-};
 
 /// Pairs of triangles of a mesh that intersect more than neighbours must.
 ///
@@ -35,13 +26,13 @@ struct SelfIntersectionOptions {
 ///
 /// \param points    3 x n, finite, any unit.
 /// \param triangles 3 x m, indices in [0, n); need not be closed, manifold or oriented.
-/// \param options threads, progress
+/// \param execution threads, progress
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw InvalidInput for an index out of range, a coordinate that is not finite, threads outside
 /// [0, 1024]; Cancelled. Cost: O(m log m) and the pairs whose bounding boxes overlap.
 std::vector<std::array<Index, 2>>
 findSelfIntersections(const Positions& points, const Triangles& triangles,
-                      const SelfIntersectionOptions& options = {});
+                      const Execution& execution = {});
 
 /// The pairs of which at least one triangle is in a set: what has to be asked again after that set
 /// has changed.
@@ -49,13 +40,13 @@ findSelfIntersections(const Positions& points, const Triangles& triangles,
 /// \param points    3 x n, finite, any unit.
 /// \param triangles 3 x m, indices in [0, n).
 /// \param of        triangles, in [0, m), any order; repetitions count once.
-/// \param options   threads, progress
+/// \param execution threads, progress
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw as findSelfIntersections().
 /// Cost: O(m) and that of the set.
 std::vector<std::array<Index, 2>>
 findSelfIntersectionsOf(const Positions& points, const Triangles& triangles,
-                        const std::vector<Index>& of, const SelfIntersectionOptions& options = {});
+                        const std::vector<Index>& of, const Execution& execution = {});
 
 /// @}
 

@@ -2,6 +2,8 @@
 
 #include "spherical_param/types.h"
 
+#include <cstddef>
+
 namespace spherical_param {
 
 /// \addtogroup smoothing
@@ -14,10 +16,6 @@ enum class SmoothingMethod {
   /// Laplacian smoothing (Zwicker and Gotsman 2004, section 4.2): a step moves each point by a
   /// share lambda towards the mean of its neighbours. Gain (1 - lambda k)^steps. Shrinks.
   Umbrella,
-  /// Taubin 1995, "A signal processing approach to fair surface design": each step by lambda is
-  /// followed by one of mu < -lambda outward. Gain ((1 - lambda k)(1 - mu k))^steps. Hardly
-  /// shrinks, but removes little strong noise in few steps.
-  Taubin,
   /// The biharmonic flow dx/dt = -L^2 x (the higher order of Desbrun et al. 1999, "Implicit fairing
   /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2;
   /// its frequency of gain one half, c, is that of so many steps of Umbrella with lambda = 1. As
@@ -28,25 +26,26 @@ enum class SmoothingMethod {
 /// Parameters of smoothSurface().
 struct SmoothingOptions {
   SmoothingMethod method = SmoothingMethod::Biharmonic;  ///< the filter
-  int steps = 5;                 ///< strength, as in section 4.2 of the paper; [0, 10000]
-  double umbrella_lambda = 1.0;  ///< lambda of Umbrella, share of the Laplacian per step; (0, 1]
-  double taubin_lambda = 0.8;    ///< lambda of Taubin; (0, 1]
-  /// Frequency below which Taubin's filter does not shrink, 1 / lambda + 1 / mu; [0, 1). Together
-  /// with lambda it must not amplify the highest frequency, 3/2: with 0.05, lambda is at most 0.93.
-  double taubin_pass_band = 0.05;
+  int steps = 0;  ///< strength, as in section 4.2 of the paper; [0, 10000], 0: none
   /// Move all points alike along their normals at the end, so that the volume is that of the input.
   bool restore_volume = true;
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
 };
 
-/// A smoothed surface, and how far it is from the one given.
-struct Smoothing {
-  Positions points;                ///< 3 x n, column i = point i [unit of the input]
+/// How far a smoothed surface is from the one given.
+struct SmoothingReport {
   double max_displacement = 0.0;   ///< of a point [unit of the input]
   double mean_displacement = 0.0;  ///< over the points of triangles [unit of the input]
   double rms_displacement = 0.0;   ///< over the points of triangles [unit of the input]
   double volume_before = 0.0;      ///< signed volume enclosed [cubed unit of the input]
   double volume_after = 0.0;       ///< signed volume enclosed [cubed unit of the input]
+  /// In a Result: pairs of triangles that intersect on the smoothed points.
+  std::size_t self_intersections = 0;
+};
+
+/// A smoothed surface.
+struct Smoothing {
+  Positions points;        ///< 3 x n, column i = point i [unit of the input]
+  SmoothingReport report;  ///< how far they were moved
 };
 
 /// Smooths the points of a closed mesh. The triangles stay as they are.
@@ -54,18 +53,19 @@ struct Smoothing {
 /// \param points    3 x n, finite. Points of no triangle stay where they are. Coordinates should
 ///                  differ by 1e-90 to 1e90 at most, so that the volume can be formed.
 /// \param triangles 3 x m, closed, manifold, consistently oriented, any genus and number of pieces.
-/// \param options filter, strength, threads
+/// \param options filter, strength
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return the points, the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for coordinates that are not finite, an index or option out of range, or a
 ///        mesh that is not as said.
-/// Cost: O(n) per step of Umbrella, twice that of Taubin; Biharmonic O(n sqrt(steps)), five steps
-/// as much as some thirty of Umbrella.
+/// Cost: O(n) per step of Umbrella; Biharmonic O(n sqrt(steps)), five steps as much as some thirty of
+/// Umbrella.
 ///
 /// No guarantees: corners and edges are rounded, and points drift within the surface until they are
 /// spread evenly among their neighbours. The volume cannot be restored where there is none to speak
 /// of (volume_after tells).
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
-                        const SmoothingOptions& options = {});
+                        const SmoothingOptions& options, int threads = 0);
 
 /// @}
 

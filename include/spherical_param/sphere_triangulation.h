@@ -1,8 +1,7 @@
 #pragma once
 
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
-
-#include <functional>
 
 namespace spherical_param {
 
@@ -18,15 +17,10 @@ enum class TriangulationMethod {
 /// Parameters of triangulateSphere().
 struct TriangulationOptions {
   TriangulationMethod method = TriangulationMethod::Incremental;  ///< how
-  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
-  /// ends the work with Cancelled. May be empty. Called from the calling thread only. Qhull itself
-  /// tells of nothing.
-  std::function<bool(double)> progress = {};
 };
 
-/// A triangulation of all points on the sphere, and how it came about.
-struct SphereTriangulation {
-  Triangles triangles;      ///< 3 x (2n - 4), outward on the sphere: closed, manifold, genus 0
+/// How a triangulation of the sphere came about.
+struct TriangulationReport {
   Index hull_vertices = 0;  ///< points that the method holds as vertices by itself
   Index reinserted = 0;     ///< points that it left out, put back: n - hull_vertices
   /// Points at exactly the position of another point (within rounding for
@@ -34,6 +28,12 @@ struct SphereTriangulation {
   Index coincident = 0;
   /// The hull could not be used (flat or inconsistent); all points were inserted one by one.
   bool hull_rejected = false;
+};
+
+/// A triangulation of all points on the sphere.
+struct SphereTriangulation {
+  Triangles triangles;         ///< 3 x (2n - 4), outward on the sphere: closed, manifold, genus 0
+  TriangulationReport report;  ///< how it came about
 };
 
 /// Triangulates unit vectors, with EVERY point as a vertex: by their convex hull (Zwicker and
@@ -55,21 +55,14 @@ struct SphereTriangulation {
 /// qhull nor on rounding.
 ///
 /// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
-/// \param options    method, progress
+/// \param options    method
+/// \param execution  progress; both methods work on one thread.
 /// \return the triangles, and how they came about.
 /// \throw InvalidInput for n < 4, too many points, or a vector that is not of unit length;
 /// ComputeError if qhull runs out of memory; Cancelled. Cost: O(n log n), typically.
 SphereTriangulation triangulateSphere(const Positions& directions,
-                                      const TriangulationOptions& options);
-
-/// The same without a callback.
-///
-/// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
-/// \param method     how.
-/// \return the triangles, and how they came about.
-SphereTriangulation
-triangulateSphere(const Positions& directions,
-                  TriangulationMethod method = TriangulationMethod::Incremental);
+                                      const TriangulationOptions& options = {},
+                                      const Execution& execution = {});
 
 /// @}
 

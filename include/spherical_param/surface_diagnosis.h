@@ -32,17 +32,10 @@ struct TriangleMarks {
   static constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
 };
 
-/// Parameters of diagnoseSurface(). The defaults need no tuning.
+/// Parameters of diagnoseSurface().
 struct DiagnosisOptions {
-  /// The least diameter of a lid [distance of the points at its rim]; > 0.
-  double lid_diameter = 5.0;
-  /// Neighbours in the graph that are more steps apart on the mesh were torn apart; 3 to 100.
-  int handle_steps = 8;
-  /// The least gap between parts [distance of the points at the gap]; > 0.
-  double part_gap = 4.0;
-  /// At most so many vertices are listed of each finding; Lid::loops are complete all the same.
+  /// At most so many vertices are listed of each finding; Lid::loops are complete even so.
   std::size_t max_vertices = 64;
-  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   bool mark_triangles = false;  ///< fill SurfaceDiagnosis::triangle_marks
 };
 
@@ -119,7 +112,8 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// \param graph     n nodes, lengths in the unit of the points: local Delaunay neighbourhoods, on
 ///                  which all thresholds were measured.
 /// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
-/// \param options the defaults need no tuning.
+/// \param options what is listed
+/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return what was found, the same for any number of threads.
 /// \throw InvalidInput for sizes that disagree, no triangles, an index or an option out of range.
 /// Cost: O(n) where nothing is wrong.
@@ -137,7 +131,7 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// unset. One handle may be cut in several places.
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
-                                 const DiagnosisOptions& options = {});
+                                 const DiagnosisOptions& options = {}, int threads = 0);
 
 /// @}
 

@@ -156,10 +156,6 @@ void checkPositions(const Positions& points, const Triangles& triangles, const P
 
 MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,
                                    const Positions& sphere, int threads) {
-  if (threads < 0 || threads > internal::kMostThreads)
-    throw InvalidInput("measureMapDistortion: threads = " + std::to_string(threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
   checkPositions(points, triangles, sphere);
   MapDistortion distortion;
   const auto m = static_cast<std::size_t>(triangles.cols());

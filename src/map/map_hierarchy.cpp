@@ -293,7 +293,7 @@ public:
     keepMesh();
   }
 
-  MapHierarchy run(const ShareReport& report) {
+  MapHierarchy run(const Report& report) {
     const auto n = static_cast<double>(alive_.size());
     Index most_neighbors = kMostCoarseNeighbors;
     while (alive_.size() > 4) {
@@ -496,7 +496,7 @@ private:
 }  // namespace
 
 MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
-                               const ShareReport& report) {
+                               const Report& report) {
   const auto n = static_cast<std::size_t>(points.cols());
   const int most = threadCount(threads, n, kParallelThreshold);
   // Squares of lengths are in the range of double, whatever the unit.

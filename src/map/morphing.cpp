@@ -24,8 +24,6 @@ namespace spherical_param {
 namespace {
 
 /// Shares of the work that are done after its parts.
-constexpr double kRotatedShare = 0.3;
-constexpr double kWarpedShare = 0.6;
 
 constexpr std::size_t kLeastSamples = 12;
 constexpr std::size_t kMostSamples = std::size_t{1} << 24U;
@@ -45,9 +43,6 @@ void checkOptions(const MorphOptions& options) {
   if (options.samples < kLeastSamples || options.samples > kMostSamples)
     fail("samples = " + std::to_string(options.samples) + " is out of range; use " +
          std::to_string(kLeastSamples) + " to " + std::to_string(kMostSamples));
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
-         std::to_string(internal::kMostThreads));
   if (options.pairs.size() > kMostPairs)
     fail(std::to_string(options.pairs.size()) + " pairs are too many; use " +
          std::to_string(kMostPairs) + " at most");
@@ -273,7 +268,7 @@ void sampleBoth(const SphereSurface& first, const SphereSurface& second, const P
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
                           const MorphOptions& options) {
   checkOptions(options);
-  const internal::ShareReport report = internal::cancellable(options.progress, "morphSurfaces");
+  const internal::Report report = internal::cancellable(options.progress, "morphSurfaces");
   internal::tell(report, 0.0);
   MorphResult morph;
   const PairChoice choice = choosePairs(first, second, options.pairs, morph.impossible);
@@ -283,7 +278,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     for (const PointPair& pair : choice.pairs)
       directions.emplace_back(first.sphere().col(pair.first), second.sphere().col(pair.second));
     morph.rotation = internal::searchRotation(first, second, directions, options.threads,
-                                              internal::partOf(report, 0.0, kRotatedShare));
+                                              report);
   }
   morph.alignment_error = internal::alignmentError(first, second, morph.rotation, options.threads);
 
@@ -296,7 +291,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     landmarks.push_back({pair.second, first.sphere().col(pair.first)});
   internal::SphereWarp warp =
       internal::moveLandmarks(sphere, second.triangles(), landmarks, options.threads,
-                              internal::partOf(report, kRotatedShare, kWarpedShare));
+                              report);
   if (internal::countFlipped(warp.sphere, second.triangles(), options.threads) > 0)
     throw ComputeError("morphSurfaces: the second map has triangles that rounding flips when it "
                        "is rotated; use a map of less distortion, or align = false");

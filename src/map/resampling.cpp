@@ -432,10 +432,6 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
 }
 
 IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
-  if (threads < 0 || threads > internal::kMostThreads)
-    throw InvalidInput("removeIntersections: threads = " + std::to_string(threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
   if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
     throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
                        " points need as many directions, all finite");

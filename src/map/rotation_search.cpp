@@ -328,7 +328,7 @@ double alignmentError(const SphereSurface& first, const SphereSurface& second,
 
 Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& second,
                                const DirectionPairs& pairs, int threads,
-                               const ShareReport& report) {
+                               const Report& report) {
   const UnitSurface unit_first(first);
   const UnitSurface unit_second(second);
   const PositionTable table_first(unit_first, threads);

@@ -40,10 +40,6 @@ void checkOptions(const SphereMapOptions& options) {
   if (options.sweeps < 0 || options.sweeps > most_sweeps)
     throw InvalidInput(caller + "sweeps = " + std::to_string(options.sweeps) +
                        " is out of range; use 0 to " + std::to_string(most_sweeps));
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput(caller + "threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
 }
 
 void checkMesh(const Positions& points, const Triangles& triangles, const Positions& start,
@@ -224,7 +220,7 @@ public:
     mild_ = {1.0 - mild_area, 0.0, mild_area, area_of_mass};
   }
 
-  Positions run(std::vector<SphereMapLevel>& levels, const internal::ShareReport& report) {
+  Positions run(std::vector<SphereMapLevel>& levels, const internal::Report& report) {
     placeTetrahedron(hierarchy_.meshes.back(), sphere_);
     double work = 0.0;
     for (const MapMesh& mesh : hierarchy_.meshes)
@@ -238,7 +234,7 @@ public:
         ++batch;
       }
       const double share = static_cast<double>(mesh.vertex_count);
-      levels.push_back(relax(mesh, internal::partOf(report, done / work, (done + share) / work)));
+      levels.push_back(relax(mesh, report));
       done += share;
     }
     std::reverse(levels.begin(), levels.end());
@@ -274,7 +270,7 @@ private:
                          " vertices; remesh the surface, its triangles are too thin");
   }
 
-  SphereMapLevel relax(const MapMesh& mesh, const internal::ShareReport& report) {
+  SphereMapLevel relax(const MapMesh& mesh, const internal::Report& report) {
     const MapRows rows = internal::makeMapRows(hierarchy_.points, mesh.triangles, mesh.masses,
                                                mesh.vertex_count, options_.threads);
     SphereMapLevel level;
@@ -312,13 +308,13 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
                            const Positions& start, const SphereMapOptions& options) {
   checkOptions(options);
   checkMesh(points, triangles, start, options.threads);
-  const internal::ShareReport report = internal::cancellable(options.progress, "computeSphereMap");
+  const internal::Report report = internal::cancellable(options.progress, "computeSphereMap");
   internal::tell(report, 0.0);
   const MapHierarchy hierarchy = internal::buildMapHierarchy(points, triangles, options.threads,
-                                                             internal::partOf(report, 0.0, 0.2));
+                                                             report);
   SphereMap map;
   const Positions refined =
-      Refinement(hierarchy, options).run(map.levels, internal::partOf(report, 0.2, 0.9));
+      Refinement(hierarchy, options).run(map.levels, report);
   Positions sphere(3, points.cols());
   for (std::size_t i = 0; i < hierarchy.order.size(); ++i)
     sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));

@@ -48,10 +48,6 @@ double solidAngle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 
 void checkInput(const Positions& points, const Triangles& triangles, const Positions& sphere,
                 int threads) {
-  if (threads < 0 || threads > internal::kMostThreads)
-    throw InvalidInput("SphereSurface: threads = " + std::to_string(threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
   if (points.cols() != sphere.cols())
     throw InvalidInput("SphereSurface: " + std::to_string(points.cols()) + " points, but " +
                        std::to_string(sphere.cols()) + " on the sphere; they must be the same");

@@ -425,7 +425,7 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
                          const std::vector<Landmark>& landmarks, int threads,
-                         const ShareReport& report) {
+                         const Report& report) {
   SphereWarp warp;
   warp.reasons.resize(landmarks.size());
   double told = 0.0;  // what is done again must not fall back

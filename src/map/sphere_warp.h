@@ -42,6 +42,6 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 /// The same, bit by bit, for any number of threads.
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
                          const std::vector<Landmark>& landmarks, int threads,
-                         const ShareReport& report);
+                         const Report& report);
 
 }  // namespace spherical_param::internal

@@ -25,10 +25,6 @@ void checkDegree(const char* function, int degree) {
 }
 
 void checkThreads(const char* function, int threads) {
-  if (threads < 0 || threads > internal::kMostThreads)
-    throw InvalidInput(std::string(function) + ": threads = " + std::to_string(threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
 }
 
 void checkDirection(const char* function, const Vector3d& direction) {

@@ -1,7 +1,6 @@
 #include "embedding_energy.h"
 
 #include "parallel.h"
-#include "tangential_laplacian.h"
 
 #include <Eigen/Geometry>
 
@@ -18,18 +17,13 @@ std::vector<TangentBasis> tangentBases(const Positions& directions) {
   return bases;
 }
 
-EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, bool uniform, double exponent, int threads)
-    : graph_(graph), uniform_(uniform), exponent_(exponent),
+EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, const EdgeWeightLaw& weights, int threads)
+    : graph_(graph), weights_(weights),
       threads_(threadCount(threads, graph.size(), kShortPassThreshold)) {}
 
 /// Inline, for all loops over edges.
 inline double EmbeddingEnergy::weight(double length, std::size_t entry) const {
-  const double factor = uniform_ ? 1.0 : 1.0 / std::max(graph_.lengths[entry], kShortestLength);
-  if (exponent_ == 3.0)
-    return length * factor;
-  if (exponent_ == 2.0)
-    return factor;
-  return std::pow(length * factor, exponent_ - 2.0);
+  return weights_.weight(weights_.factor(graph_.lengths[entry]), length);
 }
 
 double EmbeddingEnergy::value(const Positions& u) const {
@@ -48,7 +42,7 @@ double EmbeddingEnergy::value(const Positions& u) const {
       });
   const double barrier =
       masses_.size() > 0 ? -barrier_ * std::log1p(-(u * masses_).squaredNorm()) : 0.0;
-  return sum / exponent_ + barrier;
+  return sum / (weights_.power() + 2.0) + barrier;
 }
 
 void EmbeddingEnergy::addBarrier(const Positions& u) {
@@ -159,7 +153,7 @@ void EmbeddingEnergy::hessian(const Positions& u, const std::vector<TangentBasis
         const double w = weight(std::sqrt(squared), e++);
         const Eigen::Vector2d along = own.transpose() * edge;
         const Eigen::Vector2d other_along = bases[j].transpose() * edge;
-        const double second = squared > 0.0 ? w * (exponent_ - 2.0) / squared : 0.0;
+        const double second = squared > 0.0 ? w * weights_.power() / squared : 0.0;
         diagonal += second * along * along.transpose();
         diagonal.diagonal().array() += w;
         curvature += w * squared / 2.0;

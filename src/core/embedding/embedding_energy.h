@@ -1,6 +1,7 @@
 #pragma once
 
 #include "block_matrix.h"
+#include "edge_weights.h"
 #include "tangent_basis.h"
 #include "spherical_param/types.h"
 
@@ -13,23 +14,21 @@ namespace spherical_param::internal {
 /// \param directions 3 x n, unit vectors.
 std::vector<TangentBasis> tangentBases(const Positions& directions);
 
-/// What a solver lowers: the energy of an embedding u of a graph of points p,
+/// What a solver lowers: the energy of an embedding u of a graph with edge weights w,
 ///
-///   E(u) = sum over edges  f_ij^(p - 2) |u_i - u_j|^p / p   +   barrier,
+///   E(u) = sum over edges  w_ij |u_i - u_j|^2 / p   +   barrier,
 ///
-/// with f = 1 / |p_i - p_j|, or 1 for uniform weights (any p) and f^1 for p = 2 with inverse
-/// lengths. Its gradient in the tangent plane of u_i is minus the tangential Laplacian of Zwicker
-/// and Gotsman 2004, equation 2, times the sum of the weights at i.
+/// of degree p in the lengths on the sphere. Its gradient in the tangent plane of u_i is minus the
+/// tangential Laplacian of Zwicker and Gotsman 2004, equation 2, times the sum of the weights at i.
 ///
 /// For p = 2 the energy is (up to discretisation) invariant under conformal maps of the sphere,
 /// among them those that draw all points to one place. A barrier -b log(1 - |c|^2) in the centroid
 /// c = sum m_i u_i of masses then keeps it from collapsing.
 class EmbeddingEnergy {
 public:
-  /// \param exponent p, > 2, or 2 for weights that do not depend on u.
   /// \param graph    must outlive the energy.
   /// \param threads  that share the work.
-  EmbeddingEnergy(const Graph& graph, bool uniform, double exponent, int threads);
+  EmbeddingEnergy(const Graph& graph, const EdgeWeightLaw& weights, int threads);
 
   /// Adds the barrier, b and the masses from an embedding u: b is its energy, the mass of a node
   /// its mean squared edge. Masses by area, because a limb of tiny area on the sphere would be
@@ -72,8 +71,7 @@ private:
   double weight(double length, std::size_t entry) const;
 
   const Graph& graph_;
-  bool uniform_;
-  double exponent_;
+  EdgeWeightLaw weights_;
   double barrier_ = 0.0;
   Eigen::VectorXd masses_;  ///< n entries, sum 1; empty without barrier
   int threads_;

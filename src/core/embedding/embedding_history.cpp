@@ -1,30 +1,16 @@
-#include "spherical_param/embedding_history.h"
-
-#include "spherical_param/errors.h"
+#include "embedding_history.h"
 
 #include <algorithm>
-#include <string>
 
-namespace spherical_param {
+namespace spherical_param::internal {
 namespace {
 
-constexpr Index kMostVertices = Index{1} << 24;
-constexpr int kMostFrames = 10000;
 /// While states come in, so many times the limit are kept: which of them are in even distances is
 /// known at the end only.
 constexpr std::size_t kSpare = 3;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
-}
-
-void checkLimits(const HistoryLimits& limits) {
-  if (limits.vertices < 0 || limits.vertices > kMostVertices)
-    throw InvalidInput("EmbeddingRecorder: vertices = " + std::to_string(limits.vertices) +
-                       " is out of range; use 0 (none) to " + std::to_string(kMostVertices));
-  if (limits.frames < 2 || limits.frames > kMostFrames)
-    throw InvalidInput("EmbeddingRecorder: frames = " + std::to_string(limits.frames) +
-                       " is out of range; use 2 to " + std::to_string(kMostFrames));
 }
 
 /// Number i of `count` numbers in even distances from 0 to `size` - 1.
@@ -47,7 +33,6 @@ EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const HistoryLimits& lim
 EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const GraphHierarchy& hierarchy,
                                      const HistoryLimits& limits)
     : limits_(limits) {
-  checkLimits(limits);
   keepNodes(nodes, hierarchy);
 }
 
@@ -164,4 +149,4 @@ EmbeddingHistory EmbeddingRecorder::take() {
   return std::exchange(history_, {});
 }
 
-}  // namespace spherical_param
+}  // namespace spherical_param::internal

@@ -1,10 +1,8 @@
-#include "spherical_param/graph_hierarchy.h"
+#include "graph_hierarchy.h"
 
-#include "graph_checks.h"
 #include "members.h"
 #include "parallel.h"
 #include "progress.h"
-#include "spherical_param/errors.h"
 
 #include <algorithm>
 #include <atomic>
@@ -16,12 +14,8 @@
 #include <string>
 #include <utility>
 
-namespace spherical_param {
+namespace spherical_param::internal {
 namespace {
-
-using internal::forEachBlock;
-using internal::partOf;
-using internal::ShareReport;
 
 /// A level that keeps more than this share of the nodes is not worth having.
 constexpr double kLeastCoarsening = 0.9;
@@ -29,19 +23,6 @@ constexpr double kLeastCoarsening = 0.9;
 /// A graph of more neighbours a node is far from planar, as one of k nearest neighbours is, and no
 /// start for an embedding: its aggregates touch only where the surface does.
 constexpr int kPlanarDegree = 12;
-
-/// Shares of the work on a level that are done after its parts, and of these after theirs.
-constexpr double kSetShare = 0.30;
-constexpr double kCellsShare = 0.55;
-constexpr double kGraphShare = 0.75;
-constexpr double kKeysShare = 0.2;
-constexpr double kJudgedShare = 0.7;
-constexpr double kNearShare = 0.3;
-constexpr double kLookedShare = 0.9;
-constexpr double kMembersShare = 0.2;
-constexpr double kRowsShare = 0.7;
-/// Share of the nodes of a level that the next coarser one keeps, about.
-constexpr double kUsualCoarsening = 0.22;
 
 /// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
 /// turning, scaling or renumbering the points changes them only where rounding decides.
@@ -75,10 +56,10 @@ std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int th
 /// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
 /// the same set whatever the order and the threads.
 std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
-                                  const ShareReport& report) {
+                                  const Report& report) {
   const std::size_t n = graph.size();
   const std::vector<double> keys = scrambledKeys(graph, seed, threads);
-  internal::tell(report, kKeysShare);
+  tell(report, 0.0);
   enum State : unsigned char { Open, Out, Taken };
   std::vector<std::atomic<unsigned char>> states(n);
   const auto judge = [&](std::size_t i) {
@@ -103,14 +84,12 @@ std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int th
       states[static_cast<std::size_t>(graph.neighbors[e])].store(Out, std::memory_order_relaxed);
     return true;
   };
-  std::vector<std::vector<Index>> waiting((n + internal::kBlockSize - 1) / internal::kBlockSize);
-  const ShareReport judged = partOf(report, kKeysShare, kJudgedShare);
-  forEachBlock(n, threads, judged, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<std::vector<Index>> waiting((n + kBlockSize - 1) / kBlockSize);
+  forEachBlock(n, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (!judge(i))
         waiting[block].push_back(static_cast<Index>(i));
   });
-  double share = kJudgedShare;
   for (bool waits = true; waits;) {
     waits = false;
     for (std::vector<Index>& nodes : waiting) {
@@ -119,8 +98,7 @@ std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int th
                   nodes.end());
       waits = waits || !nodes.empty();
     }
-    share += (1.0 - share) / 2.0;
-    internal::tell(report, share);
+    tell(report, 0.0);
   }
   std::vector<Index> taken;
   for (std::size_t i = 0; i < n; ++i)
@@ -138,7 +116,7 @@ struct Aggregates {
 /// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
 /// and then all nodes have been looked at, only few change, and those next to them.
 Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads,
-                         const ShareReport& report) {
+                         const Report& report) {
   const std::size_t n = graph.size();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Aggregates near{std::vector<Index>(n, -1), std::vector<double>(n, infinity)};
@@ -155,14 +133,13 @@ Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, in
       }
     }
   }
-  internal::tell(report, kNearShare);
+  tell(report, 0.0);
   const auto is_nearer = [](double distance, Index seed, double than, Index other) {
     return distance < than || (distance == than && seed < other);
   };
   Aggregates cells{std::vector<Index>(n), std::vector<double>(n)};
-  std::vector<std::vector<Index>> changed((n + internal::kBlockSize - 1) / internal::kBlockSize);
-  const ShareReport looked = partOf(report, kNearShare, kLookedShare);
-  forEachBlock(n, threads, looked, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<std::vector<Index>> changed((n + kBlockSize - 1) / kBlockSize);
+  forEachBlock(n, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double nearest = near.distances[i];
       Index seed = near.of_node[i];
@@ -215,18 +192,17 @@ std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
 
 /// The graph of the aggregates that touch.
 Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
-                  const ShareReport& report) {
-  const internal::Members members(cells.of_node, count);
-  internal::tell(report, kMembersShare);
+                  const Report& report) {
+  const Members members(cells.of_node, count);
+  tell(report, 0.0);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Scratch {
     std::vector<double> shortest;
     std::vector<Index> touched;
   };
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
-  std::vector<EntryBlock> blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
-  const ShareReport found = partOf(report, kMembersShare, 1.0);
-  internal::forEachItem(count, threads, found, [&](std::size_t thread, std::size_t c) {
+  std::vector<EntryBlock> blocks((count + kBlockSize - 1) / kBlockSize);
+  forEachItem(count, threads, report, [&](std::size_t thread, std::size_t c) {
     std::vector<double>& shortest = scratch[thread].shortest;
     std::vector<Index>& touched = scratch[thread].touched;
     shortest.resize(count, infinity);
@@ -247,7 +223,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
       }
     });
     std::sort(touched.begin(), touched.end());
-    EntryBlock& block = blocks[c / internal::kBlockSize];
+    EntryBlock& block = blocks[c / kBlockSize];
     for (const Index other : touched) {
       block.columns.push_back(other);
       block.values.push_back(shortest[static_cast<std::size_t>(other)]);
@@ -284,14 +260,13 @@ void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double leng
 Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& graph,
                                                                   const Aggregates& cells,
                                                                   std::size_t count, int threads,
-                                                                  const ShareReport& report) {
+                                                                  const Report& report) {
   const std::size_t n = graph.size();
-  std::vector<EntryBlock> blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
-  const ShareReport found = partOf(report, 0.0, kRowsShare);
-  forEachBlock(n, threads, found, [&](std::size_t b, std::size_t begin, std::size_t end) {
+  std::vector<EntryBlock> blocks((n + kBlockSize - 1) / kBlockSize);
+  forEachBlock(n, threads, report, [&](std::size_t b, std::size_t begin, std::size_t end) {
     EntryBlock& block = blocks[b];
     // About three entries a row.
-    constexpr std::size_t expected = 4 * internal::kBlockSize;
+    constexpr std::size_t expected = 4 * kBlockSize;
     block.columns.reserve(expected);
     block.values.reserve(expected);
     block.ends.reserve(end - begin);
@@ -331,45 +306,30 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
   return result;
 }
 
-HierarchyLevel coarsened(const Graph& graph, const HierarchyOptions& options,
-                         const ShareReport& report) {
-  const int threads =
-      internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold);
+HierarchyLevel coarsened(const Graph& graph, std::uint32_t seed, int requested_threads,
+                         const Report& report) {
+  const int threads = threadCount(requested_threads, graph.size(), kShortPassThreshold);
   HierarchyLevel level;
-  level.seeds = independentSet(graph, options.seed, threads, partOf(report, 0.0, kSetShare));
-  Aggregates cells =
-      geodesicCells(graph, level.seeds, threads, partOf(report, kSetShare, kCellsShare));
-  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads,
-                            partOf(report, kCellsShare, kGraphShare));
-  level.prolongation =
-      interpolation(graph, cells, level.seeds.size(), threads, partOf(report, kGraphShare, 1.0));
+  level.seeds = independentSet(graph, seed, threads, report);
+  Aggregates cells = geodesicCells(graph, level.seeds, threads, report);
+  level.graph = coarseGraph(graph, cells, level.seeds.size(), threads, report);
+  level.prolongation = interpolation(graph, cells, level.seeds.size(), threads, report);
   level.aggregate_of = std::move(cells.of_node);
   return level;
 }
 
 }  // namespace
 
-GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& options) {
-  if (options.coarsest_size < 4)
-    throw InvalidInput("buildGraphHierarchy: coarsest_size = " +
-                       std::to_string(options.coarsest_size) + "; use 4 or more");
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput("buildGraphHierarchy: threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
-  internal::checkGraph("buildGraphHierarchy", graph);
+GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index coarsest_size,
+                                   const Execution& execution) {
   GraphHierarchy hierarchy;
   const Graph* finest = &graph;
   const auto is_dense = [](const Graph& level) {
     return level.neighbors.size() > static_cast<std::size_t>(kPlanarDegree) * level.size();
   };
-  const ShareReport report = internal::cancellable(options.progress, "buildGraphHierarchy");
-  double share = 0.0;
-  while (finest->size() > static_cast<std::size_t>(options.coarsest_size) || is_dense(*finest)) {
-    // What is left is done on smaller and smaller levels.
-    const double share_after = share + (1.0 - kUsualCoarsening) * (1.0 - share);
-    HierarchyLevel level = coarsened(*finest, options, partOf(report, share, share_after));
-    share = share_after;
+  const Report report = reportOf(execution, "embedding");
+  while (finest->size() > static_cast<std::size_t>(coarsest_size) || is_dense(*finest)) {
+    HierarchyLevel level = coarsened(*finest, seed, execution.threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
                                       kLeastCoarsening * static_cast<double>(finest->size()))
@@ -377,8 +337,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& o
     hierarchy.levels.push_back(std::move(level));
     finest = &hierarchy.levels.back().graph;
   }
-  internal::tell(report, 1.0);
   return hierarchy;
 }
 
-}  // namespace spherical_param
+}  // namespace spherical_param::internal

@@ -3,7 +3,7 @@
 #include "block_cholesky.h"
 #include "block_matrix.h"
 #include "embedding_energy.h"
-#include "spherical_param/sphere_embedding.h"
+#include "graph_hierarchy.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "edge_weights.h"
 #include "parallel.h"
 #include "spherical_param/types.h"
 
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -15,17 +17,14 @@ namespace spherical_param::internal {
 
 /// Entries of a row that are evaluated together.
 inline constexpr int kLanes = 4;
-/// Shorter edges count as this long, so that sums of weights stay finite.
-inline constexpr double kShortestLength = 1e-150;
-
 /// Four doubles a point, so that no point is split between cache lines; the last is 0.
 using PaddedPositions = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 
-/// How the weight of an edge depends on its factor f and its length |d| on the sphere.
+/// How a weight depends on its factor f and the length d on the sphere. \see EdgeWeightLaw
 enum class WeightRule {
   Fixed,   ///< f
-  Linear,  ///< f |d|: adaptive weights with p = 3 (Zwicker and Gotsman 2004, equation 4)
-  Power,   ///< (f |d|)^(p - 2)
+  Linear,  ///< f d
+  Power,   ///< (f d)^q
 };
 
 /// The rows of a graph in an order of their own, so that neighbours are near in memory. Rows are
@@ -34,16 +33,17 @@ struct Rows {
   std::vector<Index> node_of_row;    ///< original node; empty if that is the row itself
   std::vector<std::size_t> offsets;  ///< multiples of kLanes
   std::vector<Index> neighbors;      ///< as rows
-  std::vector<double> factors;       ///< 1 for uniform weights, else 1 / |p_i - p_j|; padding has 0
-  double power = 1.0;                ///< p - 2, of WeightRule::Power
+  std::vector<double> factors;       ///< of EdgeWeightLaw; padding has 0
+  double power = 1.0;                ///< of EdgeWeightLaw
 
   Index size() const { return static_cast<Index>(offsets.size()) - 1; }
 };
 
 /// \param node_of_row the nodes in the order of the rows.
-/// \param uniform     factors 1 instead of the inverse lengths.
-inline Rows makeRows(const Graph& graph, std::vector<Index> node_of_row, bool uniform) {
+inline Rows makeRows(const Graph& graph, std::vector<Index> node_of_row,
+                     const EdgeWeightLaw& weights) {
   Rows rows;
+  rows.power = weights.power();
   rows.node_of_row = std::move(node_of_row);
   const std::size_t n = graph.size();
   std::vector<Index> row_of_node(n);
@@ -65,7 +65,7 @@ inline Rows makeRows(const Graph& graph, std::vector<Index> node_of_row, bool un
     const std::size_t i = node_at(row);
     for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
       rows.neighbors.push_back(row_of_node[static_cast<std::size_t>(graph.neighbors[e])]);
-      rows.factors.push_back(uniform ? 1.0 : 1.0 / std::max(graph.lengths[e], kShortestLength));
+      rows.factors.push_back(weights.factor(graph.lengths[e]));
     }
     rows.neighbors.resize(rows.offsets[row + 1], static_cast<Index>(row));
     rows.factors.resize(rows.offsets[row + 1], 0.0);
@@ -74,8 +74,9 @@ inline Rows makeRows(const Graph& graph, std::vector<Index> node_of_row, bool un
 }
 
 /// Rows in the order of the nodes, made on several threads.
-inline Rows makeRows(const Graph& graph, bool uniform, int threads) {
+inline Rows makeRows(const Graph& graph, const EdgeWeightLaw& weights, int threads) {
   Rows rows;
+  rows.power = weights.power();
   const std::size_t n = graph.size();
   rows.offsets.resize(n + 1);
   for (std::size_t i = 0; i < n; ++i) {
@@ -89,7 +90,7 @@ inline Rows makeRows(const Graph& graph, bool uniform, int threads) {
       std::size_t place = rows.offsets[i];
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e, ++place) {
         rows.neighbors[place] = graph.neighbors[e];
-        rows.factors[place] = uniform ? 1.0 : 1.0 / std::max(graph.lengths[e], kShortestLength);
+        rows.factors[place] = weights.factor(graph.lengths[e]);
       }
       for (; place < rows.offsets[i + 1]; ++place)
         rows.neighbors[place] = static_cast<Index>(i);
@@ -145,6 +146,18 @@ Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, 
   const Eigen::Vector3d laplacian =
       Eigen::Vector3d(total(sum_x), total(sum_y), total(sum_z)) / weight_sum;
   return laplacian - laplacian.dot(center) * center;
+}
+
+/// Calls visit(std::integral_constant<WeightRule, rule>()) with the rule of the rows, for loops that
+/// are compiled for one rule.
+template <typename Visit>
+void visitRule(const Rows& rows, const Visit& visit) {
+  if (rows.power == 0.0)
+    visit(std::integral_constant<WeightRule, WeightRule::Fixed>());
+  else if (rows.power == 1.0)
+    visit(std::integral_constant<WeightRule, WeightRule::Linear>());
+  else
+    visit(std::integral_constant<WeightRule, WeightRule::Power>());
 }
 
 }  // namespace spherical_param::internal

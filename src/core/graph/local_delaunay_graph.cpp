@@ -1,9 +1,8 @@
-#include "spherical_param/neighbor_graph.h"
+#include "local_delaunay_graph.h"
 
 #include "component_tree.h"
 #include "graph_building.h"
 #include "neighbor_lists.h"
-#include "option_checks.h"
 #include "parallel.h"
 #include "power_of_two.h"
 #include "progress.h"
@@ -44,12 +43,12 @@ constexpr double kLeastFlat = 0.9;
 /// Least ratio of the middle to the largest variance: below, the neighbourhood is a line.
 constexpr double kMostLinear = 0.01;
 
-/// Shares of the work that are done after its parts.
-constexpr double kMemoryShare = 0.02;
-constexpr double kStarsShare = 0.68;
-constexpr double kSearchShare = 0.76;
-constexpr double kEdgesShare = 0.93;
-constexpr double kPartsShare = 0.95;
+/// Nearest neighbours that span the tangent plane; more where these are on a line.
+constexpr int kTangentNeighbors = 10;
+/// Candidates steeper than this to the tangent plane are on another sheet [sine of the angle].
+constexpr double kMaxSlope = 0.85;
+/// Nearest neighbours used of a list, and searched for, at most.
+constexpr int kMaxCandidates = 32;
 
 struct Candidate {
   double squared_distance;
@@ -289,13 +288,13 @@ bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen:
 ///
 /// \param others number of other points there are
 StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
-                  const LocalDelaunayOptions& options, VoronoiCell& cell, Index* star,
+                  VoronoiCell& cell, Index* star,
                   Index& count) {
   StarKind kind;
   kind.candidates = static_cast<Index>(candidates.size());
   count = 0;
   const bool complete = candidates.size() >= others;
-  const auto tangent_neighbors = static_cast<std::size_t>(options.tangent_neighbors);
+  const auto tangent_neighbors = std::size_t{kTangentNeighbors};
   if (candidates.size() < tangent_neighbors) {
     kind.wants_more = !complete;
     findGabrielNeighbors(candidates, star, count);
@@ -311,7 +310,7 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
     }
     if (kind.tangent_plane) {
       const bool certified =
-          findVoronoiNeighbors(candidates, axes, options.max_slope, cell, star, count);
+          findVoronoiNeighbors(candidates, axes, kMaxSlope, cell, star, count);
       kind.certified = certified || complete;
       kind.wants_more = !kind.certified;
     } else {
@@ -326,8 +325,8 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
 /// Finds the stars of the points in `subset` (empty: of all) from lists in its order. Lists that
 /// are no longer than the one before change nothing.
 void findStars(const Positions& points, const std::vector<Index>& subset,
-               const NeighborLists& lists, const LocalDelaunayOptions& options, int threads,
-               std::vector<Scratch>& scratch, const internal::ShareReport& report, Stars& stars) {
+               const NeighborLists& lists, int threads,
+               std::vector<Scratch>& scratch, const internal::Report& report, Stars& stars) {
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
   std::size_t longest = 0;
@@ -338,20 +337,19 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
     memory.cell.reserve(longest);
   }
   const std::size_t others = stars.size() - 1;
-  internal::tell(report, kMemoryShare);
-  const auto found_report = internal::partOf(report, kMemoryShare, 1.0);
+  internal::tell(report, 0.0);
   internal::forEachItem(
-      lists.size(), threads, found_report, [&](std::size_t thread, std::size_t q) {
+      lists.size(), threads, report, [&](std::size_t thread, std::size_t q) {
         const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
         const auto i = static_cast<std::size_t>(node);
         std::vector<Candidate>& candidates = scratch[thread].candidates;
         collectCandidates(points, node, lists.indices.data() + lists.offsets[q],
-                          lists.indices.data() + lists.offsets[q + 1], options.max_candidates,
+                          lists.indices.data() + lists.offsets[q + 1], kMaxCandidates,
                           candidates);
         if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
           return;
         stars.begin[i] = base + lists.offsets[q];
-        stars.kind[i] = findStar(candidates, others, options, scratch[thread].cell,
+        stars.kind[i] = findStar(candidates, others, scratch[thread].cell,
                                  stars.nodes.data() + stars.begin[i], stars.count[i]);
         for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
           stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
@@ -359,18 +357,17 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
 }
 
 /// Asks for more neighbours of the points that want them. Returns how many points these were.
-Index searchForMore(const Positions& points, const LocalDelaunayOptions& options, int threads,
-                    std::vector<Scratch>& scratch, const internal::ShareReport& report,
+Index searchForMore(const Positions& points, const NeighborSearch& search, int threads,
+                    std::vector<Scratch>& scratch, const internal::Report& report,
                     Stars& stars) {
   const int most = static_cast<int>(
-      std::min(static_cast<std::size_t>(options.max_candidates), stars.size() - 1));
+      std::min(static_cast<std::size_t>(kMaxCandidates), stars.size() - 1));
   int count = 0;
   for (const StarKind& kind : stars.kind)
     count = std::max(count, static_cast<int>(kind.candidates));
-  count = std::max(count, options.tangent_neighbors / 2);
+  count = std::max(count, kTangentNeighbors / 2);
   std::vector<Index> open;
   Index searched = 0;
-  double share = 0.0;
   while (count < most) {
     count = std::min(2 * count, most);
     open.clear();
@@ -380,26 +377,23 @@ Index searchForMore(const Positions& points, const LocalDelaunayOptions& options
     if (open.empty())
       break;
     searched = std::max(searched, static_cast<Index>(open.size()));
-    const NeighborLists lists = options.search(open, count);
-    internal::checkIndices("buildLocalDelaunayGraph: the search's answer", lists, open.size(),
+    const NeighborLists lists = search(open, count);
+    internal::checkIndices("buildNeighborGraph: the answer of the search", lists, open.size(),
                            stars.size());
-    findStars(points, open, lists, options, threads, scratch, {}, stars);
-    // Mostly there are two or three rounds.
-    share += (1.0 - share) / 2.0;
-    internal::tell(report, share);
+    findStars(points, open, lists, threads, scratch, {}, stars);
+    internal::tell(report, static_cast<double>(count) / most);
   }
   return searched;
 }
 
 /// The graph of the pairs whose stars agree.
 Graph agreedEdges(const Positions& points, const Stars& stars, int threads,
-                  const internal::ShareReport& report) {
+                  const internal::Report& report) {
   const std::size_t n = stars.size();
   Graph graph;
   graph.offsets.assign(n + 1, 0);
   std::vector<char> agreed(stars.nodes.size());  // not bool: written by several threads
-  const auto agree_report = internal::partOf(report, 0.0, 0.5);
-  internal::forEachItem(n, threads, agree_report, [&](std::size_t, std::size_t i) {
+  internal::forEachItem(n, threads, report, [&](std::size_t, std::size_t i) {
     for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e)
       if (stars.holds(stars.nodes[e], static_cast<Index>(i))) {
         agreed[e] = 1;
@@ -410,8 +404,7 @@ Graph agreedEdges(const Positions& points, const Stars& stars, int threads,
     graph.offsets[i + 1] += graph.offsets[i];
   graph.neighbors.resize(graph.offsets[n]);
   graph.lengths.resize(graph.offsets[n]);
-  const auto write_report = internal::partOf(report, 0.5, 1.0);
-  internal::forEachItem(n, threads, write_report, [&](std::size_t, std::size_t i) {
+  internal::forEachItem(n, threads, report, [&](std::size_t, std::size_t i) {
     std::size_t entry = graph.offsets[i];
     for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e) {
       if (agreed[e] == 0)
@@ -525,82 +518,63 @@ std::vector<Bridge> joinParts(const Positions& points, const Stars& stars,
   return bridges;
 }
 
-void checkOptions(const LocalDelaunayOptions& options) {
-  const std::string function = "buildLocalDelaunayGraph: ";
-  internal::checkEnum("buildLocalDelaunayGraph: agreement", options.agreement,
-                      StarAgreement::Either);
-  if (options.tangent_neighbors < 3)
-    throw InvalidInput(function + "tangent_neighbors = " +
-                       std::to_string(options.tangent_neighbors) + " is too small; use 3 or more");
-  if (!(options.max_slope > 0.0 && options.max_slope <= 1.0))
-    throw InvalidInput(function + "max_slope = " + std::to_string(options.max_slope) +
-                       " is out of range; use a value in (0, 1]");
-  if (options.max_candidates < options.tangent_neighbors)
-    throw InvalidInput(function + "max_candidates = " + std::to_string(options.max_candidates) +
-                       " is too small; use tangent_neighbors = " +
-                       std::to_string(options.tangent_neighbors) + " or more");
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput(function + "threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 to " + std::to_string(internal::kMostThreads));
-}
-
-}  // namespace
-
-NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
-                                      const LocalDelaunayOptions& options) {
-  checkOptions(options);
-  const auto n = static_cast<std::size_t>(points.cols());
-  internal::checkNeighborLists("buildLocalDelaunayGraph", lists, n);
-  const int threads = internal::threadCount(options.threads, n, internal::kParallelThreshold);
-  NeighborGraph result;
-  if (n == 0)
-    return result;
-
-  const internal::ShareReport report =
-      internal::cancellable(options.progress, "buildLocalDelaunayGraph");
-  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
-  Stars stars(n);
-  findStars(points, {}, lists, options, threads, scratch,
-            internal::partOf(report, 0.0, kStarsShare), stars);
-  if (options.search)
-    result.searched_again =
-        searchForMore(points, options, threads, scratch,
-                      internal::partOf(report, kStarsShare, kSearchShare), stars);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!stars.kind[i].tangent_plane)
-      result.without_tangent_plane.push_back(static_cast<Index>(i));
-    else if (!stars.kind[i].certified)
-      ++result.uncertified;
-  }
-
-  result.graph =
-      agreedEdges(points, stars, threads, internal::partOf(report, kSearchShare, kEdgesShare));
-  if (options.agreement == StarAgreement::Either)
-    joinAllOfStars(points, stars, result.graph);
-  else
-    joinWithoutPlane(points, stars, result.without_tangent_plane, result.graph);
-  result.weak = repairWeak(points, stars, result.graph);
-
+/// Joins components, and ties biconnected components together.
+void connect(const Positions& points, const Stars& stars, const internal::Report& report,
+             NeighborGraph& result) {
   internal::UnionFind parts = internal::connectedComponents(result.graph);
-  const std::vector<Index> part = internal::representatives(parts, n);
-  result.components = internal::countSets(part);
-  internal::tell(report, kPartsShare);
-  if (result.components > 1) {
-    result.bridges = joinParts(points, stars, part, parts);
-    result.graph = internal::withEdges(result.graph, result.bridges);
+  const std::vector<Index> part = internal::representatives(parts, stars.size());
+  result.report.components = internal::countSets(part);
+  internal::tell(report, 0.0);
+  if (result.report.components > 1) {
+    result.report.bridges = joinParts(points, stars, part, parts);
+    result.graph = internal::withEdges(result.graph, result.report.bridges);
   }
   for (int round = 0; round < kDanglingRounds; ++round) {
     const std::vector<Bridge> bridges =
         internal::danglingBridges(points, result.graph, kBridgesPerJoint - 1);
-    // Mostly there is one round.
-    internal::tell(report, 1.0 - (1.0 - kPartsShare) / (round + 3));
+    internal::tell(report, static_cast<double>(round) / kDanglingRounds);
     if (bridges.empty())
       break;
     result.graph = internal::withEdges(result.graph, bridges);
-    result.bridges.insert(result.bridges.end(), bridges.begin(), bridges.end());
+    result.report.bridges.insert(result.report.bridges.end(), bridges.begin(), bridges.end());
   }
-  internal::tell(report, 1.0);
+}
+
+}  // namespace
+
+namespace internal {
+
+NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
+                                      StarAgreement agreement, const NeighborSearch& search,
+                                      const Execution& execution) {
+  const auto n = static_cast<std::size_t>(points.cols());
+  const int threads = threadCount(execution.threads, n, kParallelThreshold);
+  NeighborGraph result;
+  if (n == 0)
+    return result;
+
+  const Report report = reportOf(execution, "graph");
+  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
+  Stars stars(n);
+  findStars(points, {}, lists, threads, scratch, report, stars);
+  if (search)
+    result.report.searched_again = searchForMore(points, search, threads, scratch, report, stars);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!stars.kind[i].tangent_plane)
+      result.report.without_tangent_plane.push_back(static_cast<Index>(i));
+    else if (!stars.kind[i].certified)
+      ++result.report.uncertified;
+  }
+
+  result.graph = agreedEdges(points, stars, threads, report);
+  if (agreement == StarAgreement::Either)
+    joinAllOfStars(points, stars, result.graph);
+  else
+    joinWithoutPlane(points, stars, result.report.without_tangent_plane, result.graph);
+  result.report.weak = repairWeak(points, stars, result.graph);
+  connect(points, stars, report, result);
   return result;
 }
 
+}  // namespace internal
 }  // namespace spherical_param

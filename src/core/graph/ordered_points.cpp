@@ -4,16 +4,23 @@
 #include "power_of_two.h"
 #include "radix_sort.h"
 #include "space_filling_curve.h"
+#include "spherical_param/errors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <string>
 #include <tuple>
 
 namespace spherical_param::internal {
 namespace {
+
+/// Indices have 32 bits; a mesh has four times as many edge ends as points.
+constexpr Eigen::Index kMaxPoints = Eigen::Index{1} << 30;
+/// Areas and volumes of larger clouds leave the range of double.
+constexpr double kMaxCoordinate = 1e100;
 
 struct Place {
   std::uint64_t key;  ///< on the curve
@@ -103,6 +110,29 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
     }
   });
   return result;
+}
+
+OrderedPoints orderCheckedPoints(const Positions& points, int threads) {
+  if (points.cols() > kMaxPoints)
+    throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +
+                       " points are more than 2^30; split or downsample the cloud");
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    if (!points.col(i).allFinite())
+      throw InvalidInput("reconstruct: point " + std::to_string(i) +
+                         " is not finite; remove such points first");
+    if (points.col(i).cwiseAbs().maxCoeff() > kMaxCoordinate)
+      throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
+  }
+  OrderedPoints nodes = orderPoints(points, threads);
+  const std::size_t count = nodes.input_of_node.size();
+  if (count < 4)
+    throw InvalidInput("reconstruct: at least 4 distinct finite points are needed, but there are " +
+                       std::to_string(count));
+  // As given: next to far larger ones, the least coordinates vanish when they are scaled.
+  if (areCoplanar(points))
+    throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
+                       "outside of it");
+  return nodes;
 }
 
 }  // namespace spherical_param::internal

@@ -25,4 +25,10 @@ struct OrderedPoints {
 /// \param points 3 x n, finite, n < 2^31.
 OrderedPoints orderPoints(const Positions& points, int threads);
 
+/// The same for points that a mesh can be made of.
+///
+/// \throw InvalidInput for a coordinate that is not finite or too large, fewer than four distinct
+/// points, or points in one plane.
+OrderedPoints orderCheckedPoints(const Positions& points, int threads);
+
 }  // namespace spherical_param::internal

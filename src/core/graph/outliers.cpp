@@ -34,9 +34,6 @@ void checkOptions(const OutlierOptions& options) {
   if (!(options.least_score >= 0.0 && std::isfinite(options.least_score)))
     fail("least_score = " + std::to_string(options.least_score) +
          " is out of range; use a finite value that is not negative");
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
-         std::to_string(internal::kMostThreads));
 }
 
 /// A neighbour of a point; ordered by how crowded it is there, then by how near it is.

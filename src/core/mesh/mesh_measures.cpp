@@ -83,11 +83,7 @@ SurfaceSums sumOverSurface(const Positions& points, const Triangles& triangles,
 }  // namespace
 
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
-                         const MeasureOptions& options) {
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput("measureMesh: threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
+                         int requested_threads) {
   internal::checkTriangles("measureMesh", triangles, points.cols());
   MeshMeasures measures;
   if (triangles.cols() == 0)
@@ -97,7 +93,7 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   SurfaceSums surface;
   // Each sum has one thread, which adds in the order of the triangles.
   [[maybe_unused]] const int threads =
-      std::min(2, internal::threadCount(options.threads, static_cast<std::size_t>(triangles.cols()),
+      std::min(2, internal::threadCount(requested_threads, static_cast<std::size_t>(triangles.cols()),
                                         internal::kShortPassThreshold));
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)

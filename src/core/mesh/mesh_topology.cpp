@@ -240,14 +240,10 @@ void collect(std::size_t count, int threads, MeshTopology& result, const Examine
 }  // namespace
 
 MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
-                           const TopologyOptions& options) {
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput("checkTopology: threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
+                           int requested_threads) {
   internal::checkTriangles("checkTopology", triangles, static_cast<Eigen::Index>(vertex_count));
   const int threads =
-      internal::threadCount(options.threads, vertex_count, internal::kShortPassThreshold);
+      internal::threadCount(requested_threads, vertex_count, internal::kShortPassThreshold);
   const auto m = static_cast<Index>(triangles.cols());
 
   const CornerTable corners(triangles, vertex_count, threads);

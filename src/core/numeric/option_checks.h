@@ -4,9 +4,26 @@
 
 #include <string>
 
-namespace spherical_param::internal {
+namespace spherical_param {
 
-/// Refuses what was cast to an enumeration, and is none of its values, which count from 0.
+struct EmbeddingOptions;
+struct GraphOptions;
+struct OptimizationOptions;
+struct SmoothingOptions;
+struct TriangulationOptions;
+
+namespace internal {
+
+// Throw InvalidInput for an option of a stage that is out of the range that the table of options
+// gives (optionTable()).
+void checkOptions(const GraphOptions& options);
+void checkOptions(const EmbeddingOptions& options);
+void checkOptions(const TriangulationOptions& options);
+void checkOptions(const OptimizationOptions& options);
+void checkOptions(const SmoothingOptions& options);
+
+/// Throws InvalidInput for a value that was cast to an enumeration and is none of its values, which
+/// count from 0.
 ///
 /// \param what the public function and its option, for the message.
 template <typename Enum>
@@ -14,7 +31,8 @@ void checkEnum(const char* what, Enum value, Enum last) {
   const auto number = static_cast<long long>(value);
   if (number < 0 || number > static_cast<long long>(last))
     throw InvalidInput(std::string(what) + " = " + std::to_string(number) +
-                       " names nothing; use a value of its type");
+                       " is not a value of its type; use one of its enumerators");
 }
 
-}  // namespace spherical_param::internal
+}  // namespace internal
+}  // namespace spherical_param

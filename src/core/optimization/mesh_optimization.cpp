@@ -7,7 +7,7 @@
 #include "progress.h"
 #include "sampling_analysis.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/self_intersection.h"
+#include "spherical_param/smoothing.h"
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +19,6 @@ namespace spherical_param {
 namespace {
 
 using internal::MeshOptimizer;
-using internal::ShareReport;
 using internal::SurfaceEnergy;
 using Bend = SurfaceEnergy::Bend;
 
@@ -40,9 +39,6 @@ constexpr double kNoisy = 0.5;
 /// Steps of smoothing that are tried in turn, until no more than this share is rough.
 constexpr std::array<int, 4> kSmoothingSteps{3, 6, 12, 24};
 constexpr double kSmoothEnough = 0.5;
-/// Of a noisy cloud that nobody can smooth, only edges as sharp as this (66 degrees) are looked at.
-constexpr double kSharpInNoise = 0.4;
-
 /// The sampling follows the curvature from here on. Simplified and designed models have 0.19 to
 /// 0.63, scans and even or random samplings -0.01 to 0.13.
 constexpr double kAligned = 0.16;
@@ -66,25 +62,6 @@ constexpr double kPriceOfIntersection = 10.0;
 /// intersections for each triangle; so few in all are tried anyway.
 constexpr double kFewIntersections = 0.005;
 constexpr double kFewInAll = 1500.0;
-
-/// Shares of the work that are done after its parts, where nothing intersects: of
-/// OptimizationMethod::Full, and of the others. The last one is never told.
-constexpr double kCheckedShare = 0.04;
-constexpr double kMeshShare = 0.1;
-constexpr double kSphereShare = 0.15;
-constexpr double kPreparedShare = 0.2;
-constexpr double kFlipsShare = 0.36;
-constexpr double kRoughShare = 0.44;
-constexpr double kRelocateShare = 0.46;
-constexpr double kRecreateShare = 0.47;
-constexpr double kUntangleShare = 0.5;
-constexpr double kPolishShare = 0.56;
-constexpr double kPolishRelocateShare = 0.57;
-constexpr double kLastUntangleShare = 0.99;
-constexpr double kFlipsAloneShare = 0.5;
-constexpr double kAllShare = 0.999;
-/// Share of untangling that finds what intersects.
-constexpr double kIntersectionsShare = 0.9;
 
 /// Vertices that may be taken out in parts, in all.
 std::size_t budgetOf(std::size_t points) {
@@ -116,11 +93,10 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
 
 /// The optimiser of a mesh that is as it should be.
 MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangles,
-                               const Graph& graph, int threads, const ShareReport& report) {
+                               const Graph& graph, int threads, const internal::Report& report) {
   checkInput(points, triangles, graph);
-  internal::tell(report, kCheckedShare);
-  MeshOptimizer optimizer(points, triangles, graph, threads,
-                          internal::partOf(report, kCheckedShare, kMeshShare));
+  internal::tell(report, 0.0);
+  MeshOptimizer optimizer(points, triangles, graph, threads, report);
   if (!optimizer.mesh().isSphere(threads))
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points");
@@ -130,41 +106,28 @@ MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangl
 class Optimization {
 public:
   Optimization(const Positions& points, const Triangles& triangles, const Graph& graph,
-               const OptimizationOptions& options)
-      : graph_(graph), options_(options), given_(&points), points_(&points), random_(options.seed),
-        budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
-        optimizer_(checkedOptimizer(points, triangles, graph, options.threads, options.progress)) {}
+               const OptimizationOptions& options, std::uint32_t seed, const Execution& execution)
+      : graph_(graph), options_(options), threads_(execution.threads),
+        report_(internal::reportOf(execution, "optimization")), given_(&points), points_(&points),
+        random_(seed), budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
+        optimizer_(checkedOptimizer(points, triangles, graph, threads_, report_)) {}
 
   MeshOptimization run() {
-    const bool is_full = options_.method == OptimizationMethod::Full;
-    report(kSphereShare);
-    analyze();
-    setFlipEnergy(kMu);
-    report(kPreparedShare);
-    flips("flips", kPreparedShare, is_full ? kFlipsShare : kFlipsAloneShare);
-    optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
-    if (is_full) {
-      std::vector<Index> rough = optimizer_.roughVertices(kSharp, part(kFlipsShare, kRoughShare));
-      result_.rough = static_cast<double>(rough.size()) / static_cast<double>(points_->cols());
-      if (result_.rough > kNoisy)
-        rough = beginOnNoise();
-      relocate(rough, kRoughShare, kRelocateShare);
-      // Where nothing is folded, hardly anything intersects: once after the polish is enough.
-      if (recreate())
-        untangle(kRecreateShare, kUntangleShare);
-      const Triangles unpolished = optimizer_.mesh().triangles();
-      polish();
-      // With the first energy: it is what keeps sheets apart.
+    switch (options_.method) {
+    case OptimizationMethod::None:
       optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
-      result_.self_intersections = untangle(kPolishRelocateShare, kLastUntangleShare);
-      if (!result_.self_intersections.empty())
-        takeBackPolish(unpolished);
-    } else {
-      result_.self_intersections = optimizer_.intersections(part(kFlipsAloneShare, kAllShare));
+      result_.self_intersections = optimizer_.intersections(report_);
+      break;
+    case OptimizationMethod::Flips:
+      flipFirst();
+      result_.self_intersections = optimizer_.intersections(report_);
+      break;
+    case OptimizationMethod::Full:
+      flipFirst();
+      runFull();
+      break;
     }
-    if (result_.smoothing_steps > 0)
-      endOnNoise();
-    result_.energy = optimizer_.energy();
+    result_.report.energy = optimizer_.energy();
     result_.triangles = optimizer_.mesh().triangles();
     return std::move(result_);
   }
@@ -188,44 +151,55 @@ private:
     phase.moves = tally.moves;
     phase.energy = optimizer_.energy();
     phase.seconds = time.count();
-    result_.phases.push_back(phase);
-    return result_.phases.back();
+    result_.report.phases.push_back(phase);
+    return result_.report.phases.back();
   }
 
-  /// The share never falls, though parts may be repeated.
-  void report(double share) {
-    share_ = std::max(share_, std::min(share, kAllShare));
-    if (options_.progress)
-      options_.progress(share_);
+  void flips(const char* name) {
+    phase(name, [&] { return Tally{0, optimizer_.flipAll(report_)}; });
   }
 
-  /// The report of a part of the work. \see partOf
-  ShareReport part(double begin, double end) {
-    if (!options_.progress)
-      return {};
-    return internal::partOf([this](double share) { report(share); }, begin, end);
+  void flipFirst() {
+    analyze();
+    setFlipEnergy(kMu);
+    flips("flips");
+    optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
   }
 
-  void flips(const char* name, double share_before, double share_after) {
-    phase(name, [&] { return Tally{0, optimizer_.flipAll(part(share_before, share_after))}; });
+  void runFull() {
+    std::vector<Index> rough = optimizer_.roughVertices(kSharp, report_);
+    result_.report.rough =
+        static_cast<double>(rough.size()) / static_cast<double>(points_->cols());
+    if (result_.report.rough > kNoisy)
+      rough = beginOnNoise();
+    relocate(rough);
+    // Where nothing is folded, hardly anything intersects: once after the polish is enough.
+    if (recreate())
+      untangle();
+    const Triangles unpolished = optimizer_.mesh().triangles();
+    polish();
+    // With the first energy: it is what keeps sheets apart.
+    optimizer_.setEnergy(energyOf(Bend::Angle, kMu));
+    result_.self_intersections = untangle();
+    if (!result_.self_intersections.empty())
+      rollBackPolish(unpolished);
+    if (result_.report.noise_steps > 0)
+      endOnNoise();
   }
 
-  /// Goes on with less noisy positions, or with fewer vertices. Returns the rough ones.
+  /// Goes on with less noisy positions. Returns the rough vertices.
   std::vector<Index> beginOnNoise() {
-    if (!options_.smoother)
-      return optimizer_.roughVertices(kSharpInNoise);
     std::vector<Index> rough;
     for (const int steps : kSmoothingSteps) {
-      Positions smoothed = options_.smoother(optimizer_.mesh().triangles(), steps);
-      if (smoothed.cols() != points_->cols() || !smoothed.allFinite())
-        throw InvalidInput("optimizeMesh: the smoother must answer with as many finite points");
-      smoothed_ = std::move(smoothed);
-      result_.smoothing_steps = steps;
+      const SmoothingOptions smoothing{SmoothingMethod::Umbrella, steps, false};
+      smoothed_ =
+          smoothSurface(*given_, optimizer_.mesh().triangles(), smoothing, threads_).points;
+      result_.report.noise_steps = steps;
       points_ = &smoothed_;
       optimizer_.setPoints(smoothed_);
       analyze();
-      flips("flips", share_, kRoughShare);
-      rough = optimizer_.roughVertices(kSharp, part(share_, kRoughShare));
+      flips("flips");
+      rough = optimizer_.roughVertices(kSharp, report_);
       if (static_cast<double>(rough.size()) <= kSmoothEnough * static_cast<double>(points_->cols()))
         break;
     }
@@ -238,28 +212,26 @@ private:
     optimizer_.setPoints(*points_);
     if (!options_.finish_on_points)
       return;
-    result_.smoothed_self_intersections = result_.self_intersections.size();
+    result_.report.smoothed_self_intersections = result_.self_intersections.size();
     result_.self_intersections =
-        optimizer_.intersections(part(kLastUntangleShare, kLastUntangleShare));
+        optimizer_.intersections(report_);
     const auto count = static_cast<double>(result_.self_intersections.size());
     if (count <= std::max(kFewInAll, kFewIntersections * optimizer_.mesh().size()))
-      result_.self_intersections = untangle(kLastUntangleShare, kAllShare);
+      result_.self_intersections = untangle();
   }
 
-  /// What is done with an item of a round, where all rounds are the share from `before` to `after`.
-  static double shareOf(int round, int rounds, std::size_t item, std::size_t items, double before,
-                        double after) {
-    const double of_round = static_cast<double>(item) / static_cast<double>(items);
-    return before + (after - before) * (round + of_round) / rounds;
+  /// Reports which of the items of a round is next.
+  void tellItem(std::size_t item, std::size_t items, std::size_t between_reports) {
+    if (item % between_reports == 0)
+      internal::tell(report_, static_cast<double>(item) / static_cast<double>(items));
   }
 
-  void relocate(std::vector<Index> rough, double share_before, double share_after) {
+  void relocate(std::vector<Index> rough) {
     for (int round = 0; round < kRelocateRounds && !rough.empty(); ++round) {
       std::vector<Index> moved;
       phase("relocate", [&] {
         for (std::size_t i = 0; i < rough.size(); ++i) {
-          if (i % 256 == 0)
-            report(shareOf(round, kRelocateRounds, i, rough.size(), share_before, share_after));
+          tellItem(i, rough.size(), 256);
           if (optimizer_.relocate(rough[i]))
             moved.push_back(rough[i]);
         }
@@ -291,12 +263,10 @@ private:
       const auto folded = optimizer_.edgesBelow(kFolded);
       if (folded.empty() || budget_ == 0)
         return !folded.empty();
-      phase("recreate", [&] {
+      phase("ruin and recreate", [&] {
         Tally tally;
         for (std::size_t i = 0; i < folded.size(); ++i) {
-          if (i % 16 == 0)
-            report(
-                shareOf(round, kRecreateRounds, i, folded.size(), kRelocateShare, kRecreateShare));
+          tellItem(i, folded.size(), 16);
           const auto& [v, w] = folded[i];
           for (std::size_t size = 4; size <= 32; size *= 2)
             if (optimizer_.mesh().areJoined(v, w))
@@ -326,10 +296,9 @@ private:
   }
 
   /// Ends with the mesh of fewest intersections on the way, and returns these.
-  std::vector<std::array<Index, 2>> untangle(double share_before, double share_after) {
-    const double share_found = share_before + kIntersectionsShare * (share_after - share_before);
-    auto pairs = optimizer_.intersections(part(share_before, share_found));
-    result_.phases.back().self_intersections = pairs.size();
+  std::vector<std::array<Index, 2>> untangle() {
+    auto pairs = optimizer_.intersections(report_);
+    result_.report.phases.back().self_intersections = pairs.size();
     auto fewest = pairs;
     Triangles best;
     for (int round = 0; round < kUntangleRounds && !pairs.empty() && budget_ > 0; ++round) {
@@ -344,20 +313,19 @@ private:
         for (const auto& [t, u] : pairs)
           corners.push_back({cornersOf(t), cornersOf(u)});
         for (std::size_t i = 0; i < pairs.size(); ++i) {
-          if (i % 16 == 0)
-            report(shareOf(round, kUntangleRounds, i, pairs.size(), share_found, share_after));
+          tellItem(i, pairs.size(), 16);
           untanglePair(pairs[i], corners[i], round >= kRoundsByEnergy, tally);
         }
         return tally;
       });
-      pairs = optimizer_.intersections(part(share_, share_));
+      pairs = optimizer_.intersections(report_);
       untangled.self_intersections = pairs.size();
     }
     if (pairs.size() <= fewest.size())
       return pairs;
     optimizer_.reset(best);
-    result_.phases.back().energy = optimizer_.energy();
-    result_.phases.back().self_intersections = fewest.size();
+    result_.report.phases.back().energy = optimizer_.energy();
+    result_.report.phases.back().self_intersections = fewest.size();
     return fewest;
   }
 
@@ -389,12 +357,12 @@ private:
 
   void analyze() {
     const internal::Sampling sampling =
-        internal::analyzeSampling(*points_, graph_, options_.threads);
-    result_.alignment = sampling.alignment;
-    result_.unevenness = sampling.unevenness;
+        internal::analyzeSampling(*points_, graph_, threads_);
+    result_.report.alignment = sampling.alignment;
+    result_.report.unevenness = sampling.unevenness;
   }
 
-  bool isEven() const { return result_.alignment < kAligned && result_.unevenness < kUneven; }
+  bool isEven() const { return result_.report.alignment < kAligned && result_.report.unevenness < kUneven; }
 
   /// The energy that suits the cloud's sampling.
   ///
@@ -409,19 +377,18 @@ private:
   }
 
   void polish() {
-    report(kRecreateShare);
     setFlipEnergy(kPolishMu);
-    flips("polish", kUntangleShare, kPolishShare);
+    flips("polish");
     if (!isEven())
-      relocate(optimizer_.roughVertices(kSharp), kPolishShare, kPolishRelocateShare);
+      relocate(optimizer_.roughVertices(kSharp));
   }
 
   /// Goes back to the mesh before the polish if fewer of its triangles intersect.
-  void takeBackPolish(const Triangles& unpolished) {
-    phase("unpolish", [&] {
+  void rollBackPolish(const Triangles& unpolished) {
+    phase("roll back", [&] {
       const Triangles polished = optimizer_.mesh().triangles();
       optimizer_.reset(unpolished);
-      auto pairs = optimizer_.intersections(part(kLastUntangleShare, kAllShare));
+      auto pairs = optimizer_.intersections(report_);
       if (pairs.size() < result_.self_intersections.size()) {
         result_.self_intersections = std::move(pairs);
         return Tally{1, 1};
@@ -433,45 +400,24 @@ private:
 
   const Graph& graph_;
   const OptimizationOptions& options_;
+  int threads_;
+  internal::Report report_;
   const Positions* given_;
   const Positions* points_;  ///< given, or smoothed_
   Positions smoothed_;
   std::uint64_t random_;
   std::size_t budget_;  ///< vertices that may still be taken out in parts
   MeshOptimizer optimizer_;
-  double share_ = 0.0;  ///< of the work that is done
   MeshOptimization result_;
 };
 
 }  // namespace
 
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
-                              const Graph& graph, const OptimizationOptions& options) {
-  internal::checkEnum("optimizeMesh: method", options.method, OptimizationMethod::Full);
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput("optimizeMesh: threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
-  if (options.method == OptimizationMethod::None) {
-    MeshOptimization result;
-    MeshOptimizer optimizer =
-        checkedOptimizer(points, triangles, graph, options.threads, options.progress);
-    optimizer.setEnergy(energyOf(Bend::Angle, kMu));
-    result.energy = optimizer.energy();
-    if (options.progress)
-      options.progress(kFlipsAloneShare);
-    result.triangles = triangles;
-    SelfIntersectionOptions intersections;
-    intersections.threads = options.threads;
-    if (options.progress)
-      intersections.progress = [&](double share) {
-        options.progress(std::min(kFlipsAloneShare + (1.0 - kFlipsAloneShare) * share, kAllShare));
-        return true;
-      };
-    result.self_intersections = findSelfIntersections(points, triangles, intersections);
-    return result;
-  }
-  return Optimization(points, triangles, graph, options).run();
+                              const Graph& graph, const OptimizationOptions& options,
+                              std::uint32_t seed, const Execution& execution) {
+  internal::checkOptions(options);
+  return Optimization(points, triangles, graph, options, seed, execution).run();
 }
 
 }  // namespace spherical_param

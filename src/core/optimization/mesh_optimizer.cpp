@@ -23,11 +23,7 @@ constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// Candidates of flips between reports.
 constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
-/// Share of the work of flipAll() that finds the first candidates, and of intersections() before
 /// the pairs.
-constexpr double kCandidatesShare = 0.65;
-constexpr double kNeighborsShare = 0.6;  // of what makes an optimiser
-constexpr double kFansShare = 0.12;
 
 /// Neighbours in the graph up to so many mean lengths of a vertex's edges should be near on the
 /// mesh.
@@ -47,7 +43,7 @@ double medianOf(std::vector<double>& values) {
 }  // namespace
 
 MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
-                             const Graph& graph, int threads, const ShareReport& report)
+                             const Graph& graph, int threads, const Report& report)
     : points_(&points), graph_(graph),
       threads_(
           threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
@@ -55,16 +51,16 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
       facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
       stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
       seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
-  tell(report, kNeighborsShare);
+  tell(report, 0.0);
   double lengths = 0.0;
   for (const double length : graph_.lengths)
     lengths += length;
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph_.lengths.size());
-  recomputeFacets(partOf(report, kNeighborsShare, 1.0));
+  recomputeFacets(report);
 }
 
-void MeshOptimizer::recomputeFacets(const ShareReport& report) {
+void MeshOptimizer::recomputeFacets(const Report& report) {
   are_flips_settled_ = false;
   has_usual_angles_ = false;
   forEachBlock(facets_.size(), threads_, report,
@@ -189,7 +185,7 @@ bool MeshOptimizer::flip(Index t, int k, double gain) {
   return true;
 }
 
-std::size_t MeshOptimizer::flipQueued(const ShareReport& report) {
+std::size_t MeshOptimizer::flipQueued(const Report& report) {
   refused_.clear();
   std::size_t flips = 0;
   double share = 0.0;
@@ -254,7 +250,7 @@ void MeshOptimizer::unmark(std::uint8_t change) {
     marks &= static_cast<std::uint8_t>(~change);
 }
 
-std::size_t MeshOptimizer::flipAll(const ShareReport& report) {
+std::size_t MeshOptimizer::flipAll(const Report& report) {
   // The gain of a side depends on its two triangles and their neighbours alone.
   const bool are_most_settled = are_flips_settled_ && settled_terms_ == terms_;
   const auto is_due = [&](Index t) {
@@ -262,7 +258,7 @@ std::size_t MeshOptimizer::flipAll(const ShareReport& report) {
   };
   std::vector<std::vector<Candidate>> found((facets_.size() + kBlockSize - 1) / kBlockSize);
   const double floor = kLeastGain * unit_;
-  forEachBlock(facets_.size(), threads_, partOf(report, 0.0, kCandidatesShare),
+  forEachBlock(facets_.size(), threads_, report,
                [&](std::size_t block, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
                    const auto t = static_cast<Index>(i);
@@ -286,7 +282,7 @@ std::size_t MeshOptimizer::flipAll(const ShareReport& report) {
   for (const auto& part : found)
     queue_.insert(queue_.end(), part.begin(), part.end());
   std::make_heap(queue_.begin(), queue_.end());
-  const std::size_t flips = flipQueued(partOf(report, kCandidatesShare, 1.0));
+  const std::size_t flips = flipQueued(report);
   unmark(kChangedSinceFlips);
   // These would gain, and may not be refused again.
   for (const Index t : refused_)
@@ -509,7 +505,7 @@ std::vector<Index> MeshOptimizer::spread(const std::vector<Index>& seeds, std::s
 
 template <typename Condition>
 std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& meets,
-                                         const ShareReport& report) const {
+                                         const Report& report) const {
   std::vector<std::vector<Index>> found((count + kBlockSize - 1) / kBlockSize);
   forEachBlock(count, threads_, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -583,7 +579,7 @@ bool MeshOptimizer::isRough(Index v, double cosine) const {
   return false;
 }
 
-std::vector<Index> MeshOptimizer::roughVertices(double cosine, const ShareReport& report) const {
+std::vector<Index> MeshOptimizer::roughVertices(double cosine, const Report& report) const {
   return filter(
       seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); }, report);
 }
@@ -706,7 +702,7 @@ bool MeshOptimizer::isPlainFan(Index v) const {
   return (left_turns == sides || right_turns == sides) && passes == 2;
 }
 
-std::vector<std::uint8_t> MeshOptimizer::plainFans(const ShareReport& report) const {
+std::vector<std::uint8_t> MeshOptimizer::plainFans(const Report& report) const {
   std::vector<std::uint8_t> fans(seen_vertices_.size());
   forEachBlock(fans.size(), threads_, report, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
@@ -715,10 +711,10 @@ std::vector<std::uint8_t> MeshOptimizer::plainFans(const ShareReport& report) co
   return fans;
 }
 
-std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const ShareReport& report) const {
-  const std::vector<std::uint8_t> fans = plainFans(partOf(report, 0.0, kFansShare));
+std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const Report& report) const {
+  const std::vector<std::uint8_t> fans = plainFans(report);
   return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_,
-                               partOf(report, kFansShare, 1.0));
+                               report);
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {

@@ -20,47 +20,12 @@ namespace {
 /// and a vertex is in as many triangles as it has neighbours: x' (D + A) x >= x' D x / 2.
 constexpr double kHighestFrequency = 1.5;
 
-/// Any detail is long gone by then.
-constexpr int kMostSteps = 10000;
-
 /// To this, relative to the size of what is filtered, the filter of SmoothingMethod::Biharmonic is
 /// exact: far below any noise that is worth smoothing.
 constexpr double kFilterAccuracy = 1e-7;
 
 [[noreturn]] void fail(const std::string& what) {
   throw InvalidInput("smoothSurface: " + what);
-}
-
-/// Taubin's second factor, negative; 1 / lambda + 1 / mu is the pass band (Taubin 1995, section 3).
-double muOf(const SmoothingOptions& options) {
-  return 1.0 / (options.taubin_pass_band - 1.0 / options.taubin_lambda);
-}
-
-void checkOptions(const SmoothingOptions& options) {
-  internal::checkEnum("smoothSurface: method", options.method, SmoothingMethod::Biharmonic);
-  if (options.steps < 0 || options.steps > kMostSteps)
-    fail("steps = " + std::to_string(options.steps) + " is out of range; use 0 (no change) to " +
-         std::to_string(kMostSteps));
-  if (!(options.umbrella_lambda > 0.0 && options.umbrella_lambda <= 1.0))
-    fail("umbrella_lambda = " + std::to_string(options.umbrella_lambda) +
-         " is out of range; use a value in (0, 1]");
-  if (!(options.taubin_lambda > 0.0 && options.taubin_lambda <= 1.0))
-    fail("taubin_lambda = " + std::to_string(options.taubin_lambda) +
-         " is out of range; use a value in (0, 1]");
-  if (!(options.taubin_pass_band >= 0.0 && options.taubin_pass_band < 1.0))
-    fail("taubin_pass_band = " + std::to_string(options.taubin_pass_band) +
-         " is out of range; use a value in [0, 1)");
-  const double gain =
-      (1.0 - options.taubin_lambda * kHighestFrequency) * (1.0 - muOf(options) * kHighestFrequency);
-  // At lambda = 1 and a pass band of nearly 1, mu is without bound: !(<=) also refuses what is not
-  // a number.
-  if (!(std::abs(gain) <= 1.0))
-    fail("taubin_lambda = " + std::to_string(options.taubin_lambda) +
-         " and taubin_pass_band = " + std::to_string(options.taubin_pass_band) +
-         " amplify the highest frequencies; use a smaller lambda or pass band");
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    fail("threads = " + std::to_string(options.threads) + " is out of range; use 0 (all) to " +
-         std::to_string(internal::kMostThreads));
 }
 
 /// The triangles around each vertex. Vertex i has those with the other corners next[e], previous[e]
@@ -276,8 +241,8 @@ void Filter::restoreVolume(Positions& points, double volume) const {
 }  // namespace
 
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
-                        const SmoothingOptions& options) {
-  checkOptions(options);
+                        const SmoothingOptions& options, int threads) {
+  internal::checkOptions(options);
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (!points.col(i).allFinite())
       fail("point " + std::to_string(i) + " is not finite; remove such points first");
@@ -288,13 +253,13 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
   result.points = points;
   if (triangles.cols() == 0)
     return result;
-  const Filter filter(fans, options.threads);
+  const Filter filter(fans, threads);
 
   // About a point of the mesh, so that a far origin costs no digits.
   const Eigen::Vector3d origin = points.col(triangles(0, 0));
   Positions smooth = points.colwise() - origin;
-  result.volume_before = filter.volume(smooth);
-  result.volume_after = result.volume_before;
+  result.report.volume_before = filter.volume(smooth);
+  result.report.volume_after = result.report.volume_before;
   if (options.steps == 0)
     return result;
 
@@ -302,21 +267,15 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
   switch (options.method) {
   case SmoothingMethod::Umbrella:
     for (int s = 0; s < options.steps; ++s)
-      filter.step(smooth, options.umbrella_lambda, scratch);
-    break;
-  case SmoothingMethod::Taubin:
-    for (int s = 0; s < options.steps; ++s) {
-      filter.step(smooth, options.taubin_lambda, scratch);
-      filter.step(smooth, muOf(options), scratch);
-    }
+      filter.step(smooth, 1.0, scratch);
     break;
   case SmoothingMethod::Biharmonic:
     filter.biharmonicFlow(smooth, options.steps);
     break;
   }
   if (options.restore_volume)
-    filter.restoreVolume(smooth, result.volume_before);
-  result.volume_after = filter.volume(smooth);
+    filter.restoreVolume(smooth, result.report.volume_before);
+  result.report.volume_after = filter.volume(smooth);
 
   double used = 0.0;
   double squared = 0.0;
@@ -326,13 +285,13 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
     const auto i = static_cast<Eigen::Index>(v);
     result.points.col(i) = smooth.col(i) + origin;
     const double distance = (result.points.col(i) - points.col(i)).norm();
-    result.max_displacement = std::max(result.max_displacement, distance);
-    result.mean_displacement += distance;
+    result.report.max_displacement = std::max(result.report.max_displacement, distance);
+    result.report.mean_displacement += distance;
     squared += distance * distance;
     used += 1.0;
   }
-  result.mean_displacement /= used;
-  result.rms_displacement = std::sqrt(squared / used);
+  result.report.mean_displacement /= used;
+  result.report.rms_displacement = std::sqrt(squared / used);
   return result;
 }
 

@@ -33,15 +33,11 @@ using Eigen::Vector3d;
 using internal::kUnitRoundoff;
 using internal::orientation2d;
 using internal::orientation3d;
-using internal::partOf;
-using internal::ShareReport;
+using internal::Report;
 using Pairs = std::vector<std::array<Index, 2>>;
 
 /// Shares of the work that are done after its parts: the tree, the pairs among its triangles. Of
 /// the tree, the order of the triangles.
-constexpr double kTreeShare = 0.5;
-constexpr double kPairsShare = 0.75;
-constexpr double kOrderShare = 0.4;
 
 /// A triangle with all that the tests need, in one place of the memory.
 struct Face {
@@ -631,7 +627,7 @@ void sortBlock(const BlockCenters& centers, const Index* block, std::size_t coun
 ///
 /// \param subset triangles, ascending; at least one.
 std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads,
-                           const ShareReport& report) {
+                           const Report& report) {
   const double usual = usualSize(mesh, subset);
   // Most meshes come in blocks that are small, and of triangles of about one size: then it is
   // enough to sort within these.
@@ -677,7 +673,7 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
 class Tree {
 public:
   /// \param subset triangles, ascending; at least one. The mesh must outlive this.
-  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads, const ShareReport& report);
+  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads, const Report& report);
 
   /// Triangles of a bunch: those of a group of leaves.
   static constexpr std::size_t kBunch = kWidth * kWidth;
@@ -716,11 +712,11 @@ private:
 };
 
 Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
-           const ShareReport& report)
-    : mesh_(mesh), order_(ordered(mesh, subset, threads, partOf(report, 0.0, kOrderShare))) {
+           const Report& report)
+    : mesh_(mesh), order_(ordered(mesh, subset, threads, report)) {
   levels_.emplace_back((order_.size() + kWidth - 1) / kWidth);
   static_assert(internal::kBlockSize % kWidth == 0, "a group is in one block");
-  internal::forEachBlock(order_.size(), threads, partOf(report, kOrderShare, 1.0),
+  internal::forEachBlock(order_.size(), threads, report,
                          [&](std::size_t, std::size_t begin, std::size_t end) {
                            for (std::size_t i = begin; i < end; ++i)
                              levels_.front()[i / kWidth].set(i % kWidth,
@@ -849,10 +845,7 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
 
 /// A power of two that brings the largest coordinate to 1/2 ... 1: the predicates multiply three
 /// differences. Throws InvalidInput.
-double checkedScale(const Positions& points, const Triangles& triangles, int threads) {
-  if (threads < 0 || threads > internal::kMostThreads)
-    refuse("threads = " + std::to_string(threads) + " is out of range; use 0 (all) to " +
-           std::to_string(internal::kMostThreads));
+double checkedScale(const Positions& points, const Triangles& triangles) {
   if (!points.allFinite())
     for (Eigen::Index i = 0; i < points.cols(); ++i)
       if (!points.col(i).allFinite())
@@ -872,7 +865,7 @@ double checkedScale(const Positions& points, const Triangles& triangles, int thr
 
 /// Runs find(i, pairs) for i in [0, count) and joins what it appends.
 template <typename Find>
-Pairs collect(std::size_t count, int threads, const ShareReport& report, const Find& find) {
+Pairs collect(std::size_t count, int threads, const Report& report, const Find& find) {
   std::vector<Pairs> parts((count + internal::kBlockSize - 1) / internal::kBlockSize);
   internal::forEachBlock(count, threads, report,
                          [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -885,7 +878,7 @@ Pairs collect(std::size_t count, int threads, const ShareReport& report, const F
   return pairs;
 }
 
-Pairs pairsWithin(const Tree& tree, int threads, const ShareReport& report) {
+Pairs pairsWithin(const Tree& tree, int threads, const Report& report) {
   return collect(tree.size(), threads, report, [&](std::size_t i, Pairs& pairs) {
     if (i % Tree::kBunch == 0)
       tree.findPairs(i / Tree::kBunch, pairs);
@@ -896,25 +889,25 @@ Pairs pairsWithin(const Tree& tree, int threads, const ShareReport& report) {
 
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
-                                                        const SelfIntersectionOptions& options) {
+                                                        const Execution& execution) {
   return internal::findSelfIntersections(
-      points, triangles, {}, options.threads,
-      internal::cancellable(options.progress, "findSelfIntersections"));
+      points, triangles, {}, execution.threads,
+      internal::reportOf(execution, "intersections"));
 }
 
 std::vector<std::array<Index, 2>>
 internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
                                 const std::vector<std::uint8_t>& fans, int requested_threads,
-                                const ShareReport& report) {
-  const Mesh mesh(points, triangles, checkedScale(points, triangles, requested_threads), fans);
+                                const Report& report) {
+  const Mesh mesh(points, triangles, checkedScale(points, triangles), fans);
   std::vector<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
   if (all.empty())
     return {};
   const int threads =
       internal::threadCount(requested_threads, all.size(), internal::kParallelThreshold);
-  const Tree tree(mesh, all, threads, partOf(report, 0.0, kTreeShare));
-  Pairs pairs = pairsWithin(tree, threads, partOf(report, kTreeShare, 1.0));
+  const Tree tree(mesh, all, threads, report);
+  Pairs pairs = pairsWithin(tree, threads, report);
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
@@ -922,9 +915,9 @@ internal::findSelfIntersections(const Positions& points, const Triangles& triang
 std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
                                                           const Triangles& triangles,
                                                           const std::vector<Index>& of,
-                                                          const SelfIntersectionOptions& options) {
+                                                          const Execution& execution) {
   const std::vector<std::uint8_t> no_fans;
-  const Mesh mesh(points, triangles, checkedScale(points, triangles, options.threads), no_fans);
+  const Mesh mesh(points, triangles, checkedScale(points, triangles), no_fans);
   std::vector<char> in_set(mesh.size(), 0);
   for (const Index t : of) {
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
@@ -939,14 +932,13 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   if (subset.empty())
     return {};
   const int threads =
-      internal::threadCount(options.threads, mesh.size(), internal::kShortPassThreshold);
-  const ShareReport report = internal::cancellable(options.progress, "findSelfIntersectionsOf");
-  const Tree tree(mesh, subset, threads, partOf(report, 0.0, kTreeShare));
-  Pairs pairs = pairsWithin(tree, threads, partOf(report, kTreeShare, kPairsShare));
+      internal::threadCount(execution.threads, mesh.size(), internal::kShortPassThreshold);
+  const Report report = internal::reportOf(execution, "intersections");
+  const Tree tree(mesh, subset, threads, report);
+  Pairs pairs = pairsWithin(tree, threads, report);
   const Box bounds = tree.box();
-  const ShareReport others_report = partOf(report, kPairsShare, 1.0);
   const Pairs others =
-      collect(mesh.size(), threads, others_report, [&](std::size_t t, Pairs& found) {
+      collect(mesh.size(), threads, report, [&](std::size_t t, Pairs& found) {
         if (in_set[t] != 0)
           return;
         const auto triangle = static_cast<Index>(t);

@@ -20,6 +20,6 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const std::vector<std::uint8_t>& fans,
                                                         int threads,
-                                                        const ShareReport& report = {});
+                                                        const Report& report = {});
 
 }  // namespace spherical_param::internal

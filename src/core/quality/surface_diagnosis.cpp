@@ -40,6 +40,13 @@ using internal::kPi;
 /// without them openings of 8 spacings measure 1.3 to 2.7 edges of their rim, with them 3.0 and up.
 constexpr double kLongEdge = 1.6;
 
+/// The least diameter of a lid [distance of the points at its rim].
+constexpr double kMinLidDiameter = 5.0;
+/// Neighbours in the graph that are more steps apart on the mesh were torn apart.
+constexpr int kMinHandleSteps = 8;
+/// The least gap between parts [distance of the points at the gap].
+constexpr double kMinPartGap = 4.0;
+
 /// The least diameter of a lid [length that a tenth of the triangles around it exceed]. Openings of
 /// 8 spacings have 3.0 and up, clouds that are dense along lines and coarse in between up to 1.9
 /// where the diameter is 5 spacings.
@@ -800,7 +807,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 }
 
 void checkInput(const Positions& points, const Triangles& triangles, const Graph& graph,
-                const std::vector<Bridge>& bridges, const DiagnosisOptions& options) {
+                const std::vector<Bridge>& bridges) {
   const auto n = static_cast<std::size_t>(points.cols());
   const auto in_range = [n](Index v) { return v >= 0 && static_cast<std::size_t>(v) < n; };
   internal::checkGraph("diagnoseSurface", graph);
@@ -815,16 +822,6 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
       throw InvalidInput("diagnoseSurface: a bridge from " + std::to_string(bridge.from) + " to " +
                          std::to_string(bridge.to) + " of " + std::to_string(n) +
                          " points; give the bridges of the graph");
-  if (!(options.lid_diameter > 0.0) || !(options.part_gap > 0.0))
-    throw InvalidInput("diagnoseSurface: lid_diameter = " + number(options.lid_diameter) +
-                       ", part_gap = " + number(options.part_gap) + "; both must be above 0");
-  if (options.handle_steps < 3 || options.handle_steps > 100)
-    throw InvalidInput("diagnoseSurface: handle_steps = " + std::to_string(options.handle_steps) +
-                       "; it must be in [3, 100]");
-  if (options.threads < 0 || options.threads > internal::kMostThreads)
-    throw InvalidInput("diagnoseSurface: threads = " + std::to_string(options.threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
 }
 
 }  // namespace
@@ -879,8 +876,8 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
 
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
-                                 const DiagnosisOptions& options) {
-  checkInput(points, triangles, graph, bridges, options);
+                                 const DiagnosisOptions& options, int threads) {
+  checkInput(points, triangles, graph, bridges);
   SurfaceDiagnosis result;
   const auto triangle_count = static_cast<std::size_t>(triangles.cols());
   std::vector<Edge> bridge_edges;
@@ -891,7 +888,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
 
   const Surface surface(
       points, triangles, graph,
-      internal::threadCount(options.threads, graph.size(), internal::kShortPassThreshold));
+      internal::threadCount(threads, graph.size(), internal::kShortPassThreshold));
   const Differences difference = surface.differences();
   const std::vector<Side>& outside = difference.sides;
   result.edges_outside_graph =
@@ -900,7 +897,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   std::vector<Region> regions = search.run(outside);
   const auto lids_end =
       std::stable_partition(regions.begin(), regions.end(), [&](const Region& region) {
-        return region.isWide(options.lid_diameter);
+        return region.isWide(kMinLidDiameter);
       });
   const bool is_folded = result.edges_outside_graph > kFolded;
   // What is folded leaves the graph everywhere: that is no lid.
@@ -910,13 +907,13 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   std::optional<Parts> parts;
   if (!bridge_edges.empty()) {
     parts.emplace(graph, bridge_edges);
-    result.bridges = partsOf(surface, bridge_edges, *parts, options.part_gap);
+    result.bridges = partsOf(surface, bridge_edges, *parts, kMinPartGap);
   }
   // What is folded, or was squeezed through a bridge, is torn without handles as well.
   if (!is_folded && result.bridges.empty())
     result.handles =
         handlesOf(surface, tornEdges(surface, difference.edges, regions, lid_count, triangle_count,
-                                     bridge_edges, graph.size(), options.handle_steps));
+                                     bridge_edges, graph.size(), kMinHandleSteps));
   if (!result.handles.empty()) {
     const auto openings =
         std::count_if(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(lid_count),

@@ -20,11 +20,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Shares of the work that are done after its parts.
-constexpr double kPoleShare = 0.02;
-constexpr double kOrderShare = 0.2;
-constexpr double kProjectedShare = 0.24;
-constexpr double kInsertedShare = 0.95;
 /// Points between reports.
 constexpr Index kReportedPoints = Index{1} << 16;
 
@@ -361,7 +356,7 @@ struct Vertices {
   }
 };
 
-Vertices projectInOrder(const Positions& directions, const ShareReport& report) {
+Vertices projectInOrder(const Positions& directions, const Report& report) {
   const auto n = static_cast<Index>(directions.cols());
   // Any point would do as pole. The highest one, nearest to the axis, makes the axes of the plane
   // nearly those of space, and does not depend on the order of the points.
@@ -380,9 +375,9 @@ Vertices projectInOrder(const Positions& directions, const ShareReport& report) 
   vertices.places.resize(static_cast<std::size_t>(n));
   std::vector<Index> at_pole;
   const StereographicProjection projection(directions.col(pole));
-  tell(report, kPoleShare);
+  tell(report, 0.0);
   const std::vector<Index> order = insertionOrder(directions);
-  tell(report, kOrderShare);
+  tell(report, 0.0);
   for (const Index i : order) {
     if (i == pole)
       continue;
@@ -440,9 +435,9 @@ std::vector<Index> ringThroughPole(const Vertices& vertices,
 
 }  // namespace
 
-SphereDelaunay incrementalDelaunay(const Positions& directions, const ShareReport& report) {
+SphereDelaunay incrementalDelaunay(const Positions& directions, const Report& report) {
   Vertices vertices = projectInOrder(directions, report);
-  tell(report, kProjectedShare);
+  tell(report, 0.0);
   const auto n = static_cast<Index>(vertices.input.size());
   std::vector<Coincidence> coincidences;
   for (Index p = vertices.in_plane; p < n; ++p)
@@ -452,10 +447,9 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const ShareRepor
   SphereDelaunay result;
   if (beginWithTriangle(vertices)) {
     triangulation.begin({{1, 2, 3}, {kPole, 3, 2}, {kPole, 1, 3}, {kPole, 2, 1}});
-    const ShareReport inserted = partOf(report, kProjectedShare, kInsertedShare);
     for (Index p = 4; p < vertices.in_plane; ++p) {
       if (p % kReportedPoints == 0)
-        tell(inserted, static_cast<double>(p) / vertices.in_plane);
+        tell(report, static_cast<double>(p) / vertices.in_plane);
       const Index v = triangulation.insert(p);
       if (v != p)
         coincidences.push_back({v, p});
@@ -471,7 +465,7 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const ShareRepor
     }
     triangulation.begin(twoSidedPolygon(ring));
   }
-  tell(report, kInsertedShare);
+  tell(report, 0.0);
   putBeside(std::move(coincidences), n, triangulation);
 
   result.triangles.resize(3, triangulation.size());

@@ -32,9 +32,6 @@ using internal::SphereMesh;
 /// error of its few operations.
 constexpr double kPredicateTolerance = 1e-13;
 
-/// Shares of the work that are done before and after the hull. Mostly it leaves few points out.
-constexpr double kDistinctShare = 0.1;
-constexpr double kHullShare = 0.9;
 /// Points between reports.
 constexpr std::size_t kReportedPoints = std::size_t{1} << 12U;
 
@@ -164,7 +161,7 @@ public:
     interior_ /= 3.0 * mesh_.size();
   }
 
-  void insert(const std::vector<Index>& points, const internal::ShareReport& report) {
+  void insert(const std::vector<Index>& points, const internal::Report& report) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i % kReportedPoints == 0)
         internal::tell(report, static_cast<double>(i) / static_cast<double>(points.size()));
@@ -290,18 +287,18 @@ void checkInput(const Positions& directions) {
 }
 
 SphereTriangulation triangulateByQhull(const Positions& directions,
-                                       const internal::ShareReport& report) {
+                                       const internal::Report& report) {
   SphereTriangulation result;
   const auto n = static_cast<std::size_t>(directions.cols());
   const DistinctPoints distinct = findDistinctPoints(directions);
-  internal::tell(report, kDistinctShare);
-  result.coincident = static_cast<Index>(n - distinct.input_of_vertex.size());
+  internal::tell(report, 0.0);
+  result.report.coincident = static_cast<Index>(n - distinct.input_of_vertex.size());
 
   std::optional<Triangles> hull;
   if (distinct.input_of_vertex.size() >= 4)
     hull = convexHull(directions);
-  internal::tell(report, kHullShare);
-  result.hull_rejected = !hull.has_value();
+  internal::tell(report, 0.0);
+  result.report.hull_rejected = !hull.has_value();
   const Triangles start = hull ? std::move(*hull) : firstTetrahedron(directions);
 
   // One representative of each place is located first; the others go beside it, so that no walk has
@@ -316,8 +313,8 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
     }
   const auto start_vertices =
       static_cast<Index>(std::count(inserted.begin(), inserted.end(), true));
-  result.hull_vertices = result.hull_rejected ? 0 : start_vertices;
-  result.reinserted = static_cast<Index>(n) - result.hull_vertices;
+  result.report.hull_vertices = result.report.hull_rejected ? 0 : start_vertices;
+  result.report.reinserted = static_cast<Index>(n) - result.report.hull_vertices;
   if (start_vertices == static_cast<Index>(n)) {
     result.triangles = start;
     return result;
@@ -338,7 +335,7 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
     }
   }
   PointInserter inserter(directions, start);
-  inserter.insert(missing, internal::partOf(report, kHullShare, 1.0));
+  inserter.insert(missing, report);
   for (const auto& [p, vertex] : beside)
     inserter.insertAt(p, vertex);
   result.triangles = inserter.triangles();
@@ -346,7 +343,7 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
 }
 
 SphereTriangulation triangulateIncrementally(const Positions& directions,
-                                             const internal::ShareReport& report) {
+                                             const internal::Report& report) {
   if (directions.cols() > internal::kMostDelaunayPoints)
     throw InvalidInput("triangulateSphere: " + std::to_string(directions.cols()) +
                        " points; TriangulationMethod::Incremental takes at most " +
@@ -354,31 +351,23 @@ SphereTriangulation triangulateIncrementally(const Positions& directions,
   internal::SphereDelaunay delaunay = internal::incrementalDelaunay(directions, report);
   SphereTriangulation result;
   result.triangles = std::move(delaunay.triangles);
-  result.coincident = delaunay.coincident;
-  result.reinserted = delaunay.coincident;
-  result.hull_vertices = static_cast<Index>(directions.cols()) - delaunay.coincident;
+  result.report.coincident = delaunay.coincident;
+  result.report.reinserted = delaunay.coincident;
+  result.report.hull_vertices = static_cast<Index>(directions.cols()) - delaunay.coincident;
   return result;
 }
 
 }  // namespace
 
 SphereTriangulation triangulateSphere(const Positions& directions,
-                                      const TriangulationOptions& options) {
-  internal::checkEnum("triangulateSphere: method", options.method,
-                      TriangulationMethod::Incremental);
+                                      const TriangulationOptions& options,
+                                      const Execution& execution) {
+  internal::checkOptions(options);
   checkInput(directions);
-  const internal::ShareReport report = internal::cancellable(options.progress, "triangulateSphere");
-  SphereTriangulation result = options.method == TriangulationMethod::Qhull
-                                   ? triangulateByQhull(directions, report)
-                                   : triangulateIncrementally(directions, report);
-  internal::tell(report, 1.0);
-  return result;
-}
-
-SphereTriangulation triangulateSphere(const Positions& directions, TriangulationMethod method) {
-  TriangulationOptions options;
-  options.method = method;
-  return triangulateSphere(directions, options);
+  const internal::Report report = internal::reportOf(execution, "triangulation");
+  return options.method == TriangulationMethod::Qhull
+             ? triangulateByQhull(directions, report)
+             : triangulateIncrementally(directions, report);
 }
 
 }  // namespace spherical_param

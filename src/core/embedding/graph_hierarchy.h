@@ -1,17 +1,17 @@
 #pragma once
 
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/SparseCore>
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
-namespace spherical_param {
+namespace spherical_param::internal {
 
-/// \addtogroup embedding
-/// @{
+/// Nodes of the coarsest level, at most.
+inline constexpr Index kTypicalCoarsestSize = 1000;
 
 /// A graph of fewer nodes and what joins it to the next finer one.
 struct HierarchyLevel {
@@ -29,34 +29,24 @@ struct GraphHierarchy {
   std::vector<HierarchyLevel> levels;  ///< the first is the next coarser than the graph itself
 };
 
-/// Parameters of buildGraphHierarchy().
-struct HierarchyOptions {
-  Index coarsest_size = 1000;  ///< levels are added until one has at most so many nodes; >= 4
-  std::uint32_t seed = 1;      ///< of the order in which nodes are taken
-  int threads = 0;             ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
-  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
-  std::function<bool(double)> progress = {};
-};
-
 /// Coarsens a graph by geometric clustering: seeds are a maximal independent set in an order that
 /// looks random, but comes from the edge lengths alone; each seed's aggregate is its geodesic
 /// Voronoi cell; two aggregates are joined if an edge joins nodes of them, by the length of the
 /// shortest path from seed to seed through such an edge. The energy of an embedding is then about
 /// the same on all levels.
 ///
-/// \param graph connected, with positive edge lengths.
-/// \param options size of the coarsest level, seed, threads, progress
+/// \param graph connected, with positive edge lengths; checked by checkGraph().
+/// \param seed  of the order in which nodes are taken.
+/// \param coarsest_size levels are added until one has at most so many nodes; >= 4.
+/// \param execution threads, progress
 /// \return the levels, each of some 4 to 5 times fewer nodes than the one before; none for a graph
 ///         of at most `coarsest_size` nodes. The same for the same seed on every platform and for
-///         any number of threads, and, up
-///         to ties and rounding, for a moved, turned, scaled or renumbered cloud. A graph of many
-///         neighbours a node, far from planar, is coarsened whatever its size.
-/// \throw InvalidInput for options out of range, a graph whose arrays do not fit, or a length that
-///        is negative or not finite; Cancelled.
-/// Cost: O(n log n).
-GraphHierarchy buildGraphHierarchy(const Graph& graph, const HierarchyOptions& options = {});
+///         any number of threads, and, up to ties and rounding, for a moved, turned, scaled or
+///         renumbered cloud. A graph of many neighbours a node, far from planar, is coarsened
+///         whatever its size.
+/// \throw Cancelled. Cost: O(n log n).
+GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed,
+                                   Index coarsest_size = kTypicalCoarsestSize,
+                                   const Execution& execution = {});
 
-/// @}
-
-}  // namespace spherical_param
+}  // namespace spherical_param::internal

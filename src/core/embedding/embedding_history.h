@@ -1,39 +1,33 @@
 #pragma once
 
-#include "spherical_param/graph_hierarchy.h"
-#include "spherical_param/sphere_embedding.h"
+#include "graph_hierarchy.h"
+#include "spherical_param/embedding.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
-namespace spherical_param {
+namespace spherical_param::internal {
 
-/// How much of an embedding's history is kept.
-struct HistoryLimits {
-  /// Nodes of the finest level whose ways are kept, at most; 0: no history; [0, 2^24].
-  Index vertices = 0;
-  /// States at most; [2, 10000]. Of more, some between the first and the last are left out.
-  int frames = 40;
-};
-
-/// One state of an embedding.
-struct HistoryFrame {
-  std::size_t level = 0;  ///< that was worked on: 0 is the graph itself, 1 the next coarser
-  std::size_t nodes = 0;  ///< of that level
+/// A state of an embedding on its way to the result, as an observer is shown it.
+struct EmbeddingState {
+  std::size_t level = 0;  ///< of the hierarchy: 0 is the graph itself, 1 the next coarser
+  std::size_t nodes = 0;  ///< of the level
   EmbeddingStep step = EmbeddingStep::Start;  ///< kind of the work before it
   int iteration = 0;                          ///< steps of this kind that were made on this level
-  std::optional<double> residual;  ///< mean tangential Laplacian, where it is known [radius]
-  Positions sphere;                ///< 3 x EmbeddingHistory::vertices.size(), unit vectors
+  std::optional<double>
+      residual;  ///< mean tangential Laplacian, where the solver knows it [radius]
+  /// Makes a copy of the state, 3 x nodes, unit vectors; to be called before the observer returns.
+  /// Many states are shown: ask for those alone that are of use.
+  std::function<Positions()> directions;
 };
 
-/// How an embedding unfolded, for some of its nodes.
-struct EmbeddingHistory {
-  std::vector<Index> vertices;       ///< nodes of the graph; in a Result: vertices
-  std::vector<HistoryFrame> frames;  ///< in the order of the work; the last is the embedding
-};
+/// Shown the states of an embedding one after the other, from the calling thread only. What it
+/// throws is passed on. The result is the same, bit by bit, whether somebody looks or not.
+using EmbeddingObserver = std::function<void(const EmbeddingState&)>;
 
 /// An EmbeddingObserver that keeps a history of bounded size: of some nodes, which are spread over
 /// the graph as those of a coarse level are, and of some states. Of steps of one kind on a level
@@ -44,10 +38,10 @@ struct EmbeddingHistory {
 /// coarser one ended.
 class EmbeddingRecorder {
 public:
-  /// For embedOnSphere(): keeps every so-manieth of the graph's nodes.
+  /// For an embedding without levels: keeps nodes in even distances.
   /// \param nodes of the graph. \param limits of the history. \throw InvalidInput if out of range.
   EmbeddingRecorder(std::size_t nodes, const HistoryLimits& limits);
-  /// For embedMultilevel(): keeps nodes that coarser levels are made of.
+  /// For an embedding by levels: keeps nodes that coarser levels are made of.
   /// \param nodes of the graph. \param hierarchy is used here only. \param limits of the history.
   /// \throw InvalidInput for limits out of range.
   EmbeddingRecorder(std::size_t nodes, const GraphHierarchy& hierarchy,
@@ -61,14 +55,12 @@ public:
   EmbeddingHistory take();
 
 private:
-  /// \cond
   /// The interpolation from one level to the wanted nodes of the next finer one.
   struct Carry {
     std::vector<std::size_t> offsets{0};  ///< entries of each wanted node
     std::vector<std::pair<Index, double>>
         entries;  ///< place among the wanted coarser nodes, weight
   };
-  /// \endcond
 
   void keepNodes(std::size_t nodes, const GraphHierarchy& hierarchy);
   Positions carried(const Positions& directions, std::size_t level) const;
@@ -81,4 +73,4 @@ private:
   EmbeddingHistory history_;
 };
 
-}  // namespace spherical_param
+}  // namespace spherical_param::internal

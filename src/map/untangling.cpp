@@ -151,10 +151,6 @@ private:
 }  // namespace
 
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads) {
-  if (threads < 0 || threads > internal::kMostThreads)
-    throw InvalidInput("untangle: threads = " + std::to_string(threads) +
-                       " is out of range; use 0 (all) to " +
-                       std::to_string(internal::kMostThreads));
   const Eigen::Index n = mesh.points.cols();
   if (mesh.normals.cols() != n || mesh.directions.cols() != n)
     throw InvalidInput("untangle: " + std::to_string(n) + " points, " +

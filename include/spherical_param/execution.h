@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+namespace spherical_param {
+
+/// \addtogroup types
+/// @{
+
+/// How far a computation is, as reported to Execution::progress.
+struct Progress {
+  /// Of reconstruct(): "neighbors", "graph", "embedding", "triangulation", "optimization",
+  /// "smoothing" or "quality"; all but the last come again with each retry.
+  const char* stage;
+  /// Fraction of the stage's current loop, in [0, 1]. A stage may have several loops, one after the
+  /// other.
+  double fraction;
+};
+
+/// How a computation is run. It has no influence on the result.
+struct Execution {
+  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  /// Called every second or more often during long work, from the calling thread only. Returning
+  /// false ends the work with Cancelled. May be empty. The paper's own stages (qhull, and a
+  /// tolerance for the multilevel embedding) may take longer between two calls.
+  std::function<bool(const Progress&)> progress = {};
+};
+
+/// @}
+
+}  // namespace spherical_param

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "spherical_param/execution.h"
+#include "spherical_param/types.h"
+
+#include <functional>
+#include <vector>
+
+namespace spherical_param {
+
+/// \addtogroup neighbor_graph
+/// @{
+
+/// Returns the `count` nearest neighbours of each of `points`, one list for each in their order. The
+/// point itself may be in its list; `count` should not include it. Lists may be shorter where there
+/// are no more.
+using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
+
+/// Builds a k-d tree of points, in double precision.
+///
+/// \param points 3 x n, finite; copied. Those that are near in space should be near in memory:
+///               spatialOrder() is such an order. Squared distances must neither overflow nor
+///               underflow: bring the points to an extent of about 1.
+/// \param execution threads, progress; its progress callback must outlive the search.
+/// \return a search among these points; copies of it share the tree.
+/// \throw std::bad_alloc. Cost: O(n log n), and O(log n) for each query, typically.
+NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution = {});
+
+/// The `count` nearest neighbours of all points. \see makeNeighborSearch
+///
+/// \param points 3 x n, finite.
+/// \param count  of neighbours, not counting the point itself, which is in its list.
+/// \param execution threads, progress
+/// \return n lists.
+/// \throw Cancelled.
+NeighborLists findNearestNeighbors(const Positions& points, int count,
+                                   const Execution& execution = {});
+
+/// @}
+
+}  // namespace spherical_param

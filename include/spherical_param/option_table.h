@@ -1,0 +1,74 @@
+#pragma once
+
+#include "spherical_param/reconstruct.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace spherical_param {
+
+/// \addtogroup pipeline
+/// @{
+
+/// The value of an option: nothing (unset), an integer, a number or the name of a choice.
+using OptionValue = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// One row of the table of options.
+struct OptionRow {
+  std::string name;   ///< the same in tools, Python and ROS
+  std::string field;  ///< of Options, such as "graph.k"
+  std::string help;   ///< one line
+  bool expert;        ///< most users need not know it
+  bool optional;      ///< may be unset
+  /// Names of the values of an enumeration; empty for numbers.
+  std::vector<std::string> choices;
+  bool is_integer;    ///< of numbers
+  double min;         ///< of numbers
+  double max;         ///< of numbers
+  bool min_excluded;  ///< of numbers: `min` itself is out of range
+  /// Options and the values that they must have for this one to have an effect.
+  std::vector<std::pair<std::string, std::string>> used_with;
+
+  std::function<OptionValue(const Options&)> get;  ///< the value; unset or one of its kind
+  /// Sets a value that is in range. An integer will do for a number.
+  std::function<void(Options&, const OptionValue&)> set;
+};
+
+/// All options that have a name, in the order of the stages: what tools, the Python module, the ROS
+/// nodes and the reference page list. A new option is one more row.
+const std::vector<OptionRow>& optionTable();
+
+/// The row of an option.
+///
+/// \param name of the option.
+/// \return its row.
+/// \throw InvalidInput if there is none.
+const OptionRow& findOption(const std::string& name);
+
+/// Sets an option.
+///
+/// \param options to be changed.
+/// \param name    of the option.
+/// \param value   of the kind of the option; nothing unsets an optional one.
+/// \throw InvalidInput for a name that does not exist, or a value of another kind or out of range.
+void setOption(Options& options, const std::string& name, const OptionValue& value);
+
+/// The range of an option in words, such as "3 and up" or "knn or delaunay".
+///
+/// \param row of the option.
+/// \return the words.
+std::string rangeOf(const OptionRow& row);
+
+/// A value in words.
+///
+/// \param value of an option.
+/// \return the words; "unset" for nothing.
+std::string textOf(const OptionValue& value);
+
+/// @}
+
+}  // namespace spherical_param

@@ -1,0 +1,106 @@
+#include "spherical_param/embedding.h"
+
+#include "edge_weights.h"
+#include "embedding_history.h"
+#include "embedding_starts.h"
+#include "graph_checks.h"
+#include "graph_hierarchy.h"
+#include "iterative_embedding.h"
+#include "multilevel_embedding.h"
+#include "option_checks.h"
+#include "spherical_param/errors.h"
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <string>
+
+namespace spherical_param {
+namespace {
+
+void checkInput(const Graph& graph, const Positions& points, const EmbeddingOptions& options) {
+  internal::checkOptions(options);
+  internal::checkGraph("embed", graph);
+  if (static_cast<std::size_t>(points.cols()) != graph.size())
+    throw InvalidInput("embed: " + std::to_string(points.cols()) + " points for a graph of " +
+                       std::to_string(graph.size()) + " nodes; give one for each");
+  if (!points.allFinite())
+    throw InvalidInput("embed: a point is not finite; remove such points first");
+}
+
+/// Replaces a collapsed embedding by a start that cannot collapse.
+void fallBack(const Graph& graph, const Positions& points, const EmbeddingOptions& options,
+              internal::EmbeddingRecorder& recorder, Embedding& embedding) {
+  EmbeddingReport& report = embedding.report;
+  embedding.directions = internal::projectByRank(points);
+  report.fallback_start = true;
+  report.residual =
+      meanTangentialLaplacian(graph, embedding.directions, options.weights, options.exponent);
+  report.centroid_norm = embedding.directions.rowwise().mean().norm();
+  recorder({0, graph.size(), EmbeddingStep::End, 0, report.residual,
+            [&] { return embedding.directions; }});
+}
+
+}  // namespace
+
+Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOptions& options,
+                std::uint32_t seed, const Execution& execution) {
+  checkInput(graph, points, options);
+  Embedding embedding;
+  if (graph.size() == 0) {
+    embedding.directions = points;
+    embedding.report.stop_reason = StopReason::Converged;
+    return embedding;
+  }
+  internal::GraphHierarchy hierarchy;
+  if (options.method == EmbeddingMethod::Multilevel)
+    hierarchy = internal::buildGraphHierarchy(graph, seed, internal::kTypicalCoarsestSize, execution);
+  internal::EmbeddingRecorder recorder(graph.size(), hierarchy, options.history);
+  internal::EmbeddingObserver observer;
+  if (options.history.vertices > 0)
+    observer = std::ref(recorder);
+  embedding = options.method == EmbeddingMethod::Multilevel
+                  ? internal::embedByLevels(graph, hierarchy, options, observer, execution)
+                  : internal::embedIteratively(graph, points, options, observer, execution);
+  if (embedding.report.stop_reason == StopReason::Collapsed)
+    fallBack(graph, points, options, recorder, embedding);
+  embedding.history = recorder.take();
+  return embedding;
+}
+
+std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
+                                               EdgeWeights weights, double exponent) {
+  internal::checkGraph("tangentialLaplacianLengths", graph);
+  if (static_cast<std::size_t>(directions.cols()) != graph.size())
+    throw InvalidInput("tangentialLaplacianLengths: " + std::to_string(directions.cols()) +
+                       " directions for a graph of " + std::to_string(graph.size()) +
+                       " nodes; give one for each");
+  const internal::EdgeWeightLaw law(weights, exponent);
+  std::vector<double> lengths(graph.size());
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    const Eigen::Vector3d center = directions.col(static_cast<Eigen::Index>(i));
+    Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
+    double weight_sum = 0.0;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const Eigen::Vector3d edge = directions.col(graph.neighbors[e]) - center;
+      const double weight = law.weight(law.factor(graph.lengths[e]), edge.norm());
+      laplacian += weight * edge;
+      weight_sum += weight;
+    }
+    if (weight_sum > 0.0)
+      laplacian /= weight_sum;
+    lengths[i] = (laplacian - laplacian.dot(center) * center).norm();
+  }
+  return lengths;
+}
+
+double meanTangentialLaplacian(const Graph& graph, const Positions& directions, EdgeWeights weights,
+                               double exponent) {
+  const std::vector<double> lengths =
+      tangentialLaplacianLengths(graph, directions, weights, exponent);
+  return lengths.empty() ? 0.0
+                         : std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+                               static_cast<double>(lengths.size());
+}
+
+}  // namespace spherical_param

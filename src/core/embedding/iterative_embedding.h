@@ -1,0 +1,16 @@
+#pragma once
+
+#include "embedding_history.h"
+#include "spherical_param/embedding.h"
+
+namespace spherical_param::internal {
+
+/// embed() with EmbeddingMethod::Iterative, on checked input. A collapse is reported.
+///
+/// \param start    3 x n, finite: the points themselves or any other start.
+/// \param observer shown every iteration, and the end; may be empty.
+Embedding embedIteratively(const Graph& graph, const Positions& start,
+                           const EmbeddingOptions& options, const EmbeddingObserver& observer,
+                           const Execution& execution);
+
+}  // namespace spherical_param::internal

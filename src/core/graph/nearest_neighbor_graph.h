@@ -1,0 +1,10 @@
+#pragma once
+
+#include "spherical_param/neighbor_graph.h"
+
+namespace spherical_param::internal {
+
+/// buildNeighborGraph() with GraphMethod::NearestNeighbors, on checked lists.
+NeighborGraph buildNearestNeighborGraph(const Positions& points, const NeighborLists& lists, int k);
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,108 @@
+#include "spherical_param/neighbor_search.h"
+
+#include "parallel.h"
+#include "progress.h"
+
+#include <flann/algorithms/kdtree_single_index.h>
+#include <flann/util/matrix.h>
+#include <flann/util/result_set.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// Squared distance in space. FLANN's own distances would make the tree one of those in PCL's
+/// libraries, which open a parallel region for each query and would take the place of this one.
+struct SquaredDistance {
+  using is_kdtree_distance = bool;
+  using ElementType = double;
+  using ResultType = double;
+
+  template <typename A, typename B>
+  double operator()(A a, B b, std::size_t /*dimensions*/, double /*worst*/ = -1) const {
+    const double x = a[0] - b[0];
+    const double y = a[1] - b[1];
+    const double z = a[2] - b[2];
+    return x * x + y * y + z * z;
+  }
+  double accum_dist(double a, double b, int /*axis*/) const { return (a - b) * (a - b); }
+};
+
+/// FLANN's k-d tree.
+class KdTree {
+public:
+  explicit KdTree(const Positions& points)
+      : points_(points), index_(flann::Matrix<double>(points_.data(), size(), 3),
+                                flann::KDTreeSingleIndexParams(kLeafSize)) {
+    index_.buildIndex();
+  }
+  KdTree(const KdTree& other) = delete;  // the tree points into the coordinates
+  KdTree& operator=(const KdTree& other) = delete;
+
+  std::size_t size() const { return static_cast<std::size_t>(points_.cols()); }
+
+  /// Writes `count` nearest points of each of [begin, end), the point itself among them, one after
+  /// the other. One by one: FLANN's own loop is a parallel region, which no exception may leave.
+  void find(const Index* begin, const Index* end, std::size_t count, Index* found) const {
+    const flann::SearchParams parameters(flann::FLANN_CHECKS_UNLIMITED);
+    flann::KNNSimpleResultSet<double> nearest(count);
+    std::vector<std::size_t> points(count);
+    std::vector<double> distances(count);
+    for (const Index* query = begin; query != end; ++query, found += count) {
+      nearest.clear();
+      index_.findNeighbors(nearest, points_.col(*query).data(), parameters);
+      nearest.copy(points.data(), distances.data(), count, true);
+      std::transform(points.begin(), points.end(), found,
+                     [](std::size_t point) { return static_cast<Index>(point); });
+    }
+  }
+
+private:
+  static constexpr int kLeafSize = 15;  ///< as in PCL
+
+  Positions points_;
+  flann::KDTreeSingleIndex<SquaredDistance> index_;
+};
+
+NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int count,
+                     const Execution& execution) {
+  // One more, since a point is its own neighbour.
+  const std::size_t size =
+      std::min(static_cast<std::size_t>(std::max(count, 0)), tree.size() - 1) + 1;
+  NeighborLists lists;
+  lists.offsets.resize(points.size() + 1);
+  for (std::size_t i = 0; i < lists.offsets.size(); ++i)
+    lists.offsets[i] = i * size;
+  lists.indices.resize(points.size() * size);
+  const int threads =
+      internal::threadCount(execution.threads, points.size(), internal::kParallelThreshold);
+  internal::forEachBlock(points.size(), threads, internal::reportOf(execution, "neighbors"),
+                         [&](std::size_t, std::size_t begin, std::size_t end) {
+                           tree.find(points.data() + begin, points.data() + end, size,
+                                     lists.indices.data() + begin * size);
+                         });
+  return lists;
+}
+
+}  // namespace
+
+NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution) {
+  return [tree = std::make_shared<const KdTree>(points),
+          execution](const std::vector<Index>& queries, int count) {
+    return search(*tree, queries, count, execution);
+  };
+}
+
+NeighborLists findNearestNeighbors(const Positions& points, int count,
+                                   const Execution& execution) {
+  std::vector<Index> all(static_cast<std::size_t>(points.cols()));
+  std::iota(all.begin(), all.end(), Index{0});
+  return all.empty() ? NeighborLists() : makeNeighborSearch(points, execution)(all, count);
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,300 @@
+#include "spherical_param/option_table.h"
+
+#include "option_checks.h"
+#include "spherical_param/errors.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+constexpr double kMaxInt = std::numeric_limits<int>::max();
+constexpr double kMaxSeed = std::numeric_limits<std::uint32_t>::max();
+
+template <typename T>
+struct IsOptional : std::false_type {};
+template <typename T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+
+enum Audience { Everybody, Expert };
+
+template <typename Value>
+OptionValue valueOf(const Value& value) {
+  if constexpr (IsOptional<Value>::value)
+    return value ? valueOf(*value) : OptionValue();
+  else if constexpr (std::is_integral_v<Value>)
+    return static_cast<std::int64_t>(value);
+  else
+    return value;
+}
+
+template <typename Value>
+void assign(Value& field, const OptionValue& value) {
+  if constexpr (IsOptional<Value>::value) {
+    if (value.index() == 0)
+      field.reset();
+    else
+      assign(field.emplace(), value);
+  } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    field = static_cast<Value>(*integer);
+  } else {
+    field = static_cast<Value>(std::get<double>(value));
+  }
+}
+
+/// The row of a number.
+///
+/// \param field of Options, as a reference.
+template <typename Field>
+OptionRow number(const char* name, const char* path, const char* help, Audience audience,
+                 double min, double max, Field field) {
+  using Value = std::decay_t<decltype(field(std::declval<Options&>()))>;
+  OptionRow row{name, path, help, audience == Expert, IsOptional<Value>::value, {}, true, min, max,
+                false, {}, {}, {}};
+  row.is_integer = !std::is_same_v<Value, double> && !std::is_same_v<Value, std::optional<double>>;
+  row.get = [field](const Options& options) {
+    Options copy = options;
+    return valueOf(field(copy));
+  };
+  row.set = [field](Options& options, const OptionValue& value) { assign(field(options), value); };
+  return row;
+}
+
+/// The row of an enumeration.
+template <typename Enum, typename Field>
+OptionRow choice(const char* name, const char* path, const char* help, Audience audience,
+                 const std::vector<std::pair<const char*, Enum>>& names, Field field) {
+  OptionRow row{name, path, help, audience == Expert, false, {}, false, 0.0, 0.0, false, {}, {},
+                {}};
+  for (const auto& entry : names)
+    row.choices.emplace_back(entry.first);
+  row.get = [field, names](const Options& options) -> OptionValue {
+    Options copy = options;
+    const auto found = std::find_if(names.begin(), names.end(), [&](const auto& entry) {
+      return entry.second == field(copy);
+    });
+    return found == names.end() ? OptionValue() : OptionValue(std::string(found->first));
+  };
+  row.set = [field, names](Options& options, const OptionValue& value) {
+    for (const auto& entry : names)
+      if (entry.first == std::get<std::string>(value))
+        field(options) = entry.second;
+  };
+  return row;
+}
+
+OptionRow aboveMin(OptionRow row) {
+  row.min_excluded = true;
+  return row;
+}
+
+OptionRow usedWith(std::vector<std::pair<std::string, std::string>> conditions, OptionRow row) {
+  row.used_with = std::move(conditions);
+  return row;
+}
+
+std::vector<OptionRow> makeTable() {
+  return {
+      choice<GraphMethod>(
+          "graph", "graph.method", "how points become neighbours; knn: the paper's", Everybody,
+          {{"delaunay", GraphMethod::LocalDelaunay}, {"knn", GraphMethod::NearestNeighbors}},
+          [](Options& o) -> auto& { return o.graph.method; }),
+      number("k", "graph.k", "nearest neighbours of each point; unset: 25 for knn, else 12",
+             Everybody, 3, kMaxInt, [](Options& o) -> auto& { return o.graph.k; }),
+      choice<EmbeddingMethod>(
+          "embedding", "embedding.method", "how the graph is embedded; iterative: the paper's",
+          Everybody,
+          {{"multilevel", EmbeddingMethod::Multilevel}, {"iterative", EmbeddingMethod::Iterative}},
+          [](Options& o) -> auto& { return o.embedding.method; }),
+      choice<EdgeWeights>("weights", "embedding.weights", "weights of the Laplacian", Everybody,
+                          {{"adaptive", EdgeWeights::Adaptive},
+                           {"inverse", EdgeWeights::InverseLength},
+                           {"uniform", EdgeWeights::Uniform}},
+                          [](Options& o) -> auto& { return o.embedding.weights; }),
+      usedWith({{"embedding", "multilevel"}, {"weights", "adaptive"}},
+               aboveMin(number("exponent", "embedding.exponent", "p of adaptive weights", Expert, 2,
+                               16, [](Options& o) -> auto& { return o.embedding.exponent; }))),
+      aboveMin(number("damping", "embedding.damping", "of iterations and smoothing sweeps", Expert,
+                      0, 1, [](Options& o) -> auto& { return o.embedding.damping; })),
+      number("tolerance", "embedding.tolerance",
+             "mean tangential Laplacian at convergence; unset: 1e-8 for iterative, else none",
+             Everybody, 0, 1, [](Options& o) -> auto& { return o.embedding.tolerance; }),
+      usedWith({{"embedding", "iterative"}},
+               number("max_iterations", "embedding.max_iterations", "iterations at most", Expert, 0,
+                      kMaxInt, [](Options& o) -> auto& { return o.embedding.max_iterations; })),
+      usedWith({{"embedding", "iterative"}},
+               number("stagnation_window", "embedding.stagnation_window",
+                      "iterations over which stagnation is judged; 0: never", Expert, 0, kMaxInt,
+                      [](Options& o) -> auto& { return o.embedding.stagnation_window; })),
+      usedWith({{"embedding", "multilevel"}},
+               number("starts", "embedding.starts", "starts of the coarsest level", Expert, 1, 100,
+                      [](Options& o) -> auto& { return o.embedding.starts; })),
+      number("history_vertices", "embedding.history.vertices",
+             "vertices whose path to the sphere is kept at most", Expert, 0, 1 << 24,
+             [](Options& o) -> auto& { return o.embedding.history.vertices; }),
+      number("history_frames", "embedding.history.frames", "states of these paths at most", Expert,
+             2, 10000, [](Options& o) -> auto& { return o.embedding.history.frames; }),
+      choice<TriangulationMethod>(
+          "triangulation", "triangulation.method",
+          "how the sphere is triangulated; qhull: the paper's", Everybody,
+          {{"incremental", TriangulationMethod::Incremental},
+           {"qhull", TriangulationMethod::Qhull}},
+          [](Options& o) -> auto& { return o.triangulation.method; }),
+      choice<OptimizationMethod>("optimization", "optimization.method",
+                                 "how far the mesh is optimised on the points", Everybody,
+                                 {{"full", OptimizationMethod::Full},
+                                  {"flips", OptimizationMethod::Flips},
+                                  {"none", OptimizationMethod::None}},
+                                 [](Options& o) -> auto& { return o.optimization.method; }),
+      number("smoothing", "smoothing.steps", "steps of smoothing of the points; 0: none", Everybody,
+             0, 10000, [](Options& o) -> auto& { return o.smoothing.steps; }),
+      usedWith({{"optimization", "full"}},
+               number("retries", "retries", "retries at most while the mesh intersects itself",
+                      Expert, 0, 99, [](Options& o) -> auto& { return o.retries; })),
+      number("seed", "seed", "of all random choices", Everybody, 0, kMaxSeed,
+             [](Options& o) -> auto& { return o.seed; }),
+      number("threads", "threads", "threads; 0: as many as there are processors", Everybody, 0,
+             1024, [](Options& o) -> auto& { return o.threads; }),
+  };
+}
+
+[[noreturn]] void refuse(const OptionRow& row, const std::string& what) {
+  throw InvalidInput(row.name + " " + what + "; use " + rangeOf(row));
+}
+
+void checkValue(const OptionRow& row, const OptionValue& value) {
+  if (value.index() == 0) {
+    if (!row.optional)
+      refuse(row, "has no value");
+    return;
+  }
+  if (!row.choices.empty()) {
+    const auto* name = std::get_if<std::string>(&value);
+    if (name == nullptr ||
+        std::find(row.choices.begin(), row.choices.end(), *name) == row.choices.end())
+      refuse(row, "= " + textOf(value) + " is not known");
+    return;
+  }
+  double number = 0.0;
+  if (const auto* integer = std::get_if<std::int64_t>(&value))
+    number = static_cast<double>(*integer);
+  else if (const auto* real = std::get_if<double>(&value); real != nullptr && !row.is_integer)
+    number = *real;
+  else
+    refuse(row, "= " + textOf(value) + (row.is_integer ? " is no integer" : " is no number"));
+  if (!(number >= row.min && number <= row.max) || (row.min_excluded && number == row.min))
+    refuse(row, "= " + textOf(value) + " is out of range");
+}
+
+/// Checks the options whose field begins with the name of a stage, or all.
+void checkStage(const Options& options, const std::string& stage) {
+  for (const OptionRow& row : optionTable())
+    if (row.field.compare(0, stage.size(), stage) == 0)
+      checkValue(row, row.get(options));
+}
+
+}  // namespace
+
+const std::vector<OptionRow>& optionTable() {
+  static const std::vector<OptionRow> table = makeTable();
+  return table;
+}
+
+const OptionRow& findOption(const std::string& name) {
+  std::string names;
+  for (const OptionRow& row : optionTable()) {
+    if (row.name == name)
+      return row;
+    names += (names.empty() ? "" : ", ") + row.name;
+  }
+  throw InvalidInput("there is no option '" + name + "'; there are " + names);
+}
+
+void setOption(Options& options, const std::string& name, const OptionValue& value) {
+  const OptionRow& row = findOption(name);
+  checkValue(row, value);
+  row.set(options, value);
+}
+
+std::string rangeOf(const OptionRow& row) {
+  if (row.choices.empty()) {
+    std::ostringstream text;
+    text << (row.is_integer ? "an integer " : "a number ") << (row.min_excluded ? "above " : "from ")
+         << row.min;
+    if (row.max < kMaxInt)
+      text << (row.min_excluded ? " and up to " : " to ") << row.max;
+    else if (!row.min_excluded)
+      text << " up";
+    return text.str();
+  }
+  std::string text;
+  for (std::size_t i = 0; i < row.choices.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < row.choices.size() ? ", " : " or ") + row.choices[i];
+  return text;
+}
+
+std::string textOf(const OptionValue& value) {
+  std::ostringstream text;
+  if (const auto* integer = std::get_if<std::int64_t>(&value))
+    text << *integer;
+  else if (const auto* real = std::get_if<double>(&value))
+    text << *real;
+  else if (const auto* name = std::get_if<std::string>(&value))
+    text << *name;
+  else
+    text << "unset";
+  return text.str();
+}
+
+void checkOptions(const Options& options) {
+  checkStage(options, "");
+  internal::checkOptions(options.embedding);
+}
+
+namespace internal {
+
+void checkOptions(const GraphOptions& stage) {
+  checkEnum("graph.agreement", stage.agreement, StarAgreement::Either);
+  Options options;
+  options.graph = stage;
+  checkStage(options, "graph.");
+}
+
+void checkOptions(const EmbeddingOptions& stage) {
+  Options options;
+  options.embedding = stage;
+  checkStage(options, "embedding.");
+  if (stage.method == EmbeddingMethod::Iterative && stage.exponent != 3.0)
+    throw InvalidInput("exponent = " + textOf(stage.exponent) +
+                       " has no effect on the iterative embedding; use 3, or the multilevel "
+                       "embedding");
+}
+
+void checkOptions(const TriangulationOptions& stage) {
+  Options options;
+  options.triangulation = stage;
+  checkStage(options, "triangulation.");
+}
+
+void checkOptions(const OptimizationOptions& stage) {
+  Options options;
+  options.optimization = stage;
+  checkStage(options, "optimization.");
+}
+
+void checkOptions(const SmoothingOptions& stage) {
+  checkEnum("smoothing.method", stage.method, SmoothingMethod::Biharmonic);
+  Options options;
+  options.smoothing = stage;
+  checkStage(options, "smoothing.");
+}
+
+}  // namespace internal
+}  // namespace spherical_param

@@ -1,0 +1,112 @@
+#include "result_units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Gives the result, computed on scaled points, the unit of the input.
+void scaleBack(int exponent, Result& result) {
+  const auto scale = [exponent](double& value, int power = 1) {
+    value = std::ldexp(value, power * exponent);
+  };
+  const auto scale_all = [exponent](auto& values, int power = 1) {
+    values = values.unaryExpr([=](double x) { return std::ldexp(x, power * exponent); }).eval();
+  };
+  scale(result.measures.volume, 3);
+  scale(result.measures.area, 2);
+  scale(result.measures.mean_edge_length);
+  scale_all(result.measures.box_min);
+  scale_all(result.measures.box_max);
+  scale_all(result.measures.centroid);
+  scale_all(result.measures.inertia, 5);
+  scale(result.optimization.energy);
+  for (RunReport& run : result.runs)
+    scale(run.energy);
+  for (OptimizationPhase& phase : result.optimization.phases) {
+    scale(phase.energy_before);
+    scale(phase.energy);
+  }
+  if (result.smoothed.cols() > 0) {
+    scale_all(result.smoothed);
+    scale(result.smoothing.max_displacement);
+    scale(result.smoothing.mean_displacement);
+    scale(result.smoothing.rms_displacement);
+    scale(result.smoothing.volume_before, 3);
+    scale(result.smoothing.volume_after, 3);
+  }
+  for (Bridge& bridge : result.graph.bridges)
+    scale(bridge.length);
+  for (Lid& lid : result.diagnosis.lids) {
+    scale(lid.area, 2);
+    scale(lid.boundary_length);
+    scale(lid.diameter);
+    scale(lid.spacing);
+    scale_all(lid.center);
+  }
+  for (CollapsedHandle& handle : result.diagnosis.handles) {
+    scale(handle.size);
+    scale_all(handle.center);
+  }
+  for (PartBridge& bridge : result.diagnosis.bridges) {
+    scale(bridge.gap);
+    scale(bridge.spacing);
+    scale_all(bridge.center);
+  }
+  result.diagnosis.summary = summaryOf(result.diagnosis);
+}
+
+/// Gives the result, computed on nodes, the numbers of the vertices.
+void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
+  const auto vertex = [&](Index node) { return vertex_of_node[static_cast<std::size_t>(node)]; };
+  const auto renumber_all = [&](std::vector<Index>& nodes) {
+    std::transform(nodes.begin(), nodes.end(), nodes.begin(), vertex);
+    std::sort(nodes.begin(), nodes.end());
+  };
+  const auto permute = [&](Positions& of_nodes) {
+    Positions of_vertices(3, of_nodes.cols());
+    for (Eigen::Index node = 0; node < of_nodes.cols(); ++node)
+      of_vertices.col(vertex(static_cast<Index>(node))) = of_nodes.col(node);
+    of_nodes = std::move(of_vertices);
+  };
+  result.triangles = result.triangles.unaryExpr(vertex);
+  permute(result.sphere);
+  permute(result.smoothed);
+  std::transform(result.history.vertices.begin(), result.history.vertices.end(),
+                 result.history.vertices.begin(), vertex);
+  std::vector<double> of_vertices(result.vertex_residuals.size());
+  for (std::size_t node = 0; node < of_vertices.size(); ++node)
+    of_vertices[static_cast<std::size_t>(vertex_of_node[node])] = result.vertex_residuals[node];
+  result.vertex_residuals = std::move(of_vertices);
+  for (Bridge& bridge : result.graph.bridges) {
+    bridge.from = vertex(bridge.from);
+    bridge.to = vertex(bridge.to);
+  }
+  renumber_all(result.graph.without_tangent_plane);
+  for (Lid& lid : result.diagnosis.lids) {
+    renumber_all(lid.vertices);
+    for (std::vector<Index>& loop : lid.loops) {
+      std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
+      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+    }
+  }
+  for (CollapsedHandle& handle : result.diagnosis.handles)
+    renumber_all(handle.vertices);
+  for (PartBridge& bridge : result.diagnosis.bridges)
+    renumber_all(bridge.vertices);
+}
+
+}  // namespace
+
+void toInput(OrderedPoints& nodes, Result& result) {
+  scaleBack(nodes.exponent, result);
+  renumber(nodes.vertex_of_node, result);
+  result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
+  result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "ordered_points.h"
+#include "spherical_param/reconstruct.h"
+
+namespace spherical_param::internal {
+
+/// Turns a result that was computed on nodes into one on vertices: scaled back to the unit of the
+/// input, and with the numbers of the vertices.
+void toInput(OrderedPoints& nodes, Result& result);
+
+}  // namespace spherical_param::internal
