@@ -26,7 +26,7 @@ namespace {
 /// Shares of the work that are done after its parts.
 
 constexpr std::size_t kLeastSamples = 12;
-constexpr std::size_t kMostSamples = std::size_t{1} << 24U;
+constexpr std::size_t kMaxGridSamples = std::size_t{1} << 24U;
 /// The motion solves dense systems of twice the size.
 constexpr std::size_t kMostPairs = 4096;
 /// Vertices of both meshes become one if they are nearer than this share of the shortest of their
@@ -40,9 +40,9 @@ constexpr double kSameVertex = 0.1;
 void checkOptions(const MorphOptions& options) {
   internal::checkEnum("morphSurfaces: connectivity", options.connectivity,
                       MorphConnectivity::Resampled);
-  if (options.samples < kLeastSamples || options.samples > kMostSamples)
+  if (options.samples < kLeastSamples || options.samples > kMaxGridSamples)
     fail("samples = " + std::to_string(options.samples) + " is out of range; use " +
-         std::to_string(kLeastSamples) + " to " + std::to_string(kMostSamples));
+         std::to_string(kLeastSamples) + " to " + std::to_string(kMaxGridSamples));
   if (options.pairs.size() > kMostPairs)
     fail(std::to_string(options.pairs.size()) + " pairs are too many; use " +
          std::to_string(kMostPairs) + " at most");
@@ -268,7 +268,7 @@ void sampleBoth(const SphereSurface& first, const SphereSurface& second, const P
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
                           const MorphOptions& options) {
   checkOptions(options);
-  const internal::Report report = internal::cancellable(options.progress, "morphSurfaces");
+  const internal::Report report = internal::reportOf(options, "morph");
   internal::tell(report, 0.0);
   MorphResult morph;
   const PairChoice choice = choosePairs(first, second, options.pairs, morph.impossible);
@@ -314,12 +314,12 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
 
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);
-    internal::tell(report, 0.65);
+    internal::tell(report, 0.0);
     internal::SphereOverlay overlay = internal::overlaySpheres(
         first.sphere(), first.triangles(), sphere, second.triangles(), partner,
         internal::threadCount(options.threads, static_cast<std::size_t>(sphere.cols()),
                               internal::kParallelThreshold));
-    internal::tell(report, 0.9);
+    internal::tell(report, 0.0);
     morph.first_places = std::move(overlay.first);
     morph.second_places = std::move(overlay.second);
     morph.first = positionsAt(first, morph.first_places, options.threads);
@@ -331,7 +331,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     morph.triangles = std::move(grid.triangles);
     morph.sphere = std::move(grid.directions);
     sampleBoth(first, second, sphere, morph);
-    internal::tell(report, 0.9);
+    internal::tell(report, 0.0);
     morph.first = positionsAt(first, morph.first_places, options.threads);
     morph.second = positionsAt(second, morph.second_places, options.threads);
   }

@@ -239,7 +239,7 @@ private:
 
 // --- Random points -------------------------------------------------------------------------------
 
-constexpr std::size_t kMostSamples = std::size_t{1} << 24;
+constexpr std::size_t kMaxEvenSamples = std::size_t{1} << 24;
 
 /// Points by area for each that is kept: five are enough for a good distribution (Yuksel 2015,
 /// section 4); fewer where they would take much memory.
@@ -436,7 +436,7 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
     throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
                        " points need as many directions, all finite");
   internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
-  SelfIntersectionOptions options;
+  Execution options;
   options.threads = threads;
   auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
@@ -465,7 +465,7 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
 }
 
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  if (count < 1 || count > kMostSamples)
+  if (count < 1 || count > kMaxEvenSamples)
     throw InvalidInput("sampleEvenly: count = " + std::to_string(count) +
                        " is out of range; use 1 to 2^24");
   if (!(surface.area() > 0.0))

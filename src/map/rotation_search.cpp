@@ -31,7 +31,7 @@ constexpr std::size_t kFineSamples = 4096;
 constexpr int kTableCells = 48;
 constexpr int kMostSteps = 60;
 /// A descent has ended when its steps are as short [rad].
-constexpr double kShortestStep = 1e-9;
+constexpr double kMinTurn = 1e-9;
 
 struct Sample {
   Eigen::Vector3d direction;
@@ -286,7 +286,7 @@ public:
       damped.diagonal() += damping * here.hessian.diagonal();
       damped.diagonal().array() += 1e-12;
       const Eigen::Vector3d turn = -damped.inverse() * here.gradient;
-      if (!turn.allFinite() || turn.norm() < kShortestStep)
+      if (!turn.allFinite() || turn.norm() < kMinTurn)
         break;
       if (turn.norm() < 0.5) {
         const Eigen::Matrix3d next = rotatedBy(turn, rotation);
@@ -333,7 +333,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
   const UnitSurface unit_second(second);
   const PositionTable table_first(unit_first, threads);
   const PositionTable table_second(unit_second, threads);
-  tell(report, 0.1);
+  tell(report, 0.0);
 
   struct Candidate {
     double error;
@@ -362,7 +362,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
         });
   }
   std::sort(candidates.begin(), candidates.end());
-  tell(report, 0.4);
+  tell(report, 0.0);
 
   std::vector<Eigen::Matrix3d> starts;
   for (const Candidate& candidate : candidates) {
@@ -382,7 +382,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
     forEachTask(starts.size(), used,
                 [&](std::size_t, std::size_t i) { ends[i] = medium.descend(starts[i], pairs, 1); });
   }
-  tell(report, 0.6);
+  tell(report, 0.0);
   std::stable_sort(ends.begin(), ends.end(),
                    [](const auto& one, const auto& other) { return one.first < other.first; });
 
@@ -400,7 +400,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
     const auto improved = fine.descend(end.second, pairs, threads);
     if (tried.size() == 1 || improved.first < best.first)
       best = improved;
-    tell(report, 0.6 + 0.4 * static_cast<double>(tried.size()) / kFinalists);
+    tell(report, static_cast<double>(tried.size()) / kFinalists);
     if (tried.size() == kFinalists)
       break;
   }

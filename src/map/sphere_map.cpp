@@ -308,7 +308,7 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
                            const Positions& start, const SphereMapOptions& options) {
   checkOptions(options);
   checkMesh(points, triangles, start, options.threads);
-  const internal::Report report = internal::cancellable(options.progress, "computeSphereMap");
+  const internal::Report report = internal::reportOf(options, "map");
   internal::tell(report, 0.0);
   const MapHierarchy hierarchy = internal::buildMapHierarchy(points, triangles, options.threads,
                                                              report);
@@ -320,7 +320,7 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
     sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));
   const Positions unit_start = start.colwise().normalized();
   map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
-  internal::tell(report, 0.95);
+  internal::tell(report, 0.0);
   const Eigen::Matrix3d rotation = rotationTo(unit_start, sphere, points, triangles);
   map.sphere = (rotation * sphere).colwise().normalized();
   map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);

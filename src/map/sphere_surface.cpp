@@ -59,9 +59,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
   requireAll(
       sphere, [](const Vector3d& u) { return std::abs(u.squaredNorm() - 1.0) <= tolerance; },
       "SphereSurface: vertex", "is not of unit length on the sphere; normalise the sphere first");
-  TopologyOptions options;
-  options.threads = threads;
-  if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), options).isSphere())
+  if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), threads).isSphere())
     throw InvalidInput("SphereSurface: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points; see checkTopology()");
 

@@ -31,7 +31,7 @@ constexpr std::size_t kPathSamples = 48;
 constexpr double kDetours[] = {0.0, 0.2, -0.2, 0.45, -0.45, 0.9, -0.9};
 constexpr int kDetourRounds = 6;
 /// Shortest step, as a share of the way.
-constexpr double kShortestStep = 1e-3;
+constexpr double kMinStep = 1e-3;
 /// A field's support, in distances [chord]: of landmarks, and ways that they go.
 constexpr double kSupportOfDistance = 3.0;
 constexpr double kSupportOfWay = 4.0;
@@ -500,7 +500,7 @@ SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
       const auto [slope, where] = steepestOf(field, places, spread, threads);
       if (farthest > 0.25 || !field.isFinite() || !(slope <= kMostSlope * kMostSlope)) {
         step = 0.5 * (goal - t);
-        if (is_last || step < kShortestStep) {
+        if (is_last || step < kMinStep) {
           stuck = static_cast<std::ptrdiff_t>(active[std::min(where, active.size() - 1)]);
           break;
         }

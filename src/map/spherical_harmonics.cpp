@@ -24,9 +24,6 @@ void checkDegree(const char* function, int degree) {
                        " is out of range; use 0 to " + std::to_string(kMostDegree));
 }
 
-void checkThreads(const char* function, int threads) {
-}
-
 void checkDirection(const char* function, const Vector3d& direction) {
   if (!direction.allFinite() || direction.isZero(0.0))
     throw InvalidInput(std::string(function) +
@@ -288,7 +285,6 @@ Eigen::VectorXd sphericalHarmonicsAt(const Vector3d& direction, int degree) {
 SphericalHarmonics computeSphericalHarmonics(const SphereSurface& surface, int degree,
                                              int threads) {
   checkDegree("computeSphericalHarmonics", degree);
-  checkThreads("computeSphericalHarmonics", threads);
   const Rings rings(degree);
   const Positions values = surface.evaluate(rings.directions()).positions;
   SphericalHarmonics result;
@@ -302,7 +298,6 @@ Positions evaluateSphericalHarmonics(const SphericalHarmonics& harmonics,
                                      const Positions& directions, int threads) {
   constexpr const char* function = "evaluateSphericalHarmonics";
   checkDegree(function, harmonics.degree);
-  checkThreads(function, threads);
   const Eigen::Index terms = coefficientCount(harmonics.degree);
   if (harmonics.coefficients.cols() != terms)
     throw InvalidInput(std::string(function) + ": " +

@@ -40,7 +40,7 @@ void checkOptions(const std::string& function, const BakeOptions& options) {
   };
   check("height", options.height, 16, 16384);
   check("gutter", options.gutter, 0, 256);
-  check("threads", options.threads, 0, internal::kMostThreads);
+  check("threads", options.threads, 0, internal::kMaxThreads);
 }
 
 /// Refuses what no makeTextureAtlas() made.

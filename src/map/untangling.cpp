@@ -35,7 +35,7 @@ public:
         moved_(static_cast<std::size_t>(mesh.points.cols()), false) {}
 
   UntanglingReport run() {
-    SelfIntersectionOptions options;
+    Execution options;
     options.threads = threads_;
     Pairs pairs = findSelfIntersections(mesh_.points, mesh_.triangles, options);
     UntanglingReport report;

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,7 +32,7 @@ enum class MorphConnectivity {
 };
 
 /// Parameters of Morph.
-struct MorphOptions {
+struct MorphOptions : Execution {
   /// Look for the best of all rotations of one sphere against the other: the least mean squared
   /// distance between both surfaces, each centred and scaled to the same area; with pairs, the mean
   /// squared distance of their places on the sphere is added. false: the maps as they are.

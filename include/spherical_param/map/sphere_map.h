@@ -1,9 +1,9 @@
 #pragma once
 
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 namespace spherical_param {
@@ -49,7 +49,7 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
                                    const Positions& sphere, int threads = 0);
 
 /// Parameters of computeSphereMap().
-struct SphereMapOptions {
+struct SphereMapOptions : Execution {
   /// Weight of area against angle in the energy, in [0, 1]: 0 is as conformal as can be, 1 cares
   /// for areas as much as a map that stays one to one can.
   double area_weight = 0.85;

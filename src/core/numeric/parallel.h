@@ -1,12 +1,14 @@
 #pragma once
 
 #include "progress.h"
+#include "spherical_param/errors.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <string>
 #include <vector>
 
 #ifdef _OPENMP
@@ -16,7 +18,7 @@
 namespace spherical_param::internal {
 
 /// More would exhaust the system before they could work.
-inline constexpr int kMostThreads = 1024;
+inline constexpr int kMaxThreads = 1024;
 /// Work is handed out, and sums are formed, in blocks of so many items: the same bits for any
 /// number of threads.
 inline constexpr std::size_t kBlockSize = 512;
@@ -36,13 +38,17 @@ inline constexpr std::size_t kMostReports = 32;
 ///
 /// \param requested 0: as many as OpenMP would use.
 /// \param threshold the least number of items for several threads.
-inline int threadCount([[maybe_unused]] int requested, [[maybe_unused]] std::size_t items,
+/// \throw InvalidInput if `requested` is out of range.
+inline int threadCount(int requested, [[maybe_unused]] std::size_t items,
                        [[maybe_unused]] std::size_t threshold) {
+  if (requested < 0 || requested > kMaxThreads)
+    throw InvalidInput("threads = " + std::to_string(requested) +
+                       " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
 #ifdef _OPENMP
   if (items >= threshold)
     // OpenMP ends the process if it cannot start a thread; more than this gain nothing anyway.
     return std::min({requested > 0 ? requested : omp_get_max_threads(), 4 * omp_get_num_procs(),
-                     static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMostThreads))});
+                     static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMaxThreads))});
 #endif
   return 1;
 }
@@ -92,7 +98,7 @@ void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& w
   carrier.rethrow();
 }
 
-/// The same in a few dozen parallel regions, if there is someone to tell of the share that is done
+/// The same in a few dozen parallel regions, if there is a report to make
 /// after each: the blocks and their numbers are those of one region.
 template <typename Work>
 void forEachBlock(std::size_t count, int threads, const Report& report, const Work& work) {
@@ -109,7 +115,7 @@ void forEachBlock(std::size_t count, int threads, const Report& report, const Wo
 
 /// Calls work(thread, i) for each i in [0, count), where thread < threads.
 ///
-/// \param report told of the share that is done, as by forEachBlock().
+/// \param report told of the fraction that is done, as by forEachBlock().
 template <typename Work>
 void forEachItem(std::size_t count, int threads, const Report& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
