@@ -39,12 +39,10 @@ log="$build/benchmark-build.log"
 mkdir -p "$build"
 echo "benchmark.sh: building in $build (minutes at first, seconds later)"
 if ! (
-  # As tools/test.sh does, which leaves the peers out.
+  # The same build as that of the tests, but for the peers.
   cd "$root" &&
-    cmake --preset release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
-      -DBUILD_TESTING=ON -DSPHERICAL_PARAM_BUILD_TESTS=ON \
-      -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON -DCMAKE_DISABLE_FIND_PACKAGE_CGAL="$without_peers" \
-      -DCMAKE_DISABLE_FIND_PACKAGE_Open3D="$without_peers" &&
+    # shellcheck source=tools/common/test_steps.sh
+    . tools/common/test_steps.sh && configure_release "$without_peers" &&
     cmake --build "$build" --target benchmark_suite
 ) >"$log" 2>&1; then
   tail -n 5 "$log" >&2

@@ -90,14 +90,18 @@ files() {
   fi | sort -u
 }
 
-# build_release [target...]: what all scripts test. With the flags of the packages, so that these are
-# what was tested, and compiled once. Of the benchmarks' peers only PCL: the others are not in the
-# list of packages, and take minutes.
-build_release() {
+# configure_release <ON or OFF>: with the flags of the packages, so that these are what is tested and
+# measured, and compiled once. ON leaves out the benchmarks' peers but PCL: they are not in the list of
+# packages, and take minutes.
+configure_release() {
   cmake --preset release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
     -DBUILD_TESTING=ON -DSPHERICAL_PARAM_BUILD_TESTS=ON -DSPHERICAL_PARAM_BUILD_BENCHMARKS=ON \
-    -DCMAKE_DISABLE_FIND_PACKAGE_CGAL=ON -DCMAKE_DISABLE_FIND_PACKAGE_Open3D=ON &&
-    cmake --build build/release -j "$jobs" ${1:+--target "$@"} -- -k 0
+    -DCMAKE_DISABLE_FIND_PACKAGE_CGAL="$1" -DCMAKE_DISABLE_FIND_PACKAGE_Open3D="$1"
+}
+
+# build_release [target...]: what all scripts test.
+build_release() {
+  configure_release ON && cmake --build build/release -j "$jobs" ${1:+--target "$@"} -- -k 0
 }
 
 # configure_and_build <preset> [target...]
