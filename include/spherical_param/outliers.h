@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <vector>
@@ -18,7 +19,6 @@ struct OutlierOptions {
   /// Nothing nearer to the surface of its neighbours than this is an outlier [share of their mean
   /// distances]; >= 0. Points of a surface, even those at sharp corners, hardly reach 1.
   double least_score = 1.0;
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
 };
 
 /// Points that do not belong to the surface of the others.
@@ -61,7 +61,8 @@ struct Outliers {
 /// \param lists  n neighbour lists, the nearest of each point; unsorted, longer or shorter than k,
 ///               with or without the point itself. What is beyond the k nearest steps in for
 ///               outliers. A list of fewer than three others gives score 0.
-/// \param options how far off an outlier is, k, threads
+/// \param options how far off an outlier is, k
+/// \param execution threads, progress
 /// \return the outliers, the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for coordinates that are not finite, sizes that disagree, an index out of
 ///        range, or options out of range.
@@ -71,7 +72,17 @@ struct Outliers {
 /// beyond the tip of a thin limb, an outlier may be in the plane of its neighbours; where the
 /// spacing jumps by ten and more, points at the rim may be taken for outliers.
 Outliers findOutliers(const Positions& points, const NeighborLists& lists,
-                      const OutlierOptions& options = {});
+                      const OutlierOptions& options = {}, const Execution& execution = {});
+
+/// The same with neighbours that are found here: twice as many of each point as OutlierOptions::k.
+///
+/// \param points 3 x n, finite. Of points at one position all are outliers or none.
+/// \param options, execution as above.
+/// \return the outliers, as above, in the numbers of the input; none of fewer than 4 positions,
+///         which cannot be meshed anyway.
+/// \throw InvalidInput as above; Cancelled.
+Outliers findOutliers(const Positions& points, const OutlierOptions& options = {},
+                      const Execution& execution = {});
 
 /// @}
 

@@ -131,7 +131,7 @@ std::vector<OptionRow> makeTable() {
                       kMaxInt, [](Options& o) -> auto& { return o.embedding.max_iterations; })),
       usedWith({{"embedding", "iterative"}},
                number("stagnation_window", "embedding.stagnation_window",
-                      "iterations over which stagnation is judged; 0: never", Expert, 0, kMaxInt,
+                      "iterations over which stagnation is judged; 0 or 1: never", Expert, 0, kMaxInt,
                       [](Options& o) -> auto& { return o.embedding.stagnation_window; })),
       usedWith({{"embedding", "multilevel"}},
                number("starts", "embedding.starts", "starts of the coarsest level", Expert, 1, 100,

@@ -104,7 +104,7 @@ private:
 
 bool hasStagnated(const std::vector<double>& residuals, int stagnation_window) {
   const auto window = static_cast<std::size_t>(stagnation_window);
-  if (window == 0 || residuals.size() <= window)
+  if (window < 2 || residuals.size() <= window)
     return false;
   const auto [low, high] =
       std::minmax_element(residuals.end() - static_cast<std::ptrdiff_t>(window), residuals.end());
@@ -121,10 +121,10 @@ Embedding embedIteratively(const Graph& graph, const Positions& start,
   const EdgeWeightLaw weights(options.weights, options.exponent);
   Iteration iteration(graph, projectFromCentroid(start), options, weights, execution.threads);
   report.residuals.reserve(static_cast<std::size_t>(std::min(options.max_iterations, 100000)) + 1);
-  const Report tell_of = reportOf(execution, "embedding");
+  const Report report_progress = reportOf(execution, "embedding");
   for (;;) {
     report.residual = iteration.evaluate();
-    tell(tell_of, report.iterations / (options.max_iterations + 1.0));
+    tell(report_progress, report.iterations / (options.max_iterations + 1.0));
     report.residuals.push_back(report.residual);
     if (observer)
       observer({0, graph.size(), EmbeddingStep::Iteration, report.iterations, report.residual,

@@ -112,6 +112,17 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   return result;
 }
 
+std::vector<Index> nodesOfInput(const OrderedPoints& nodes) {
+  std::vector<Index> node_of_vertex(nodes.vertex_of_node.size());
+  for (std::size_t node = 0; node < node_of_vertex.size(); ++node)
+    node_of_vertex[static_cast<std::size_t>(nodes.vertex_of_node[node])] = static_cast<Index>(node);
+  std::vector<Index> result(nodes.distinct.vertex_of_input.size());
+  std::transform(nodes.distinct.vertex_of_input.begin(), nodes.distinct.vertex_of_input.end(),
+                 result.begin(),
+                 [&](Index vertex) { return node_of_vertex[static_cast<std::size_t>(vertex)]; });
+  return result;
+}
+
 OrderedPoints orderCheckedPoints(const Positions& points, int threads) {
   if (points.cols() > kMaxPoints)
     throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +

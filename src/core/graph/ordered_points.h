@@ -31,4 +31,7 @@ OrderedPoints orderPoints(const Positions& points, int threads);
 /// points, or points in one plane.
 OrderedPoints orderCheckedPoints(const Positions& points, int threads);
 
+/// The node of each input point.
+std::vector<Index> nodesOfInput(const OrderedPoints& nodes);
+
 }  // namespace spherical_param::internal

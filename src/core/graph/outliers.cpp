@@ -1,13 +1,16 @@
 #include "spherical_param/outliers.h"
 
 #include "neighbor_lists.h"
+#include "ordered_points.h"
 #include "parallel.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/neighbor_search.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,6 +19,8 @@ namespace {
 
 /// Fewer span no plane.
 constexpr std::size_t kLeastNeighbors = 3;
+/// Fewer positions cannot be meshed.
+constexpr std::size_t kLeastPositions = 4;
 /// Neighbours with mean distances longer than so many times their median may be outliers.
 constexpr double kIsolated = 2.0;
 /// Neighbours whose spread across is less than this share of that along are on a line.
@@ -34,6 +39,12 @@ void checkOptions(const OutlierOptions& options) {
   if (!(options.least_score >= 0.0 && std::isfinite(options.least_score)))
     fail("least_score = " + std::to_string(options.least_score) +
          " is out of range; use a finite value that is not negative");
+}
+
+void checkFinite(const Positions& points) {
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (!points.col(i).allFinite())
+      fail("point " + std::to_string(i) + " is not finite; remove such points first");
 }
 
 /// A neighbour of a point; ordered by how crowded it is there, then by how near it is.
@@ -71,12 +82,13 @@ double distanceFromPlane(const Positions& points, const Eigen::Vector3d& point,
 /// The points' neighbours, of which outliers are taken out, and their scores.
 class Scoring {
 public:
-  Scoring(const Positions& points, const NeighborLists& lists, const OutlierOptions& options)
+  Scoring(const Positions& points, const NeighborLists& lists, const OutlierOptions& options,
+          const Execution& execution)
       : points_(points), k_(static_cast<std::size_t>(options.k)), begin_(lists.offsets),
         count_(lists.size()), used_(lists.size()), neighbors_(lists.indices),
         mean_distance_(lists.size()), scores_(lists.size(), 0.0),
         threads_(
-            internal::threadCount(options.threads, lists.size(), internal::kParallelThreshold)) {
+            internal::threadCount(execution.threads, lists.size(), internal::kParallelThreshold)) {
     internal::forEachItem(lists.size(), threads_,
                           [&](std::size_t, std::size_t i) { sortByDistance(i); });
   }
@@ -161,16 +173,14 @@ private:
 }  // namespace
 
 Outliers findOutliers(const Positions& points, const NeighborLists& lists,
-                      const OutlierOptions& options) {
+                      const OutlierOptions& options, const Execution& execution) {
   checkOptions(options);
   const auto n = static_cast<std::size_t>(points.cols());
   internal::checkNeighborLists("findOutliers", lists, n);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (!points.col(i).allFinite())
-      fail("point " + std::to_string(i) + " is not finite; remove such points first");
+  checkFinite(points);
 
   Outliers result;
-  Scoring scoring(points, lists, options);
+  Scoring scoring(points, lists, options, execution);
   std::vector<char> is_outlier(n, 0);
   std::size_t left = n;
   bool found = left > 0;
@@ -208,6 +218,37 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   for (std::size_t i = 0; i < n; ++i)
     if (is_outlier[i] != 0)
       result.indices.push_back(static_cast<Index>(i));
+  return result;
+}
+
+Outliers findOutliers(const Positions& points, const OutlierOptions& options,
+                      const Execution& execution) {
+  checkOptions(options);
+  checkFinite(points);
+  const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
+  const auto n = static_cast<std::size_t>(points.cols());
+  if (nodes.input_of_node.size() < kLeastPositions) {
+    Outliers none;
+    none.scores.assign(n, 0.0);
+    return none;
+  }
+  const int count = std::min(options.k, std::numeric_limits<int>::max() / 2) * 2;
+  Outliers result = findOutliers(nodes.points, findNearestNeighbors(nodes.points, count, execution),
+                                 options, execution);
+
+  const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
+  std::vector<char> is_outlier(nodes.input_of_node.size(), 0);
+  for (const Index node : result.indices)
+    is_outlier[static_cast<std::size_t>(node)] = 1;
+  result.indices.clear();
+  std::vector<double> scores(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto node = static_cast<std::size_t>(node_of_input[i]);
+    scores[i] = result.scores[node];
+    if (is_outlier[node] != 0)
+      result.indices.push_back(static_cast<Index>(i));
+  }
+  result.scores = std::move(scores);
   return result;
 }
 
