@@ -40,10 +40,6 @@ struct MorphOptions : Execution {
   std::vector<PointPair> pairs;  ///< honoured exactly, or said to be impossible; at most 4096
   MorphConnectivity connectivity = MorphConnectivity::AllVertices;  ///< of the in-betweens
   std::size_t samples = 40962;  ///< of MorphConnectivity::Resampled, about; [12, 2^24]
-  int threads = 0;              ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
-  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
-  std::function<bool(double)> progress = {};
 };
 
 /// A pair that cannot be honoured.

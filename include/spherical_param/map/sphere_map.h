@@ -55,10 +55,6 @@ struct SphereMapOptions : Execution {
   double area_weight = 0.85;
   /// Sweeps over the vertices at most of each level; [0, 1000]. 0: the map is only made valid.
   int sweeps = 15;
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-  /// Called with the share of the work that is done, in [0, 1], which never falls; returning false
-  /// ends the work with Cancelled. May be empty. Called from the calling thread only.
-  std::function<bool(double)> progress = {};
 };
 
 /// One level of the hierarchy of meshes, finest first.
