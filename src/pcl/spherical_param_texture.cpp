@@ -1,7 +1,6 @@
-#include <pcl/conversions.h>
+#include "mesh_conversion.h"
+
 #include <pcl/pcl_config.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
 #include <pcl/surface/spherical_param_texture.h>
 
 #include "spherical_param/mesh_measures.h"
@@ -9,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <cstddef>
+#include <string>
 #include <utility>
 
 namespace pcl {
@@ -28,64 +28,50 @@ pcl::TexMaterial materialOf(const std::string& image_file) {
   return material;
 }
 
+/// Three texture coordinates for each polygon, in their order.
+void addCoordinates(const spherical_param::TextureAtlas& atlas, pcl::TextureMesh& mesh) {
+  const Eigen::Index count = atlas.triangles.cols();
+  mesh.tex_coordinates.resize(1);
+  mesh.tex_coordinates[0].reserve(3 * static_cast<std::size_t>(count));
+  for (Eigen::Index t = 0; t < count; ++t)
+    for (Eigen::Index k = 0; k < 3; ++k)
+      mesh.tex_coordinates[0].emplace_back(
+          atlas.coordinates.col(atlas.coordinate_triangles(k, t)).cast<float>());
+#if PCL_VERSION_COMPARE(>=, 1, 13, 0)
+  mesh.tex_coord_indices.resize(1);
+  mesh.tex_coord_indices[0].resize(static_cast<std::size_t>(count));
+  for (std::size_t t = 0; t < mesh.tex_coord_indices[0].size(); ++t) {
+    const auto first = static_cast<pcl::index_t>(3 * t);
+    mesh.tex_coord_indices[0][t].vertices = {first, first + 1, first + 2};
+  }
+#endif
+}
+
 }  // namespace
 
-bool textureMesh(const spherical_param::Positions& points,
-                 const spherical_param::Triangles& triangles,
-                 const spherical_param::Positions& sphere, const spherical_param::Positions& colors,
-                 const SphericalParamTextureOptions& options, pcl::TextureMesh& output,
-                 spherical_param::TextureImage& image) {
-  pcl::TextureMesh mesh;
-  spherical_param::TextureImage texture;
-  const bool is_done = runCore("textureSphericalParam", [&] {
-    mesh.header = output.header;
-    const spherical_param::TextureAtlas atlas =
-        spherical_param::makeTextureAtlas(triangles, sphere, options.atlas);
-    texture = colors.cols() > 0 ? spherical_param::bakeColors(atlas, colors, options.bake)
-                                : spherical_param::bakeCheckerboard(
-                                      atlas, sphere, options.checkerboard_cells, options.bake);
+pcl::TextureMesh textureMesh(const MappedMesh& mesh, const spherical_param::Positions& colors,
+                             const SphericalParamTextureOptions& options, int threads,
+                             spherical_param::TextureImage& image) {
+  spherical_param::BakeOptions bake = options.bake;
+  bake.threads = threads;
+  const spherical_param::TextureAtlas atlas =
+      spherical_param::makeTextureAtlas(mesh.triangles, mesh.map.sphere, options.atlas);
+  spherical_param::TextureImage baked =
+      colors.cols() > 0 ? spherical_param::bakeColors(atlas, colors, bake)
+                        : spherical_param::bakeCheckerboard(atlas, mesh.map.sphere,
+                                                            options.checkerboard_cells, bake);
+  spherical_param::Positions normals = spherical_param::atCutVertices(
+      atlas, spherical_param::areaWeightedNormals(mesh.points, mesh.triangles));
+  for (Eigen::Index i = 0; i < normals.cols(); ++i)
+    normals.col(i).stableNormalize();
 
-    const Eigen::MatrixXd places = spherical_param::atCutVertices(atlas, points);
-    const Eigen::MatrixXd normals = spherical_param::atCutVertices(
-        atlas, spherical_param::areaWeightedNormals(points, triangles));
-    pcl::PointCloud<pcl::PointNormal> cloud;
-    cloud.resize(atlas.vertices.size());
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      cloud[i].getVector3fMap() = places.col(column).cast<float>();
-      cloud[i].getNormalVector3fMap() = normals.col(column).stableNormalized().cast<float>();
-    }
-    cloud.header = mesh.header;
-    pcl::toPCLPointCloud2(cloud, mesh.cloud);
-
-    const auto count = static_cast<std::size_t>(atlas.triangles.cols());
-    mesh.tex_materials = {materialOf(options.image_file)};
-    mesh.tex_polygons.resize(1);
-    mesh.tex_coordinates.resize(1);
-    mesh.tex_polygons[0].resize(count);
-    mesh.tex_coordinates[0].reserve(3 * count);
-#if PCL_VERSION_COMPARE(>=, 1, 13, 0)
-    mesh.tex_coord_indices.resize(1);
-    mesh.tex_coord_indices[0].resize(count);
-#endif
-    for (std::size_t t = 0; t < count; ++t) {
-      const auto column = static_cast<Eigen::Index>(t);
-      const auto triangle = atlas.triangles.col(column);
-      mesh.tex_polygons[0][t].vertices = {triangle[0], triangle[1], triangle[2]};
-      for (Eigen::Index k = 0; k < 3; ++k)
-        mesh.tex_coordinates[0].emplace_back(
-            atlas.coordinates.col(atlas.coordinate_triangles(k, column)).cast<float>());
-#if PCL_VERSION_COMPARE(>=, 1, 13, 0)
-      const auto first = static_cast<pcl::index_t>(3 * t);
-      mesh.tex_coord_indices[0][t].vertices = {first, first + 1, first + 2};
-#endif
-    }
-  });
-  if (is_done) {
-    output = std::move(mesh);
-    image = std::move(texture);
-  }
-  return is_done;
+  pcl::TextureMesh output;
+  output.cloud = cloudOf(spherical_param::atCutVertices(atlas, mesh.points), normals);
+  output.tex_polygons = {polygonsOf(atlas.triangles)};
+  output.tex_materials = {materialOf(options.image_file)};
+  addCoordinates(atlas, output);
+  image = std::move(baked);
+  return output;
 }
 
 }  // namespace detail

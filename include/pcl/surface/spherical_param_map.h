@@ -1,12 +1,13 @@
 #pragma once
 
+#include <pcl/surface/impl/spherical_param_run_core.hpp>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/types.h"
 
-#include <functional>
-#include <string>
+#include <cstddef>
+#include <utility>
 
 namespace pcl {
 
@@ -14,15 +15,14 @@ namespace pcl {
  * what texturing, remeshing and morphing begin with.
  *
  * The vertices of the mesh are those of reconstruction.getResult(), which stays there, with its
- * triangles; reconstruction.getVertexIndices() tells which points of the cloud they are.
+ * triangles; reconstruction.getVertexIndices() has their indices in the cloud.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called
- * \param[out] points 3 x v, the vertices: smoothed, if setSmoothingSteps() asks for that
+ * \param[out] points 3 x v, the vertices: smoothed, if setSmoothing() asks for that
  * \param[out] map the map of these vertices
  * \param[in] options where no threads are given, those of the reconstruction are used
- * \return false after a failure, which is told by PCL_ERROR; points and map are empty then. No
- * exception leaves the function, except one that a progress callback throws.
- * \ingroup surface
+ * \return false after a failure, which PCL_ERROR reports; points and map are empty then. No
+ * exception leaves the function, except one that a progress callback throws. \ingroup surface
  */
 template <typename PointInT>
 bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruction,
@@ -31,24 +31,55 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
 
 namespace detail {
 
-/** \brief The core's messages begin with the name of the function; ours has its own. */
-PCL_EXPORTS const char* withoutFunctionName(const char* message);
+/** \brief A mesh with its map to the sphere. */
+struct MappedMesh {
+  spherical_param::Positions points;     ///< 3 x v
+  spherical_param::Triangles triangles;  ///< 3 x (2v - 4)
+  spherical_param::SphereMap map;        ///< of the points
+};
 
-/** \brief Calls a piece of work that uses the core. Whatever exception it throws is told by
- * PCL_ERROR as one of a function. Needs no memory itself.
- * \return false after an exception */
-PCL_EXPORTS bool runCore(const char* function, const std::function<void()>& work);
-template <typename Work>
-bool runCore(const char* function, const Work& work) {
-  return runCore(function, std::function<void()>(std::cref(work)));
+/** \brief The vertices of the last mesh, smoothed if smoothing was asked for. \return 3 x v */
+template <typename PointInT>
+spherical_param::Positions
+verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
+  if (reconstruction.getResult().smoothed.cols() > 0)
+    return reconstruction.getResult().smoothed;
+  const pcl::Indices& vertices = reconstruction.getVertexIndices();
+  const auto& cloud = *reconstruction.getInputCloud();
+  spherical_param::Positions points(3, static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const PointInT& point = cloud[static_cast<std::size_t>(vertices[i])];
+    points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
+        static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
+  }
+  return points;
 }
 
-/** \brief Maps a mesh to the sphere; a failure is told as one of computeSphericalParamMap().
- * \return false after a failure, with an empty map */
-PCL_EXPORTS bool mapMesh(const spherical_param::Positions& points,
-                         const spherical_param::Result& mesh,
-                         const spherical_param::SphereMapOptions& options,
-                         spherical_param::SphereMap& map);
+/** \brief Meshes a cloud, maps the mesh, and makes an output of it, of which only the header is
+ * left after a failure. \param[in] function the name that messages begin with \param[in] options of
+ * the map \param[in] threads of `make`; 0: those of the reconstruction \param[in] make called with
+ * the mesh and the threads; returns the output without its header \return false after a failure */
+template <typename PointInT, typename Output, typename Make>
+bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& reconstruction,
+                 const spherical_param::SphereMapOptions& options, int threads, Output& output,
+                 const Make& make) {
+  output = Output();
+  MappedMesh mesh;
+  const auto keep_header = [&](const spherical_param::Execution&) {
+    if (reconstruction.getInputCloud())
+      output.header = reconstruction.getInputCloud()->header;
+  };
+  const auto work = [&](const spherical_param::Execution& execution) {
+    mesh.triangles = reconstruction.getResult().triangles;
+    Output made = make(std::as_const(mesh), execution.threads);
+    made.header = output.header;
+    made.cloud.header = output.header;
+    output = std::move(made);
+  };
+  return runCore(function, {}, 0, keep_header) &&
+         computeSphericalParamMap(reconstruction, mesh.points, mesh.map, options) &&
+         runCore(function, {threads, {}}, reconstruction.getNumberOfThreads(), work);
+}
 
 }  // namespace detail
 
@@ -59,32 +90,19 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
   points.resize(3, 0);
   map = spherical_param::SphereMap();
   reconstruction.reconstruct();
-  const spherical_param::Result& result = reconstruction.getResult();
-  // It has told why.
+  // The reconstruction has reported why.
   if (!reconstruction.getErrorMessage().empty())
     return false;
-  spherical_param::SphereMapOptions with_threads;
-  const bool has_points = detail::runCore("computeSphericalParamMap", [&] {
-    with_threads = options;
-    if (result.smoothed.cols() > 0) {
-      points = result.smoothed;
-      return;
-    }
-    const pcl::Indices& vertices = reconstruction.getVertexIndices();
-    const auto& cloud = *reconstruction.getInputCloud();
-    points.resize(3, static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      const PointInT& point = cloud[static_cast<std::size_t>(vertices[i])];
-      points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
-          static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
-    }
-  });
-  if (with_threads.threads == 0)
-    with_threads.threads = static_cast<int>(reconstruction.getNumberOfThreads());
-  if (has_points && detail::mapMesh(points, result, with_threads, map))
-    return true;
-  points.resize(3, 0);
-  return false;
+  const auto work = [&](const spherical_param::Execution& execution) {
+    spherical_param::SphereMapOptions guarded = options;
+    static_cast<spherical_param::Execution&>(guarded) = execution;
+    const spherical_param::Result& result = reconstruction.getResult();
+    spherical_param::Positions vertices = detail::verticesOf(reconstruction);
+    map = spherical_param::computeSphereMap(vertices, result.triangles, result.sphere, guarded);
+    points = std::move(vertices);
+  };
+  return detail::runCore("computeSphericalParamMap", options, reconstruction.getNumberOfThreads(),
+                         work);
 }
 
 }  // namespace pcl

@@ -10,7 +10,7 @@
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 
-#include <string>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -42,9 +42,8 @@ struct SphericalParamMorphOptions {
  * \param[in] options the defaults need no tuning
  * \param[out] impossible if it is given: the pairs that could not be honoured, by their place in
  * `pairs` and behind these in `morph.pairs`
- * \return false after a failure, which is told by PCL_ERROR; the output is empty then. No exception
- * leaves the function, except one that a progress callback throws.
- * \ingroup surface
+ * \return false after a failure, which PCL_ERROR reports; the output is empty then. No exception
+ * leaves the function, except one that a progress callback throws. \ingroup surface
  */
 template <typename PointInT>
 bool morphSphericalParam(SphericalParamReconstruction<PointInT>& first,
@@ -55,38 +54,40 @@ bool morphSphericalParam(SphericalParamReconstruction<PointInT>& first,
 
 namespace detail {
 
-/** \brief A mesh with its map. */
-struct MappedMesh {
-  spherical_param::Positions points;
-  spherical_param::SphereMap map;
-  /** \brief Of each point of the cloud; -1: it is none. */
+/** \brief One of the two shapes. */
+struct MorphShape {
+  MappedMesh mesh;
+  /** \brief The vertex of each point of the cloud; -1: none. */
   std::vector<spherical_param::Index> vertex_of_point;
 };
 
-/** \brief Tells of a number of frames that is out of range by PCL_ERROR. */
-PCL_EXPORTS bool areFrames(int frames);
+/** \brief Throws InvalidInput for a number of frames that is out of range. */
+PCL_EXPORTS void checkFrames(int frames);
 
 /** \brief Morphs two meshes that are mapped to the sphere.
- * \return false after a failure, with an empty output */
-PCL_EXPORTS bool morph(const MappedMesh& first, const spherical_param::Triangles& first_triangles,
-                       const MappedMesh& second, const spherical_param::Triangles& second_triangles,
-                       int frames, const SphericalParamMorphOptions& options,
-                       const pcl::PCLHeader& header, std::vector<pcl::PolygonMesh>& output,
-                       std::vector<spherical_param::ImpossiblePair>* impossible);
+ * \param[in] execution used instead of that of the options
+ * \param[out] impossible if it is given: the pairs that could not be honoured
+ * \return the frames */
+PCL_EXPORTS std::vector<pcl::PolygonMesh>
+morph(const MorphShape& first, const MorphShape& second, int frames,
+      const SphericalParamMorphOptions& options, const spherical_param::Execution& execution,
+      const pcl::PCLHeader& header, std::vector<spherical_param::ImpossiblePair>* impossible);
 
-/** \brief Meshes a cloud, maps the mesh, and finds the vertex of each point. */
+/** \brief Meshes a cloud, maps the mesh, and finds the vertex of each point.
+ * \return false after a failure */
 template <typename PointInT>
 bool mapForMorph(SphericalParamReconstruction<PointInT>& reconstruction,
-                 const spherical_param::SphereMapOptions& options, MappedMesh& mesh) {
-  if (!computeSphericalParamMap(reconstruction, mesh.points, mesh.map, options))
-    return false;
-  return runCore("morphSphericalParam", [&] {
-    mesh.vertex_of_point.assign(reconstruction.getInputCloud()->size(), -1);
+                 const spherical_param::SphereMapOptions& options, MorphShape& shape) {
+  const auto work = [&](const spherical_param::Execution&) {
+    shape.mesh.triangles = reconstruction.getResult().triangles;
+    shape.vertex_of_point.assign(reconstruction.getInputCloud()->size(), -1);
     const pcl::Indices& used = reconstruction.getUsedIndices();
     for (std::size_t i = 0; i < used.size(); ++i)
-      mesh.vertex_of_point[static_cast<std::size_t>(used[i])] =
+      shape.vertex_of_point[static_cast<std::size_t>(used[i])] =
           reconstruction.getResult().vertex_of_input[i];
-  });
+  };
+  return computeSphericalParamMap(reconstruction, shape.mesh.points, shape.mesh.map, options) &&
+         runCore("morphSphericalParam", {}, 0, work);
 }
 
 }  // namespace detail
@@ -100,20 +101,17 @@ bool morphSphericalParam(SphericalParamReconstruction<PointInT>& first,
   output.clear();
   if (impossible != nullptr)
     impossible->clear();
-  SphericalParamMorphOptions with_threads;
-  if (!detail::areFrames(frames) ||
-      !detail::runCore("morphSphericalParam", [&] { with_threads = options; }))
-    return false;
-  detail::MappedMesh first_mesh;
-  detail::MappedMesh second_mesh;
-  if (!detail::mapForMorph(first, options.map, first_mesh) ||
-      !detail::mapForMorph(second, options.map, second_mesh))
-    return false;
-  if (with_threads.morph.threads == 0)
-    with_threads.morph.threads = static_cast<int>(first.getNumberOfThreads());
-  return detail::morph(first_mesh, first.getResult().triangles, second_mesh,
-                       second.getResult().triangles, frames, with_threads,
-                       first.getInputCloud()->header, output, impossible);
+  detail::MorphShape shapes[2];
+  const auto check = [&](const spherical_param::Execution&) { detail::checkFrames(frames); };
+  const auto work = [&](const spherical_param::Execution& execution) {
+    output = detail::morph(shapes[0], shapes[1], frames, options, execution,
+                           first.getInputCloud()->header, impossible);
+  };
+  constexpr const char* name = "morphSphericalParam";
+  return detail::runCore(name, {}, 0, check) &&
+         detail::mapForMorph(first, options.map, shapes[0]) &&
+         detail::mapForMorph(second, options.map, shapes[1]) &&
+         detail::runCore(name, options.morph, first.getNumberOfThreads(), work);
 }
 
 }  // namespace pcl

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <pcl/PCLHeader.h>
 #include <pcl/PolygonMesh.h>
 #include <pcl/surface/spherical_param_map.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
@@ -44,11 +43,10 @@ private:
  * results stay there
  * \param[out] output its cloud has points of type pcl::PointNormal, its header is that of the input
  * \param[in] options the defaults need no tuning
- * \return false after a failure, which is told by PCL_ERROR; the output has nothing but its header
- * then. No exception leaves the function, except one that a progress callback throws.
- * \note The triangles are even on the sphere, and less so on the surface, the more its map had to
- * distort areas (see spherical_param::SphereMap::distortion).
- * \ingroup surface
+ * \return false after a failure, which PCL_ERROR reports; the output has nothing but its header
+ * then. No exception leaves the function, except one that a progress callback throws. \note The
+ * triangles are even on the sphere, and less so on the surface, the more its map had to distort
+ * areas (see spherical_param::SphereMap::distortion). \ingroup surface
  */
 template <typename PointInT>
 bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,
@@ -57,33 +55,21 @@ bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction
 
 namespace detail {
 
-/** \brief Samples a mesh that is mapped to the sphere; clears the output first.
- * \return false after a failure, with an empty output */
-PCL_EXPORTS bool remesh(const spherical_param::Positions& points,
-                        const spherical_param::Triangles& triangles,
-                        const spherical_param::Positions& sphere,
-                        const SphericalParamRemeshOptions& options, pcl::PolygonMesh& output);
+/** \brief Samples a mesh that is mapped to the sphere.
+ * \return the new mesh, without a header */
+PCL_EXPORTS pcl::PolygonMesh remesh(const MappedMesh& mesh,
+                                    const SphericalParamRemeshOptions& options, int threads);
 
 }  // namespace detail
 
 template <typename PointInT>
 bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,
                           pcl::PolygonMesh& output, const SphericalParamRemeshOptions& options) {
-  output = pcl::PolygonMesh();
-  SphericalParamRemeshOptions with_threads;
-  const bool is_ready = detail::runCore("remeshSphericalParam", [&] {
-    with_threads = options;
-    if (reconstruction.getInputCloud())
-      output.header = reconstruction.getInputCloud()->header;
-  });
-  spherical_param::Positions points;
-  spherical_param::SphereMap map;
-  if (!is_ready || !computeSphericalParamMap(reconstruction, points, map, options.map))
-    return false;
-  if (with_threads.map.threads == 0)
-    with_threads.map.threads = static_cast<int>(reconstruction.getNumberOfThreads());
-  return detail::remesh(points, reconstruction.getResult().triangles, map.sphere, with_threads,
-                        output);
+  return detail::makeFromMap("remeshSphericalParam", reconstruction, options.map,
+                             options.map.threads, output,
+                             [&](const detail::MappedMesh& mesh, int threads) {
+                               return detail::remesh(mesh, options, threads);
+                             });
 }
 
 }  // namespace pcl

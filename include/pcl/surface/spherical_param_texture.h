@@ -1,6 +1,5 @@
 #pragma once
 
-#include <pcl/PCLHeader.h>
 #include <pcl/TextureMesh.h>
 #include <pcl/point_traits.h>
 #include <pcl/surface/spherical_param_map.h>
@@ -46,7 +45,7 @@ struct SphericalParamTextureOptions {
  * to the right and v up, in the order of the polygons.
  * \param[out] image the texture, row by row from the top
  * \param[in] options the defaults need no tuning
- * \return false after a failure, which is told by PCL_ERROR; the output has nothing but its header
+ * \return false after a failure, which PCL_ERROR reports; the output has nothing but its header
  * then, and the image is empty. No exception leaves the function, except one that a progress
  * callback throws.
  * \ingroup surface
@@ -58,15 +57,13 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
 
 namespace detail {
 
-/** \brief Gives a mesh that is mapped to the sphere a texture; clears the output first.
+/** \brief Gives a mesh that is mapped to the sphere a texture.
  * \param[in] colors 3 x v, or empty: a checkerboard
- * \return false after a failure, with an empty output */
-PCL_EXPORTS bool textureMesh(const spherical_param::Positions& points,
-                             const spherical_param::Triangles& triangles,
-                             const spherical_param::Positions& sphere,
-                             const spherical_param::Positions& colors,
-                             const SphericalParamTextureOptions& options, pcl::TextureMesh& output,
-                             spherical_param::TextureImage& image);
+ * \return the mesh, without a header */
+PCL_EXPORTS pcl::TextureMesh textureMesh(const MappedMesh& mesh,
+                                         const spherical_param::Positions& colors,
+                                         const SphericalParamTextureOptions& options, int threads,
+                                         spherical_param::TextureImage& image);
 
 /** \brief Red, green and blue of a point, whose type may name its field rgb or rgba. */
 template <typename PointT>
@@ -81,41 +78,35 @@ Eigen::Vector3d colorOf(const PointT& point) {
   return Eigen::Vector3d(packed >> 16 & 0xFF, packed >> 8 & 0xFF, packed & 0xFF);
 }
 
+/** \brief The colours of the vertices of the last mesh. \return 3 x v; empty for points without */
+template <typename PointInT>
+spherical_param::Positions colorsOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
+  spherical_param::Positions colors;
+  if constexpr (pcl::traits::has_color<PointInT>::value) {
+    const pcl::Indices& vertices = reconstruction.getVertexIndices();
+    const auto& cloud = *reconstruction.getInputCloud();
+    colors.resize(3, static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      colors.col(static_cast<Eigen::Index>(i)) =
+          colorOf(cloud[static_cast<std::size_t>(vertices[i])]);
+  }
+  return colors;
+}
+
 }  // namespace detail
 
 template <typename PointInT>
 bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,
                            pcl::TextureMesh& output, spherical_param::TextureImage& image,
                            const SphericalParamTextureOptions& options) {
-  output = pcl::TextureMesh();
   image = spherical_param::TextureImage();
-  SphericalParamTextureOptions with_threads;
-  const bool is_ready = detail::runCore("textureSphericalParam", [&] {
-    with_threads = options;
-    if (reconstruction.getInputCloud())
-      output.header = reconstruction.getInputCloud()->header;
-  });
-  spherical_param::Positions points;
-  spherical_param::SphereMap map;
-  if (!is_ready || !computeSphericalParamMap(reconstruction, points, map, options.map))
-    return false;
-  spherical_param::Positions colors;
-  const bool has_colors = detail::runCore("textureSphericalParam", [&] {
-    if constexpr (pcl::traits::has_color<PointInT>::value) {
-      if (options.checkerboard)
-        return;
-      const pcl::Indices& vertices = reconstruction.getVertexIndices();
-      const auto& cloud = *reconstruction.getInputCloud();
-      colors.resize(3, static_cast<Eigen::Index>(vertices.size()));
-      for (std::size_t i = 0; i < vertices.size(); ++i)
-        colors.col(static_cast<Eigen::Index>(i)) =
-            detail::colorOf(cloud[static_cast<std::size_t>(vertices[i])]);
-    }
-  });
-  if (with_threads.bake.threads == 0)
-    with_threads.bake.threads = static_cast<int>(reconstruction.getNumberOfThreads());
-  return has_colors && detail::textureMesh(points, reconstruction.getResult().triangles, map.sphere,
-                                           colors, with_threads, output, image);
+  return detail::makeFromMap(
+      "textureSphericalParam", reconstruction, options.map, options.bake.threads, output,
+      [&](const detail::MappedMesh& mesh, int threads) {
+        const spherical_param::Positions colors =
+            options.checkerboard ? spherical_param::Positions() : detail::colorsOf(reconstruction);
+        return detail::textureMesh(mesh, colors, options, threads, image);
+      });
 }
 
 }  // namespace pcl

@@ -2,20 +2,18 @@
 
 #include <pcl/console/print.h>
 #include <pcl/conversions.h>
-#include <pcl/search/organized.h>
+#include <pcl/surface/impl/spherical_param_run_core.hpp>
+#include <pcl/surface/impl/spherical_param_user_search.hpp>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
 #include "spherical_param/errors.h"
 
-#include <Eigen/Geometry>
-
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <exception>
 #include <functional>
-#include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,18 +21,12 @@
 namespace pcl {
 namespace detail {
 
-/** \brief Calls the work of a reconstruction, which may throw anything.
- * \param[out] callback_error what the progress callback threw, if it did
- * \return why it failed, with a remedy; empty after a success */
-PCL_EXPORTS std::string failureOf(const std::function<void()>& work,
-                                  std::exception_ptr& callback_error);
-
 /** \brief Throws InvalidInput for a cloud without points, or with a width and a height of another
  * number of points. */
 PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t height);
 
 /** \brief Throws InvalidInput for an entry of the indices that is out of range. */
-[[noreturn]] PCL_EXPORTS void refuseIndex(std::size_t entry, pcl::index_t index,
+[[noreturn]] PCL_EXPORTS void rejectIndex(std::size_t entry, pcl::index_t index,
                                           std::size_t points);
 
 /** \brief Makes a cloud from the positions of vertices, 3 x v; NaN where a point is no
@@ -49,116 +41,14 @@ cloudOfVertices(const spherical_param::Positions& vertices,
 PCL_EXPORTS std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangles,
                                                   const pcl::Indices& point_of_vertex);
 
-/** \brief Which numbers a search object returns that was filled with a subset of a cloud: PCL 1.13
- * has both, e.g. KdTree the one and FlannSearch the other. */
-enum class SearchIndexSpace { Cloud, Subset };
-
-/** \brief Finds all neighbours of a set of points; it is searched once more for some of them. */
-struct NeighborSource {
-  std::size_t size = 0;  ///< number of points that can be found
-  /** \brief Writes `count` (at most size) neighbours of a point to `neighbors`, the point itself
-   * among them, all as positions in the indices used. The two vectors are scratch memory. */
-  std::function<void(spherical_param::Index point, std::size_t count, pcl::Indices& indices,
-                     std::vector<float>& distances, spherical_param::Index* neighbors)>
-      query;
-};
-
 /** \brief Meshes points with the core.
  * \param[in] options their progress callback may throw
  * \param[in] ignored_points points of the cloud that are not finite, for messages
- * \param[in] use_search_method passes the distinct points to the user's search object; its argument
- * is the first input point of each; empty: a k-d tree of our own is used */
-PCL_EXPORTS spherical_param::Result
-reconstructPoints(const spherical_param::Positions& points, spherical_param::Options options,
-                  std::size_t ignored_points,
-                  const std::function<NeighborSource(const std::vector<spherical_param::Index>&)>&
-                      use_search_method);
-
-/** \brief FLANN's k-d tree of some points, which answers many queries at a time. That of
- * pcl::search::KdTree is the same, but opens a parallel region for each query, which takes as long
- * as the query. Copies share the tree. */
-class PCL_EXPORTS KdTreeSearch {
-public:
-  /** \param[in] points distinct, of an extent of about 1: squared distances in float underflow for
-   * small clouds and overflow for large ones. Those that are near should be near in memory. */
-  explicit KdTreeSearch(const spherical_param::Positions& points);
-
-  /** \brief Finds the nearest neighbours of each point, besides itself.
-   * \param[in] threads OpenMP threads; 0: as many as OpenMP would use
-   * \param[in] report called from this thread with the share that is done */
-  spherical_param::NeighborLists findNeighbors(const std::vector<spherical_param::Index>& points,
-                                               int neighbors, int threads,
-                                               const std::function<void(double)>& report) const;
-
-private:
-  struct Tree;
-  std::shared_ptr<const Tree> tree_;
-};
-
-/** \brief Finds out which numbers `search` returns for a subset. Points are told apart by asking
- * for the one neighbour of a point of the subset, which is the point itself. */
-template <typename PointInT>
-SearchIndexSpace findSearchIndexSpace(const pcl::search::Search<PointInT>& search,
-                                      const pcl::PointCloud<PointInT>& cloud,
-                                      const pcl::Indices& subset) {
-  // An approximate search may miss a few, but not a thousand times.
-  int probes_left = 1000;
-  pcl::Indices found;
-  std::vector<float> distances;
-  for (std::size_t i = 0; i < subset.size() && probes_left > 0; ++i) {
-    const auto position = static_cast<pcl::index_t>(i);
-    if (subset[i] == position)
-      continue;
-    --probes_left;
-    if (search.nearestKSearch(cloud[static_cast<std::size_t>(subset[i])], 1, found, distances) < 1)
-      continue;
-    if (found.at(0) == subset[i])
-      return SearchIndexSpace::Cloud;
-    if (found.at(0) == position)
-      return SearchIndexSpace::Subset;
-  }
-  throw spherical_param::ComputeError(
-      "the search object does not find the points it was given; use a pcl::search::KdTree");
-}
-
-/** \brief Gives access to the camera model of an OrganizedNeighbor. Its own projectPoint() needs
- * members that a custom point type need not have. */
-template <typename PointInT>
-struct OrganizedCamera : public pcl::search::OrganizedNeighbor<PointInT> {
-  /** \brief Get the homogeneous pixel coordinates of a point. */
-  static Eigen::Vector3f project(const pcl::search::OrganizedNeighbor<PointInT>& search,
-                                 const Eigen::Vector3f& point) {
-    return search.*(&OrganizedCamera::KR_) * point +
-           (search.*(&OrganizedCamera::projection_matrix_)).col(3);
-  }
-};
-
-/** \brief Refuses a camera model of an OrganizedNeighbor that does not hold for the cloud, with
- * which it would find few or wrong neighbours, or not return.
- * \param[in] points indices into the cloud */
-template <typename PointInT>
-void checkCameraModel(const pcl::search::OrganizedNeighbor<PointInT>& search,
-                      const pcl::PointCloud<PointInT>& cloud, const pcl::Indices& points) {
-  // The search starts at the pixel that a point is projected to and looks at larger and larger
-  // squares, hence a small error does no harm.
-  const float tolerance = 0.05F * static_cast<float>(std::max(cloud.width, cloud.height));
-  for (const pcl::index_t index : points) {
-    const PointInT& point = cloud[static_cast<std::size_t>(index)];
-    const Eigen::Vector2f pixel =
-        OrganizedCamera<PointInT>::project(search, Eigen::Vector3f(static_cast<float>(point.x),
-                                                                   static_cast<float>(point.y),
-                                                                   static_cast<float>(point.z)))
-            .hnormalized();
-    const auto row = static_cast<pcl::uindex_t>(index) / cloud.width;
-    const auto column = static_cast<pcl::uindex_t>(index) % cloud.width;
-    // Written so that NaN fails.
-    if (!(std::abs(pixel.x() - static_cast<float>(column)) <= tolerance &&
-          std::abs(pixel.y() - static_cast<float>(row)) <= tolerance))
-      throw spherical_param::InvalidInput(
-          "the search object is an OrganizedNeighbor, but the cloud is not the depth image of a "
-          "pinhole camera; use a pcl::search::KdTree");
-  }
-}
+ * \param[in] search finds the neighbours; null: the core does */
+PCL_EXPORTS spherical_param::Result reconstructPoints(const spherical_param::Positions& points,
+                                                      spherical_param::Options options,
+                                                      std::size_t ignored_points,
+                                                      const UserSearch* search);
 
 }  // namespace detail
 
@@ -228,14 +118,12 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::meshPoints() {
-  std::function<detail::NeighborSource(const std::vector<spherical_param::Index>&)>
-      use_search_method;
-  if (tree_)
-    use_search_method = [this](const std::vector<spherical_param::Index>& point_of_distinct) {
-      return useSearchMethod(point_of_distinct);
-    };
   const spherical_param::Positions points = collectPoints();
-  result_ = detail::reconstructPoints(points, options_, ignored_points_, use_search_method);
+  std::optional<detail::UserSearch> search;
+  if (tree_ && points.cols() > 0)
+    search = detail::useSearch<PointInT>(*tree_, input_, used_indices_, points);
+  result_ =
+      detail::reconstructPoints(points, options_, ignored_points_, search ? &*search : nullptr);
 
   vertex_indices_.reserve(result_.input_of_vertex.size());
   for (const spherical_param::Index point : result_.input_of_vertex)
@@ -270,17 +158,12 @@ void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& wo
   try {
     clear_output();
   } catch (const std::bad_alloc&) {
-    // There is a failure to be told already.
+    // Another failure is reported already.
   }
   error_message_ = std::move(failure);
   if (callback_error)
     std::rethrow_exception(callback_error);
-  try {
-    PCL_ERROR("[pcl::%s::reconstruct] %s\n", getClassName().c_str(), error_message_.c_str());
-  } catch (const std::bad_alloc&) {
-    // Not even for the name of the class.
-    PCL_ERROR("[pcl::SphericalParamReconstruction::reconstruct] %s\n", error_message_.c_str());
-  }
+  PCL_ERROR("[pcl::SphericalParamReconstruction::reconstruct] %s\n", error_message_.c_str());
 }
 
 template <typename PointInT>
@@ -311,7 +194,7 @@ spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints
   for (std::size_t i = 0; i < indices_->size(); ++i) {
     const pcl::index_t index = (*indices_)[i];
     if (index < 0 || static_cast<std::size_t>(index) >= input_->size())
-      detail::refuseIndex(i, index, input_->size());
+      detail::rejectIndex(i, index, input_->size());
     const auto position = static_cast<std::size_t>(index);
     if (seen[position])
       continue;
@@ -331,70 +214,6 @@ spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints
         static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
   }
   return points;
-}
-
-template <typename PointInT>
-detail::NeighborSource SphericalParamReconstruction<PointInT>::useSearchMethod(
-    const std::vector<spherical_param::Index>& point_of_distinct) const {
-  const auto* organized =
-      dynamic_cast<const pcl::search::OrganizedNeighbor<PointInT>*>(tree_.get());
-  if (organized && (input_->height <= 1 || input_->width <= 1))
-    throw spherical_param::InvalidInput(
-        "the search object is an OrganizedNeighbor, but the cloud is not organized; use a "
-        "pcl::search::KdTree");
-
-  std::vector<pcl::index_t> cloud_of_distinct(point_of_distinct.size());
-  std::vector<spherical_param::Index> distinct_of_cloud(input_->size(), -1);
-  for (std::size_t i = 0; i < point_of_distinct.size(); ++i) {
-    cloud_of_distinct[i] = used_indices_[static_cast<std::size_t>(point_of_distinct[i])];
-    distinct_of_cloud[static_cast<std::size_t>(cloud_of_distinct[i])] =
-        static_cast<spherical_param::Index>(i);
-  }
-  // The search is given the points in the order of the indices used.
-  std::vector<spherical_param::Index> points = point_of_distinct;
-  std::sort(points.begin(), points.end());
-  pcl::IndicesPtr subset(new pcl::Indices);
-  subset->reserve(points.size());
-  for (const spherical_param::Index point : points)
-    subset->push_back(used_indices_[static_cast<std::size_t>(point)]);
-  tree_->setInputCloud(input_, subset);
-  if (organized)
-    detail::checkCameraModel(*organized, *input_, *subset);
-  const bool whole_in_order =
-      std::is_sorted(subset->begin(), subset->end()) && subset->size() == input_->size();
-  std::vector<spherical_param::Index> distinct_of_answer;
-  if (whole_in_order ||
-      detail::findSearchIndexSpace(*tree_, *input_, *subset) == detail::SearchIndexSpace::Cloud) {
-    distinct_of_answer = std::move(distinct_of_cloud);
-  } else {
-    distinct_of_answer.reserve(subset->size());
-    for (const pcl::index_t index : *subset)
-      distinct_of_answer.push_back(distinct_of_cloud[static_cast<std::size_t>(index)]);
-  }
-
-  detail::NeighborSource source;
-  source.size = point_of_distinct.size();
-  source.query = [this, cloud_of_distinct = std::move(cloud_of_distinct),
-                  distinct_of_answer = std::move(distinct_of_answer)](
-                     spherical_param::Index point, std::size_t count, pcl::Indices& indices,
-                     std::vector<float>& distances, spherical_param::Index* neighbors) {
-    const pcl::index_t index = cloud_of_distinct[static_cast<std::size_t>(point)];
-    const int answers = tree_->nearestKSearch((*input_)[static_cast<std::size_t>(index)],
-                                              static_cast<int>(count), indices, distances);
-    const std::size_t found =
-        std::min({static_cast<std::size_t>(std::max(answers, 0)), indices.size(), count});
-    for (std::size_t i = 0; i < found; ++i) {
-      const auto answer = static_cast<std::size_t>(indices[i]);
-      if (answer >= distinct_of_answer.size() || distinct_of_answer[answer] < 0)
-        throw spherical_param::ComputeError(
-            "the search object returned index " + std::to_string(indices[i]) +
-            ", which is not among the points it was given; use a pcl::search::KdTree");
-      neighbors[i] = distinct_of_answer[answer];
-    }
-    // A search that finds fewer is made up for by the point itself, which the core ignores.
-    std::fill(neighbors + found, neighbors + count, point);
-  };
-  return source;
 }
 
 }  // namespace pcl

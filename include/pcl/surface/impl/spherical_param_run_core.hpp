@@ -1,0 +1,43 @@
+#pragma once
+
+#include <pcl/pcl_exports.h>
+
+#include "spherical_param/execution.h"
+
+#include <exception>
+#include <functional>
+#include <string>
+
+namespace pcl {
+namespace detail {
+
+/** \brief A progress callback for the core: what that of the user throws passes the core and
+ * reaches the user, instead of becoming an error message. Needs failureOf() around the core. */
+PCL_EXPORTS std::function<bool(const spherical_param::Progress&)>
+guardProgress(const std::function<bool(const spherical_param::Progress&)>& progress);
+
+/** \brief Calls work that may throw anything.
+ * \param[out] callback_error what a progress callback of guardProgress() threw, if it did
+ * \return why the work failed, with a remedy; empty after a success */
+PCL_EXPORTS std::string failureOf(const std::function<void()>& work,
+                                  std::exception_ptr& callback_error);
+
+/** \brief Calls work that uses the core, and reports a failure by PCL_ERROR. Throws nothing except
+ * what the user's progress callback throws.
+ * \param[in] function the name that the message begins with
+ * \param[in] execution of the user
+ * \param[in] threads used if `execution` gives none
+ * \param[in] work called with the execution that it should pass to the core
+ * \return false after a failure */
+PCL_EXPORTS bool runCore(const char* function, const spherical_param::Execution& execution,
+                         unsigned int threads,
+                         const std::function<void(const spherical_param::Execution&)>& work);
+template <typename Work>
+bool runCore(const char* function, const spherical_param::Execution& execution,
+             unsigned int threads, const Work& work) {
+  return runCore(function, execution, threads,
+                 std::function<void(const spherical_param::Execution&)>(std::cref(work)));
+}
+
+}  // namespace detail
+}  // namespace pcl
