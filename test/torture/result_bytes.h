@@ -26,8 +26,9 @@ inline std::string bytesOf(const spherical_param::Result& result) {
   add(result.vertex_residuals.data(), result.vertex_residuals.size());
   add(result.self_intersections.data(), result.self_intersections.size());
   add(result.embedding.residuals.data(), result.embedding.residuals.size());
-  const std::vector<double> numbers{result.volume, result.area, result.embedding.energy,
-                                    result.optimization.energy, result.smoothing.volume_after};
+  const std::vector<double> numbers{result.measures.volume, result.measures.area,
+                                    result.embedding.energy, result.optimization.energy,
+                                    result.smoothing.volume_after};
   add(numbers.data(), numbers.size());
   for (const std::string& warning : result.warnings)
     add(warning.data(), warning.size());

@@ -5,21 +5,19 @@
 // A name has the stage, the number of points and the number of threads.
 
 #include "scan_shapes.h"
-#include "spherical_param/graph_hierarchy.h"
+#include "spherical_param/embedding.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/neighbor_graph.h"
+#include "spherical_param/neighbor_search.h"
 #include "spherical_param/outliers.h"
 #include "spherical_param/point_set.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/smoothing.h"
-#include "spherical_param/sphere_embedding.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/surface_diagnosis.h"
-
-#include <pcl/surface/impl/spherical_param_reconstruction.hpp>
 
 #include <benchmark/benchmark.h>
 
@@ -38,9 +36,18 @@ namespace {
 
 using State = ::benchmark::State;
 
-/// Of each point: for the tangent Delaunay graph, the default, and for the paper's graph.
-constexpr int kDelaunayNeighbors = 12;
-constexpr int kPaperNeighbors = 25;
+/// The graph of the paper.
+GraphOptions ofPaper() {
+  GraphOptions options;
+  options.method = GraphMethod::NearestNeighbors;
+  return options;
+}
+
+Execution withThreads(int threads) {
+  Execution execution;
+  execution.threads = threads;
+  return execution;
+}
 
 Positions scanOf(Index count) {
   tools::ScanOptions options;
@@ -63,36 +70,29 @@ public:
   }
 
   explicit Data(Index count)
-      : scan(scanOf(count)), points(scan(Eigen::all, spatialOrder(scan))), tree(points),
+      : scan(scanOf(count)), points(scan(Eigen::all, spatialOrder(scan))),
+        search(makeNeighborSearch(points)),
+        search_alone(makeNeighborSearch(points, withThreads(1))),
         all(static_cast<std::size_t>(count)) {
     std::iota(all.begin(), all.end(), Index{0});
-    lists = search(0)(all, kDelaunayNeighbors);
-    long_lists = search(0)(all, kPaperNeighbors);
-    LocalDelaunayOptions options;
-    options.search = search(0);
-    graph = buildLocalDelaunayGraph(points, lists, options);
-    hierarchy = buildGraphHierarchy(graph.graph);
-    sphere = embedMultilevel(graph.graph, hierarchy).directions;
+    lists = search(all, neighborsToSearch({}));
+    long_lists = search(all, neighborsToSearch(ofPaper()));
+    graph = buildNeighborGraph(points, lists, {}, search);
+    sphere = embed(graph.graph, points).directions;
     sphere_triangles = triangulateSphere(sphere).triangles;
     if (signedVolume(points, sphere_triangles) < 0.0)
       flipOrientation(sphere_triangles);
-    triangles = optimizeMesh(points, sphere_triangles, graph.graph, {}).triangles;
-  }
-
-  NeighborSearch search(int threads) const {
-    return [this, threads](const std::vector<Index>& some, int neighbors) {
-      return tree.findNeighbors(some, neighbors, threads, [](double) {});
-    };
+    triangles = optimizeMesh(points, sphere_triangles, graph.graph).triangles;
   }
 
   Positions scan;    ///< 3 x n, in the order of the scan
   Positions points;  ///< 3 x n, along a space-filling curve: reconstruct() calls the stages with it
-  pcl::detail::KdTreeSearch tree;
-  std::vector<Index> all;  ///< 0 ... n - 1
-  NeighborLists lists;
-  NeighborLists long_lists;
+  NeighborSearch search;        ///< with all threads
+  NeighborSearch search_alone;  ///< with one thread
+  std::vector<Index> all;       ///< 0 ... n - 1
+  NeighborLists lists;          ///< for the default graph
+  NeighborLists long_lists;     ///< for the graph of the paper
   NeighborGraph graph;
-  GraphHierarchy hierarchy;
   Positions sphere;            ///< 3 x n
   Triangles sphere_triangles;  ///< 3 x (2n - 4), of `sphere`, outward on `points`
   Triangles triangles;         ///< 3 x (2n - 4), the same, optimised
@@ -101,58 +101,47 @@ public:
 /// What a benchmark calls, with data and a number of threads.
 using Stage = void (*)(const Data& data, int threads);
 
-template <typename Options>
-Options withThreads(int threads) {
-  Options options;
-  options.threads = threads;
-  return options;
-}
-
 template <typename Value>
 void keep(const Value& value) {
   ::benchmark::DoNotOptimize(&value);
 }
 
-void buildTree(const Data& data, int) {
-  keep(pcl::detail::KdTreeSearch(data.points));
+void embedBy(const EmbeddingOptions& options, const Data& data, int threads) {
+  keep(embed(data.graph.graph, data.points, options, 1, withThreads(threads)));
 }
 
-void searchNeighbors(const Data& data, int threads) {
-  keep(data.search(threads)(data.all, kDelaunayNeighbors));
-}
-
-void buildDelaunayGraph(const Data& data, int threads) {
-  auto options = withThreads<LocalDelaunayOptions>(threads);
-  options.search = data.search(threads);
-  keep(buildLocalDelaunayGraph(data.points, data.lists, options));
+void embedConverged(const Data& data, int threads) {
+  EmbeddingOptions options;
+  options.tolerance = 1e-8;
+  embedBy(options, data, threads);
 }
 
 void embedIteratively(const Data& data, int threads) {
   // As many iterations, however they converge.
-  auto options = withThreads<EmbeddingOptions>(threads);
+  EmbeddingOptions options;
+  options.method = EmbeddingMethod::Iterative;
   options.max_iterations = 50;
   options.tolerance = 0.0;
   options.stagnation_window = 0;
-  keep(embedOnSphere(data.graph.graph, data.points, options));
+  embedBy(options, data, threads);
 }
 
-void embed(const Data& data, int threads) {
-  keep(embedMultilevel(data.graph.graph, data.hierarchy, withThreads<MultilevelOptions>(threads)));
+void triangulateByQhull(const Data& data, int) {
+  TriangulationOptions options;
+  options.method = TriangulationMethod::Qhull;
+  keep(triangulateSphere(data.sphere, options));
 }
 
-void embedConverged(const Data& data, int threads) {
-  auto options = withThreads<MultilevelOptions>(threads);
-  options.tolerance = 1e-8;
-  keep(embedMultilevel(data.graph.graph, data.hierarchy, options));
-}
-
-void optimize(const Data& data, int threads) {
-  keep(optimizeMesh(data.points, data.sphere_triangles, data.graph.graph,
-                    withThreads<OptimizationOptions>(threads)));
+void smooth(const Data& data, int threads) {
+  SmoothingOptions options;
+  options.steps = 5;
+  keep(smoothSurface(data.points, data.triangles, options, threads));
 }
 
 void reconstructAll(const Data& data, int threads) {
-  keep(reconstruct(data.points, data.lists, withThreads<Options>(threads), data.search(threads)));
+  Options options;
+  options.threads = threads;
+  keep(reconstruct(data.scan, options));
 }
 
 struct Entry {
@@ -165,36 +154,38 @@ struct Entry {
 const std::vector<Entry> kEntries = {
     {"distinct points", false, [](const Data& d, int) { keep(findDistinctPoints(d.scan)); }},
     {"spatial order", false, [](const Data& d, int) { keep(spatialOrder(d.scan)); }},
-    {"k-d tree", false, buildTree},
-    {"neighbours", true, searchNeighbors},
-    {"outliers", true,
+    {"k-d tree", false, [](const Data& d, int) { keep(makeNeighborSearch(d.points)); }},
+    {"tree and neighbours", true,
      [](const Data& d, int n) {
-       keep(findOutliers(d.points, d.long_lists, withThreads<OutlierOptions>(n)));
+       keep(findNearestNeighbors(d.points, neighborsToSearch({}), withThreads(n)));
      }},
-    {"tangent Delaunay graph", true, buildDelaunayGraph},
+    {"outliers", true,
+     [](const Data& d, int n) { keep(findOutliers(d.points, d.long_lists, {}, withThreads(n))); }},
+    {"tangent Delaunay graph", true,
+     [](const Data& d, int n) {
+       keep(buildNeighborGraph(d.points, d.lists, {}, n == 1 ? d.search_alone : d.search,
+                               withThreads(n)));
+     }},
     {"nearest-neighbour graph", false,
-     [](const Data& d, int) { keep(buildNeighborGraph(d.points, d.long_lists, {})); }},
-    {"graph hierarchy", false,
-     [](const Data& d, int) { keep(buildGraphHierarchy(d.graph.graph)); }},
-    {"embedding, multilevel", true, embed},
+     [](const Data& d, int) { keep(buildNeighborGraph(d.points, d.long_lists, ofPaper())); }},
+    {"embedding, multilevel", true, [](const Data& d, int n) { embedBy({}, d, n); }},
     {"embedding, converged", true, embedConverged},
     {"embedding, 50 iterations", true, embedIteratively},
     {"triangulation, incremental", false,
      [](const Data& d, int) { keep(triangulateSphere(d.sphere)); }},
-    {"triangulation, qhull", false,
-     [](const Data& d, int) { keep(triangulateSphere(d.sphere, TriangulationMethod::Qhull)); }},
-    {"optimisation", true, optimize},
+    {"triangulation, qhull", false, triangulateByQhull},
+    {"optimisation", true,
+     [](const Data& d, int n) {
+       keep(optimizeMesh(d.points, d.sphere_triangles, d.graph.graph, {}, 1, withThreads(n)));
+     }},
     {"self-intersections", true,
      [](const Data& d, int n) {
-       keep(findSelfIntersections(d.points, d.triangles, withThreads<SelfIntersectionOptions>(n)));
+       keep(findSelfIntersections(d.points, d.triangles, withThreads(n)));
      }},
-    {"smoothing", true,
-     [](const Data& d, int n) {
-       keep(smoothSurface(d.points, d.triangles, withThreads<SmoothingOptions>(n)));
-     }},
+    {"smoothing", true, smooth},
     {"diagnosis", false,
      [](const Data& d, int) {
-       keep(diagnoseSurface(d.points, d.triangles, d.graph.graph, d.graph.bridges));
+       keep(diagnoseSurface(d.points, d.triangles, d.graph.graph, d.graph.report.bridges));
      }},
     {"measures", false, [](const Data& d, int) { keep(measureMesh(d.points, d.triangles)); }},
     {"topology", false, [](const Data& d, int) { keep(checkTopology(d.triangles, d.all.size())); }},

@@ -9,7 +9,7 @@ from .programs import ITERATIVE, PAPER, Failure, in_turn, median_seconds, stage_
 from .report import Figure, Section, Table
 
 WEIGHTS = ("uniform", "inverse", "adaptive")
-RAW = ("-optimize", "none", "-attempts", "1")
+RAW = ("-optimization", "none", "-retries", "0")
 CONVERGED = ("-tolerance", "1e-12", *RAW)
 PAPER_SECONDS = {"tweety": 125, "max": 424, "igea": 843}
 
@@ -120,7 +120,7 @@ def figures6_and_7(context):
 
     def iteration(label, weights, k):
         return history(f"iteration, {label}", *ITERATIVE, "-weights", weights, "-k", k,
-                       "-iterations", count)  # fmt: skip
+                       "-max_iterations", count)  # fmt: skip
 
     default = history("default graph and weights", *CONVERGED, ours=True)
     uniform = history("Newton, k = 25, uniform (with barrier)", *knn, "-weights", "uniform",
@@ -199,7 +199,7 @@ def figure9(context):
     for weights in ("uniform", "adaptive"):
         meshes, spheres = [], []
         for index, state in enumerate(states):
-            options = RAW if state == states[-1] else (*PAPER, "-iterations", state.split()[0])
+            options = RAW if state == states[-1] else (*PAPER, "-max_iterations", state.split()[0])
             mesh, sphere, row = _measured(context, cloud, f"figure9_{index}", *options,
                                           "-weights", weights)  # fmt: skip
             table.rows.append({"method": f"{weights}, {state}", **row})
@@ -230,7 +230,7 @@ def figure10(context):
         cloud = context.programs.scan(name, noise=noise) if noise else truth
         for method, options in (("paper's iteration", PAPER), ("default", ())):
             row = {"noise": noise, "method": method}
-            for prefix, smoothing in (("", ()), ("smooth_", ("-smooth", "5"))):
+            for prefix, smoothing in (("", ()), ("smooth_", ("-smoothing", "5"))):
                 mesh = context.work / f"figure10_{noise}_{method[:5]}_{prefix}.ply"
                 context.programs.reconstruct(cloud, mesh, *options, *smoothing)
                 files[noise, method, prefix] = mesh

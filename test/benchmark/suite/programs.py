@@ -9,9 +9,9 @@ import subprocess
 import time
 
 # The paper's own method, with all of its iterations.
-ITERATIVE = ("-graph", "knn", "-solver", "iterative", "-optimize", "none", "-attempts", "1",
-             "-stagnation", "0", "-tolerance", "0")  # fmt: skip
-PAPER = (*ITERATIVE, "-hull", "qhull")
+ITERATIVE = ("-graph", "knn", "-embedding", "iterative", "-optimization", "none", "-retries", "0",
+             "-stagnation_window", "0", "-tolerance", "0")  # fmt: skip
+PAPER = (*ITERATIVE, "-triangulation", "qhull")
 
 
 class Failure(Exception):

@@ -3,6 +3,7 @@
 #include "exact.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>
@@ -98,7 +99,7 @@ private:
   std::size_t at_ = 0;
 };
 
-/// Some units in the last place further.
+/// Moved by some units in the last place.
 inline double stepped(double x, int steps) {
   for (int i = 0; i < std::abs(steps); ++i)
     x = std::nextafter(x, steps > 0 ? std::numeric_limits<double>::infinity()
@@ -280,7 +281,7 @@ public:
 
   bool listens() const { return listens_; }
   void listen() { listens_ = true; }
-  /// So that what was asked for in earnest need not be waited for.
+  /// Ends work that would take too long.
   void cancelAt(std::size_t call) {
     listens_ = true;
     if (way_ == Way::Go || call < at_) {
@@ -288,14 +289,16 @@ public:
       at_ = call;
     }
   }
-  /// The callback. \param share that is done; what is no share says nothing
-  bool operator()(double share) {
+  /// The callback.
+  bool operator()(const spherical_param::Progress& progress) {
     if (ended_)
       finding("the progress callback is called again after it ended the work");
     if (std::this_thread::get_id() != caller_)
       finding("the progress callback is called from another thread");
-    if (!(share >= 0.0 && share <= 1.0))
-      finding("a share of " + std::to_string(share));
+    if (progress.stage == nullptr || *progress.stage == '\0')
+      finding("a stage without a name");
+    if (!(progress.fraction >= 0.0 && progress.fraction <= 1.0))
+      finding("a fraction of " + std::to_string(progress.fraction));
     if (calls_++ < at_ || way_ == Way::Go)
       return true;
     ended_ = true;
@@ -323,7 +326,7 @@ struct Ending {
   std::string message;
 };
 
-/// Calls, and lets nothing out but what is documented.
+/// Calls, and catches the documented exceptions; any other is a finding.
 template <typename Call>
 Ending endingOf(const Call& call) {
   try {
@@ -342,14 +345,13 @@ Ending endingOf(const Call& call) {
   }
 }
 
-/// Checks that a callback's wish came true, and no other call ended so. \return whether it ended
-/// the work
+/// Checks that the work ended as the callback asked. \return whether the callback ended the work
 inline bool wasEndedBy(const Watch& watch, const Ending& ending) {
   const bool cancelled = ending.kind == Ending::Kind::Cancelled;
   const bool thrown = ending.kind == Ending::Kind::CallersFault;
   if (!watch.ended()) {
     if (cancelled)
-      finding("Cancelled, but nobody asked for it");
+      finding("Cancelled without a request");
     return false;
   }
   if (watch.way() == Watch::Way::Cancel ? !cancelled : !thrown)

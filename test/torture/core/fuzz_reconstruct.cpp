@@ -1,14 +1,14 @@
-// reconstruct() on whatever bytes say: points, neighbour lists or a search, options, callbacks.
+// reconstruct() with everything made of bytes: points, neighbours, options, callbacks.
 
 #include "fuzz_input.h"
 #include "spherical_param/reconstruct.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -20,7 +20,7 @@ using fuzz::Ending;
 using fuzz::finding;
 using fuzz::Watch;
 
-/// Work that nobody would wait for is cancelled after so many calls of the callback.
+/// Calls of the callback after which work that takes too long is cancelled.
 constexpr std::size_t kPatience = 2000;
 constexpr int kManyIterations = 3000;
 
@@ -32,40 +32,39 @@ Enum enumFrom(Bytes& bytes, int count) {
 
 Options optionsFrom(Bytes& bytes) {
   Options options;
-  options.graph = enumFrom<GraphMethod>(bytes, 2);
-  options.solver = enumFrom<EmbeddingMethod>(bytes, 2);
-  options.hull = enumFrom<TriangulationMethod>(bytes, 2);
-  options.optimization = enumFrom<OptimizationMethod>(bytes, 3);
-  options.weights = enumFrom<EdgeWeights>(bytes, 3);
-  if (options.solver != EmbeddingMethod::Multilevel)
-    options.weights = static_cast<EdgeWeights>(2 - static_cast<int>(options.weights) % 3);
-  // One byte says which options are not the default, one bit each.
+  options.graph.method = enumFrom<GraphMethod>(bytes, 2);
+  options.embedding.method = enumFrom<EmbeddingMethod>(bytes, 2);
+  options.triangulation.method = enumFrom<TriangulationMethod>(bytes, 2);
+  options.optimization.method = enumFrom<OptimizationMethod>(bytes, 3);
+  options.embedding.weights = enumFrom<EdgeWeights>(bytes, 3);
+  // Each bit stands for an option that is not the default.
   const auto which = bytes.raw<std::uint16_t>();
   const auto is_changed = [&](unsigned bit) { return ((which >> bit) & 1U) != 0; };
   if (is_changed(0))
-    options.k = bytes.integer();
+    options.graph.k = bytes.integer();
+  EmbeddingOptions& embedding = options.embedding;
   if (is_changed(1))
-    options.exponent = bytes.real();
+    embedding.exponent = bytes.real();
   if (is_changed(2))
-    options.lambda = bytes.real();
+    embedding.damping = bytes.real();
   if (is_changed(3))
-    options.tolerance = bytes.real();
+    embedding.tolerance = bytes.real();
   if (is_changed(4))
-    options.max_iterations = bytes.integer();
+    embedding.max_iterations = bytes.integer();
   if (is_changed(5))
-    options.stagnation_window = bytes.integer();
+    embedding.stagnation_window = bytes.integer();
   if (is_changed(6))
-    options.starts = bytes.integer();
+    embedding.starts = bytes.integer();
   if (is_changed(7))
     options.seed = bytes.raw<std::uint32_t>();
   if (is_changed(8))
-    options.attempts = bytes.integer();
+    options.retries = bytes.integer();
   if (is_changed(9))
-    options.smoothing_steps = bytes.integer();
+    options.smoothing.steps = bytes.integer();
   if (is_changed(10))
-    options.history.vertices = bytes.integer();
+    embedding.history.vertices = bytes.integer();
   if (is_changed(11))
-    options.history.frames = bytes.integer();
+    embedding.history.frames = bytes.integer();
   if (is_changed(12))
     options.threads = bytes.integer();
   options.details = is_changed(13);
@@ -77,21 +76,29 @@ bool isOneOf(Enum value, int count) {
   return static_cast<int>(value) >= 0 && static_cast<int>(value) < count;
 }
 
-/// Whether an option is out of range, as reconstruct.h says it.
+/// Whether an option is out of range, according to the headers.
 bool areWrong(const Options& o) {
-  const bool is_paper = o.solver == EmbeddingMethod::Iterative;
-  return !(isOneOf(o.graph, 2) && isOneOf(o.solver, 2) && isOneOf(o.hull, 2) &&
-           isOneOf(o.optimization, 3) && isOneOf(o.weights, 3) && (!o.k || *o.k >= 3) &&
-           o.exponent > 2.0 && o.exponent <= 16.0 && (!is_paper || o.exponent == 3.0) &&
-           o.lambda > 0.0 && o.lambda <= 1.0 && (!o.tolerance || *o.tolerance >= 0.0) &&
-           o.max_iterations >= 0 && (o.stagnation_window == 0 || o.stagnation_window >= 2) &&
-           o.starts >= 1 && o.starts <= 100 && o.attempts >= 1 && o.attempts <= 100 &&
-           o.smoothing_steps >= 0 && o.smoothing_steps <= 10000 && o.history.vertices >= 0 &&
-           o.history.vertices <= (1 << 24) && o.history.frames >= 2 && o.history.frames <= 10000 &&
-           o.threads >= 0 && o.threads <= 1024);
+  const EmbeddingOptions& e = o.embedding;
+  const bool is_paper = e.method == EmbeddingMethod::Iterative;
+  const bool is_embedding_right =
+      isOneOf(e.method, 2) && isOneOf(e.weights, 3) && e.exponent > 2.0 && e.exponent <= 16.0 &&
+      (!is_paper || e.exponent == 3.0) && e.damping > 0.0 && e.damping <= 1.0 &&
+      (!e.tolerance || (*e.tolerance >= 0.0 && *e.tolerance <= 1.0)) && e.max_iterations >= 0 &&
+      e.stagnation_window >= 0 && e.starts >= 1 && e.starts <= 100 && e.history.vertices >= 0 &&
+      e.history.vertices <= (1 << 24) && e.history.frames >= 2 && e.history.frames <= 10000;
+  return !(is_embedding_right && isOneOf(o.graph.method, 2) && (!o.graph.k || *o.graph.k >= 3) &&
+           isOneOf(o.triangulation.method, 2) && isOneOf(o.optimization.method, 3) &&
+           o.retries >= 0 && o.retries <= 99 && o.smoothing.steps >= 0 &&
+           o.smoothing.steps <= 10000 && o.threads >= 0 && o.threads <= 1024);
 }
 
-/// A search that answers rightly, or as bytes say.
+bool isStage(const std::string& name) {
+  const std::array<std::string, 7> names{"neighbors",    "graph",     "embedding", "triangulation",
+                                         "optimization", "smoothing", "quality"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// A search that answers correctly, or from bytes.
 class Search {
 public:
   enum class Way { Right, InRange, Any, Throw };
@@ -101,7 +108,7 @@ public:
     way_ = how < 128 ? Way::Right : how < 200 ? Way::InRange : how < 240 ? Way::Any : Way::Throw;
     wrong_at_ = bytes.byte() % 4U;
   }
-  /// \param seen what came of it so far, where all copies of a search write it
+  /// What came of it so far, shared by all copies of a search.
   struct Seen {
     std::size_t calls = 0;
     bool bad = false;
@@ -137,7 +144,6 @@ public:
     return lists;
   }
   void tell(Seen& seen) { seen_ = &seen; }
-  void searchIn(const Positions& points) { points_ = &points; }
 
 private:
   Bytes bytes_;
@@ -151,7 +157,7 @@ private:
 void checkResult(const Positions& points, const Options& options, const Result& result) {
   const std::size_t count = fuzz::countDistinct(points);
   const auto n = static_cast<std::size_t>(points.cols());
-  if (result.vertexCount() != count || result.duplicates != n - count ||
+  if (result.vertexCount() != count || result.duplicates() != n - count ||
       result.vertex_of_input.size() != n)
     finding("not one vertex for each distinct point");
   for (std::size_t i = 0; i < n; ++i) {
@@ -162,26 +168,26 @@ void checkResult(const Positions& points, const Options& options, const Result& 
       finding("an input point has another place than its vertex");
   }
   if (!test::isSphereOverAll(result.triangles, static_cast<Index>(count)))
-    finding("the mesh is no sphere over all points");
+    finding("the mesh is not a sphere over all points");
   if (!result.topology.isSphere())
-    finding("the result's own check says it is no sphere");
+    finding("the result's own check says that the mesh is not a sphere");
   if (static_cast<std::size_t>(result.sphere.cols()) != count ||
       !fuzz::areUnitVectors(result.sphere))
     finding("the embedding is not of unit vectors");
-  if (options.smoothing_steps > 0 &&
+  if (options.smoothing.steps > 0 &&
       (static_cast<std::size_t>(result.smoothed.cols()) != count || !result.smoothed.allFinite()))
     finding("the smoothed points are not as many finite ones");
   if (options.details && result.vertex_residuals.size() != count)
     finding("no residual for each vertex");
-  if (options.history.vertices == 0 && !result.history.frames.empty())
-    finding("a history that was not asked for");
+  if (options.embedding.history.vertices == 0 && !result.history.frames.empty())
+    finding("a history without a request");
   for (const HistoryFrame& frame : result.history.frames)
     if (frame.sphere.cols() != static_cast<Eigen::Index>(result.history.vertices.size()) ||
         !fuzz::areUnitVectors(frame.sphere))
       finding("a frame of the history is not of unit vectors");
   for (const auto& pair : result.self_intersections)
     if (pair[0] < 0 || pair[0] >= pair[1] || pair[1] >= result.triangles.cols())
-      finding("a pair of no two triangles");
+      finding("a pair is not of two triangles");
 }
 
 }  // namespace
@@ -197,22 +203,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Positions points = fuzz::pointsFrom(bytes);
   const auto n = static_cast<std::size_t>(points.cols());
 
-  // Valid, but nobody would wait for it.
-  if (options.max_iterations > kManyIterations || options.attempts > 6 || options.starts > 20 ||
-      options.smoothing_steps > 300)
+  // Valid, but too long to wait for.
+  if (options.embedding.max_iterations > kManyIterations || options.retries > 5 ||
+      options.embedding.starts > 20 || options.smoothing.steps > 300)
     watch.cancelAt(kPatience);
-  std::map<std::string, double> shares;
-  std::string stage;
   if (watch.listens())
     options.progress = [&](const Progress& progress) {
-      // Stages begin anew in further attempts.
-      if (progress.stage != stage)
-        shares[progress.stage] = 0.0;
-      stage = progress.stage;
-      if (progress.fraction < shares[stage] && progress.fraction > 0.0)
-        finding("the share of \"" + stage + "\" falls");
-      shares[stage] = progress.fraction;
-      return watch(progress.fraction);
+      if (!isStage(progress.stage))
+        finding(std::string("there is no stage \"") + progress.stage + "\"");
+      return watch(progress);
     };
 
   Search::Seen seen;
@@ -245,18 +244,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     ending = by_lists(empty, (way & 8) != 0);
     break;
   }
-  default: {
-    const bool is_empty = way % 8 == 7 && way > 200;
-    are_lists_bad = is_empty;
-    const NeighborSearchFactory factory = [&](const Positions& nodes,
-                                              const std::vector<Index>&) -> NeighborSearch {
-      if (is_empty)
-        return {};
-      search.searchIn(nodes);
-      return std::ref(search);
-    };
-    ending = fuzz::endingOf([&] { result = reconstruct(points, factory, options); });
-  }
+  default:
+    ending = fuzz::endingOf([&] { result = reconstruct(points, options); });
   }
   if (fuzz::wasEndedBy(watch, ending))
     return 0;
@@ -266,7 +255,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   if (ending.kind == Ending::Kind::CallersFault)
-    finding("an exception that nobody threw");
+    finding("an exception that no callback threw");
   if (ending.kind == Ending::Kind::ComputeError)
     finding("on valid input: " + ending.message);
   const bool is_bad_cloud = !points.allFinite() || (points.array().abs() > 1e100).any() ||
@@ -274,15 +263,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool is_any_wrong = areWrong(options);
   if (ending.kind == Ending::Kind::InvalidInput) {
     if (!is_bad_cloud && !are_lists_bad && !seen.bad && !is_any_wrong)
-      finding("valid input is refused: " + ending.message);
+      finding("valid input is rejected: " + ending.message);
     return 0;
   }
   if (is_bad_cloud)
-    finding("an answer to points that have none");
+    finding("points that cannot be meshed are accepted");
   if (are_lists_bad || seen.bad)
-    finding("an answer to lists that are none");
+    finding("bad lists are accepted");
   if (is_any_wrong)
-    finding("an answer with an option out of range");
+    finding("an option out of range is accepted");
   checkResult(points, options, result);
   return 0;
 }

@@ -1,25 +1,25 @@
-// Everything public besides reconstruct(), each on whatever bytes say: the first byte picks it.
+// Every public function but reconstruct(), with everything made of bytes: the first byte picks it.
 
+#include "embedding_starts.h"
 #include "fuzz_input.h"
-#include "spherical_param/embedding_history.h"
-#include "spherical_param/graph_hierarchy.h"
+#include "spherical_param/embedding.h"
+#include "spherical_param/map/morphing.h"
+#include "spherical_param/map/resampling.h"
+#include "spherical_param/map/sphere_map.h"
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/map/spherical_harmonics.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/map/morphing.h"
 #include "spherical_param/neighbor_graph.h"
+#include "spherical_param/neighbor_search.h"
 #include "spherical_param/outliers.h"
 #include "spherical_param/point_set.h"
-#include "spherical_param/map/resampling.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/smoothing.h"
-#include "spherical_param/sphere_embedding.h"
-#include "spherical_param/map/sphere_map.h"
-#include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/sphere_triangulation.h"
-#include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/surface_diagnosis.h"
-#include "spherical_param/map/texture_atlas.h"
 
 #include <algorithm>
 #include <array>
@@ -44,7 +44,7 @@ Index sizeOf(const Positions& points) {
   return static_cast<Index>(points.cols());
 }
 
-/// One of `count` values of an enumeration, seldom none of them.
+/// One of `count` values of an enumeration, seldom another.
 template <typename Enum>
 Enum enumFrom(Bytes& bytes, int count) {
   const std::uint8_t choice = bytes.byte();
@@ -58,16 +58,16 @@ int integerOr(Bytes& bytes, int usual) {
 double realOr(Bytes& bytes, double usual) {
   return bytes.oneIn(4) ? bytes.real() : usual;
 }
-/// No more than what may be waited for; what is out of range stays so.
+/// Limits the time of the work; a value that is out of range is kept.
 int atMost(int most, int value, int range) {
   return value > most && value <= range ? most : value;
 }
 
 Positions normalized(const Positions& points) {
-  return points.allFinite() ? projectFromCentroid(points) : points;
+  return points.allFinite() ? internal::projectFromCentroid(points) : points;
 }
 
-/// A mesh on points on the sphere, or what is left of it.
+/// A mesh on points on the sphere, sometimes spoiled.
 Triangles trianglesFrom(Bytes& bytes, const Positions& sphere) {
   Triangles triangles(3, 0);
   if (sphere.cols() >= 4 && fuzz::areUnitVectors(sphere))
@@ -93,13 +93,18 @@ Triangles trianglesFrom(Bytes& bytes, const Positions& sphere) {
   return triangles;
 }
 
-/// The graph of lists between points, or what is left of it.
+GraphOptions ofSixNeighbors() {
+  GraphOptions options;
+  options.method = GraphMethod::NearestNeighbors;
+  options.k = 6;
+  return options;
+}
+
+/// A graph of points, sometimes spoiled.
 Graph graphFrom(Bytes& bytes, const Positions& points) {
   Graph graph;
   if (points.allFinite() && points.cols() > 0) {
-    NeighborGraphOptions options;
-    options.k = 6;
-    graph = buildNeighborGraph(points, fuzz::nearest(points, 6), options).graph;
+    graph = buildNeighborGraph(points, fuzz::nearest(points, 6), ofSixNeighbors()).graph;
   }
   const std::uint8_t how = bytes.byte();
   if (how < 200)
@@ -118,15 +123,13 @@ Graph graphFrom(Bytes& bytes, const Positions& points) {
   return graph;
 }
 
-std::function<bool(double)> shares(Watch& watch, double& last) {
-  if (!watch.listens())
-    return {};
-  return [&watch, &last](double share) {
-    if (share < last)
-      finding("the share of the work falls");
-    last = share;
-    return watch(share);
-  };
+/// Threads from bytes, and the watch as the callback. The watch must outlive it.
+Execution executionFrom(Bytes& bytes, Watch& watch) {
+  Execution execution;
+  execution.threads = integerOr(bytes, 0);
+  if (watch.listens())
+    execution.progress = std::ref(watch);
+  return execution;
 }
 
 void checkGraph(const NeighborGraph& graph, std::size_t n) {
@@ -171,24 +174,23 @@ void fuzzPointSet(Bytes&, const Positions& points, Watch&) {
   std::sort(order.begin(), order.end());
   for (std::size_t i = 0; i < order.size(); ++i)
     if (order[i] != static_cast<Index>(i))
-      finding("the order is no permutation");
+      finding("the order is not a permutation");
   if (order.size() != static_cast<std::size_t>(points.cols()))
     finding("the order is too short");
-  if (!fuzz::areUnitVectors(projectFromCentroid(points)) ||
-      !fuzz::areUnitVectors(projectByRank(points)))
+  if (!fuzz::areUnitVectors(internal::projectFromCentroid(points)) ||
+      !fuzz::areUnitVectors(internal::projectByRank(points)))
     finding("a start that is not of unit vectors");
 }
 
 void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
   TriangulationOptions options;
   options.method = enumFrom<TriangulationMethod>(bytes, 2);
-  double last = 0.0;
-  options.progress = shares(watch, last);
   const bool is_raw = bytes.oneIn(8);
   const Positions sphere = is_raw ? points : normalized(points);
-  const SphereTriangulation result = triangulateSphere(sphere, options);
+  const SphereTriangulation result =
+      triangulateSphere(sphere, options, executionFrom(bytes, watch));
   if (!test::isSphereOverAll(result.triangles, sizeOf(sphere)))
-    finding("the triangulation is no sphere over all points");
+    finding("the triangulation is not a sphere over all points");
 }
 
 void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
@@ -199,112 +201,110 @@ void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
   // Distinct and finite is a precondition that is not checked.
   if (!points.allFinite() || fuzz::countDistinct(points) != n)
     return;
-  if (bytes.oneIn(2)) {
-    NeighborGraphOptions options;
+  GraphOptions options;
+  options.method = enumFrom<GraphMethod>(bytes, 2);
+  if (bytes.oneIn(2))
     options.k = integerOr(bytes, 25);
-    checkGraph(buildNeighborGraph(points, lists, options), n);
-    return;
-  }
-  LocalDelaunayOptions options;
   options.agreement = enumFrom<StarAgreement>(bytes, 2);
-  options.tangent_neighbors = integerOr(bytes, 10);
-  options.max_slope = realOr(bytes, 0.85);
-  options.max_candidates = integerOr(bytes, 32);
-  options.threads = integerOr(bytes, 0);
-  double last = 0.0;
-  options.progress = shares(watch, last);
   const std::uint8_t how = bytes.byte();
+  NeighborSearch search;
   if (how % 2 == 1)
-    options.search = [&](const std::vector<Index>& queries, int) {
+    search = [&](const std::vector<Index>& queries, int) {
       return fuzz::arbitraryLists(bytes, queries.size(), n, how % 8 != 7);
     };
-  checkGraph(buildLocalDelaunayGraph(points, lists, options), n);
+  checkGraph(buildNeighborGraph(points, lists, options, search, executionFrom(bytes, watch)), n);
+}
+
+void fuzzNeighbors(Bytes& bytes, const Positions& points, Watch& watch) {
+  // Points of an extent of about 1: squared distances neither overflow nor underflow.
+  if (!points.allFinite() || points.cols() == 0)
+    return;
+  const double largest = std::max(points.cwiseAbs().maxCoeff(), 1e-300);
+  const Positions scaled = points / largest;
+  const auto n = static_cast<std::size_t>(points.cols());
+  const int count = integerOr(bytes, 12);
+  const NeighborLists lists = findNearestNeighbors(scaled, count, executionFrom(bytes, watch));
+  if (!fuzz::areLists(lists, n, n))
+    finding("neighbours that are not points");
+  const NeighborLists nearest = fuzz::nearest(scaled, std::max(0, std::min(count, sizeOf(points))));
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto far = [&](const NeighborLists& of) {
+      double square = 0.0;
+      for (std::size_t e = of.offsets[i]; e < of.offsets[i + 1]; ++e)
+        square = std::max(
+            square,
+            (scaled.col(of.indices[e]) - scaled.col(static_cast<Eigen::Index>(i))).squaredNorm());
+      return square;
+    };
+    if (std::abs(far(lists) - far(nearest)) > 1e-14)
+      finding("neighbours that are not the nearest");
+  }
 }
 
 void fuzzEmbedding(Bytes& bytes, const Positions& points, Watch& watch) {
   const Graph graph = graphFrom(bytes, points);
-  if (bytes.oneIn(2)) {
-    EmbeddingOptions options;
-    options.weights = enumFrom<EdgeWeights>(bytes, 3);
-    options.lambda = realOr(bytes, 0.5);
-    options.max_iterations = atMost(300, integerOr(bytes, 100), std::numeric_limits<int>::max());
-    options.tolerance = realOr(bytes, 1e-8);
-    options.stagnation_window = integerOr(bytes, 100);
-    options.stagnation_change = realOr(bytes, 1e-5);
-    options.threads = integerOr(bytes, 0);
-    if (watch.listens())
-      options.progress = [&](int, double) { return watch(0.0); };
-    const Embedding result = embedOnSphere(graph, points, options);
-    if (result.directions.cols() != points.cols() ||
-        (points.cols() > 0 && !fuzz::areUnitVectors(result.directions)))
-      finding("the embedding is not of unit vectors");
-    meanTangentialLaplacian(graph, result.directions, options.weights);
-    return;
-  }
-  HierarchyOptions coarsening;
-  coarsening.coarsest_size = bytes.oneIn(2) ? 4 : bytes.integer();
-  coarsening.seed = bytes.byte();
-  coarsening.threads = integerOr(bytes, 0);
-  GraphHierarchy hierarchy = buildGraphHierarchy(graph, coarsening);
-  if (bytes.oneIn(8) && !hierarchy.levels.empty())  // that of another graph
-    hierarchy.levels.erase(hierarchy.levels.begin());
-  EmbeddingRecorder recorder(graph.size(), GraphHierarchy(), {integerOr(bytes, 10), 20});
-  MultilevelOptions options;
+  EmbeddingOptions options;
+  options.method = enumFrom<EmbeddingMethod>(bytes, 2);
   options.weights = enumFrom<EdgeWeights>(bytes, 3);
-  options.exponent = realOr(bytes, 3.0);
-  options.lambda = realOr(bytes, 0.5);
-  options.sweeps = atMost(1000, integerOr(bytes, 10), std::numeric_limits<int>::max());
-  options.solved_size = integerOr(bytes, 10000);
+  if (options.method == EmbeddingMethod::Multilevel)
+    options.exponent = realOr(bytes, 3.0);
+  options.damping = realOr(bytes, 0.5);
+  options.max_iterations = atMost(300, integerOr(bytes, 100), std::numeric_limits<int>::max());
   if (bytes.oneIn(2))
     options.tolerance = bytes.real();
+  options.stagnation_window = integerOr(bytes, 100);
   options.starts = atMost(10, integerOr(bytes, 2), 100);
-  options.threads = integerOr(bytes, 0);
-  if (watch.listens())
-    options.progress = [&](double share, double) { return watch(share); };
-  const MultilevelEmbedding result = embedMultilevel(graph, hierarchy, options);
-  if (result.stop_reason != StopReason::Collapsed &&
-      result.directions.cols() != static_cast<Eigen::Index>(graph.size()))
-    finding("not a direction for each node");
+  options.history.vertices = integerOr(bytes, 0);
+  options.history.frames = integerOr(bytes, 20);
+  const Embedding result = embed(graph, points, options, bytes.byte(), executionFrom(bytes, watch));
+  if (result.directions.cols() != points.cols() ||
+      (points.cols() > 0 && !fuzz::areUnitVectors(result.directions)))
+    finding("the embedding is not of unit vectors");
+  for (const HistoryFrame& frame : result.history.frames)
+    if (frame.sphere.cols() != static_cast<Eigen::Index>(result.history.vertices.size()) ||
+        !fuzz::areUnitVectors(frame.sphere))
+      finding("a frame of the history is not of unit vectors");
+  meanTangentialLaplacian(graph, result.directions, options.weights, options.exponent);
 }
 
-void fuzzOutliers(Bytes& bytes, const Positions& points, Watch&) {
+void fuzzOutliers(Bytes& bytes, const Positions& points, Watch& watch) {
   const auto n = static_cast<std::size_t>(points.cols());
   OutlierOptions options;
   options.sigma = realOr(bytes, 4.0);
   options.k = integerOr(bytes, 16);
   options.least_score = realOr(bytes, 1.0);
-  options.threads = integerOr(bytes, 0);
-  const NeighborLists lists = bytes.oneIn(2) ? fuzz::nearest(points, 12)
-                                             : fuzz::arbitraryLists(bytes, n, n, bytes.oneIn(2));
-  const Outliers result = findOutliers(points, lists, options);
+  const Execution execution = executionFrom(bytes, watch);
+  const auto by_lists = [&] {
+    const NeighborLists lists = bytes.oneIn(2) ? fuzz::nearest(points, 12)
+                                               : fuzz::arbitraryLists(bytes, n, n, bytes.oneIn(2));
+    return findOutliers(points, lists, options, execution);
+  };
+  const Outliers result = bytes.oneIn(2) ? findOutliers(points, options, execution) : by_lists();
   if (result.scores.size() != n || !std::is_sorted(result.indices.begin(), result.indices.end()) ||
       std::any_of(result.indices.begin(), result.indices.end(),
                   [&](Index i) { return i < 0 || static_cast<std::size_t>(i) >= n; }))
-    finding("outliers that are no points");
+    finding("outliers that are not points");
 }
 
 void fuzzChecks(Bytes& bytes, const Positions& points, Watch& watch) {
   const Triangles triangles = trianglesFrom(bytes, normalized(points));
   const auto n = static_cast<std::size_t>(points.cols());
-  const MeshTopology topology = checkTopology(triangles, n, {integerOr(bytes, 0)});
+  const MeshTopology topology = checkTopology(triangles, n, integerOr(bytes, 0));
   if (topology.isSphere() != test::isSphereOverAll(triangles, sizeOf(points)))
     finding("sphere or not");
-  measureMesh(points, triangles, {integerOr(bytes, 0)});
+  measureMesh(points, triangles, integerOr(bytes, 0));
   signedVolume(points, triangles);
   surfaceArea(points, triangles);
   areaWeightedNormals(points, triangles);
-  SelfIntersectionOptions options;
-  options.threads = integerOr(bytes, 0);
-  double last = 0.0;
-  options.progress = shares(watch, last);
-  const auto pairs = findSelfIntersections(points, triangles, options);
+  Execution execution = executionFrom(bytes, watch);
+  const auto pairs = findSelfIntersections(points, triangles, execution);
   if (!std::is_sorted(pairs.begin(), pairs.end()))
     finding("pairs out of order");
   std::vector<Index> of;
   for (std::size_t i = bytes.below(8); i > 0; --i)
     of.push_back(bytes.index(static_cast<std::size_t>(triangles.cols()), false));
-  options.progress = {};
-  auto some = findSelfIntersectionsOf(points, triangles, of, options);
+  execution.progress = {};
+  auto some = findSelfIntersectionsOf(points, triangles, of, execution);
   decltype(some) expected;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(expected), [&](const auto& pair) {
     return std::find(of.begin(), of.end(), pair[0]) != of.end() ||
@@ -319,35 +319,20 @@ void fuzzOptimization(Bytes& bytes, const Positions& points, Watch& watch) {
   const Graph graph = graphFrom(bytes, points);
   OptimizationOptions options;
   options.method = enumFrom<OptimizationMethod>(bytes, 3);
-  options.seed = bytes.byte();
-  options.threads = integerOr(bytes, 0);
-  const std::uint8_t how = bytes.byte();
-  if (how % 4 == 1)
-    options.smoother = [&, how](const Triangles&, int) -> Positions {
-      return how % 8 == 1 ? points : how % 8 == 5 ? Positions(3, 0) : Positions(2.0 * points);
-    };
-  options.finish_on_points = how % 2 == 0;
-  if (watch.listens())
-    options.progress = [&](double share) {
-      if (!watch(share))
-        throw Cancelled("the fuzzer's");
-    };
-  const MeshOptimization result = optimizeMesh(points, triangles, graph, options);
+  options.finish_on_points = bytes.oneIn(2);
+  const MeshOptimization result =
+      optimizeMesh(points, triangles, graph, options, bytes.byte(), executionFrom(bytes, watch));
   if (!test::isSphereOverAll(result.triangles, sizeOf(points)))
-    finding("the optimised mesh is no sphere over all points");
+    finding("the optimised mesh is not a sphere over all points");
 }
 
 void fuzzSmoothing(Bytes& bytes, const Positions& points, Watch&) {
   const Triangles triangles = trianglesFrom(bytes, normalized(points));
   SmoothingOptions options;
-  options.method = enumFrom<SmoothingMethod>(bytes, 3);
+  options.method = enumFrom<SmoothingMethod>(bytes, 2);
   options.steps = atMost(200, integerOr(bytes, 5), 10000);
-  options.umbrella_lambda = realOr(bytes, 1.0);
-  options.taubin_lambda = realOr(bytes, 0.8);
-  options.taubin_pass_band = realOr(bytes, 0.05);
   options.restore_volume = bytes.oneIn(2);
-  options.threads = integerOr(bytes, 0);
-  const Smoothing result = smoothSurface(points, triangles, options);
+  const Smoothing result = smoothSurface(points, triangles, options, integerOr(bytes, 0));
   if (result.points.cols() != points.cols())
     finding("not as many smoothed points");
 }
@@ -356,27 +341,23 @@ void fuzzDiagnosis(Bytes& bytes, const Positions& points, Watch&) {
   if (!points.allFinite() || points.cols() == 0)
     return;
   const Triangles triangles = trianglesFrom(bytes, normalized(points));
-  NeighborGraphOptions by;
-  by.k = 6;
-  const NeighborGraph graph = buildNeighborGraph(points, fuzz::nearest(points, 6), by);
-  std::vector<Bridge> bridges = graph.bridges;
+  const NeighborGraph graph =
+      buildNeighborGraph(points, fuzz::nearest(points, 6), ofSixNeighbors());
+  std::vector<Bridge> bridges = graph.report.bridges;
   if (bytes.oneIn(4))
     bridges.push_back({bytes.index(static_cast<std::size_t>(points.cols()), false),
                        bytes.index(static_cast<std::size_t>(points.cols()), false), bytes.real()});
   DiagnosisOptions options;
-  options.lid_diameter = realOr(bytes, 5.0);
-  options.handle_steps = integerOr(bytes, 8);
-  options.part_gap = realOr(bytes, 4.0);
   options.max_vertices = bytes.byte();
-  options.threads = integerOr(bytes, 0);
   options.mark_triangles = bytes.oneIn(2);
-  const SurfaceDiagnosis result = diagnoseSurface(points, triangles, graph.graph, bridges, options);
+  const SurfaceDiagnosis result =
+      diagnoseSurface(points, triangles, graph.graph, bridges, options, integerOr(bytes, 0));
   if (options.mark_triangles &&
       result.triangle_marks.size() != static_cast<std::size_t>(triangles.cols()))
     finding("not a mark for each triangle");
 }
 
-/// A surface with a map that is one to one, or none at all.
+/// A surface and its map to the sphere.
 struct Mapped {
   Triangles triangles;
   Positions sphere;
@@ -388,9 +369,7 @@ Mapped mapFrom(Bytes& bytes, const Positions& points, Watch& watch) {
   SphereMapOptions options;
   options.area_weight = realOr(bytes, 0.85);
   options.sweeps = atMost(20, integerOr(bytes, 3), 1000);
-  options.threads = integerOr(bytes, 0);
-  double last = 0.0;
-  options.progress = shares(watch, last);
+  static_cast<Execution&>(options) = executionFrom(bytes, watch);
   if (bytes.oneIn(16) && start.cols() > 0)
     mapped.sphere(bytes.byte() % 3, bytes.byte() % start.cols()) = bytes.real();
   const SphereMap map = computeSphereMap(points, mapped.triangles, mapped.sphere, options);
@@ -450,7 +429,7 @@ void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
       removeIntersections(mesh, integerOr(bytes, 0));
     if (!test::isSphereOverAll(mesh.triangles, sizeOf(mesh.points)) &&
         test::isSphereOverAll(directions.triangles, sizeOf(mesh.points)))
-      finding("the remeshed surface is no sphere");
+      finding("the remeshed surface is not a sphere");
     geometryImageOfMesh(mesh);
   }
 }
@@ -511,13 +490,11 @@ void fuzzMorph(Bytes& bytes, const Positions& points, Watch& watch) {
   options.samples = bytes.oneIn(8) ? bytes.raw<std::size_t>() : 12U + bytes.byte();
   if (options.samples > 1000 && options.samples <= std::size_t{1} << 24)
     options.samples = 1000;
-  options.threads = integerOr(bytes, 0);
-  double last = 0.0;
-  options.progress = shares(watch, last);
+  static_cast<Execution&>(options) = executionFrom(bytes, watch);
   const MorphResult result = morphSurfaces(from, to, options);
   if (!test::isSphereOverAll(result.triangles, sizeOf(result.first)) ||
       result.second.cols() != result.first.cols())
-    finding("the morph is no sphere");
+    finding("the morph is not a sphere");
   inBetween(result, bytes.real());
 }
 
@@ -541,17 +518,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::array calls{fuzzPointSet,  fuzzTriangulation, fuzzGraph,   fuzzEmbedding,
                              fuzzOutliers,  fuzzChecks,        fuzzSurface, fuzzOptimization,
                              fuzzSmoothing, fuzzDiagnosis,     fuzzTexture, fuzzMorph,
-                             fuzzHarmonics};
+                             fuzzHarmonics, fuzzNeighbors};
   Bytes bytes(data, size);
   const std::uint8_t which = bytes.byte();
   Watch watch(bytes);
   const std::size_t before = bytes.byte();
-  // The points come last, so that a change of theirs moves nothing else.
+  // The points come last: a change of them moves no other byte.
   const std::size_t head = std::min<std::size_t>(size, 3 + 8 + before % 64);
   Bytes of_points(data + head, size - head);
   const Positions points = fuzz::pointsFrom(of_points);
   const Ending ending = fuzz::endingOf([&] { calls[which % calls.size()](bytes, points, watch); });
   if (!fuzz::wasEndedBy(watch, ending) && ending.kind == Ending::Kind::CallersFault)
-    finding("an exception that nobody threw");
+    finding("an exception that no callback threw");
   return 0;
 }

@@ -1,5 +1,5 @@
-// What holds whatever fails: lack of memory comes out as std::bad_alloc, a killed tool leaves no
-// half of a file, a full device is told in two lines.
+// What holds when something fails: lack of memory comes out as std::bad_alloc, a killed tool leaves
+// no half-written file, a full device is reported in two lines.
 
 #include "helpers.h"
 #include "spherical_param/reconstruct.h"
@@ -18,7 +18,7 @@
 
 namespace {
 
-/// Allocations until one fails; below 0: none does.
+/// Allocations until one fails; below 0: none fails.
 std::atomic<long> left{-1};
 
 void* allocate(std::size_t size) {
@@ -55,15 +55,14 @@ namespace {
 
 using namespace spherical_param;
 
-TEST(Guarantees, BadAllocIsPassedOnWhereverItIsThrown) {
+TEST(Guarantees, BadAllocIsPassedOnFromEveryAllocation) {
   const Positions points = test::spiralSphere(5000);  // enough for several threads
   Options options;
-  options.attempts = 1;
+  options.retries = 0;
   options.threads = 2;
-  const NeighborLists lists = test::spiralNeighbors(points, neighborsToSearch(options));
   constexpr long many = 1L << 40;
   left = many;
-  const Triangles expected = reconstruct(points, lists, options).triangles;
+  const Triangles expected = reconstruct(points, options).triangles;
   const long allocations = many - left;
   ASSERT_GT(allocations, 1000);
   std::mt19937_64 random(1);
@@ -71,10 +70,10 @@ TEST(Guarantees, BadAllocIsPassedOnWhereverItIsThrown) {
     const auto which =
         static_cast<long>(random() % static_cast<std::uint64_t>(allocations * 9 / 10));
     left = which;
-    EXPECT_THROW(reconstruct(points, lists, options), std::bad_alloc) << "allocation " << which;
+    EXPECT_THROW(reconstruct(points, options), std::bad_alloc) << "allocation " << which;
   }
   left = -1;
-  EXPECT_EQ(reconstruct(points, lists, options).triangles, expected);
+  EXPECT_EQ(reconstruct(points, options).triangles, expected);
 }
 
 void writeScan(const tool_test::TemporaryDirectory& directory, Index points) {
@@ -86,7 +85,7 @@ void writeScan(const tool_test::TemporaryDirectory& directory, Index points) {
   tool_test::writeFile(directory.file("scan.xyz"), text);
 }
 
-TEST(Guarantees, AToolThatIsKilledLeavesNoHalfOfAFile) {
+TEST(Guarantees, AKilledToolLeavesNoHalfWrittenFile) {
   const tool_test::TemporaryDirectory directory;
   writeScan(directory, 5000);
   tool_test::RunOptions how;
@@ -114,7 +113,7 @@ TEST(Guarantees, AToolThatIsKilledLeavesNoHalfOfAFile) {
   }
 }
 
-TEST(Guarantees, AFullDeviceIsToldWithCauseAndRemedy) {
+TEST(Guarantees, AFullDeviceIsReportedWithCauseAndRemedy) {
   const tool_test::TemporaryDirectory directory;
   writeScan(directory, 500);
   tool_test::RunOptions how;

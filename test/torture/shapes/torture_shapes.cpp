@@ -96,55 +96,33 @@ Options someOptions(std::mt19937_64& random, bool is_large) {
   Options options;
   if (one(2) == 0)
     return options;
-  options.graph = one(5) < 2 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
-  options.solver = one(3) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
-  options.hull = one(5) < 2 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
-  options.weights = static_cast<EdgeWeights>(one(3));
-  options.optimization = static_cast<OptimizationMethod>(one(3));
+  options.graph.method = one(5) < 2 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
+  EmbeddingOptions& embedding = options.embedding;
+  embedding.method = one(3) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
+  options.triangulation.method =
+      one(5) < 2 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
+  embedding.weights = static_cast<EdgeWeights>(one(3));
+  options.optimization.method = static_cast<OptimizationMethod>(one(3));
   if (one(5) < 2)
-    options.k = 3 + one(30);
-  if (one(5) == 0 && options.solver == EmbeddingMethod::Multilevel)
-    options.exponent = 2.0 + 0.1 * (1 + one(140));
-  options.smoothing_steps = one(3) == 0 ? one(30) : 0;
-  options.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
-  options.starts = 1 + one(3);
-  options.attempts = 1 + one(4);
+    options.graph.k = 3 + one(30);
+  if (one(5) == 0 && embedding.method == EmbeddingMethod::Multilevel)
+    embedding.exponent = 2.0 + 0.1 * (1 + one(140));
+  options.smoothing.steps = one(3) == 0 ? one(30) : 0;
+  embedding.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
+  embedding.starts = 1 + one(3);
+  options.retries = one(4);
   options.seed = static_cast<std::uint32_t>(one(1000000));
   return options;
 }
 
-/// Answers by the distances to all points. The points must outlive it.
-NeighborSearch searchIn(const Positions& points) {
-  return [&points](const std::vector<Index>& queries, int count) {
-    NeighborLists lists;
-    std::vector<std::pair<double, Index>> others;
-    for (const Index query : queries) {
-      others.clear();
-      for (Eigen::Index i = 0; i < points.cols(); ++i)
-        if (i != query)
-          others.emplace_back((points.col(i) - points.col(query)).squaredNorm(),
-                              static_cast<Index>(i));
-      const auto end = others.begin() +
-                       std::min<std::ptrdiff_t>(count, static_cast<std::ptrdiff_t>(others.size()));
-      std::partial_sort(others.begin(), end, others.end());
-      for (auto near = others.begin(); near != end; ++near)
-        lists.indices.push_back(near->second);
-      lists.offsets.push_back(lists.indices.size());
-    }
-    return lists;
-  };
-}
-
+/// With lists of the caller, or without.
 Result reconstructBy(bool by_lists, const Positions& points, const Options& options) {
-  if (by_lists)
-    return reconstruct(points,
-                       points.allFinite()
-                           ? test::bruteForceNeighbors(points, neighborsToSearch(options))
-                           : NeighborLists(),
-                       options);
-  return reconstruct(
-      points, [](const Positions& nodes, const std::vector<Index>&) { return searchIn(nodes); },
-      options);
+  if (!by_lists)
+    return reconstruct(points, options);
+  const NeighborLists lists =
+      points.allFinite() ? test::bruteForceNeighbors(points, neighborsToSearch(options.graph))
+                         : NeighborLists();
+  return reconstruct(points, lists, options);
 }
 
 /// Everything that is guaranteed, from the result alone.
@@ -152,7 +130,7 @@ Faults faultsOf(const Positions& points, const Options& options, const Result& r
   Faults faults;
   const auto n = static_cast<std::size_t>(points.cols());
   const std::size_t v = torture::countDistinct(points);
-  if (result.vertexCount() != v || result.duplicates != n - v ||
+  if (result.vertexCount() != v || result.duplicates() != n - v ||
       result.vertex_of_input.size() != n || result.input_of_vertex.size() != v)
     return {"not one vertex for each distinct point"};
   std::map<torture::Place, Index> first;
@@ -165,7 +143,7 @@ Faults faultsOf(const Positions& points, const Options& options, const Result& r
       return {"the vertex of point " + std::to_string(i) + " is not that of its first equal"};
   }
   if (!isSphere(result.triangles, static_cast<Index>(v)))
-    return {"the mesh is no sphere over all points"};
+    return {"the mesh is not a sphere over all points"};
   Positions vertices(3, static_cast<Eigen::Index>(v));
   for (std::size_t i = 0; i < v; ++i)
     vertices.col(static_cast<Eigen::Index>(i)) = points.col(result.input_of_vertex[i]);
@@ -175,8 +153,8 @@ Faults faultsOf(const Positions& points, const Options& options, const Result& r
     faults.emplace_back("the library's own check finds a fault");
   if (!((result.sphere.colwise().norm().array() - 1.0).abs() < 1e-9).all())
     faults.emplace_back("the embedding is not of unit vectors");
-  if (!std::isfinite(result.volume) || !std::isfinite(result.area) ||
-      (options.smoothing_steps > 0 &&
+  if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area) ||
+      (options.smoothing.steps > 0 &&
        (result.smoothed.cols() != vertices.cols() || !result.smoothed.allFinite())))
     faults.emplace_back("volume, area or smoothed points are missing or not finite");
   return faults;
@@ -195,7 +173,7 @@ Faults tryOut(std::uint64_t seed, std::string& family) {
   try {
     const Result result = reconstructBy(by_lists, points, options);
     if (!can_be_meshed)
-      return {"an answer to points that have none"};
+      return {"points that cannot be meshed are accepted"};
     Faults faults = faultsOf(points, options, result);
     if (random() % 4 == 0) {
       options.threads = 3;
@@ -205,7 +183,7 @@ Faults tryOut(std::uint64_t seed, std::string& family) {
     return faults;
   } catch (const InvalidInput& error) {
     if (can_be_meshed)
-      return {std::string("refused: ") + error.what()};
+      return {std::string("rejected: ") + error.what()};
   } catch (const std::exception& error) {
     return {std::string("not a documented exception: ") + error.what()};
   }

@@ -114,7 +114,7 @@ void checkMesh(const std::string& text, const Positions& points, Complaints& com
   for (Index t = 0; t < triangles; ++t)
     file >> ignored >> mesh(0, t) >> mesh(1, t) >> mesh(2, t);
   if (!file || keyword != "OFF" || !test::isSphereOverAll(mesh, vertices))
-    complaints.emplace_back("the mesh is no sphere over its vertices");
+    complaints.emplace_back("the mesh is not a sphere over its vertices");
   std::vector<Place> wanted;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     wanted.push_back({static_cast<float>(points(0, i)), static_cast<float>(points(1, i)),
@@ -206,8 +206,8 @@ Complaints tryCase(const Truth& truth, const ScanOptions& scan_options, bool qui
     std::vector<std::string> words{"scan.xyz", "mesh.off", "-json", "-"};
     if (strict)
       words.emplace_back("-strict");
-    if (quick && (truth.handles > 0 || truth.parts > 1))  // the optimisation is long and in vain
-      words.insert(words.end(), {"-optimize", "flips"});
+    if (quick && (truth.handles > 0 || truth.parts > 1))  // full optimisation takes long in vain
+      words.insert(words.end(), {"-optimization", "flips"});
     const tool_test::RunResult result = tool_test::run(RECONSTRUCTION_TOOL, words, how);
     const json report = json::parse(result.output, nullptr, false);
     if (report.is_discarded())

@@ -60,14 +60,16 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
     job.points(1, job.points.cols() / 2) = std::numeric_limits<double>::quiet_NaN();
   }
   Options& options = job.options;
-  options.graph = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
-  options.solver = below(4) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
-  options.max_iterations = 60;
-  options.hull = below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
-  options.optimization = std::array{OptimizationMethod::None, OptimizationMethod::Flips,
-                                    OptimizationMethod::Full}[below(3)];
-  options.smoothing_steps = below(3) == 0 ? 5 : 0;
-  options.attempts = 1 + static_cast<int>(below(3));
+  options.graph.method = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
+  options.embedding.method =
+      below(4) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
+  options.embedding.max_iterations = 60;
+  options.triangulation.method =
+      below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
+  options.optimization.method = std::array{OptimizationMethod::None, OptimizationMethod::Flips,
+                                           OptimizationMethod::Full}[below(3)];
+  options.smoothing.steps = below(3) == 0 ? 5 : 0;
+  options.retries = static_cast<int>(below(3));
   options.seed = static_cast<std::uint32_t>(below(1000));
   options.details = below(4) == 0;
   options.threads = 1 + static_cast<int>(below(2));
@@ -77,9 +79,7 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
 /// All of the answer as bytes; nothing if it is of the wrong kind.
 std::string answerTo(const Job& job) {
   try {
-    const NeighborLists lists = test::bruteForceNeighbors(job.points, 25);
-    const Result result =
-        reconstruct(job.points, lists, job.options, test::bruteForceSearch(job.points));
+    const Result result = reconstruct(job.points, job.options);
     const bool is_sphere =
         test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount()));
     return job.is_valid && is_sphere ? torture::bytesOf(result) : std::string();
@@ -122,19 +122,18 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
       const Positions points =
           Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() * test::spiralSphere(size);
       Options options;
-      options.attempts = 1;
+      options.retries = 0;
       if (is_paper) {
-        options.graph = GraphMethod::NearestNeighbors;
-        options.solver = EmbeddingMethod::Iterative;
-        options.hull = TriangulationMethod::Qhull;
-        options.optimization = OptimizationMethod::None;
-        options.max_iterations = 20;
+        options.graph.method = GraphMethod::NearestNeighbors;
+        options.embedding.method = EmbeddingMethod::Iterative;
+        options.embedding.max_iterations = 20;
+        options.triangulation.method = TriangulationMethod::Qhull;
+        options.optimization.method = OptimizationMethod::None;
       }
-      const NeighborLists lists = test::spiralNeighbors(points, neighborsToSearch(options));
       std::string expected;
       for (const int threads : {1, 2, 4}) {
         options.threads = threads;
-        const std::string bytes = torture::bytesOf(reconstruct(points, lists, options));
+        const std::string bytes = torture::bytesOf(reconstruct(points, options));
         if (threads == 1)
           expected = bytes;
         if (bytes != expected) {
