@@ -11,9 +11,9 @@ namespace spherical_param {
 /// \addtogroup neighbor_graph
 /// @{
 
-/// Returns the `count` nearest neighbours of each of `points`, one list for each in their order. The
-/// point itself may be in its list; `count` should not include it. Lists may be shorter where there
-/// are no more.
+/// Returns the `count` nearest neighbours of each of `points`, one list for each in their order.
+/// The point itself may be in its list; `count` should not include it. Lists may be shorter where
+/// there are no more.
 using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
 
 /// Builds a k-d tree of points, in double precision.
@@ -22,7 +22,9 @@ using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& poi
 ///               spatialOrder() is such an order. Squared distances must neither overflow nor
 ///               underflow: bring the points to an extent of about 1.
 /// \param execution threads, progress; its progress callback must outlive the search.
-/// \return a search among these points; copies of it share the tree.
+/// \return a search among these points; copies of it share the tree. It throws InvalidInput for
+/// lists
+///         of more than 2^31 entries in all; Cancelled.
 /// \throw std::bad_alloc. Cost: O(n log n), and O(log n) for each query, typically.
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution = {});
 
@@ -32,7 +34,7 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
 /// \param count  of neighbours, not counting the point itself, which is in its list.
 /// \param execution threads, progress
 /// \return n lists.
-/// \throw Cancelled.
+/// \throw InvalidInput for lists of more than 2^31 entries in all; Cancelled.
 NeighborLists findNearestNeighbors(const Positions& points, int count,
                                    const Execution& execution = {});
 

@@ -65,7 +65,7 @@ struct Outliers {
 /// \param execution threads, progress
 /// \return the outliers, the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for coordinates that are not finite, sizes that disagree, an index out of
-///        range, or options out of range.
+///        range, or options out of range; Cancelled.
 /// Cost: O(n k log k) per round, a few rounds.
 ///
 /// No guarantees: a group as dense as the surface, or larger than k, is a surface of its own;

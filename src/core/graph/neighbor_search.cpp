@@ -2,6 +2,7 @@
 
 #include "parallel.h"
 #include "progress.h"
+#include "spherical_param/errors.h"
 
 #include <flann/algorithms/kdtree_single_index.h>
 #include <flann/util/matrix.h>
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <memory>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace spherical_param {
@@ -69,11 +71,18 @@ private:
   flann::KDTreeSingleIndex<SquaredDistance> index_;
 };
 
+/// Entries of all lists together.
+constexpr std::size_t kMaxEntries = std::size_t{1} << 31;
+
 NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int count,
                      const Execution& execution) {
   // One more, since a point is its own neighbour.
   const std::size_t size =
       std::min(static_cast<std::size_t>(std::max(count, 0)), tree.size() - 1) + 1;
+  if (size * points.size() > kMaxEntries)
+    throw InvalidInput("makeNeighborSearch: " + std::to_string(count) + " neighbours of each of " +
+                       std::to_string(points.size()) +
+                       " points do not fit into memory; use a smaller k");
   NeighborLists lists;
   lists.offsets.resize(points.size() + 1);
   for (std::size_t i = 0; i < lists.offsets.size(); ++i)
@@ -98,8 +107,7 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
   };
 }
 
-NeighborLists findNearestNeighbors(const Positions& points, int count,
-                                   const Execution& execution) {
+NeighborLists findNearestNeighbors(const Positions& points, int count, const Execution& execution) {
   std::vector<Index> all(static_cast<std::size_t>(points.cols()));
   std::iota(all.begin(), all.end(), Index{0});
   return all.empty() ? NeighborLists() : makeNeighborSearch(points, execution)(all, count);

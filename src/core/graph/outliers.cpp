@@ -3,6 +3,7 @@
 #include "neighbor_lists.h"
 #include "ordered_points.h"
 #include "parallel.h"
+#include "progress.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/neighbor_search.h"
 
@@ -183,8 +184,10 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   Scoring scoring(points, lists, options, execution);
   std::vector<char> is_outlier(n, 0);
   std::size_t left = n;
+  const internal::Report report = internal::reportOf(execution, "outliers");
   bool found = left > 0;
   while (found) {
+    internal::tell(report, 0.0);
     scoring.compute(is_outlier);
     ++result.rounds;
     const std::vector<double>& scores = scoring.scores();
@@ -214,6 +217,7 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
     // With sigma and least_score near 0 there is no end to it before all points are outliers.
     found = found && left > kLeastNeighbors;
   }
+  internal::tell(report, 1.0);
   result.scores = scoring.scores();
   for (std::size_t i = 0; i < n; ++i)
     if (is_outlier[i] != 0)
