@@ -226,6 +226,7 @@ void setOption(Options& options, const std::string& name, const OptionValue& val
 std::string rangeOf(const OptionRow& row) {
   if (row.choices.empty()) {
     std::ostringstream text;
+    text.precision(10);
     text << (row.is_integer ? "an integer " : "a number ") << (row.min_excluded ? "above " : "from ")
          << row.min;
     if (row.max < kMaxInt)

@@ -1,20 +1,20 @@
 // The extension module of the Python package: NumPy arrays and plain values in, dictionaries of
-// them out. Names, defaults, checks of types and documentation are the package's, in Python.
+// them out. The options of reconstruct() are those of optionTable(); all other names, defaults,
+// checks of types and documentation are the package's, in Python.
 
 #include "python/arrays.h"
 #include "python/listener.h"
 #include "python/names.h"
-#include "python/neighbor_search.h"
 #include "python/reports.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/outliers.h"
-#include "spherical_param/point_set.h"
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/map/resampling.h"
-#include "spherical_param/self_intersection.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
+#include "spherical_param/option_table.h"
+#include "spherical_param/outliers.h"
+#include "spherical_param/reconstruct.h"
+#include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
 
 #include <pybind11/pybind11.h>
@@ -27,9 +27,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace spherical_param::python {
@@ -37,9 +38,6 @@ namespace {
 
 namespace py = pybind11;
 using py::literals::operator""_a;
-
-/// The end of a stage is told once.
-constexpr double kMostBeforeEnd = 0.999;
 
 /// The core's messages begin with the name of a function in C++.
 std::string withoutFunctionName(const std::string& message) {
@@ -69,60 +67,58 @@ struct FinitePoints {
   std::size_t given = 0;    ///< rows of the array
 };
 
-/// Neighbour lists take memory before anything else fails: an absurd k is told first.
-void checkMemory(int neighbors, std::size_t points) {
-  constexpr std::uint64_t most_entries = std::uint64_t{1} << 31;
-  if (std::min(static_cast<std::uint64_t>(neighbors), std::uint64_t{points}) * points >
-      most_entries)
-    throw InvalidInput("k = " + std::to_string(neighbors) + " neighbours of each of " +
-                       std::to_string(points) +
-                       " points do not fit into memory; leave k out, its default will do");
+/// A value of an option. Whatever Python takes for an integer or a number is one.
+OptionValue toValue(const OptionRow& row, const py::handle& value) {
+  if (value.is_none())
+    return {};
+  if (py::isinstance<py::str>(value))
+    return value.cast<std::string>();
+  try {
+    if (PyIndex_Check(value.ptr()) != 0)
+      return py::reinterpret_steal<py::int_>(py::handle(PyNumber_Index(value.ptr())))
+          .cast<std::int64_t>();
+    if (!py::isinstance<py::bytes>(value))
+      return py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>();
+  } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): no number, or too large
+  }
+  throw InvalidInput(row.name + " = " + py::repr(value).cast<std::string>() +
+                     " cannot be used; use " + rangeOf(row));
 }
 
-py::dict reconstructPoints(const DoubleArray& array, const std::string& graph, std::optional<int> k,
-                           const std::string& solver, const std::string& weights, double exponent,
-                           double lambda, std::optional<double> tolerance, int max_iterations,
-                           int stagnation_window, int starts, std::uint32_t seed,
-                           const std::string& hull, const std::string& optimization, int attempts,
-                           int smoothing_steps, int history, bool details, int threads,
+py::object toObject(const OptionValue& value) {
+  return std::visit(
+      [](const auto& known) -> py::object {
+        if constexpr (std::is_same_v<std::decay_t<decltype(known)>, std::monostate>)
+          return py::none();
+        else
+          return py::cast(known);
+      },
+      value);
+}
+
+/// The rows of optionTable() as the package in Python needs them.
+py::list optionRows() {
+  py::list rows;
+  for (const OptionRow& row : optionTable())
+    rows.append(py::dict("name"_a = row.name, "help"_a = row.help, "range"_a = rangeOf(row),
+                         "choices"_a = row.choices, "is_integer"_a = row.is_integer,
+                         "optional"_a = row.optional, "default"_a = toObject(row.get({}))));
+  return rows;
+}
+
+py::dict reconstructPoints(const DoubleArray& array, const py::dict& values, bool details,
                            const py::object& progress) {
   Options options;
-  options.graph = valueOf("graph", graph, kGraphNames);
-  options.k = k;
-  options.solver = valueOf("solver", solver, kSolverNames);
-  options.weights = valueOf("weights", weights, kWeightsNames);
-  options.exponent = exponent;
-  options.lambda = lambda;
-  options.tolerance = tolerance;
-  options.max_iterations = max_iterations;
-  options.stagnation_window = stagnation_window;
-  options.starts = starts;
-  options.seed = seed;
-  options.hull = valueOf("hull", hull, kHullNames);
-  options.optimization = valueOf("optimization", optimization, kOptimizationNames);
-  options.attempts = attempts;
-  options.smoothing_steps = smoothing_steps;
-  options.history.vertices = history;
+  for (const auto& [name, value] : values) {
+    const OptionRow& row = findOption(name.cast<std::string>());
+    setOption(options, row.name, toValue(row, value));
+  }
   options.details = details;
-  options.threads = threads;
-  checkOptions(options);
-
   Listener listener(progress);
-  options.progress = [&listener](const Progress& state) {
-    return listener.tell(state.stage, state.fraction, state.iteration, state.residual);
-  };
-  const auto report_search = [&listener](double share) {
-    // The end of the stage is told by the core.
-    if (share < 1.0 &&
-        !listener.tell("neighbors", kShareBeforeSearch + (1.0 - kShareBeforeSearch) * share))
-      throw Cancelled("cancelled by the progress callback");
-  };
+  static_cast<Execution&>(options) = listener.execution(options.threads);
   const FinitePoints finite(array);
-  checkMemory(neighborsToSearch(options), finite.rows.size());
   try {
-    const Result result = listener.run([&] {
-      return reconstruct(finite.points, neighborSearch(threads, report_search), options);
-    });
+    const Result result = listener.run([&] { return reconstruct(finite.points, options); });
     return toDict(result, finite.rows, finite.given);
   } catch (const InvalidInput& error) {
     if (finite.ignored() == 0)
@@ -134,44 +130,19 @@ py::dict reconstructPoints(const DoubleArray& array, const std::string& graph, s
 
 py::dict findOutlierPoints(const DoubleArray& array, double sigma, int k, int threads,
                            const py::object& progress) {
-  /// So many more neighbours than are used step in for outliers.
-  constexpr int spare_neighbors = 16;
-  constexpr int most_neighbors = 1 << 20;
-  if (k < 3 || k > most_neighbors)
-    throw InvalidInput("k = " + std::to_string(k) + " is out of range; use 3 and more, mostly 16");
   OutlierOptions options;
   options.sigma = sigma;
   options.k = k;
-  options.threads = threads;
   Listener listener(progress);
   const FinitePoints finite(array);
-  checkMemory(k + spare_neighbors, finite.rows.size());
-  constexpr std::size_t fewest = 4;
-  if (finite.rows.size() < fewest)
-    throw InvalidInput("there are " + std::to_string(finite.rows.size()) +
-                       " finite points; give at least 4");
+  const Outliers found = listener.run(
+      [&] { return findOutliers(finite.points, options, listener.execution(threads)); });
   std::vector<Index> indices;
+  for (const Index point : found.indices)
+    indices.push_back(finite.rows[static_cast<std::size_t>(point)]);
   std::vector<double> scores(finite.given, std::nan(""));
-  const Outliers found = listener.run([&] {
-    const DistinctPoints distinct = findDistinctPoints(finite.points);
-    const Positions vertices = finite.points(Eigen::all, distinct.input_of_vertex);
-    const NeighborLists lists =
-        nearestNeighbors(vertices, k + spare_neighbors, threads,
-                         [&](double share) { listener.step("neighbors", share); });
-    listener.step("outliers", 0.0);
-    Outliers outliers = findOutliers(vertices, lists, options);
-    listener.step("outliers", 1.0);
-    std::vector<bool> is_outlier(distinct.input_of_vertex.size(), false);
-    for (const Index vertex : outliers.indices)
-      is_outlier[static_cast<std::size_t>(vertex)] = true;
-    for (std::size_t i = 0; i < finite.rows.size(); ++i) {
-      const auto vertex = static_cast<std::size_t>(distinct.vertex_of_input[i]);
-      scores[static_cast<std::size_t>(finite.rows[i])] = outliers.scores[vertex];
-      if (is_outlier[vertex])
-        indices.push_back(finite.rows[i]);
-    }
-    return outliers;
-  });
+  for (std::size_t i = 0; i < finite.rows.size(); ++i)
+    scores[static_cast<std::size_t>(finite.rows[i])] = found.scores[i];
   return py::dict("indices"_a = toArray(indices), "scores"_a = toArray(scores),
                   "threshold"_a = found.threshold, "rounds"_a = found.rounds);
 }
@@ -181,20 +152,14 @@ py::dict mapToSphere(const DoubleArray& points, const IndexArray& triangles,
                      const py::object& progress) {
   Listener listener(progress);
   SphereMapOptions options;
+  static_cast<Execution&>(options) = listener.execution(threads);
   options.area_weight = area_weight;
   options.sweeps = sweeps;
-  options.threads = threads;
-  options.progress = [&listener](double share) {
-    return listener.tell("map", std::min(share, kMostBeforeEnd));
-  };
   const Positions vertices = toPositions(points);
   const Triangles mesh = toTriangles(triangles);
   const Positions directions = toPositions(start);
-  return toDict(listener.run([&] {
-    SphereMap map = computeSphereMap(vertices, mesh, directions, options);
-    listener.step("map", 1.0);
-    return map;
-  }));
+  return toDict(
+      listener.run([&] { return computeSphereMap(vertices, mesh, directions, options); }));
 }
 
 py::dict measureDistortion(const DoubleArray& points, const IndexArray& triangles,
@@ -232,8 +197,8 @@ struct Remeshed {
 Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t points,
                       int threads, Listener& listener) {
   // The grid itself would take as many as it can have.
-  constexpr std::size_t most_points = std::size_t{1} << 28;
-  if (points < 4 || points > most_points)
+  constexpr std::size_t max_points = std::size_t{1} << 28;
+  if (points < 4 || points > max_points)
     throw InvalidInput("points = " + std::to_string(points) +
                        " is out of range; use 4 to 2^28 for a grid");
   Remeshed result;
@@ -243,28 +208,22 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
   listener.step("resample", 1.0);
   listener.step("untangle", 0.0);
   result.untangling = untangle(surface, result.mesh, threads);
-  // What sliding leaves, other edges may mend.
+  // Other edges may mend what sliding leaves.
   if (result.untangling.after > 0) {
     listener.step("untangle", 0.8);
     result.flipped_edges = removeIntersections(result.mesh, threads).flips;
   }
   listener.step("untangle", 1.0);
   result.locations = surface.evaluate(result.mesh.directions).locations;
-  SelfIntersectionOptions options;
-  options.threads = threads;
-  options.progress = [&listener](double share) {
-    return listener.tell("verify", std::min(share, kMostBeforeEnd));
-  };
   result.self_intersections =
-      findSelfIntersections(result.mesh.points, result.mesh.triangles, options);
-  listener.step("verify", 1.0);
+      findSelfIntersections(result.mesh.points, result.mesh.triangles, listener.execution(threads));
   return result;
 }
 
 Remeshed spreadEvenly(const SphereSurface& surface, std::size_t points, std::uint32_t seed,
                       Listener& listener) {
-  constexpr std::size_t most_points = std::size_t{1} << 24;
-  if (points < 1 || points > most_points)
+  constexpr std::size_t max_points = std::size_t{1} << 24;
+  if (points < 1 || points > max_points)
     throw InvalidInput("points = " + std::to_string(points) +
                        " is out of range; use 1 to 2^24 for an even cloud");
   Remeshed result;
@@ -347,10 +306,9 @@ py::dict textureAtlas(const IndexArray& triangles, const DoubleArray& sphere,
 
 /// The package's exceptions, in the place of pybind11's choice for their bases in C++.
 void registerErrors() {
-  // Kept to the end of the process, as the translator is.
-  static const py::handle errors = py::module_::import("spherical_param._errors").release();
   py::register_exception_translator([](std::exception_ptr error) {
     const auto raise = [](const char* name, const std::exception& cause) {
+      const py::module_ errors = py::module_::import("spherical_param._errors");
       PyErr_SetString(errors.attr(name).ptr(), withoutFunctionName(cause.what()).c_str());
     };
     try {
@@ -374,16 +332,15 @@ PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
   using py::literals::operator""_a;
 
-  module.doc() = "What of spherical_param is in C++; use the package's own functions.";
+  module.doc() = "The part of spherical_param that is in C++; use the package's own functions.";
   module.attr("__version__") = SPHERICAL_PARAM_VERSION;
   registerErrors();
   const auto points = py::arg("points").noconvert();
   const auto triangles = py::arg("triangles").noconvert();
   const auto sphere = py::arg("sphere").noconvert();
-  module.def("reconstruct", &reconstructPoints, points, py::kw_only(), "graph"_a, "k"_a, "solver"_a,
-             "weights"_a, "exponent"_a, "lambda_"_a, "tolerance"_a, "max_iterations"_a,
-             "stagnation_window"_a, "starts"_a, "seed"_a, "hull"_a, "optimization"_a, "attempts"_a,
-             "smoothing_steps"_a, "history"_a, "details"_a, "threads"_a, "progress"_a);
+  module.def("option_table", &optionRows);
+  module.def("reconstruct", &reconstructPoints, points, "options"_a, py::kw_only(), "details"_a,
+             "progress"_a);
   module.def("find_outliers", &findOutlierPoints, points, py::kw_only(), "sigma"_a, "k"_a,
              "threads"_a, "progress"_a);
   module.def("sphere_map", &mapToSphere, points, triangles, sphere, py::kw_only(), "area_weight"_a,

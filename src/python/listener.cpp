@@ -2,7 +2,7 @@
 
 namespace spherical_param::python {
 
-bool Listener::tell(const char* stage, double fraction, int iteration, double residual) {
+bool Listener::report(const char* stage, double fraction) {
   namespace py = pybind11;
   // To take the interpreter's lock may mean to wait for another thread's turn to end, and without a
   // function to call it is for signals alone.
@@ -17,7 +17,7 @@ bool Listener::tell(const char* stage, double fraction, int iteration, double re
       throw py::error_already_set();
     if (callback_.is_none())
       return true;
-    return callback_(stage, fraction, iteration, residual).ptr() != Py_False;
+    return callback_(stage, fraction).ptr() != Py_False;
   } catch (...) {
     error_ = std::current_exception();
     return false;

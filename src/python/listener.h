@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include "spherical_param/errors.h"
+#include "spherical_param/execution.h"
 
 #include <chrono>
 #include <exception>
@@ -14,15 +15,25 @@ namespace spherical_param::python {
 /// to the handlers of signals, so that Ctrl-C ends long work. Hidden, as the types of pybind11 are.
 class [[gnu::visibility("hidden")]] Listener {
 public:
-  /// \param callback callable with (stage, fraction, iteration, residual), or None.
+  /// \param callback callable with (stage, fraction), or None.
   explicit Listener(pybind11::object callback) : callback_(std::move(callback)) {}
 
-  /// Called without the interpreter's lock; takes it where there is something to be told.
+  /// Called without the interpreter's lock; takes it only where it calls Python.
   /// \return false to end the work: the function said so, or there is an exception.
-  bool tell(const char* stage, double fraction, int iteration = 0, double residual = 0.0);
+  bool report(const char* stage, double fraction);
+
+  /// Threads, and this listener's report as the progress callback.
+  Execution execution(int threads) {
+    Execution execution;
+    execution.threads = threads;
+    execution.progress = [this](const Progress& state) {
+      return report(state.stage, state.fraction);
+    };
+    return execution;
+  }
 
   /// Lets other Python threads run while `work` does. If it was cancelled by an exception in
-  /// Python, that is thrown on.
+  /// Python, that exception is rethrown.
   template <typename Work>
   auto run(const Work& work) {
     try {
@@ -37,7 +48,7 @@ public:
 
   /// The same for a step without reports of its own.
   void step(const char* stage, double fraction) {
-    if (!tell(stage, fraction))
+    if (!report(stage, fraction))
       throw Cancelled("cancelled by the progress callback");
   }
 

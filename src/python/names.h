@@ -1,42 +1,20 @@
 #pragma once
 
 #include "spherical_param/errors.h"
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
+#include "spherical_param/reconstruct.h"
 
 #include <array>
 #include <string>
 #include <utility>
 
-/// The names of enumerators in Python: those of the options are the tools'.
+/// The names of enumerators in Python. Those of reconstruct()'s options are in optionTable().
 namespace spherical_param::python {
 
 template <typename Enum, std::size_t Size>
 using Names = std::array<std::pair<const char*, Enum>, Size>;
 
-inline constexpr Names<GraphMethod, 2> kGraphNames = {{
-    {"delaunay", GraphMethod::LocalDelaunay},
-    {"knn", GraphMethod::NearestNeighbors},
-}};
-inline constexpr Names<EmbeddingMethod, 2> kSolverNames = {{
-    {"multilevel", EmbeddingMethod::Multilevel},
-    {"iterative", EmbeddingMethod::Iterative},
-}};
-inline constexpr Names<EdgeWeights, 3> kWeightsNames = {{
-    {"adaptive", EdgeWeights::Adaptive},
-    {"inverse", EdgeWeights::InverseLength},
-    {"uniform", EdgeWeights::Uniform},
-}};
-inline constexpr Names<TriangulationMethod, 2> kHullNames = {{
-    {"incremental", TriangulationMethod::Incremental},
-    {"qhull", TriangulationMethod::Qhull},
-}};
-inline constexpr Names<OptimizationMethod, 3> kOptimizationNames = {{
-    {"full", OptimizationMethod::Full},
-    {"flips", OptimizationMethod::Flips},
-    {"none", OptimizationMethod::None},
-}};
 inline constexpr Names<SurfaceFit, 2> kFitNames = {{
     {"smooth", SurfaceFit::Smooth},
     {"linear", SurfaceFit::Linear},

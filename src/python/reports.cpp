@@ -129,6 +129,7 @@ py::dict toDict(const OptimizationReport& optimization) {
   });
   return py::dict("phases"_a = phases, "energy"_a = optimization.energy,
                   "rough"_a = optimization.rough, "noise_steps"_a = optimization.noise_steps,
+                  "smoothed_self_intersections"_a = optimization.smoothed_self_intersections,
                   "alignment"_a = optimization.alignment, "unevenness"_a = optimization.unevenness);
 }
 
@@ -141,10 +142,10 @@ py::dict toDict(const SmoothingReport& smoothing) {
                   "self_intersections"_a = smoothing.self_intersections);
 }
 
-py::dict toDict(const AttemptReport& attempt) {
-  return py::dict("description"_a = attempt.description,
-                  "self_intersections"_a = attempt.self_intersections, "energy"_a = attempt.energy,
-                  "seconds"_a = attempt.seconds, "chosen"_a = attempt.chosen);
+py::dict toDict(const RunReport& run) {
+  return py::dict("description"_a = run.description,
+                  "self_intersections"_a = run.self_intersections, "energy"_a = run.energy,
+                  "seconds"_a = run.seconds, "chosen"_a = run.chosen);
 }
 
 py::dict toDict(const DistortionStatistics& statistics) {
@@ -164,12 +165,12 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
                  [&](Index kept) { return input_of_kept[static_cast<std::size_t>(kept)]; });
   py::dict dict("triangles"_a = toArray(result.triangles), "sphere"_a = toArray(result.sphere),
                 "vertex_of_input"_a = toArray(vertex_of_input),
-                "input_of_vertex"_a = toArray(input_of_vertex), "duplicates"_a = result.duplicates,
+                "input_of_vertex"_a = toArray(input_of_vertex),
+                "duplicates"_a = result.duplicates(),
                 "ignored"_a = points_given - input_of_kept.size(),
                 "self_intersections"_a = toArray(result.self_intersections),
                 "smoothed"_a =
-                    result.smoothed.cols() > 0 ? py::object(toArray(result.smoothed)) : py::none(),
-                "edges_outside_graph"_a = result.edges_outside_graph);
+                    result.smoothed.cols() > 0 ? py::object(toArray(result.smoothed)) : py::none());
   dict["topology"] = toDict(result.topology);
   dict["measures"] = toDict(result.measures);
   dict["diagnosis"] = toDict(result.diagnosis);
@@ -178,8 +179,7 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
   dict["triangulation"] = toDict(result.triangulation);
   dict["optimization"] = toDict(result.optimization);
   dict["smoothing"] = toDict(result.smoothing);
-  dict["attempts"] =
-      listOf(result.attempts, [](const AttemptReport& attempt) { return toDict(attempt); });
+  dict["runs"] = listOf(result.runs, [](const RunReport& run) { return toDict(run); });
   py::dict stages;
   for (const StageTime& stage : result.stages)
     stages[py::str(stage.name)] = stage.seconds;

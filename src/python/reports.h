@@ -1,7 +1,7 @@
 #pragma once
 
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/map/sphere_map.h"
+#include "spherical_param/reconstruct.h"
 
 #include <pybind11/pybind11.h>
 

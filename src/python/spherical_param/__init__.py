@@ -33,8 +33,9 @@ from ._maps import (
     sphere_map,
     texture_coordinates,
 )
-from ._reconstruction import (
-    Attempt,
+from ._outliers import Outliers, find_outliers
+from ._reconstruct import reconstruct
+from ._results import (
     Bridge,
     Diagnosis,
     Embedding,
@@ -47,18 +48,15 @@ from ._reconstruction import (
     Measures,
     Optimization,
     OptimizationPhase,
-    Outliers,
     PartBridge,
     Result,
+    Run,
     Smoothing,
     Topology,
     Triangulation,
-    find_outliers,
-    reconstruct,
 )
 
 __all__ = [
-    "Attempt",
     "Bridge",
     "Cancelled",
     "ComputeError",
@@ -79,6 +77,7 @@ __all__ = [
     "PartBridge",
     "Remeshed",
     "Result",
+    "Run",
     "Smoothing",
     "SphereMap",
     "SphereMapLevel",

@@ -1,4 +1,4 @@
-"""What callers give: arrays and options are checked here, and made what the core takes."""
+"""Arrays and options of callers are checked here, and converted to what the core takes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._errors import InvalidInput
 
-#: Told (stage, fraction, iteration, residual); False ends the work.
-ProgressFunction = Callable[[str, float, int, float], object]
+#: Called with (stage, fraction); False ends the work.
+ProgressFunction = Callable[[str, float], object]
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
@@ -31,10 +31,10 @@ if hasattr(os, "register_at_fork"):
 
 
 def thread_count(threads: SupportsIndex) -> int:
-    """The threads to work with: of a forked process only one.
+    """The threads to work with: only one in a forked process.
 
-    OpenMP's threads stay behind in the parent, and the child would wait for them forever. The
-    result does not depend on the number.
+    OpenMP's threads stay in the parent, and the child would wait for them forever. The result
+    does not depend on the number.
     """
     global _openmp_used
     count = integer("threads", threads, 0, 1024)
@@ -46,7 +46,7 @@ def thread_count(threads: SupportsIndex) -> int:
 
 def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) -> NDArray[Any]:
     if isinstance(value, np.ma.MaskedArray) and value.dtype.kind in "fiu":
-        # What is masked is not a point.
+        # Masked points are ignored.
         masked: Any = value
         value = masked.astype(np.float64).filled(np.nan)
     try:
@@ -56,7 +56,7 @@ def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) ->
             f"{name} cannot be made an array ({error}); give {what} with rows of one length"
         ) from error
     if array.dtype.kind == "O":
-        # Such as rows of Fraction or Decimal; what is no number is told below.
+        # Such as rows of Fraction or Decimal; others are refused below.
         try:
             array = array.astype(np.float64)
         except (TypeError, ValueError):
@@ -134,7 +134,7 @@ def truth(name: str, value: bool) -> bool:
 
 
 def choice(name: str, value: str, choices: tuple[str, ...]) -> str:
-    """The name of a choice, told before the long work that comes before the core is asked."""
+    """The name of a choice, checked before long work."""
     if text(name, value) not in choices:
         known = ", ".join(repr(known) for known in choices)
         raise InvalidInput(f"{name} = {value!r} is not known; use one of {known}")
@@ -147,13 +147,12 @@ def progress_function(progress: Optional[ProgressFunction]) -> Optional[Progress
         return None
     if not callable(progress):
         raise InvalidInput(
-            f"progress = {progress!r} cannot be called; give a function of "
-            "(stage, fraction, iteration, residual)"
+            f"progress = {progress!r} cannot be called; give a function of (stage, fraction)"
         )
     listener = progress
 
-    def tell(stage: str, fraction: float, iteration: int, residual: float) -> bool:
-        answer = listener(stage, fraction, iteration, residual)
+    def report(stage: str, fraction: float) -> bool:
+        answer = listener(stage, fraction)
         return not (isinstance(answer, (bool, np.bool_)) and not answer)
 
-    return tell
+    return report

@@ -1,4 +1,4 @@
-"""What of spherical_param is in C++; use the package's own functions."""
+"""The part of spherical_param that is in C++; use the package's own functions."""
 
 from typing import Any, Callable, Optional
 
@@ -7,28 +7,13 @@ from numpy.typing import NDArray
 
 __version__: str
 
+def option_table() -> list[dict[str, Any]]: ...
 def reconstruct(
     points: NDArray[np.float64],
+    options: dict[str, object],
     *,
-    graph: str,
-    k: Optional[int],
-    solver: str,
-    weights: str,
-    exponent: float,
-    lambda_: float,
-    tolerance: Optional[float],
-    max_iterations: int,
-    stagnation_window: int,
-    starts: int,
-    seed: int,
-    hull: str,
-    optimization: str,
-    attempts: int,
-    smoothing_steps: int,
-    history: int,
     details: bool,
-    threads: int,
-    progress: Optional[Callable[[str, float, int, float], object]],
+    progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def find_outliers(
     points: NDArray[np.float64],
@@ -36,7 +21,7 @@ def find_outliers(
     sigma: float,
     k: int,
     threads: int,
-    progress: Optional[Callable[[str, float, int, float], object]],
+    progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def sphere_map(
     points: NDArray[np.float64],
@@ -46,7 +31,7 @@ def sphere_map(
     area_weight: float,
     sweeps: int,
     threads: int,
-    progress: Optional[Callable[[str, float, int, float], object]],
+    progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def measure_map_distortion(
     points: NDArray[np.float64],
@@ -65,7 +50,7 @@ def remesh(
     fit: str,
     seed: int,
     threads: int,
-    progress: Optional[Callable[[str, float, int, float], object]],
+    progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def texture_coordinates(
     triangles: NDArray[np.int32],

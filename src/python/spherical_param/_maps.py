@@ -13,7 +13,7 @@ from . import _core
 from ._arguments import FloatArray, IndexArray, ProgressFunction
 from ._errors import InvalidInput
 from ._files import MeshExport
-from ._reconstruction import Result
+from ._results import Result
 
 GridName = Literal["icosahedral", "octahedral", "even"]
 FitName = Literal["smooth", "linear"]
@@ -131,13 +131,13 @@ def sphere_map(
         Sweeps of each level, at most; 0: the map is only made valid.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
-    progress : callable(stage, fraction, iteration, residual)
+    progress : callable(stage, fraction)
         As for ``reconstruct``; the stage is "map".
 
     Raises
     ------
     InvalidInput
-        The mesh, the start or an option is not as said.
+        The mesh, the start or an option is not as described.
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt
     """
     points, indices, start = _mesh(mesh, triangles, sphere)
@@ -265,7 +265,7 @@ def remesh(
     """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
 
     A mesh is closed, manifold, of genus 0, oriented outward. Where its triangles would intersect,
-    vertices slide along the surface, then edges are flipped; what is left is told.
+    vertices slide along the surface, then edges are flipped; ``self_intersections`` holds what is left.
 
     Parameters
     ----------
@@ -285,14 +285,14 @@ def remesh(
         Of an even cloud.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
-    progress : callable(stage, fraction, iteration, residual)
+    progress : callable(stage, fraction)
         As for ``reconstruct``; the stages are "map", "surface", "resample", "untangle" and
-        "verify". Within "surface", "resample" and "untangle" nothing is told.
+        "intersections".
 
     Raises
     ------
     InvalidInput
-        The mesh, the start or an option is not as said.
+        The mesh, the start or an option is not as described.
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt
     """
     arguments.choice("grid", grid, get_args(GridName))
@@ -367,7 +367,7 @@ def texture_coordinates(
     Raises
     ------
     InvalidInput
-        A triangle is flipped on the sphere, or an option is not as said.
+        A triangle is flipped on the sphere, or an option is not as described.
     """
     if not isinstance(mesh, (SphereMap, Remeshed)):
         raise InvalidInput(
@@ -382,6 +382,6 @@ def texture_coordinates(
     )
     corners = mesh.vertices[fields["source_vertices"]]
     vertices = np.einsum("ijk,ij->ik", corners, fields["source_weights"])
-    # Exactly where they were.
+    # Without rounding.
     vertices[: len(mesh.vertices)] = mesh.vertices
     return TextureCoordinates(vertices=vertices, **fields)

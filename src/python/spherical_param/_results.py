@@ -1,23 +1,15 @@
-"""From points to a mesh."""
+"""What reconstruct() returns."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex
+from typing import Any, Optional
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from . import _arguments as arguments
-from . import _core
-from ._arguments import FloatArray, IndexArray, ProgressFunction
+from ._arguments import FloatArray, IndexArray
 from ._files import MeshExport
-
-GraphName = Literal["delaunay", "knn"]
-SolverName = Literal["multilevel", "iterative"]
-WeightsName = Literal["adaptive", "inverse", "uniform"]
-HullName = Literal["incremental", "qhull"]
-OptimizationName = Literal["full", "flips", "none"]
 
 
 @dataclass(frozen=True)
@@ -132,7 +124,7 @@ class Graph:
 
 @dataclass(frozen=True)
 class EmbeddingLevel:
-    """Work on one level of the multilevel solver."""
+    """Work on one level of the multilevel embedding."""
 
     nodes: int
     edges: int
@@ -147,16 +139,21 @@ class Embedding:
     """How the embedding on the sphere ended."""
 
     stop_reason: str  #: "converged", "iteration_limit", "stagnated", "collapsed", "unfinished"
-    iterations: int  #: steps made; of Newton's method for the multilevel solver
+    iterations: int  #: steps made; of Newton's method for the multilevel embedding
     residual: float  #: mean tangential Laplacian [radius]
     residuals: FloatArray  #: (i,) before each step and at the end [radius]
     centroid_norm: float  #: length of the mean direction, in [0, 1]; 1: collapsed
     fallback_start: bool  #: the iteration collapsed, and a start that did not was taken instead
-    levels: tuple[EmbeddingLevel, ...]  #: of the multilevel solver, the finest first
+    levels: tuple[EmbeddingLevel, ...]  #: of the multilevel embedding, the finest first
     starts: int  #: of the coarsest level that were tried
     collapsed_starts: int  #: of these, rejected
     added_barrier: bool  #: all starts collapsed, and a barrier was added
-    energy: float
+    energy: float  #: that of the weights, without the barrier
+
+    @property
+    def converged(self) -> bool:
+        """Whether the residual came down to ``tolerance``."""
+        return self.stop_reason == "converged"
 
 
 @dataclass(frozen=True)
@@ -190,13 +187,14 @@ class Optimization:
     energy: float  #: total absolute curvature and a penalty on needles [unit of the input]
     rough: float  #: share of rough vertices after the first flips, in [0, 1]
     noise_steps: int  #: of smoothing that it took because the cloud is noisy; 0: it is not
+    smoothed_self_intersections: int  #: with ``noise_steps``: on the smoothed points
     alignment: float  #: how far the sampling follows the curvature, in [-1, 1]
     unevenness: float  #: relative deviation of the distances of a point's neighbours
 
 
 @dataclass(frozen=True)
 class Smoothing:
-    """The smoothed surface; all zero without ``smoothing_steps``."""
+    """The smoothed surface; all zero without ``smoothing``."""
 
     max_displacement: float  #: of a point [unit of the input]
     mean_displacement: float
@@ -207,12 +205,12 @@ class Smoothing:
 
 
 @dataclass(frozen=True)
-class Attempt:
-    """One whole run, of ``attempts``."""
+class Run:
+    """The first run, or one of ``retries``."""
 
     description: str  #: what is different from the first
     self_intersections: int  #: pairs of triangles, on the points or the smoothed ones
-    energy: float
+    energy: float  #: as ``Optimization.energy``
     seconds: float
     chosen: bool
 
@@ -255,8 +253,7 @@ class Result(MeshExport):
     duplicates: int  #: points that repeat an earlier one
     ignored: int  #: points that are not finite
     self_intersections: IndexArray  #: (s, 2) pairs of triangles that intersect, exactly found
-    smoothed: Optional[FloatArray]  #: (v, 3) after ``smoothing_steps``; None without
-    edges_outside_graph: float  #: share of edges between points that are no near neighbours
+    smoothed: Optional[FloatArray]  #: (v, 3) after ``smoothing``; None without
     topology: Topology  #: counted on ``triangles``
     measures: Measures  #: of the mesh on the input's points
     diagnosis: Diagnosis  #: does the cloud look like a closed genus-0 surface?
@@ -265,48 +262,28 @@ class Result(MeshExport):
     triangulation: Triangulation
     optimization: Optimization
     smoothing: Smoothing
-    attempts: tuple[Attempt, ...]  #: in the order of the work, at least one
+    runs: tuple[Run, ...]  #: in the order of the work, at least one
     stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
-    history: Optional[History]  #: how the embedding unfolded; None unless ``history`` asks for it
+    history: Optional[History]  #: how the embedding unfolded; None without ``history_vertices``
     vertex_residuals: Optional[FloatArray]
     """(v,) with ``details`` the length of the tangential Laplacian of ``sphere`` [radius]; else
     None"""
-    warnings: tuple[str, ...]  #: one sentence each; empty if nothing is to be said
+    warnings: tuple[str, ...]  #: one sentence each
 
     def _export_points(self) -> FloatArray:
         return self.vertices if self.smoothed is None else self.smoothed
-
-    @property
-    def volume(self) -> float:
-        """Enclosed volume [cubed unit of the input]."""
-        return self.measures.volume
-
-    @property
-    def area(self) -> float:
-        """Area of the mesh [squared unit of the input]."""
-        return self.measures.area
-
-    @property
-    def converged(self) -> bool:
-        """Whether the embedding came to ``tolerance``; without one it is not asked for."""
-        return self.embedding.stop_reason == "converged"
-
-    @property
-    def residuals(self) -> FloatArray:
-        """(i,) mean tangential Laplacian before each step, and at the end [radius]."""
-        return self.embedding.residuals
 
     def __repr__(self) -> str:
         crossings = len(self.self_intersections)
         return (
             f"<spherical_param.Result: {len(self.vertices)} vertices, "
-            f"{len(self.triangles)} triangles, volume {self.volume:.6g}, area {self.area:.6g}, "
+            f"{len(self.triangles)} triangles, volume {self.measures.volume:.6g}, area {self.measures.area:.6g}, "
             f"{crossings} self-intersection{'' if crossings == 1 else 's'}, "
             f"{self.diagnosis.kind}>"
         )
 
 
-def _result(fields: dict[str, Any], points: FloatArray) -> Result:
+def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
     diagnosis = fields["diagnosis"]
     diagnosis["lids"] = tuple(Lid(**lid) for lid in diagnosis["lids"])
     diagnosis["handles"] = tuple(Handle(**handle) for handle in diagnosis["handles"])
@@ -330,202 +307,7 @@ def _result(fields: dict[str, Any], points: FloatArray) -> Result:
         triangulation=Triangulation(**fields["triangulation"]),
         optimization=Optimization(**optimization),
         smoothing=Smoothing(**fields["smoothing"]),
-        attempts=tuple(Attempt(**attempt) for attempt in fields["attempts"]),
+        runs=tuple(Run(**run) for run in fields["runs"]),
         warnings=tuple(fields["warnings"]),
     )
     return Result(vertices=points[fields["input_of_vertex"]], **fields)
-
-
-def reconstruct(
-    points: ArrayLike,
-    *,
-    graph: GraphName = "delaunay",
-    k: Optional[SupportsIndex] = None,
-    solver: SolverName = "multilevel",
-    weights: WeightsName = "adaptive",
-    exponent: SupportsFloat = 3.0,
-    lambda_: SupportsFloat = 0.5,
-    tolerance: Optional[SupportsFloat] = None,
-    max_iterations: SupportsIndex = 1600,
-    stagnation_window: SupportsIndex = 100,
-    starts: SupportsIndex = 2,
-    seed: SupportsIndex = 1,
-    hull: HullName = "incremental",
-    optimization: OptimizationName = "full",
-    attempts: SupportsIndex = 4,
-    smoothing_steps: SupportsIndex = 0,
-    history: SupportsIndex = 0,
-    details: bool = False,
-    threads: SupportsIndex = 0,
-    progress: Optional[ProgressFunction] = None,
-) -> Result:
-    """Mesh the points of an object without holes through it.
-
-    The mesh is closed, manifold, oriented outward, of genus 0 and in one piece, and every distinct
-    finite point is a vertex. No normals and no radius are needed, and the defaults need no tuning.
-
-    Parameters
-    ----------
-    points : array-like, (n, 3)
-        In any unit, any real type, worked on in double precision. At least 4 distinct finite points
-        that are not all in one plane. Points with a coordinate that is not finite (or masked) are
-        ignored, and counted.
-    graph : {"delaunay", "knn"}
-        Neighbours of each point: local Delaunay neighbourhoods, or the k nearest (the paper's).
-    k : int, 3 and up
-        Neighbours of each point. Default: 12 for "delaunay", 25 for "knn".
-    solver : {"multilevel", "iterative"}
-        How the graph is embedded on the sphere: coarse to fine, or by the paper's iteration.
-    weights : {"adaptive", "inverse", "uniform"}
-        Weights of the Laplacian (equations 2 to 4 of the paper).
-    exponent : float, (2, 16]
-        p of the energy of adaptive weights; multilevel solver.
-    lambda_ : float, (0, 1]
-        Damping of iterations and smoothing sweeps.
-    tolerance : float, >= 0
-        Mean tangential Laplacian at which the embedding has converged, in radii of the sphere.
-        Default: 1e-8 for the iterative solver; the multilevel solver ends with its sweeps.
-    max_iterations : int, >= 0
-        Of the iterative solver.
-    stagnation_window : int, 0 (never) or >= 2
-        Iterations over which the stagnation of the iterative solver is judged.
-    starts : int, 1 to 100
-        Starts of the coarsest level of the multilevel solver.
-    seed : int, 0 to 2**32 - 1
-        Of all that is random.
-    hull : {"incremental", "qhull"}
-        Triangulation of the sphere: exact and incremental, or by the convex hull of qhull.
-    optimization : {"full", "flips", "none"}
-        Of the mesh on the points.
-    attempts : int, 1 to 100
-        Whole runs, at most, while the mesh intersects itself although the cloud looks closed.
-    smoothing_steps : int, 0 to 10000
-        Steps of smoothing, into ``Result.smoothed``; the ``vertices`` stay where they are.
-    history : int, 0 to 2**24
-        Vertices whose way on the sphere is kept in ``Result.history``, at most; 0: none.
-    details : bool
-        Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it. In a forked process it is 1.
-    progress : callable(stage, fraction, iteration, residual)
-        Told, from the calling thread, how far the work is: ``stage`` is "neighbors", "graph",
-        "embedding", "triangulation", "optimization", "smoothing" or "check", ``fraction`` its share
-        in [0, 1]. If it returns False, the work ends with Cancelled; if it raises, with that.
-
-    Returns
-    -------
-    Result
-        Mesh, map to the sphere, and what tells how much to trust them: ``diagnosis``,
-        ``self_intersections`` and ``warnings``.
-
-    Raises
-    ------
-    InvalidInput
-        Points or an option are not as said. A subclass of ValueError.
-    ComputeError, Cancelled, MemoryError, KeyboardInterrupt
-
-    Notes
-    -----
-    No guarantees: the mesh may intersect itself, and a cloud with openings or handles is closed and
-    cut all the same; ``diagnosis`` tells. Below 2 KB of memory a point, 3 KB with a tolerance.
-    Ctrl-C and False of ``progress`` are noticed every second or two; the paper's own stages
-    ("iterative", "qhull") have longer silences.
-
-    Examples
-    --------
-    >>> mesh = reconstruct(points)  # doctest: +SKIP
-    >>> mesh.vertices, mesh.triangles  # doctest: +SKIP
-    """
-    array = arguments.positions("points", points)
-    fields = _core.reconstruct(
-        array,
-        graph=arguments.text("graph", graph),
-        k=None if k is None else arguments.integer("k", k, 3),
-        solver=arguments.text("solver", solver),
-        weights=arguments.text("weights", weights),
-        exponent=arguments.real("exponent", exponent),
-        lambda_=arguments.real("lambda_", lambda_),
-        tolerance=None if tolerance is None else arguments.real("tolerance", tolerance),
-        max_iterations=arguments.integer("max_iterations", max_iterations),
-        stagnation_window=arguments.integer("stagnation_window", stagnation_window),
-        starts=arguments.integer("starts", starts),
-        seed=arguments.integer("seed", seed, 0, 2**32 - 1),
-        hull=arguments.text("hull", hull),
-        optimization=arguments.text("optimization", optimization),
-        attempts=arguments.integer("attempts", attempts),
-        smoothing_steps=arguments.integer("smoothing_steps", smoothing_steps, 0, 10000),
-        history=arguments.integer("history", history, 0, 2**24),
-        details=arguments.truth("details", details),
-        threads=arguments.thread_count(threads),
-        progress=arguments.progress_function(progress),
-    )
-    return _result(fields, array)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Outliers:
-    """Points that do not belong to the surface of the others."""
-
-    indices: IndexArray  #: (o,) rows of the outliers, ascending, copies of them included
-    scores: FloatArray  #: (n,) how far each point is off its neighbours' surface; nan: not finite
-    threshold: float  #: scores above are outliers
-    rounds: int  #: passes over the points
-
-    @property
-    def inliers(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """(n,) True for all points that are no outliers: ``points[outliers.inliers]``."""
-        mask = np.ones(len(self.scores), dtype=np.bool_)
-        mask[self.indices] = False
-        return mask
-
-    def __repr__(self) -> str:
-        return (
-            f"<spherical_param.Outliers: {len(self.indices)} of {len(self.scores)} points, "
-            f"threshold {self.threshold:.4g}>"
-        )
-
-
-def find_outliers(
-    points: ArrayLike,
-    *,
-    sigma: SupportsFloat = 4.0,
-    k: SupportsIndex = 16,
-    threads: SupportsIndex = 0,
-    progress: Optional[ProgressFunction] = None,
-) -> Outliers:
-    """Find points that are off the surface of their neighbours (section 4.2 of the paper).
-
-    ``reconstruct`` makes a vertex of every point, outliers too: leave them out before, as in
-    ``reconstruct(points[find_outliers(points).inliers])``.
-
-    Parameters
-    ----------
-    points : array-like, (n, 3)
-        As for ``reconstruct``.
-    sigma : float, 0 to 1000
-        Outliers are further off than the mean by so many standard deviations.
-    k : int, 3 and up
-        Neighbours of each point that make its surface.
-    threads : int, 0 (all) to 1024
-        The result does not depend on it.
-    progress : callable(stage, fraction, iteration, residual)
-        As for ``reconstruct``; the stages are "neighbors" and "outliers".
-
-    Raises
-    ------
-    InvalidInput, Cancelled, MemoryError, KeyboardInterrupt
-
-    Notes
-    -----
-    No guarantees: a group of outliers as dense as the surface is a surface of its own, and beyond
-    the tip of a thin limb an outlier may be in the plane of its neighbours.
-    """
-    return Outliers(
-        **_core.find_outliers(
-            arguments.positions("points", points),
-            sigma=arguments.real("sigma", sigma),
-            k=arguments.integer("k", k, 3),
-            threads=arguments.thread_count(threads),
-            progress=arguments.progress_function(progress),
-        )
-    )

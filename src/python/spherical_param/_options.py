@@ -1,0 +1,78 @@
+"""The keywords of reconstruct(), made from the core's table of options.
+
+The build runs this file by itself, to write the types of reconstruct() that type checkers read.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+#: Options that are no rows of the table: name, type, default, range and help.
+OTHERS = (
+    (
+        "details",
+        "bool",
+        False,
+        "bool",
+        "Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``.",
+    ),
+    (
+        "progress",
+        "Optional[ProgressFunction]",
+        None,
+        "callable(stage, fraction)",
+        """Called from the calling thread during the work. ``stage`` is "neighbors", "graph",
+        "embedding", "triangulation", "optimization", "smoothing" or "quality"; ``fraction``, in
+        [0, 1], is that of the stage's current loop. If it returns False, the work ends with
+        Cancelled; if it raises, with that exception.""",
+    ),
+)
+
+
+def keywords(table: list[dict[str, Any]]) -> list[tuple[str, str, Any, str, str]]:
+    """Name, type, default, range and help of each keyword."""
+    rows = []
+    for row in table:
+        kind = "SupportsIndex" if row["is_integer"] else "SupportsFloat"
+        if row["choices"]:
+            kind = "Literal[" + ", ".join(f'"{name}"' for name in row["choices"]) + "]"
+        if row["optional"]:
+            kind = f"Optional[{kind}]"
+        rows.append((row["name"], kind, row["default"], row["range"], row["help"]))
+    return rows + list(OTHERS)
+
+
+def documentation(table: list[dict[str, Any]]) -> str:
+    """The keywords as a section of a docstring has them."""
+    return "\n".join(
+        f"    {name} : {range_}, default {default!r}\n        {help_}"
+        for name, _, default, range_, help_ in keywords(table)
+    )
+
+
+def stub(table: list[dict[str, Any]]) -> str:
+    """What type checkers read of _reconstruct.py."""
+    parameters = "".join(
+        f"    {name}: {kind} = ...,\n" for name, kind, *_ in keywords(table)
+    )
+    return f'''from typing import Literal, Optional, SupportsFloat, SupportsIndex
+
+from numpy.typing import ArrayLike
+
+from ._arguments import ProgressFunction
+from ._results import Result
+
+def reconstruct(
+    points: ArrayLike,
+    *,
+{parameters}) -> Result: ...
+'''
+
+
+if __name__ == "__main__":
+    import sys
+
+    import _core  # type: ignore[import]  # the module that was just built, beside this file
+
+    with open(sys.argv[1], "w", encoding="ascii") as file:
+        file.write(stub(_core.option_table()))

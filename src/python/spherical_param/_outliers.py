@@ -1,0 +1,82 @@
+"""Points to leave out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional, SupportsFloat, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arguments as arguments
+from . import _core
+from ._arguments import FloatArray, IndexArray, ProgressFunction
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Outliers:
+    """Points that do not belong to the surface of the others."""
+
+    indices: IndexArray  #: (o,) rows of the outliers, ascending, copies of them included
+    scores: FloatArray  #: (n,) how far each point is off its neighbours' surface; nan: not finite
+    threshold: float  #: scores above are outliers
+    rounds: int  #: passes over the points
+
+    @property
+    def inliers(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """(n,) True for all other points: ``points[outliers.inliers]``."""
+        mask = np.ones(len(self.scores), dtype=np.bool_)
+        mask[self.indices] = False
+        return mask
+
+    def __repr__(self) -> str:
+        return (
+            f"<spherical_param.Outliers: {len(self.indices)} of {len(self.scores)} points, "
+            f"threshold {self.threshold:.4g}>"
+        )
+
+
+def find_outliers(
+    points: ArrayLike,
+    *,
+    sigma: SupportsFloat = 4.0,
+    k: SupportsIndex = 16,
+    threads: SupportsIndex = 0,
+    progress: Optional[ProgressFunction] = None,
+) -> Outliers:
+    """Find points that are off the surface of their neighbours (section 4.2 of the paper).
+
+    ``reconstruct`` makes a vertex of every point, outliers too: leave them out before, as in
+    ``reconstruct(points[find_outliers(points).inliers])``.
+
+    Parameters
+    ----------
+    points : array-like, (n, 3)
+        As for ``reconstruct``.
+    sigma : float, 0 to 1000
+        Outliers are further off than the mean by so many standard deviations.
+    k : int, 3 and up
+        Neighbours of each point that make its surface.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it.
+    progress : callable(stage, fraction)
+        As for ``reconstruct``; the stages are "neighbors" and "outliers".
+
+    Raises
+    ------
+    InvalidInput, Cancelled, MemoryError, KeyboardInterrupt
+
+    Notes
+    -----
+    No guarantees: a group of outliers as dense as the surface is a surface of its own, and beyond
+    the tip of a thin limb an outlier may be in the plane of its neighbours.
+    """
+    return Outliers(
+        **_core.find_outliers(
+            arguments.positions("points", points),
+            sigma=arguments.real("sigma", sigma),
+            k=arguments.integer("k", k, 3),
+            threads=arguments.thread_count(threads),
+            progress=arguments.progress_function(progress),
+        )
+    )
