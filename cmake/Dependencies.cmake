@@ -22,6 +22,9 @@ spherical_param_require_version(qhull "${SPHERICAL_PARAM_QHULL_VERSION}" 7.0 lib
 find_library(LZ4_LIBRARY lz4)
 find_path(SPHERICAL_PARAM_LZ4_INCLUDE_DIR lz4.h)
 find_path(SPHERICAL_PARAM_FLANN_INCLUDE_DIR flann/algorithms/kdtree_single_index.h)
+if(NOT SPHERICAL_PARAM_FLANN_INCLUDE_DIR)
+  message(FATAL_ERROR "FLANN was not found: install libflann-dev")
+endif()
 mark_as_advanced(SPHERICAL_PARAM_LZ4_INCLUDE_DIR SPHERICAL_PARAM_FLANN_INCLUDE_DIR)
 spherical_param_version_of_header(lz4_version "${SPHERICAL_PARAM_LZ4_INCLUDE_DIR}/lz4.h"
   LZ4_VERSION_MAJOR LZ4_VERSION_MINOR LZ4_VERSION_RELEASE)

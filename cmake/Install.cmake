@@ -1,5 +1,5 @@
 # Installation: libraries, headers, CMake package with the components core and pcl, pkg-config
-# files, package.xml. Nothing that is installed holds a path of the build machine, except those
+# files, package.xml. The map belongs to the component core. Nothing that is installed holds a path of the build machine, except those
 # that PCL's own package puts into its targets.
 #
 # The components of the installation: core and pcl are what programs need to run, core_dev and
@@ -71,17 +71,16 @@ else()
   set(PKGCONFIG_PREFIX "\${pcfiledir}/${up}")
 endif()
 set(PKGCONFIG_CORE_PRIVATE_LIBS "-lqhull_r -lstdc++ -lm")
+if(LZ4_LIBRARY)
+  string(PREPEND PKGCONFIG_CORE_PRIVATE_LIBS "-llz4 ")
+endif()
 if(OpenMP_CXX_FOUND)
   string(APPEND PKGCONFIG_CORE_PRIVATE_LIBS " ${OpenMP_CXX_FLAGS}")
 endif()
 # With static libraries there is no other kind to link, so that --static must not be needed.
-set(PKGCONFIG_PCL_LIBS "")
 if(BUILD_SHARED_LIBS)
   set(PKGCONFIG_CORE_LIBS "")
 else()
-  if(LZ4_LIBRARY)
-    set(PKGCONFIG_PCL_LIBS " -llz4")
-  endif()
   set(PKGCONFIG_CORE_LIBS " ${PKGCONFIG_CORE_PRIVATE_LIBS}")
   set(PKGCONFIG_CORE_PRIVATE_LIBS "")
 endif()

@@ -49,7 +49,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 # Older than -1, the revision that a package of Debian's own would begin with.
 set(CPACK_DEBIAN_PACKAGE_RELEASE 0upstream1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/src)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
+  ${PROJECT_BINARY_DIR}/src ${PROJECT_BINARY_DIR}/src/core ${PROJECT_BINARY_DIR}/src/map)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -90,9 +91,9 @@ endmacro()
 set(abi ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(core libspherical-param-core${abi})
 set(pcl libpcl-spherical-param${abi})
-debian_package(${core} SECTION libs COMPONENT core ABOUT "core library")
+debian_package(${core} SECTION libs COMPONENT core ABOUT "core and map libraries")
 debian_package(libspherical-param-core-dev SECTION libdevel COMPONENT core_dev
-  ABOUT "core, development files" SAME_VERSION ${core} DEPENDS libeigen3-dev)
+  ABOUT "core and map, development files" SAME_VERSION ${core} DEPENDS libeigen3-dev)
 debian_package(${pcl} SECTION libs COMPONENT pcl ABOUT "classes for PCL" SAME_VERSION ${core})
 # FLANN's headers, which those of PCL use, need lz4.
 debian_package(libpcl-spherical-param-dev SECTION libdevel COMPONENT pcl_dev

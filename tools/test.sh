@@ -44,7 +44,7 @@ scripts_parse() {
 # warnings in other people's headers is left out, so that the end of the log shows the errors.
 tidy() {
   # The nodes of ROS themselves are not in the build, nor is the Python module in every one.
-  files 'src/core/*.cpp' 'src/ros/*.cpp' 'tools/*.cpp' | grep -v '^src/ros/ros' |
+  files 'src/core/*.cpp' 'src/map/*.cpp' 'src/ros/*.cpp' 'tools/*.cpp' | grep -v '^src/ros/ros' |
     xargs -n 1 -P "$jobs" clang-tidy -p build/clang --quiet --extra-arg=-Xclang \
       --extra-arg=-analyzer-config --extra-arg=-Xclang --extra-arg=max-nodes=20000 2>&1 |
     sed '/ warnings* generated\.$/d'
@@ -69,7 +69,7 @@ if [ "$quick" = no ]; then
     check "clang-tidy" tidy || true
   fi
   export UBSAN_OPTIONS=print_stacktrace=1
-  # Clang's OpenMP does not give back what it has for each thread.
+  # Clang's OpenMP does not free what it has for each thread.
   echo 'leak:libomp' >"$logs/leaks-of-others"
   export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
   # The core, the PCL class, the seam to ROS and the readers; what tools do with files is tested above,

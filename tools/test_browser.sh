@@ -18,7 +18,7 @@ make_reports() {
       "$bin/pcl_spherical_param_reconstruction" "$evil" mesh.ply -report sound.html &&
       "$bin/pcl_spherical_param_scan" bowl bowl.xyz -points 3000 &&
       printf '%s\n' '3 0 1' '-2 1 0' >>bowl.xyz &&
-      "$bin/pcl_spherical_param_reconstruction" bowl.xyz mesh.ply -smooth 3 -outliers 4 \
+      "$bin/pcl_spherical_param_reconstruction" bowl.xyz mesh.ply -smoothing 3 -outliers 4 \
         -report open.html
   )
 }

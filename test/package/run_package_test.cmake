@@ -2,7 +2,7 @@
 #   cmake -DBUILD_DIR= -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DLIBDIR= -DVERSION=
 #         -DCOMPONENTS="core;core_dev;license" or more [-DPKG_CONFIG=] [-DPREFIX=]
 #         -P run_package_test.cmake
-# With PREFIX, an installation that there is already.
+# With PREFIX, an installation that exists already.
 cmake_minimum_required(VERSION 3.21)
 
 # run(<what> <command>...): fails the test with the command's output if the command fails.
@@ -25,7 +25,7 @@ else()
     run("installation of ${component}" ${CMAKE_COMMAND} --install ${BUILD_DIR}
         --prefix ${WORK_DIR}/installed --component ${component})
   endforeach()
-  # Whoever packs or copies an installation must get a working one.
+  # An installation that is packed or copied must work.
   file(RENAME ${WORK_DIR}/installed ${prefix})
   list(APPEND wanted share/doc/pcl_spherical_param/LICENSE)
 endif()
@@ -61,7 +61,7 @@ if("pcl" IN_LIST COMPONENTS)
   run("program that uses the PCL class" ${WORK_DIR}/pcl/consumer)
 endif()
 
-# Later versions, and another one where it must be exact, are seen but not taken.
+# Later versions, and another one where the version must be exact, are found but rejected.
 string(REGEX MATCH "^([0-9]+)\\.([0-9]+)" minor "${VERSION}")
 math(EXPR next_minor "${CMAKE_MATCH_2} + 1")
 math(EXPR next_major "${CMAKE_MATCH_1} + 1")
@@ -78,7 +78,7 @@ endforeach()
 run("refusal of other versions" ${CMAKE_COMMAND} ${settings}
     -S ${WORK_DIR}/versions -B ${WORK_DIR}/versions/build)
 
-# A component that does not exist, or is not installed, must be told.
+# A component that does not exist must be reported.
 file(WRITE ${WORK_DIR}/absent/CMakeLists.txt
   "cmake_minimum_required(VERSION 3.21)\nproject(absent LANGUAGES CXX)\n"
   "find_package(pcl_spherical_param REQUIRED COMPONENTS absent)\n")
@@ -86,7 +86,7 @@ execute_process(
   COMMAND ${CMAKE_COMMAND} ${settings} -S ${WORK_DIR}/absent -B ${WORK_DIR}/absent/build
   RESULT_VARIABLE code OUTPUT_QUIET ERROR_VARIABLE error)
 if(code EQUAL 0 OR NOT error MATCHES "there is no component 'absent'")
-  message(FATAL_ERROR "a component that does not exist is not told: ${error}")
+  message(FATAL_ERROR "a component that does not exist is not reported: ${error}")
 endif()
 
 if(PKG_CONFIG)
@@ -113,10 +113,10 @@ if(PKG_CONFIG)
       message(FATAL_ERROR "pkg-config says that ${name} has version ${output}")
     endif()
   endforeach()
-  # What static libraries of ours leave to the final link comes with --static, whatever was built.
+  # --static gives what static libraries leave to the final link, for shared libraries too.
   run("pkg-config --static" ${PKG_CONFIG} --static --libs --cflags spherical_param_core)
-  if(NOT output MATCHES "-lspherical_param_core .*-lqhull_r")
-    message(FATAL_ERROR "pkg-config --static does not link qhull: ${output}")
+  if(NOT output MATCHES "-lspherical_param_map -lspherical_param_core .*-lqhull_r")
+    message(FATAL_ERROR "pkg-config --static does not link map, core and qhull: ${output}")
   endif()
   separate_arguments(flags UNIX_COMMAND "${output}")
   run("compilation with pkg-config --static" ${CXX} -std=c++17

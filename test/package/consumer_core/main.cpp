@@ -1,13 +1,12 @@
+#include <spherical_param/map/sphere_map.h>
 #include <spherical_param/reconstruct.h>
 #include <spherical_param/version.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numeric>
 #include <set>
 #include <utility>
-#include <vector>
 
 namespace {
 
@@ -22,21 +21,6 @@ spherical_param::Positions makePoints(Index count) {
     points.col(i) << 3.0 * r * std::cos(2.4 * i), 2.0 * r * std::sin(2.4 * i), z;
   }
   return points;
-}
-
-spherical_param::NeighborLists findNeighbors(const spherical_param::Positions& points, Index k) {
-  spherical_param::NeighborLists lists;
-  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
-  for (Index i = 0; i < points.cols(); ++i) {
-    std::iota(order.begin(), order.end(), 0);
-    std::partial_sort(order.begin(), order.begin() + k, order.end(), [&](Index a, Index b) {
-      return (points.col(a) - points.col(i)).squaredNorm() <
-             (points.col(b) - points.col(i)).squaredNorm();
-    });
-    lists.indices.insert(lists.indices.end(), order.begin(), order.begin() + k);
-    lists.offsets.push_back(lists.indices.size());
-  }
-  return lists;
 }
 
 // Closed and oriented: every directed edge once, and its reverse once.
@@ -58,9 +42,11 @@ bool isClosed(const spherical_param::Triangles& triangles) {
 
 int main() {
   const spherical_param::Positions points = makePoints(400);
-  const spherical_param::Result result =
-      spherical_param::reconstruct(points, findNeighbors(points, 26));
-  const bool good = result.triangles.cols() == 2 * points.cols() - 4 && isClosed(result.triangles);
+  const spherical_param::Result result = spherical_param::reconstruct(points);
+  const spherical_param::SphereMap map =
+      spherical_param::computeSphereMap(points, result.triangles, result.sphere);
+  const bool good = result.triangles.cols() == 2 * points.cols() - 4 &&
+                    isClosed(result.triangles) && map.distortion.flipped_triangles == 0;
   std::cout << "spherical_param " << SPHERICAL_PARAM_VERSION << ": " << result.triangles.cols()
             << " triangles, " << (good ? "closed" : "NOT closed") << "\n";
   return good ? 0 : 1;
