@@ -133,7 +133,7 @@ TEST_F(SphericalParamMorph, FailuresLeaveAnEmptyOutput) {
   options.morph.samples = 3;
   EXPECT_TRUE(fails(2, options));
   options = {};
-  options.morph.progress = [](double) { return false; };
+  options.morph.progress = [](const spherical_param::Progress&) { return false; };
   EXPECT_TRUE(fails(2, options));
   options = {};
   options.map.area_weight = -1.0;
@@ -145,9 +145,11 @@ TEST_F(SphericalParamMorph, FailuresLeaveAnEmptyOutput) {
   EXPECT_TRUE(fails(2, {}));
 }
 
-TEST_F(SphericalParamMorph, WhatTheCallersProgressThrowsIsPassedOn) {
+TEST_F(SphericalParamMorph, ExceptionsOfTheProgressCallbackArePassedOn) {
   pcl::SphericalParamMorphOptions options;
-  options.morph.progress = [](double) -> bool { throw std::logic_error("mine"); };
+  options.morph.progress = [](const spherical_param::Progress&) -> bool {
+    throw std::logic_error("mine");
+  };
   EXPECT_THROW(pcl::morphSphericalParam(first, second, 2, output, options), std::logic_error);
   EXPECT_TRUE(output.empty());
 }

@@ -129,8 +129,8 @@ TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVertices) {
   }
 }
 
-TEST_F(SphericalParamRemesh, SmoothedPointsAreMappedIfThereAre) {
-  reconstruction.setSmoothingSteps(3);
+TEST_F(SphericalParamRemesh, SmoothedPointsAreMappedIfThereAreAny) {
+  reconstruction.setSmoothing(3);
   Positions points;
   SphereMap map;
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
@@ -185,10 +185,12 @@ TEST_F(SphericalParamRemesh, FailureLeavesNothingAndThrowsNothing) {
 
 TEST_F(SphericalParamRemesh, ProgressCanCancelAndItsExceptionsArePassedOn) {
   pcl::SphericalParamRemeshOptions options;
-  options.map.progress = [](double) { return false; };
+  options.map.progress = [](const spherical_param::Progress&) { return false; };
   EXPECT_FALSE(pcl::remeshSphericalParam(reconstruction, mesh, options));
   EXPECT_TRUE(mesh.polygons.empty());
-  options.map.progress = [](double) -> bool { throw std::logic_error("mine"); };
+  options.map.progress = [](const spherical_param::Progress&) -> bool {
+    throw std::logic_error("mine");
+  };
   EXPECT_THROW(pcl::remeshSphericalParam(reconstruction, mesh, options), std::logic_error);
   EXPECT_TRUE(mesh.polygons.empty());
 }

@@ -166,7 +166,7 @@ TEST_F(SphericalParamTexture, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST_F(SphericalParamTexture, AFailureIsToldAndLeavesNothingOfTheLastResult) {
+TEST_F(SphericalParamTexture, AFailureLeavesNothingOfTheLastResult) {
   ASSERT_TRUE(texture<pcl::PointXYZRGB>());
   pcl::SphericalParamTextureOptions options = small();
   options.bake.height = 5;
