@@ -1,12 +1,18 @@
 #include "retries.h"
 
+#include "judgement.h"
+
 #include <string>
 
 namespace spherical_param::internal {
 namespace {
 
-/// Neighbours of the graph of a retry, fewer than usual: no far ones.
+/// Neighbours of each point in the graph of a retry, fewer than the default: far ones join sheets.
 constexpr int kFewNeighbors = 8;
+
+/// Self-intersections for each triangle up to which retries are worth it even if the cloud does not
+/// look like a closed surface.
+constexpr double kMaxIntersections = 0.001;
 
 }  // namespace
 
@@ -38,6 +44,34 @@ Plan planOf(int run, const Options& options) {
   plan.options.seed += static_cast<std::uint32_t>(run);
   plan.description = "seed " + std::to_string(plan.options.seed);
   return plan;
+}
+
+bool Candidate::isGood() const {
+  const OptimizationReport& report = optimization.report;
+  return intersections() == 0 ||
+         (!isSmoothed() && report.noise_steps > 0 && report.smoothed_self_intersections == 0);
+}
+
+void BestOfRuns::add(const std::string& description, Candidate candidate, double seconds) {
+  const bool is_better = runs.empty() || candidate.badness() < mesh.badness();
+  runs.push_back({description, candidate.intersections(), candidate.optimization.report.energy,
+                  seconds, false});
+  if (!is_better)
+    return;
+  if (runs.size() > 1 && !first_graph)
+    first_graph = std::move(mesh.graph);
+  mesh = std::move(candidate);
+  for (RunReport& report : runs)
+    report.chosen = &report == &runs.back();
+}
+
+bool isWorthRetrying(const Positions& points, const Candidate& mesh, const Options& options) {
+  if (options.optimization.method != OptimizationMethod::Full || options.retries == 0 ||
+      mesh.isGood())
+    return false;
+  const auto triangles = static_cast<double>(mesh.triangles().cols());
+  return static_cast<double>(mesh.intersections()) <= kMaxIntersections * triangles ||
+         diagnose(points, mesh, mesh.graph, options).looksClosedGenus0();
 }
 
 }  // namespace spherical_param::internal
