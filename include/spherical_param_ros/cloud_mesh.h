@@ -28,7 +28,7 @@ struct Mesh {
   std::vector<std::array<std::uint8_t, 4>> colors;
 };
 
-/// What became of a cloud.
+/// How the work on a cloud ended.
 enum class Status {
   Done,       ///< there is a mesh
   Failed,     ///< the cloud cannot be meshed; `message` has cause and remedy
@@ -55,14 +55,9 @@ struct Outcome {
   double seconds = 0.0;  ///< of the reconstruction, wall time
 };
 
-/// Meshes a cloud. Whatever is wrong with it is told in the outcome; nothing is thrown.
+/// Meshes a cloud, in double precision. Throws nothing: the outcome holds every failure.
 ///
-/// Coordinates in double precision are rounded to single precision only after the cloud was moved
-/// to the origin; the mesh has them as they were.
-///
-/// \param is_wanted asked every second or two at least, but not while outliers are told from the
-///                  others once their neighbours are found, nor while the statistical method looks
-///                  for them; false ends the work with
+/// \param is_wanted asked every second or two at least; false ends the work with
 ///                  Status::Cancelled. May be empty.
 Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                   const std::function<bool()>& is_wanted);

@@ -3,28 +3,19 @@
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace spherical_param_ros {
 
-/// A parameter that cannot be taken: the message is "cause; remedy".
-class ParameterError : public std::invalid_argument {
-public:
-  using std::invalid_argument::invalid_argument;
-};
-
-/// How outliers are told from the points of a surface, as the command line tool has it.
-enum class OutlierMethod { Paper, Statistical };
-
 /// How clouds are meshed, and how they wait for it.
 struct Settings {
-  spherical_param::Options options;     ///< `progress` has no say
-  std::optional<double> outlier_sigma;  ///< none: outliers are not looked for
-  OutlierMethod outlier_method = OutlierMethod::Paper;
+  spherical_param::Options options;  ///< `progress` is ignored
+  /// OutlierOptions::sigma; unset: outliers are not looked for.
+  std::optional<double> outliers;
   /// Larger clouds are refused, so that no cloud takes all memory; 0: none is.
   std::size_t max_points = 5000000;
   std::size_t queue_depth = 1;  ///< clouds that wait, at most; 1 and up
@@ -32,25 +23,29 @@ struct Settings {
   int max_cancellations = 3;    ///< in a row; the next cloud is then meshed to its end
 };
 
-/// A value as middleware has it. An integer does where a real number is wanted.
-using Value = std::variant<bool, int, double, std::string>;
+/// A value of a parameter. An integer will do for a number.
+using Value = std::variant<bool, std::int64_t, double, std::string>;
+
+/// The value of an optional parameter that is not set.
+inline constexpr int kUnset = -1;
 
 /// A parameter, for declarations and documentation.
 struct ParameterInfo {
-  std::string name;  ///< that of the tool's option, with _ for -
-  std::string description;
+  std::string name;
+  std::string description;  ///< meaning and range
   Value default_value;
-  /// Of numbers. Integers have the additional value 0 or -1 where the description says so.
-  double min = 0.0;
-  double max = 0.0;
+  double min = 0.0;                  ///< of numbers; kUnset if optional
+  double max = 0.0;                  ///< of numbers
   std::vector<std::string> choices;  ///< of strings
 };
 
-/// All parameters, in the order of the tool's help, then those of the queue.
+/// All parameters: the rows of spherical_param::optionTable(), then outliers and the queue.
 const std::vector<ParameterInfo>& parameters();
 
-/// Changes one setting; the others stay. \throw ParameterError for a name that there is not, the
-/// wrong type, a value out of range; the settings are then unchanged.
+/// Changes one setting; the others stay.
+///
+/// \throw spherical_param::InvalidInput for a name that does not exist, the wrong type or a value
+///        out of range: the message is "cause; remedy", and the settings are unchanged.
 void setParameter(Settings& settings, const std::string& name, const Value& value);
 
 /// The value that setParameter() would take.

@@ -1,24 +1,25 @@
 #include "spherical_param_ros/cloud_mesh.h"
 
-#include "common/outlier_removal.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/outliers.h"
+#include "spherical_param/reconstruct.h"
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/surface/spherical_param_reconstruction.h>
+#include <pcl/PCLPointField.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <exception>
-#include <limits>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
 namespace spherical_param_ros {
 namespace {
 
-using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using spherical_param::Index;
+using spherical_param::Positions;
+using spherical_param::Result;
 
 /// A cloud that cannot be used: the message is "cause; remedy".
 class BadCloud : public std::runtime_error {
@@ -113,70 +114,55 @@ Axes axesOf(const pcl::PCLPointCloud2& cloud) {
   return {findField(cloud, "x"), findField(cloud, "y"), findField(cloud, "z")};
 }
 
-/// What is subtracted before coordinates in double precision become single ones: of each axis the
-/// value nearest to 0 in the cloud's range. Without it georeferenced clouds would collapse, and
-/// around the origin it is 0.
-std::array<double, 3> originOf(const pcl::PCLPointCloud2& cloud, const Axes& axes) {
-  const std::size_t count = std::size_t{cloud.width} * cloud.height;
-  std::array<double, 3> origin = {};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (axes[axis]->datatype != pcl::PCLPointField::FLOAT64)
-      continue;
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -least;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double value = coordinate(recordOf(cloud, i), *axes[axis]);
-      if (std::isfinite(value)) {
-        least = std::min(least, value);
-        greatest = std::max(greatest, value);
-      }
-    }
-    if (least <= greatest)
-      origin[axis] = std::clamp(0.0, least, greatest);
-  }
-  return origin;
-}
+/// Points of a cloud, and the record of each.
+struct Points {
+  Positions positions;           ///< 3 x n, finite
+  std::vector<Index> of_record;  ///< n entries, ascending
+};
 
-/// The coordinates from an origin on in PCL's type, with all other fields left behind.
-Cloud::Ptr coordinatesOf(const pcl::PCLPointCloud2& cloud, const std::array<double, 3>& origin) {
+Points finitePoints(const pcl::PCLPointCloud2& cloud) {
   const Axes axes = axesOf(cloud);
   const std::size_t count = std::size_t{cloud.width} * cloud.height;
-  Cloud::Ptr points(new Cloud);
-  points->reserve(count);
+  Points points;
+  points.positions.resize(3, static_cast<Eigen::Index>(count));
+  Eigen::Index finite = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* record = recordOf(cloud, i);
-    const auto from_origin = [&](std::size_t axis) {
-      return static_cast<float>(coordinate(record, *axes[axis]) - origin[axis]);
-    };
-    points->emplace_back(from_origin(0), from_origin(1), from_origin(2));
+    points.positions.col(finite) << coordinate(record, *axes[0]), coordinate(record, *axes[1]),
+        coordinate(record, *axes[2]);
+    if (points.positions.col(finite).allFinite()) {
+      points.of_record.push_back(static_cast<Index>(i));
+      ++finite;
+    }
   }
-  points->is_dense = false;
+  points.positions.conservativeResize(3, finite);
   return points;
 }
 
-/// The points that are no outliers. \throw BadCloud, Unwanted
-std::shared_ptr<pcl::Indices> withoutOutliers(const Cloud& cloud, const Settings& settings,
-                                              const std::function<bool()>& is_wanted,
-                                              Outcome& outcome) {
-  using spherical_param::tools::findOutlierPoints;
-  std::vector<spherical_param::tools::Point> points;
-  points.reserve(cloud.size());
-  for (const pcl::PointXYZ& point : cloud)
-    points.push_back({point.x, point.y, point.z});
-  const auto removal =
-      findOutlierPoints(points,
-                        settings.outlier_method == OutlierMethod::Paper
-                            ? spherical_param::tools::OutlierMethod::Paper
-                            : spherical_param::tools::OutlierMethod::Statistical,
-                        *settings.outlier_sigma, settings.options.threads, is_wanted);
-  outcome.outliers = removal.indices.size();
-  if (removal.kept_positions < 4 && !removal.indices.empty())
-    throw BadCloud(std::to_string(removal.indices.size()) + " of " + std::to_string(cloud.size()) +
+/// Removes outliers. \return their number \throw BadCloud, Cancelled
+std::size_t removeOutliers(Points& points, double sigma,
+                           const spherical_param::Execution& execution) {
+  constexpr std::size_t min_points = 4;
+  spherical_param::OutlierOptions options;
+  options.sigma = sigma;
+  const std::vector<Index> outliers =
+      spherical_param::findOutliers(points.positions, options, execution).indices;
+  if (outliers.empty())
+    return 0;
+  const std::size_t count = points.of_record.size();
+  if (count - outliers.size() < min_points)
+    throw BadCloud(std::to_string(outliers.size()) + " of " + std::to_string(count) +
                    " points are outliers, and the rest cannot be meshed; raise outliers");
-  return std::make_shared<pcl::Indices>(removal.kept.begin(), removal.kept.end());
+  std::vector<Index> kept;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!std::binary_search(outliers.begin(), outliers.end(), static_cast<Index>(i)))
+      kept.push_back(static_cast<Index>(i));
+  points.positions = Positions(points.positions(Eigen::all, kept));
+  for (Index& point : kept)
+    point = points.of_record[static_cast<std::size_t>(point)];
+  points.of_record = std::move(kept);
+  return outliers.size();
 }
-
-using Reconstruction = pcl::SphericalParamReconstruction<pcl::PointXYZ>;
 
 /// PCL packs colours as blue, green, red, alpha, in an integer or in the bits of a float.
 void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
@@ -195,11 +181,8 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
   }
 }
 
-std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
-                                     const Reconstruction& reconstruction,
-                                     const std::array<double, 3>& origin) {
-  const spherical_param::Result& result = reconstruction.getResult();
-  const pcl::Indices& points = reconstruction.getVertexIndices();
+std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud, const Points& points,
+                                     const Result& result) {
   auto mesh = std::make_shared<Mesh>();
   pcl::PCLPointCloud2& kept = mesh->cloud;
   kept.header = cloud.header;
@@ -207,21 +190,23 @@ std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
   kept.is_bigendian = cloud.is_bigendian;
   kept.point_step = cloud.point_step;
   kept.height = 1;
-  kept.width = static_cast<std::uint32_t>(points.size());
+  kept.width = static_cast<std::uint32_t>(result.vertexCount());
   kept.row_step = kept.width * kept.point_step;
   kept.is_dense = 1;
-  kept.data.resize(points.size() * kept.point_step);
+  kept.data.resize(result.vertexCount() * kept.point_step);
 
   const Axes axes = axesOf(cloud);
-  mesh->vertices.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  mesh->vertices.resize(result.vertexCount());
+  for (std::size_t i = 0; i < result.vertexCount(); ++i) {
     std::uint8_t* record = kept.data.data() + i * kept.point_step;
-    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(points[i])), kept.point_step);
+    const auto point = static_cast<std::size_t>(result.input_of_vertex[i]);
+    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(points.of_record[point])),
+                kept.point_step);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (result.smoothed.cols() > 0)
-        setCoordinate(record, *axes[axis],
-                      origin[axis] + result.smoothed(static_cast<Eigen::Index>(axis),
-                                                     static_cast<Eigen::Index>(i)));
+        setCoordinate(
+            record, *axes[axis],
+            result.smoothed(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)));
       mesh->vertices[i][axis] = coordinate(record, *axes[axis]);
     }
   }
@@ -238,34 +223,22 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                  const std::function<bool()>& is_wanted, Outcome& outcome) {
   outcome.points = std::size_t{cloud.width} * cloud.height;
   checkLayout(cloud, settings.max_points);
-  if (is_wanted && !is_wanted())
-    throw spherical_param::tools::Unwanted();
-  Reconstruction reconstruction;
-  reconstruction.setOptions(settings.options);
-  const std::array<double, 3> origin = originOf(cloud, axesOf(cloud));
-  const Cloud::Ptr points = coordinatesOf(cloud, origin);
-  reconstruction.setInputCloud(points);
-  if (settings.outlier_sigma)
-    reconstruction.setIndices(withoutOutliers(*points, settings, is_wanted, outcome));
-  bool cancelled = false;
-  reconstruction.setProgressCallback([&](const spherical_param::Progress&) {
-    cancelled = cancelled || (is_wanted && !is_wanted());
-    return !cancelled;
-  });
-  reconstruction.reconstruct();
-  outcome.ignored = reconstruction.getIgnoredPointCount();
-  if (!reconstruction.getErrorMessage().empty()) {
-    outcome.status = cancelled ? Status::Cancelled : Status::Failed;
-    outcome.message = reconstruction.getErrorMessage();
-    return;
-  }
-  const spherical_param::Result& result = reconstruction.getResult();
-  outcome.mesh = makeMesh(cloud, reconstruction, origin);
+  spherical_param::Options options = settings.options;
+  options.progress = [&](const spherical_param::Progress&) { return !is_wanted || is_wanted(); };
+  checkOptions(options);
+  Points points = finitePoints(cloud);
+  outcome.ignored = outcome.points - points.of_record.size();
+  if (points.of_record.empty())
+    throw BadCloud("all points are not finite; check the scanner and the filters before this node");
+  if (settings.outliers)
+    outcome.outliers = removeOutliers(points, *settings.outliers, options);
+  const Result result = spherical_param::reconstruct(points.positions, options);
+  outcome.mesh = makeMesh(cloud, points, result);
   outcome.status = Status::Done;
   outcome.message = result.diagnosis.summary;
   outcome.looks_closed = result.diagnosis.looksClosedGenus0();
   outcome.warnings = result.warnings;
-  outcome.duplicates = result.duplicates;
+  outcome.duplicates = result.duplicates();
   outcome.self_intersections = result.self_intersections.size();
 }
 
@@ -295,7 +268,7 @@ Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
     reconstruct(cloud, settings, is_wanted, outcome);
   } catch (const BadCloud& error) {
     outcome.message = error.what();
-  } catch (const spherical_param::tools::Unwanted&) {
+  } catch (const spherical_param::Cancelled&) {
     outcome.status = Status::Cancelled;
     outcome.message = "cancelled; send the cloud again";
   } catch (const std::bad_alloc&) {

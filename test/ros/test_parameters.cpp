@@ -1,22 +1,25 @@
 #include "spherical_param_ros/parameters.h"
 
+#include "spherical_param/errors.h"
+#include "spherical_param/option_table.h"
+
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spherical_param_ros {
 namespace {
 
-/// The message of the refusal; empty if the value is taken.
+/// The message of the refusal; empty if there is none.
 std::string refusal(const std::string& name, const Value& value) {
   Settings settings;
   try {
     setParameter(settings, name, value);
-  } catch (const ParameterError& error) {
+  } catch (const spherical_param::InvalidInput& error) {
     return error.what();
   }
   return "";
@@ -30,38 +33,50 @@ TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
     EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
     EXPECT_FALSE(info.description.empty());
   }
-  EXPECT_FALSE(settings.options.k);
-  EXPECT_FALSE(settings.options.tolerance);
-  EXPECT_FALSE(settings.outlier_sigma);
+  EXPECT_FALSE(settings.options.graph.k);
+  EXPECT_FALSE(settings.options.embedding.tolerance);
+  EXPECT_FALSE(settings.outliers);
+}
+
+TEST(RosParameters, EveryOptionOfTheCoreIsOne) {
+  const auto& rows = spherical_param::optionTable();
+  ASSERT_GE(parameters().size(), rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ParameterInfo& info = parameters()[i];
+    EXPECT_EQ(info.name, rows[i].name);
+    EXPECT_EQ(info.choices, rows[i].choices);
+    EXPECT_NE(info.description.find(rangeOf(rows[i])), std::string::npos) << info.description;
+    // No value in its range means that it is not set.
+    EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << info.name;
+  }
 }
 
 TEST(RosParameters, EachChangesWhatItNames) {
   const std::vector<std::pair<std::string, Value>> values = {
       {"graph", std::string("knn")},
       {"k", 20},
-      {"solver", std::string("iterative")},
+      {"embedding", std::string("iterative")},
       {"weights", std::string("uniform")},
       {"exponent", 3.5},
+      {"damping", 0.25},
       {"tolerance", 1e-9},
-      {"lambda", 0.25},
-      {"iterations", 100},
-      {"stagnation", 7},
+      {"max_iterations", 100},
+      {"stagnation_window", 7},
       {"starts", 3},
+      {"history_vertices", 10},
+      {"history_frames", 5},
+      {"triangulation", std::string("qhull")},
+      {"optimization", std::string("flips")},
+      {"smoothing", 5},
+      {"retries", 2},
       {"seed", 9},
-      {"hull", std::string("qhull")},
-      {"optimize", std::string("flips")},
-      {"attempts", 2},
-      {"smooth", 5},
-      {"outliers", 4.0},
-      {"outlier_method", std::string("statistical")},
       {"threads", 2},
+      {"outliers", 4.0},
       {"max_points", 1000},
       {"queue_depth", 4},
       {"cancel_running", false},
       {"max_cancellations", 9},
   };
-  // None is forgotten, neither there nor here.
-  ASSERT_EQ(values.size(), parameters().size());
   for (const auto& [name, value] : values) {
     Settings settings;
     setParameter(settings, name, value);
@@ -71,10 +86,10 @@ TEST(RosParameters, EachChangesWhatItNames) {
   }
 }
 
-TEST(RosParameters, IntegersDoForNumbers) {
+TEST(RosParameters, AnIntegerWillDoForANumber) {
   Settings settings;
   setParameter(settings, "exponent", 4);
-  EXPECT_EQ(settings.options.exponent, 4.0);
+  EXPECT_EQ(settings.options.embedding.exponent, 4.0);
 }
 
 TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
@@ -83,24 +98,27 @@ TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
       {"graph", std::string("gabriel")},
       {"graph", 1},
       {"k", 2},
-      {"k", -1},
-      {"k", 1000000000},
+      {"k", -2},
       {"k", 12.0},
       {"exponent", 2.0},
       {"exponent", nan},
       {"tolerance", -0.5},
       {"tolerance", 1.5},
       {"tolerance", nan},
-      {"lambda", 0.0},
-      {"lambda", 1.01},
-      {"iterations", -1},
-      {"stagnation", 1},
+      {"damping", 0.0},
+      {"damping", 1.01},
+      {"damping", true},
+      {"max_iterations", -1},
       {"starts", 0},
       {"seed", -1},
-      {"attempts", 101},
-      {"smooth", 10001},
+      {"retries", 100},
+      {"smoothing", 10001},
       {"outliers", 1000.5},
+      {"outliers", nan},
+      {"outliers", std::string("many")},
       {"threads", 1025},
+      {"threads", std::string("many")},
+      {"max_points", std::int64_t{1} << 40},
       {"queue_depth", 0},
       {"cancel_running", 1},
       {"max_cancellations", -1},
@@ -108,21 +126,21 @@ TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
   };
   for (const auto& [name, value] : wrong) {
     const std::string message = refusal(name, value);
-    EXPECT_NE(message.find("'" + name + "'"), std::string::npos) << name << ": " << message;
+    EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
     EXPECT_NE(message.find("; "), std::string::npos) << message;
   }
 }
 
-TEST(RosParameters, ListOfDynamicReconfigureNamesAll) {
-  std::ifstream file(SPHERICAL_PARAM_SOURCE_DIR "/src/ros/ros1/cfg/SphericalParam.cfg");
-  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  std::size_t count = 0;
-  for (std::size_t at = text.find("gen.add("); at != std::string::npos;
-       at = text.find("gen.add(", at + 1))
-    ++count;
-  EXPECT_EQ(count, parameters().size());
-  for (const ParameterInfo& info : parameters())
-    EXPECT_NE(text.find("gen.add('" + info.name + "'"), std::string::npos) << info.name;
+TEST(RosParameters, MinusOneUnsetsWhatIsOptional) {
+  Settings settings;
+  for (const char* name : {"k", "tolerance", "outliers"}) {
+    setParameter(settings, name, name == std::string("k") ? 3 : 1);
+    setParameter(settings, name, kUnset);
+    EXPECT_EQ(refusal(name, -1.0), "");
+  }
+  EXPECT_FALSE(settings.options.graph.k);
+  EXPECT_FALSE(settings.options.embedding.tolerance);
+  EXPECT_FALSE(settings.outliers);
 }
 
 }  // namespace

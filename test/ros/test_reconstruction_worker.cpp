@@ -22,7 +22,7 @@ namespace {
 
 using Cloud = ReconstructionWorker::Cloud;
 
-/// A cloud that is told by its number.
+/// A cloud with a number.
 Cloud cloudNumber(int number) {
   auto cloud = std::make_shared<pcl::PCLPointCloud2>();
   cloud->header.seq = static_cast<std::uint32_t>(number);
@@ -305,15 +305,15 @@ TEST(ConcurrencyReconstructionWorker, SettingsHoldFromTheNextCloudOn) {
       {}, [](const pcl::PCLPointCloud2&, const Settings& settings, const std::function<bool()>&) {
         Outcome outcome;
         outcome.status = Status::Done;
-        outcome.message = std::to_string(settings.options.starts);
+        outcome.message = std::to_string(settings.options.embedding.starts);
         return outcome;
       });
   Settings settings;
-  settings.options.starts = 7;
+  settings.options.embedding.starts = 7;
   EXPECT_EQ(worker.process(cloudNumber(0)).message, "2");
   worker.setSettings(settings);
   EXPECT_EQ(worker.process(cloudNumber(0)).message, "7");
-  EXPECT_EQ(worker.settings().options.starts, 7);
+  EXPECT_EQ(worker.settings().options.embedding.starts, 7);
 }
 
 // All together, with the real reconstruction: a stream from two threads, requests from two more.
@@ -351,10 +351,10 @@ TEST(ConcurrencyReconstructionWorker, EverythingIsAccountedForUnderLoad) {
 TEST(ConcurrencyReconstructionWorker, RealReconstructionIsCancelled) {
   Settings settings;
   settings.options.threads = 1;
-  settings.options.solver = spherical_param::EmbeddingMethod::Iterative;
-  settings.options.max_iterations = 1000000000;
-  settings.options.stagnation_window = 0;
-  settings.options.tolerance = 0.0;
+  settings.options.embedding.method = spherical_param::EmbeddingMethod::Iterative;
+  settings.options.embedding.max_iterations = 1000000000;
+  settings.options.embedding.stagnation_window = 0;
+  settings.options.embedding.tolerance = 0.0;
   ReconstructionWorker worker(settings);
   // Would take weeks.
   worker.submit(std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(1000)), {});

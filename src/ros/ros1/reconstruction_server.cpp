@@ -7,7 +7,6 @@
 #include <shape_msgs/Mesh.h>
 #include <visualization_msgs/Marker.h>
 
-#include <boost/any.hpp>
 #include <boost/make_shared.hpp>
 
 #include <cstdint>
@@ -18,64 +17,14 @@
 namespace spherical_param_ros {
 namespace {
 
-using Config = pcl_spherical_param::SphericalParamConfig;
-
-/// Takes the parameters that are set on the server, before anything clamps or ignores them.
-Settings readSettings(const ros::NodeHandle& node) {
-  Settings settings;
-  for (const ParameterInfo& info : parameters()) {
-    XmlRpc::XmlRpcValue value;
-    if (!node.getParam(info.name, value))
-      continue;
-    switch (value.getType()) {
-    case XmlRpc::XmlRpcValue::TypeBoolean:
-      setParameter(settings, info.name, static_cast<bool>(value));
-      break;
-    case XmlRpc::XmlRpcValue::TypeInt:
-      setParameter(settings, info.name, static_cast<int>(value));
-      break;
-    case XmlRpc::XmlRpcValue::TypeDouble:
-      setParameter(settings, info.name, static_cast<double>(value));
-      break;
-    case XmlRpc::XmlRpcValue::TypeString:
-      setParameter(settings, info.name, static_cast<std::string>(value));
-      break;
-    default:
-      throw ParameterError("parameter '" + info.name + "' is a list or a structure; set it to " +
-                           "a value such as " + textOf(info.default_value));
-    }
-  }
-  return settings;
-}
-
-Value valueOf(const boost::any& value) {
-  if (const auto* truth = boost::any_cast<bool>(&value))
-    return *truth;
-  if (const auto* integer = boost::any_cast<int>(&value))
-    return *integer;
-  if (const auto* number = boost::any_cast<double>(&value))
-    return *number;
-  return boost::any_cast<std::string>(value);
-}
-
-Settings settingsOf(const Config& config) {
-  Settings settings;
-  for (const auto& description : Config::__getParamDescriptions__()) {
-    boost::any value;
-    description->getValue(config, value);
-    setParameter(settings, description->name, valueOf(value));
-  }
-  return settings;
-}
-
 ReconstructionWorker::Cloud neutralCloud(const sensor_msgs::PointCloud2& message) {
   auto cloud = std::make_shared<pcl::PCLPointCloud2>();
   pcl_conversions::toPCL(message, *cloud);
   return cloud;
 }
 
-/// The shutdown of older roscpp waits for services that are being called before it tells anyone
-/// else: a mesher that did not ask would keep the process until its mesh is done.
+/// The shutdown of older roscpp first waits for the services that are being called: without this
+/// question the process would not end before its mesh is done.
 Outcome meshUnlessShuttingDown(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                                const std::function<bool()>& is_wanted) {
   return meshCloud(cloud, settings, [&] { return is_wanted() && !ros::isShuttingDown(); });
@@ -99,9 +48,8 @@ ReconstructionServer::ReconstructionServer(const ros::NodeHandle& node,
   timer_ = private_node_.createWallTimer(
       ros::WallDuration(0.2), [this](const ros::WallTimerEvent&) { updateDiagnostics(); });
 
-  config_server_ = std::make_unique<dynamic_reconfigure::Server<Config>>(private_node_);
-  config_server_->setCallback(
-      [this](Config& config, std::uint32_t level) { onConfig(config, level); });
+  parameter_server_ = std::make_unique<ParameterServer>(
+      private_node_, settings, [this](const Settings& changed) { worker_->setSettings(changed); });
 
   ros::NodeHandle request_node(private_node_);
   request_node.setCallbackQueue(&request_queue_);
@@ -144,16 +92,6 @@ bool ReconstructionServer::onRequest(Request& request, Response& response) {
     ROS_WARN_STREAM_NAMED(name_, "A request cannot be answered with a mesh: " << outcome.message);
   // false would keep the message from the caller.
   return true;
-}
-
-void ReconstructionServer::onConfig(Config& config, std::uint32_t /*level*/) {
-  try {
-    worker_->setSettings(settingsOf(config));
-    config_ = config;
-  } catch (const ParameterError& error) {
-    ROS_WARN_STREAM_NAMED(name_, "The parameters stay as they are: " << error.what());
-    config = config_;
-  }
 }
 
 void ReconstructionServer::publish(const Outcome& outcome, const std_msgs::Header& header) {

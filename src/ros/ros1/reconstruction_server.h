@@ -1,26 +1,26 @@
 #pragma once
 
+#include "ros1/parameter_server.h"
 #include "spherical_param_ros/reconstruction_worker.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <dynamic_reconfigure/server.h>
 #include <pcl_spherical_param/Reconstruct.h>
-#include <pcl_spherical_param/SphericalParamConfig.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <std_msgs/Header.h>
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
 
 namespace spherical_param_ros {
 
-/// What node and nodelet have in common: topics, service, parameters and diagnostics of a worker.
+/// Topics, service, parameters and diagnostics of a worker, for node and nodelet.
 class ReconstructionServer {
 public:
-  /// \throw ParameterError for a parameter that cannot be taken.
+  /// \throw spherical_param::InvalidInput for a parameter that cannot be used.
   ReconstructionServer(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                        const std::string& name);
   ~ReconstructionServer();
@@ -29,13 +29,11 @@ public:
   ReconstructionServer& operator=(const ReconstructionServer&) = delete;
 
 private:
-  using Config = pcl_spherical_param::SphericalParamConfig;
   using Request = pcl_spherical_param::Reconstruct::Request;
   using Response = pcl_spherical_param::Reconstruct::Response;
 
   void onCloud(const sensor_msgs::PointCloud2ConstPtr& message);
   bool onRequest(Request& request, Response& response);
-  void onConfig(Config& config, std::uint32_t level);
   void publish(const Outcome& outcome, const std_msgs::Header& header);
   void updateDiagnostics();
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -49,8 +47,7 @@ private:
   std::unique_ptr<ReconstructionWorker> worker_;
   diagnostic_updater::Updater diagnostics_;
   std::uint64_t failed_when_diagnosed_ = 0;
-  Config config_;  ///< in force
-  std::unique_ptr<dynamic_reconfigure::Server<Config>> config_server_;
+  std::unique_ptr<ParameterServer> parameter_server_;
   ros::Subscriber subscriber_;
   ros::WallTimer timer_;
   std::chrono::steady_clock::time_point next_diagnosis_;

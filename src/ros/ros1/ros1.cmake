@@ -13,11 +13,11 @@ endif()
 find_package(catkin REQUIRED COMPONENTS ${ros1_packages})
 add_service_files(DIRECTORY src/ros/srv FILES Reconstruct.srv NOINSTALL)
 generate_messages(DEPENDENCIES pcl_msgs sensor_msgs std_msgs)
-generate_dynamic_reconfigure_options(src/ros/ros1/cfg/SphericalParam.cfg)
 catkin_package(SKIP_CMAKE_CONFIG_GENERATION SKIP_PKG_CONFIG_GENERATION)
 
 add_library(spherical_param_nodelet SHARED
   src/ros/ros1/mesh_messages.cpp
+  src/ros/ros1/parameter_server.cpp
   src/ros/ros1/reconstruction_nodelet.cpp
   src/ros/ros1/reconstruction_server.cpp)
 target_include_directories(spherical_param_nodelet PUBLIC ${PROJECT_SOURCE_DIR}/src/ros)
@@ -27,7 +27,7 @@ target_link_libraries(spherical_param_nodelet PUBLIC spherical_param_ros ${catki
 add_executable(spherical_param_node src/ros/ros1/spherical_param_node.cpp)
 target_link_libraries(spherical_param_node PRIVATE spherical_param_nodelet)
 foreach(target spherical_param_nodelet spherical_param_node)
-  add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp ${PROJECT_NAME}_gencfg)
+  add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp)
   spherical_param_compile_options(${target})
 endforeach()
 set_target_properties(spherical_param_nodelet PROPERTIES
@@ -46,5 +46,3 @@ install(FILES src/ros/ros1/nodelets.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTI
 install(DIRECTORY src/ros/ros1/launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
 install(FILES src/ros/srv/Reconstruct.srv
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/srv COMPONENT ros)
-install(FILES src/ros/ros1/cfg/SphericalParam.cfg
-  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/cfg COMPONENT ros)

@@ -2,15 +2,12 @@
 
 #include "ros1/reconstruction_server.h"
 
-#include <pcl/console/print.h>
 #include <ros/ros.h>
 
 #include <exception>
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "spherical_param");
-  // Failures are told by the node, and a cancellation is none.
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   // Without one left, ROS would shut down before the last message.
   const ros::NodeHandle node;
   try {

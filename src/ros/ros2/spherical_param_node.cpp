@@ -1,5 +1,6 @@
 // Meshes clouds of a topic with ROS 2: the same worker, parameters and messages as with ROS 1.
 
+#include "spherical_param/errors.h"
 #include "spherical_param_ros/reconstruction_worker.h"
 
 #include <diagnostic_msgs/msg/diagnostic_status.hpp>
@@ -7,6 +8,7 @@
 #include <geometry_msgs/msg/point.hpp>
 #include <pcl_conversions/pcl_conversions.h>
 #include <pcl_msgs/msg/polygon_mesh.hpp>
+#include <rcl_interfaces/msg/parameter_descriptor.hpp>
 #include <rcl_interfaces/msg/set_parameters_result.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <sensor_msgs/msg/point_cloud2.hpp>
@@ -18,9 +20,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace spherical_param_ros {
@@ -31,32 +33,34 @@ using std_msgs::msg::Header;
 rclcpp::ParameterValue ros2Value(const Value& value) {
   if (const auto* truth = std::get_if<bool>(&value))
     return rclcpp::ParameterValue(*truth);
-  if (const auto* integer = std::get_if<int>(&value))
+  if (const auto* integer = std::get_if<std::int64_t>(&value))
     return rclcpp::ParameterValue(*integer);
   if (const auto* number = std::get_if<double>(&value))
     return rclcpp::ParameterValue(*number);
   return rclcpp::ParameterValue(std::get<std::string>(value));
 }
 
-/// \throw ParameterError
+/// \throw spherical_param::InvalidInput
 Value neutralValue(const std::string& name, const rclcpp::ParameterValue& value) {
   switch (value.get_type()) {
   case rclcpp::ParameterType::PARAMETER_BOOL:
     return value.get<bool>();
-  case rclcpp::ParameterType::PARAMETER_INTEGER: {
-    const std::int64_t integer = value.get<std::int64_t>();
-    if (integer < std::numeric_limits<int>::min() || integer > std::numeric_limits<int>::max())
-      throw ParameterError("parameter '" + name + "' is " + std::to_string(integer) +
-                           "; set it to a smaller number");
-    return static_cast<int>(integer);
-  }
+  case rclcpp::ParameterType::PARAMETER_INTEGER:
+    return value.get<std::int64_t>();
   case rclcpp::ParameterType::PARAMETER_DOUBLE:
     return value.get<double>();
   case rclcpp::ParameterType::PARAMETER_STRING:
     return value.get<std::string>();
   default:
-    throw ParameterError("parameter '" + name + "' is a list; set it to a single value");
+    throw spherical_param::InvalidInput(name + " is a list; use a single value");
   }
+}
+
+/// Its description has the range, too: not every range of ours is one of ROS.
+rcl_interfaces::msg::ParameterDescriptor descriptorOf(const ParameterInfo& info) {
+  rcl_interfaces::msg::ParameterDescriptor descriptor;
+  descriptor.description = info.description;
+  return descriptor;
 }
 
 pcl_msgs::msg::PolygonMesh polygonMeshOf(const Mesh& mesh, const Header& header) {
@@ -119,14 +123,15 @@ visualization_msgs::msg::Marker markerOf(const Mesh& mesh, const Header& header)
 
 class ReconstructionNode : public rclcpp::Node {
 public:
-  /// \throw ParameterError for a parameter that cannot be taken.
+  /// \throw spherical_param::InvalidInput for a parameter that cannot be used.
   ReconstructionNode() : rclcpp::Node("spherical_param"), diagnostics_(this) {
     Settings settings;
     for (const ParameterInfo& info : parameters())
       setParameter(
           settings, info.name,
-          neutralValue(info.name, declare_parameter(info.name, ros2Value(info.default_value))));
-    // As what is latched in ROS 1: RViz shows the last mesh also if it is started later.
+          neutralValue(info.name, declare_parameter(info.name, ros2Value(info.default_value),
+                                                    descriptorOf(info))));
+    // As latched topics of ROS 1: RViz shows the last mesh also if it is started later.
     const auto last_one = rclcpp::QoS(1).transient_local();
     mesh_publisher_ = create_publisher<pcl_msgs::msg::PolygonMesh>("~/mesh", last_one);
     shape_publisher_ = create_publisher<shape_msgs::msg::Mesh>("~/shape", last_one);
@@ -166,7 +171,7 @@ private:
           setParameter(settings, parameter.get_name(),
                        neutralValue(parameter.get_name(), parameter.get_parameter_value()));
       worker_->setSettings(settings);
-    } catch (const ParameterError& error) {
+    } catch (const spherical_param::InvalidInput& error) {
       result.successful = false;
       result.reason = error.what();
     }

@@ -1,0 +1,168 @@
+#include "ros1/parameter_server.h"
+
+#include "spherical_param/errors.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace spherical_param_ros {
+namespace {
+
+using dynamic_reconfigure::Config;
+
+/// Integers of ROS 1 have 32 bits.
+int narrowed(std::int64_t value) {
+  return static_cast<int>(std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(),
+                                                   std::numeric_limits<int>::max()));
+}
+
+template <typename Entries, typename EntryValue>
+void append(Entries& entries, const std::string& name, const EntryValue& value) {
+  entries.emplace_back();
+  entries.back().name = name;
+  entries.back().value = value;
+}
+
+void append(Config& config, const std::string& name, const Value& value) {
+  if (const auto* truth = std::get_if<bool>(&value))
+    append(config.bools, name, static_cast<std::uint8_t>(*truth));
+  else if (const auto* integer = std::get_if<std::int64_t>(&value))
+    append(config.ints, name, narrowed(*integer));
+  else if (const auto* number = std::get_if<double>(&value))
+    append(config.doubles, name, *number);
+  else
+    append(config.strs, name, std::get<std::string>(value));
+}
+
+/// A limit of a parameter, in its type.
+Value limitOf(const ParameterInfo& info, double limit, bool is_max) {
+  if (std::holds_alternative<bool>(info.default_value))
+    return is_max;
+  if (std::holds_alternative<std::int64_t>(info.default_value))
+    return static_cast<std::int64_t>(limit);
+  if (std::holds_alternative<double>(info.default_value))
+    return limit;
+  return std::string();
+}
+
+const char* typeOf(const Value& value) {
+  constexpr const char* names[] = {"bool", "int", "double", "str"};
+  return names[value.index()];
+}
+
+/// The choices of a parameter as rqt_reconfigure reads them; empty if it has none.
+std::string editMethodOf(const ParameterInfo& info) {
+  std::string list;
+  for (const std::string& choice : info.choices)
+    list += (list.empty() ? "" : ", ") + ("{'name': '" + choice + "', 'value': '" + choice) +
+            "', 'type': 'str', 'description': ''}";
+  return list.empty() ? "" : "{'enum_description': 'names', 'enum': [" + list + "]}";
+}
+
+dynamic_reconfigure::ConfigDescription description() {
+  dynamic_reconfigure::ConfigDescription all;
+  all.groups.resize(1);
+  all.groups[0].name = "Default";
+  for (const ParameterInfo& info : parameters()) {
+    dynamic_reconfigure::ParamDescription one;
+    one.name = info.name;
+    one.type = typeOf(info.default_value);
+    one.description = info.description;
+    one.edit_method = editMethodOf(info);
+    all.groups[0].parameters.push_back(one);
+    append(all.dflt, info.name, info.default_value);
+    append(all.min, info.name, limitOf(info, info.min, false));
+    append(all.max, info.name, limitOf(info, info.max, true));
+  }
+  return all;
+}
+
+Config configOf(const Settings& settings) {
+  Config config;
+  for (const ParameterInfo& info : parameters())
+    append(config, info.name, parameterOf(settings, info.name));
+  config.groups.resize(1);
+  config.groups[0].name = "Default";
+  config.groups[0].state = 1;
+  return config;
+}
+
+}  // namespace
+
+Settings readSettings(const ros::NodeHandle& node) {
+  Settings settings;
+  for (const ParameterInfo& info : parameters()) {
+    XmlRpc::XmlRpcValue value;
+    if (!node.getParam(info.name, value))
+      continue;
+    switch (value.getType()) {
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      setParameter(settings, info.name, static_cast<bool>(value));
+      break;
+    case XmlRpc::XmlRpcValue::TypeInt:
+      setParameter(settings, info.name, std::int64_t{static_cast<int>(value)});
+      break;
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      setParameter(settings, info.name, static_cast<double>(value));
+      break;
+    case XmlRpc::XmlRpcValue::TypeString:
+      setParameter(settings, info.name, static_cast<std::string>(value));
+      break;
+    default:
+      throw spherical_param::InvalidInput(info.name + " is a list or a structure; use a value " +
+                                          "such as " + textOf(info.default_value));
+    }
+  }
+  return settings;
+}
+
+ParameterServer::ParameterServer(const ros::NodeHandle& node, const Settings& settings,
+                                 std::function<void(const Settings&)> apply)
+    : node_(node), settings_(settings), apply_(std::move(apply)) {
+  // Names and latching are those of dynamic_reconfigure's server.
+  description_publisher_ =
+      node_.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
+  update_publisher_ = node_.advertise<Config>("parameter_updates", 1, true);
+  description_publisher_.publish(description());
+  announce();
+  service_ = node_.advertiseService("set_parameters", &ParameterServer::onRequest, this);
+}
+
+bool ParameterServer::onRequest(dynamic_reconfigure::Reconfigure::Request& request,
+                                dynamic_reconfigure::Reconfigure::Response& response) {
+  Settings changed = settings_;
+  try {
+    for (const auto& entry : request.config.bools)
+      setParameter(changed, entry.name, entry.value != 0);
+    for (const auto& entry : request.config.ints)
+      setParameter(changed, entry.name, std::int64_t{entry.value});
+    for (const auto& entry : request.config.doubles)
+      setParameter(changed, entry.name, entry.value);
+    for (const auto& entry : request.config.strs)
+      setParameter(changed, entry.name, entry.value);
+    apply_(changed);
+    settings_ = changed;
+  } catch (const spherical_param::InvalidInput& error) {
+    ROS_WARN_STREAM("The parameters stay as they are: " << error.what());
+  }
+  announce();
+  response.config = configOf(settings_);
+  return true;
+}
+
+void ParameterServer::announce() const {
+  const Config config = configOf(settings_);
+  for (const auto& entry : config.bools)
+    node_.setParam(entry.name, entry.value != 0);
+  for (const auto& entry : config.ints)
+    node_.setParam(entry.name, entry.value);
+  for (const auto& entry : config.doubles)
+    node_.setParam(entry.name, entry.value);
+  for (const auto& entry : config.strs)
+    node_.setParam(entry.name, entry.value);
+  update_publisher_.publish(config);
+}
+
+}  // namespace spherical_param_ros
