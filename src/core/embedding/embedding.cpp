@@ -54,7 +54,8 @@ Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOpti
   }
   internal::GraphHierarchy hierarchy;
   if (options.method == EmbeddingMethod::Multilevel)
-    hierarchy = internal::buildGraphHierarchy(graph, seed, internal::kTypicalCoarsestSize, execution);
+    hierarchy =
+        internal::buildGraphHierarchy(graph, seed, internal::kTypicalCoarsestSize, execution);
   internal::EmbeddingRecorder recorder(graph.size(), hierarchy, options.history);
   internal::EmbeddingObserver observer;
   if (options.history.vertices > 0)

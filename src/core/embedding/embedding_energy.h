@@ -2,8 +2,8 @@
 
 #include "block_matrix.h"
 #include "edge_weights.h"
-#include "tangent_basis.h"
 #include "spherical_param/types.h"
+#include "tangent_basis.h"
 
 #include <Eigen/Core>
 

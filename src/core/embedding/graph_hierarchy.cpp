@@ -17,8 +17,8 @@
 namespace spherical_param::internal {
 namespace {
 
-/// A level that keeps more than this share of the nodes is not worth having.
-constexpr double kLeastCoarsening = 0.9;
+/// A level that keeps more than this fraction of the nodes is left out.
+constexpr double kMaxKeptFraction = 0.9;
 
 /// A graph of more neighbours a node is far from planar, as one of k nearest neighbours is, and no
 /// start for an embedding: its aggregates touch only where the surface does.
@@ -332,7 +332,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
     HierarchyLevel level = coarsened(*finest, seed, execution.threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
-                                      kLeastCoarsening * static_cast<double>(finest->size()))
+                                      kMaxKeptFraction * static_cast<double>(finest->size()))
       break;
     hierarchy.levels.push_back(std::move(level));
     finest = &hierarchy.levels.back().graph;

@@ -44,6 +44,21 @@ Eigen::Vector2d reduced(const BlockMatrix& matrix, std::size_t begin, std::size_
   return rest;
 }
 
+/// Appends the columns of a row of a matrix that `stamp` does not yet have for this row.
+///
+/// \param stamp the row that last had each column.
+void addColumns(Index row, const BlockMatrix& matrix, Index matrix_row, std::vector<Index>& stamp,
+                std::vector<Index>& columns) {
+  const auto r = static_cast<std::size_t>(matrix_row);
+  for (std::size_t e = matrix.offsets[r]; e < matrix.offsets[r + 1]; ++e) {
+    Index& last = stamp[static_cast<std::size_t>(matrix.columns[e])];
+    if (last == row)
+      continue;
+    last = row;
+    columns.push_back(matrix.columns[e]);
+  }
+}
+
 /// One Gauss-Seidel sweep for matrix x = b from x = 0, and what it leaves: as each row is solved
 /// when its turn comes, only what follows it in the matrix adds to its residual.
 void smoothFromZero(const BlockMatrix& matrix, const std::vector<std::size_t>& diagonal,
@@ -127,6 +142,46 @@ void MultigridPreconditioner::compute(const BlockMatrix& matrix,
   coarsest_.compute(*levels_.back().matrix);
 }
 
+void MultigridPreconditioner::Level::findRestrictionPattern() {
+  restriction_offsets.assign(coarse_bases.size() + 1, 0);
+  for (const Index column : prolongation.columns)
+    ++restriction_offsets[static_cast<std::size_t>(column) + 1];
+  std::partial_sum(restriction_offsets.begin(), restriction_offsets.end(),
+                   restriction_offsets.begin());
+  restriction_rows.resize(prolongation.columns.size());
+  restriction_places.resize(prolongation.columns.size());
+  std::vector<std::size_t> ends(restriction_offsets.begin(), restriction_offsets.end() - 1);
+  for (std::size_t i = 0; i < prolongation.size(); ++i)
+    for (std::size_t e = prolongation.offsets[i]; e < prolongation.offsets[i + 1]; ++e) {
+      const std::size_t place = ends[static_cast<std::size_t>(prolongation.columns[e])]++;
+      restriction_rows[place] = static_cast<Index>(i);
+      restriction_places[place] = e;
+    }
+}
+
+void MultigridPreconditioner::Level::findGalerkinPattern(BlockMatrix& next) {
+  const std::size_t coarse = coarse_bases.size();
+  std::vector<Index> stamp(coarse, -1);
+  product.offsets.assign(1, 0);
+  product.columns.clear();
+  for (std::size_t i = 0; i < matrix->size(); ++i) {
+    for (std::size_t e = matrix->offsets[i]; e < matrix->offsets[i + 1]; ++e)
+      addColumns(static_cast<Index>(i), prolongation, matrix->columns[e], stamp, product.columns);
+    product.offsets.push_back(product.columns.size());
+  }
+  std::fill(stamp.begin(), stamp.end(), -1);
+  next.offsets.assign(1, 0);
+  next.columns.clear();
+  for (std::size_t c = 0; c < coarse; ++c) {
+    for (std::size_t r = restriction_offsets[c]; r < restriction_offsets[c + 1]; ++r)
+      addColumns(static_cast<Index>(c), product, restriction_rows[r], stamp, next.columns);
+    std::sort(next.columns.begin() + static_cast<std::ptrdiff_t>(next.offsets.back()),
+              next.columns.end());
+    next.offsets.push_back(next.columns.size());
+  }
+  next.blocks.resize(next.columns.size());
+}
+
 void MultigridPreconditioner::findPatterns(std::size_t l) {
   Level& level = levels_[l];
   Level& next = levels_[l + 1];
@@ -134,7 +189,6 @@ void MultigridPreconditioner::findPatterns(std::size_t l) {
   const BlockMatrix& matrix = *level.matrix;
   const std::size_t n = matrix.size();
   const auto entries = static_cast<std::size_t>(weights.nonZeros());
-  const auto coarse = static_cast<std::size_t>(weights.cols());
   findDiagonal(matrix, level.diagonal);
 
   BlockMatrix& prolongation = level.prolongation;
@@ -142,54 +196,9 @@ void MultigridPreconditioner::findPatterns(std::size_t l) {
   prolongation.columns.assign(weights.innerIndexPtr(), weights.innerIndexPtr() + entries);
   prolongation.blocks.resize(entries);
 
-  level.restriction_offsets.assign(coarse + 1, 0);
-  for (const Index column : prolongation.columns)
-    ++level.restriction_offsets[static_cast<std::size_t>(column) + 1];
-  std::partial_sum(level.restriction_offsets.begin(), level.restriction_offsets.end(),
-                   level.restriction_offsets.begin());
-  level.restriction_rows.resize(entries);
-  level.restriction_places.resize(entries);
-  std::vector<std::size_t> ends(level.restriction_offsets.begin(),
-                                level.restriction_offsets.end() - 1);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t e = prolongation.offsets[i]; e < prolongation.offsets[i + 1]; ++e) {
-      const std::size_t place = ends[static_cast<std::size_t>(prolongation.columns[e])]++;
-      level.restriction_rows[place] = static_cast<Index>(i);
-      level.restriction_places[place] = e;
-    }
-
-  std::vector<Index> stamp(coarse, -1);  // the row that last had each column
-  const auto add = [&](std::size_t row, const BlockMatrix& other, std::size_t other_row,
-                       std::vector<Index>& columns) {
-    for (std::size_t e = other.offsets[other_row]; e < other.offsets[other_row + 1]; ++e) {
-      Index& last = stamp[static_cast<std::size_t>(other.columns[e])];
-      if (last == static_cast<Index>(row))
-        continue;
-      last = static_cast<Index>(row);
-      columns.push_back(other.columns[e]);
-    }
-  };
-  BlockMatrix& product = level.product;
-  product.offsets.assign(1, 0);
-  product.columns.clear();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t e = matrix.offsets[i]; e < matrix.offsets[i + 1]; ++e)
-      add(i, prolongation, static_cast<std::size_t>(matrix.columns[e]), product.columns);
-    product.offsets.push_back(product.columns.size());
-  }
-  std::fill(stamp.begin(), stamp.end(), -1);
-  BlockMatrix& galerkin = next.galerkin;
-  galerkin.offsets.assign(1, 0);
-  galerkin.columns.clear();
-  for (std::size_t c = 0; c < coarse; ++c) {
-    for (std::size_t r = level.restriction_offsets[c]; r < level.restriction_offsets[c + 1]; ++r)
-      add(c, product, static_cast<std::size_t>(level.restriction_rows[r]), galerkin.columns);
-    std::sort(galerkin.columns.begin() + static_cast<std::ptrdiff_t>(galerkin.offsets.back()),
-              galerkin.columns.end());
-    galerkin.offsets.push_back(galerkin.columns.size());
-  }
-  galerkin.blocks.resize(galerkin.columns.size());
-  next.matrix = &galerkin;
+  level.findRestrictionPattern();
+  level.findGalerkinPattern(next.galerkin);
+  next.matrix = &next.galerkin;
 }
 
 void MultigridPreconditioner::multiplyGalerkin(std::size_t l) {
@@ -309,7 +318,7 @@ LinearSolution conjugateGradients(const EmbeddingEnergy::Hessian& hessian,
   TangentVector product;
   double square = residual.dot(preconditioned);
   const double goal = tolerance.reduction * tolerance.reduction * square;
-  while (solution.iterations < tolerance.most_iterations && square > goal) {
+  while (solution.iterations < tolerance.max_iterations && square > goal) {
     apply(direction, product);
     const double curvature = direction.dot(product);
     if (!(curvature > 0.0)) {

@@ -52,6 +52,13 @@ private:
     TangentVector right_side;
     TangentVector solution;
     TangentVector residual;
+
+    /// The transpose of the prolongation's pattern.
+    void findRestrictionPattern();
+    /// The patterns of matrix times prolongation, and of restriction times that.
+    ///
+    /// \param next the matrix of the next level.
+    void findGalerkinPattern(BlockMatrix& next);
   };
 
   void findPatterns(std::size_t l);
@@ -72,7 +79,7 @@ private:
 struct LinearTolerance {
   double reduction = 0.1;  ///< of the residual, in the norm of the preconditioner
   int refinements = 0;     ///< V-cycles afterwards, each for what is left
-  int most_iterations = 200;
+  int max_iterations = 200;
 };
 
 /// Outcome of conjugateGradients().

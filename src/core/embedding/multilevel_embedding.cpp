@@ -7,8 +7,8 @@
 #include "parallel.h"
 #include "planar_start.h"
 #include "progress.h"
-#include "tangential_laplacian.h"
 #include "spherical_param/errors.h"
+#include "tangential_laplacian.h"
 
 #include <algorithm>
 #include <atomic>
@@ -24,26 +24,25 @@
 namespace spherical_param::internal {
 namespace {
 
-
 /// Smoothing sweeps on each level.
 constexpr int kSweeps = 10;
-/// Levels of at most so many nodes are solved fully, not only smoothed.
+/// Levels of at most this number of nodes are solved fully, not only smoothed.
 constexpr std::size_t kMaxSolvedSize = 10000;
 /// Relative residual to which a level is solved fully: limbs shrink exponentially along the sphere,
 /// so that no absolute tolerance would tell whether their tips are solved.
 constexpr double kSolvedTolerance = 1e-4;
-/// Linear systems of so many nodes are solved directly.
-constexpr std::size_t kDirectSize = 2000;
+/// Linear systems of at most this number of nodes are solved directly.
+constexpr std::size_t kMaxDirectSize = 2000;
 /// Smoothing sweeps on a planar start, whose edges are far from their lengths.
 constexpr int kStartSweeps = 3;
 /// Beyond this mean it collapses further, by the same factor in each step, unless there is a
 /// barrier.
-constexpr double kHopelessCentroid = 0.99;
+constexpr double kMaxStartCentroid = 0.99;
 /// Finer levels than the coarsest are tried up to this size, where all starts collapse: the fewer
 /// nodes are around a limb, the weaker is the barrier that keeps the sphere from slipping off it.
-constexpr std::size_t kLargestStart = 100000;
-/// A start is solved in about as much work as so many passes over the nodes.
-constexpr int kPassesOfStart = 200;
+constexpr std::size_t kMaxStartSize = 100000;
+/// A start is solved in about as much work as this number of passes over the nodes.
+constexpr int kMaxStartPasses = 200;
 /// Beyond this mean the embedding has slipped along a tube towards one of its ends.
 constexpr double kSlippedCentroid = 0.5;
 /// The work on all levels; level 0 is the graph itself.
@@ -94,9 +93,7 @@ private:
     return l == 0 ? graph_ : hierarchy_.levels[l - 1].graph;
   }
 
-  bool isSolved(std::size_t l) const {
-    return graphOf(l).size() <= kMaxSolvedSize;
-  }
+  bool isSolved(std::size_t l) const { return graphOf(l).size() <= kMaxSolvedSize; }
 
   std::vector<LevelReport>& levels() { return result_.report.levels; }
 
@@ -129,8 +126,7 @@ private:
   void showStart(std::size_t l) {
     if (!observer_)
       return;
-    observe(l, EmbeddingStep::Start, 0, std::nullopt,
-            planarStart(graphOf(l), best_center_));
+    observe(l, EmbeddingStep::Start, 0, std::nullopt, planarStart(graphOf(l), best_center_));
     Start start;
     MultigridPreconditioner preconditioner = preconditionerOf(l);
     const auto progress = [&](int iteration, double residual) {
@@ -146,7 +142,7 @@ private:
     Positions best;
     level = hierarchy_.levels.size();
     for (std::size_t l = level + 1; l-- > 0;) {
-      if (l < hierarchy_.levels.size() && graphOf(l).size() > kLargestStart)
+      if (l < hierarchy_.levels.size() && graphOf(l).size() > kMaxStartSize)
         break;
       Positions u = solveStarts(l);
       if (u.cols() == 0)
@@ -196,9 +192,8 @@ private:
   Positions solveStarts(std::size_t l) {
     const std::vector<Index> centers = centralNodes(graphOf(l));
     const std::size_t count = std::min(centers.size(), static_cast<std::size_t>(options_.starts));
-    const auto most = static_cast<std::size_t>(
-        threadCount(threads_, std::size_t{kPassesOfStart} * graphOf(l).size(),
-                              kShortPassThreshold));
+    const auto most = static_cast<std::size_t>(threadCount(
+        threads_, std::size_t{kMaxStartPasses} * graphOf(l).size(), kShortPassThreshold));
     const std::size_t threads = std::min(most, count);
     std::vector<MultigridPreconditioner> preconditioners(threads, preconditionerOf(l));
     LevelReport best_report;
@@ -210,21 +205,20 @@ private:
         start.report = levels()[l];
       tell(report_, static_cast<double>(first) / static_cast<double>(count));
       std::atomic<bool> has_failed{false};
-      forEachTask(
-          starts.size(), static_cast<int>(threads), [&](std::size_t thread, std::size_t i) {
-            const auto progress = [&](int, double) {
-              if (thread == 0)
-                tell(report_, static_cast<double>(first) / static_cast<double>(count));
-              else if (has_failed.load(std::memory_order_relaxed))
-                throw Cancelled("embed: another start failed");
-            };
-            try {
-              solveStart(l, centers[first + i], preconditioners[thread], progress, starts[i]);
-            } catch (...) {
-              starts[i].error = std::current_exception();
-              has_failed.store(true, std::memory_order_relaxed);
-            }
-          });
+      forEachTask(starts.size(), static_cast<int>(threads), [&](std::size_t thread, std::size_t i) {
+        const auto progress = [&](int, double) {
+          if (thread == 0)
+            tell(report_, static_cast<double>(first) / static_cast<double>(count));
+          else if (has_failed.load(std::memory_order_relaxed))
+            throw Cancelled("embed: another start failed");
+        };
+        try {
+          solveStart(l, centers[first + i], preconditioners[thread], progress, starts[i]);
+        } catch (...) {
+          starts[i].error = std::current_exception();
+          has_failed.store(true, std::memory_order_relaxed);
+        }
+      });
       // That of the calling thread comes first.
       for (const Start& start : starts)
         if (start.error)
@@ -252,16 +246,16 @@ private:
     const auto& weights = hierarchy_.levels[l].prolongation;
     const auto n = static_cast<std::size_t>(weights.rows());
     Positions u(3, weights.rows());
-    forEachBlock(
-        n, threadCount(threads_, n, kShortPassThreshold),
-        [&](std::size_t, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-            for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
-              sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
-            u.col(static_cast<Eigen::Index>(i)) = sum.normalized();
-          }
-        });
+    forEachBlock(n, threadCount(threads_, n, kShortPassThreshold),
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i) {
+                     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+                     for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1];
+                          ++e)
+                       sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
+                     u.col(static_cast<Eigen::Index>(i)) = sum.normalized();
+                   }
+                 });
     return u;
   }
 
@@ -279,8 +273,7 @@ private:
     next.row(3).setZero();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       tell(swept, static_cast<double>(sweep) / sweeps);
-      visitRule(rows,
-                [&](auto rule) { sweepOnce<decltype(rule)::value>(rows, current, next); });
+      visitRule(rows, [&](auto rule) { sweepOnce<decltype(rule)::value>(rows, current, next); });
       std::swap(current, next);
     }
     u = current.topRows<3>();
@@ -293,20 +286,19 @@ private:
                                ? options_.damping * std::min(1.0, 2.0 / (options_.exponent - 1.0))
                                : options_.damping;
     const auto n = static_cast<std::size_t>(rows.size());
-    forEachBlock(
-        n, threadCount(threads_, n, kShortPassThreshold),
-        [&](std::size_t, std::size_t begin, std::size_t end) {
-          for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row)
-            next.col(row).head<3>() =
-                (current.col(row).head<3>() +
-                 damping * tangentialLaplacian<Rule>(rows, current, row))
-                    .normalized();
-        });
+    forEachBlock(n, threadCount(threads_, n, kShortPassThreshold),
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (auto row = static_cast<Index>(begin); row < static_cast<Index>(end); ++row)
+                     next.col(row).head<3>() =
+                         (current.col(row).head<3>() +
+                          damping * tangentialLaplacian<Rule>(rows, current, row))
+                             .normalized();
+                 });
   }
 
   /// Small systems are solved directly: no slower, and exact at all scales.
   MultigridPreconditioner preconditionerOf(std::size_t l) const {
-    const bool direct = graphOf(l).size() <= kDirectSize;
+    const bool direct = graphOf(l).size() <= kMaxDirectSize;
     return {hierarchy_, direct ? hierarchy_.levels.size() : l, threads_};
   }
 
@@ -319,7 +311,7 @@ private:
     options.relative_tolerance = kSolvedTolerance;
     options.tolerance = tolerance.value_or(1.0);
     if (!energy.hasBarrier())
-      options.longest_mean = kHopelessCentroid;
+      options.longest_mean = kMaxStartCentroid;
     options.progress = progress;
     NewtonReport newton = minimizeByNewton(energy, preconditioner, options, u);
     report.newton_iterations += newton.iterations;

@@ -1,5 +1,7 @@
 #include "planar_start.h"
 
+#include "pi.h"
+
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
 
@@ -15,11 +17,12 @@
 namespace spherical_param::internal {
 namespace {
 
+/// Nodes far from each other by which central nodes are found.
 constexpr int kLandmarks = 12;
 /// Logarithm of the factor by which conductances fall with each edge of distance.
 constexpr double kDrift = 0.5;
-/// Of exp(), with room for products.
-constexpr double kLargestExponent = 300.0;
+/// Largest argument of exp(), with room for products.
+constexpr double kMaxExponent = 300.0;
 
 /// Lengths of the shortest paths from a node (E. W. Dijkstra, 1959).
 std::vector<double> pathLengths(const Graph& graph, Index source) {
@@ -58,7 +61,7 @@ double lengthBetween(const Graph& graph, Index i, Index j) {
              : std::numeric_limits<double>::infinity();
 }
 
-/// The center and two of its neighbours, joined to each other if there are such.
+/// The centre and two of its neighbours, joined to each other if there are such.
 std::array<Index, 3> outerFace(const Graph& graph, Index center) {
   const auto c = static_cast<std::size_t>(center);
   std::vector<Index> around(graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[c]),
@@ -118,9 +121,9 @@ double median(std::vector<double> values) {
 /// fold nothing: v = (1 - |c|^2) (u - c) / |u - c|^2 - c takes the point c of the ball to its
 /// centre.
 void centerConformally(Positions& directions) {
-  constexpr int most_steps = 30;
+  constexpr int max_steps = 30;
   constexpr double centered = 0.05;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const Eigen::Vector3d centroid = directions.rowwise().mean();
     const double squared = centroid.squaredNorm();
     if (!(squared > centered * centered) || !(squared < 1.0))
@@ -130,6 +133,82 @@ void centerConformally(Positions& directions) {
       directions.col(i) = ((1.0 - squared) / offset.squaredNorm() * offset - centroid).normalized();
     }
   }
+}
+
+/// The points of the plane where each node but those of the outer face is the mean of its
+/// neighbours (W. T. Tutte, 1963), with conductances g_i g_j / length. g falls by a constant factor
+/// with each edge of distance from the outer face: without, nodes far from it crowd in one place.
+/// The matrix is scaled to ones on the diagonal, where g no longer occurs.
+Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& outer) {
+  std::vector<Eigen::Index> unknown(graph.size(), 0);
+  for (const Index node : outer)
+    unknown[static_cast<std::size_t>(node)] = -1;
+  Eigen::Index unknowns = 0;
+  for (Eigen::Index& index : unknown)
+    if (index == 0)
+      index = unknowns++;
+
+  Eigen::MatrixX2d plane(static_cast<Eigen::Index>(graph.size()), 2);
+  const double third = 2.0 * kPi / 3.0;
+  for (int k = 0; k < 3; ++k)
+    plane.row(outer[static_cast<std::size_t>(k)]) << std::cos(third * k), std::sin(third * k);
+  if (unknowns == 0)
+    return plane;
+  const std::vector<int> hops = hopsFrom(graph, outer);
+  const int max_hops = *std::max_element(hops.begin(), hops.end());
+  const double drift = std::min(kDrift, kMaxExponent / std::max(max_hops, 1));
+  std::vector<double> stiffness(graph.size(), 0.0);
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const int deeper = hops[static_cast<std::size_t>(graph.neighbors[e])] - hops[i];
+      stiffness[i] += std::exp(-drift * deeper) / graph.lengths[e];
+    }
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX2d right_side = Eigen::MatrixX2d::Zero(unknowns, 2);
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    if (unknown[i] < 0)
+      continue;
+    entries.emplace_back(unknown[i], unknown[i], 1.0);
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+      const double root = std::sqrt(stiffness[i]);
+      if (unknown[j] < 0)
+        // Next to the outer face, where g_j is 1.
+        right_side.row(unknown[i]) +=
+            plane.row(static_cast<Eigen::Index>(j)) / (graph.lengths[e] * root);
+      else
+        entries.emplace_back(unknown[i], unknown[j],
+                             -1.0 / (graph.lengths[e] * root * std::sqrt(stiffness[j])));
+    }
+  }
+  Eigen::SparseMatrix<double> laplacian(unknowns, unknowns);
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
+  const Eigen::MatrixX2d inner = solver.solve(right_side);
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    if (unknown[i] >= 0)
+      plane.row(static_cast<Eigen::Index>(i)) =
+          inner.row(unknown[i]) * (std::exp(drift * hops[i]) / std::sqrt(stiffness[i]));
+  return plane;
+}
+
+/// Stereographic projection, with half of the points on each side of the equator.
+Positions projectOnSphere(Eigen::MatrixX2d plane) {
+  const Eigen::Index n = plane.rows();
+  const std::vector<double> x(plane.col(0).data(), plane.col(0).data() + n);
+  const std::vector<double> y(plane.col(1).data(), plane.col(1).data() + n);
+  plane.rowwise() -= Eigen::RowVector2d(median(x), median(y));
+  const Eigen::VectorXd norms = plane.rowwise().norm();
+  const double scale = std::max(median(std::vector<double>(norms.data(), norms.data() + n)),
+                                std::numeric_limits<double>::min());
+  Positions directions(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector2d q = plane.row(i).transpose() / scale;
+    const double squared = q.squaredNorm();
+    directions.col(i) << 2.0 * q / (1.0 + squared), (squared - 1.0) / (squared + 1.0);
+    directions.col(i).normalize();
+  }
+  return directions;
 }
 
 }  // namespace
@@ -167,74 +246,7 @@ std::vector<Index> centralNodes(const Graph& graph) {
 }
 
 Positions planarStart(const Graph& graph, Index center) {
-  const auto n = static_cast<Eigen::Index>(graph.size());
-  const std::array<Index, 3> outer = outerFace(graph, center);
-  std::vector<Eigen::Index> unknown(graph.size(), 0);
-  for (const Index node : outer)
-    unknown[static_cast<std::size_t>(node)] = -1;
-  Eigen::Index unknowns = 0;
-  for (Eigen::Index& index : unknown)
-    if (index == 0)
-      index = unknowns++;
-
-  Eigen::MatrixX2d plane(n, 2);
-  const double third = 2.0 * std::acos(-1.0) / 3.0;
-  for (int k = 0; k < 3; ++k)
-    plane.row(outer[static_cast<std::size_t>(k)]) << std::cos(third * k), std::sin(third * k);
-  // Conductances g_i g_j / length with g falling by a constant factor with each edge of distance
-  // from the outer face. The matrix is scaled to ones on the diagonal, where g no longer occurs.
-  const std::vector<int> hops = hopsFrom(graph, outer);
-  const int most_hops = *std::max_element(hops.begin(), hops.end());
-  const double drift = std::min(kDrift, kLargestExponent / std::max(most_hops, 1));
-  std::vector<double> stiffness(graph.size(), 0.0);
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const int deeper = hops[static_cast<std::size_t>(graph.neighbors[e])] - hops[i];
-      stiffness[i] += std::exp(-drift * deeper) / graph.lengths[e];
-    }
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX2d right_side = Eigen::MatrixX2d::Zero(unknowns, 2);
-  for (std::size_t i = 0; i < graph.size(); ++i) {
-    if (unknown[i] < 0)
-      continue;
-    entries.emplace_back(unknown[i], unknown[i], 1.0);
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
-      const double root = std::sqrt(stiffness[i]);
-      if (unknown[j] < 0)
-        // Next to the outer face, where g_j is 1.
-        right_side.row(unknown[i]) +=
-            plane.row(static_cast<Eigen::Index>(j)) / (graph.lengths[e] * root);
-      else
-        entries.emplace_back(unknown[i], unknown[j],
-                             -1.0 / (graph.lengths[e] * root * std::sqrt(stiffness[j])));
-    }
-  }
-  if (unknowns > 0) {
-    Eigen::SparseMatrix<double> laplacian(unknowns, unknowns);
-    laplacian.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
-    const Eigen::MatrixX2d inner = solver.solve(right_side);
-    for (std::size_t i = 0; i < graph.size(); ++i)
-      if (unknown[i] >= 0)
-        plane.row(static_cast<Eigen::Index>(i)) =
-            inner.row(unknown[i]) * (std::exp(drift * hops[i]) / std::sqrt(stiffness[i]));
-  }
-
-  std::vector<double> x(plane.col(0).data(), plane.col(0).data() + n);
-  std::vector<double> y(plane.col(1).data(), plane.col(1).data() + n);
-  plane.rowwise() -= Eigen::RowVector2d(median(x), median(y));
-  std::vector<double> radii(graph.size());
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    radii[i] = plane.row(static_cast<Eigen::Index>(i)).norm();
-  const double scale = std::max(median(radii), std::numeric_limits<double>::min());
-  Positions directions(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Vector2d q = plane.row(i).transpose() / scale;
-    const double squared = q.squaredNorm();
-    directions.col(i) << 2.0 * q / (1.0 + squared), (squared - 1.0) / (squared + 1.0);
-    directions.col(i).normalize();
-  }
+  Positions directions = projectOnSphere(drawInPlane(graph, outerFace(graph, center)));
   centerConformally(directions);
   return directions;
 }

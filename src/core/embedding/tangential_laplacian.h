@@ -148,8 +148,8 @@ Eigen::Vector3d tangentialLaplacian(const Rows& rows, const PaddedPositions& u, 
   return laplacian - laplacian.dot(center) * center;
 }
 
-/// Calls visit(std::integral_constant<WeightRule, rule>()) with the rule of the rows, for loops that
-/// are compiled for one rule.
+/// Calls visit(std::integral_constant<WeightRule, rule>()) with the rule of the rows, for loops
+/// that are compiled for one rule.
 template <typename Visit>
 void visitRule(const Rows& rows, const Visit& visit) {
   if (rows.power == 0.0)

@@ -26,7 +26,7 @@ std::size_t at(Index i) {
 
 /// Neighbours that a node of the power has, on average, of which no more is asked: at a reach of 3
 /// it has some 40 on a surface. Memory and time would grow with their number and its square.
-constexpr std::size_t kMostNeighbors = 64;
+constexpr std::size_t kMaxNeighbors = 64;
 
 /// None if there are too many.
 std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
@@ -51,7 +51,7 @@ std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
     std::sort(power.neighbors.begin() + static_cast<std::ptrdiff_t>(power.offsets.back()),
               power.neighbors.end());
     power.offsets.push_back(power.neighbors.size());
-    if (power.neighbors.size() > kMostNeighbors * graph.size())
+    if (power.neighbors.size() > kMaxNeighbors * graph.size())
       return std::nullopt;
   }
   power.edges.resize(power.neighbors.size());
@@ -91,7 +91,7 @@ public:
         ++first_unknown;
       if (first_unknown == power_.count)
         return symbols_ - relations_;
-      if (symbols_ == kMostSymbols)
+      if (symbols_ == kMaxSymbols)
         return std::nullopt;
       set(first_unknown, std::uint64_t{1} << symbols_++);
     }
@@ -99,7 +99,7 @@ public:
 
 private:
   using Edge = std::array<Index, 2>;
-  static constexpr int kMostSymbols = 64;
+  static constexpr int kMaxSymbols = 64;
 
   void set(std::uint32_t edge, std::uint64_t value) {
     known_[edge] = 1;
@@ -166,7 +166,7 @@ private:
 
   /// A sum of symbols is zero: one of them is not independent.
   void relate(std::uint64_t sum) {
-    for (std::size_t bit = 0; sum != 0 && bit < kMostSymbols; ++bit) {
+    for (std::size_t bit = 0; sum != 0 && bit < kMaxSymbols; ++bit) {
       if ((sum >> bit & 1u) == 0)
         continue;
       if (relation_[bit] == 0) {
@@ -182,7 +182,7 @@ private:
   std::vector<char> known_;
   std::vector<std::uint64_t> value_;
   std::vector<std::uint32_t> pending_;
-  std::array<std::uint64_t, kMostSymbols> relation_{};  ///< by their lowest symbol
+  std::array<std::uint64_t, kMaxSymbols> relation_{};  ///< by their lowest symbol
   int symbols_ = 0;
   int relations_ = 0;
 };

@@ -30,7 +30,7 @@ constexpr int kBridgesPerJoint = 3;
 constexpr int kDanglingRounds = 8;
 /// Degree below which a point is repaired. Below 4 would be too generous: it brings back edges that
 /// one star alone saw, across gaps.
-constexpr std::size_t kFewestNeighbors = 3;
+constexpr std::size_t kMinNeighbors = 3;
 
 /// Voronoi edges shorter than this part of the cell's radius count as none: of four points on a
 /// circle, those across from each other are no neighbours, whatever the round-off.
@@ -39,9 +39,9 @@ constexpr double kTie = 1e-9;
 /// Largest ratio of the smallest to the middle variance of a neighbourhood with a tangent plane:
 /// above, all directions are alike. Stars are better than what takes their place for as long as
 /// there is any plane at all.
-constexpr double kLeastFlat = 0.9;
+constexpr double kMaxRoundness = 0.9;
 /// Least ratio of the middle to the largest variance: below, the neighbourhood is a line.
-constexpr double kMostLinear = 0.01;
+constexpr double kMinWidthRatio = 0.01;
 
 /// Nearest neighbours that span the tangent plane; more where these are on a line.
 constexpr int kTangentNeighbors = 10;
@@ -238,8 +238,8 @@ bool findTangentPlane(const std::vector<Candidate>& candidates, std::size_t coun
   solver.computeDirect(covariance);
   axes = solver.eigenvectors();
   const Eigen::Vector3d& variances = solver.eigenvalues();
-  is_line = !(variances[1] > kMostLinear * variances[2]);
-  return !is_line && variances[0] <= kLeastFlat * variances[1];
+  is_line = !(variances[1] > kMinWidthRatio * variances[2]);
+  return !is_line && variances[0] <= kMaxRoundness * variances[1];
 }
 
 /// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
@@ -287,9 +287,8 @@ bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen:
 /// Writes the star of the point whose sorted candidates are given, ascending.
 ///
 /// \param others number of other points there are
-StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
-                  VoronoiCell& cell, Index* star,
-                  Index& count) {
+StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, VoronoiCell& cell,
+                  Index* star, Index& count) {
   StarKind kind;
   kind.candidates = static_cast<Index>(candidates.size());
   count = 0;
@@ -309,8 +308,7 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
         break;
     }
     if (kind.tangent_plane) {
-      const bool certified =
-          findVoronoiNeighbors(candidates, axes, kMaxSlope, cell, star, count);
+      const bool certified = findVoronoiNeighbors(candidates, axes, kMaxSlope, cell, star, count);
       kind.certified = certified || complete;
       kind.wants_more = !kind.certified;
     } else {
@@ -325,8 +323,8 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others,
 /// Finds the stars of the points in `subset` (empty: of all) from lists in its order. Lists that
 /// are no longer than the one before change nothing.
 void findStars(const Positions& points, const std::vector<Index>& subset,
-               const NeighborLists& lists, int threads,
-               std::vector<Scratch>& scratch, const internal::Report& report, Stars& stars) {
+               const NeighborLists& lists, int threads, std::vector<Scratch>& scratch,
+               const internal::Report& report, Stars& stars) {
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
   std::size_t longest = 0;
@@ -338,30 +336,27 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
   }
   const std::size_t others = stars.size() - 1;
   internal::tell(report, 0.0);
-  internal::forEachItem(
-      lists.size(), threads, report, [&](std::size_t thread, std::size_t q) {
-        const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
-        const auto i = static_cast<std::size_t>(node);
-        std::vector<Candidate>& candidates = scratch[thread].candidates;
-        collectCandidates(points, node, lists.indices.data() + lists.offsets[q],
-                          lists.indices.data() + lists.offsets[q + 1], kMaxCandidates,
-                          candidates);
-        if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
-          return;
-        stars.begin[i] = base + lists.offsets[q];
-        stars.kind[i] = findStar(candidates, others, scratch[thread].cell,
-                                 stars.nodes.data() + stars.begin[i], stars.count[i]);
-        for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
-          stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
-      });
+  internal::forEachItem(lists.size(), threads, report, [&](std::size_t thread, std::size_t q) {
+    const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
+    const auto i = static_cast<std::size_t>(node);
+    std::vector<Candidate>& candidates = scratch[thread].candidates;
+    collectCandidates(points, node, lists.indices.data() + lists.offsets[q],
+                      lists.indices.data() + lists.offsets[q + 1], kMaxCandidates, candidates);
+    if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
+      return;
+    stars.begin[i] = base + lists.offsets[q];
+    stars.kind[i] = findStar(candidates, others, scratch[thread].cell,
+                             stars.nodes.data() + stars.begin[i], stars.count[i]);
+    for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
+      stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
+  });
 }
 
 /// Asks for more neighbours of the points that want them. Returns how many points these were.
 Index searchForMore(const Positions& points, const NeighborSearch& search, int threads,
-                    std::vector<Scratch>& scratch, const internal::Report& report,
-                    Stars& stars) {
-  const int most = static_cast<int>(
-      std::min(static_cast<std::size_t>(kMaxCandidates), stars.size() - 1));
+                    std::vector<Scratch>& scratch, const internal::Report& report, Stars& stars) {
+  const int most =
+      static_cast<int>(std::min(static_cast<std::size_t>(kMaxCandidates), stars.size() - 1));
   int count = 0;
   for (const StarKind& kind : stars.kind)
     count = std::max(count, static_cast<int>(kind.candidates));
@@ -451,7 +446,7 @@ void joinWithoutPlane(const Positions& points, const Stars& stars,
 std::vector<Index> pointsOfLowDegree(const Graph& graph) {
   std::vector<Index> result;
   for (std::size_t i = 0; i < graph.size(); ++i)
-    if (graph.offsets[i + 1] - graph.offsets[i] < kFewestNeighbors)
+    if (graph.offsets[i + 1] - graph.offsets[i] < kMinNeighbors)
       result.push_back(static_cast<Index>(i));
   return result;
 }
@@ -481,7 +476,7 @@ Index repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
   std::vector<Index> found;
   for (const Index i : poor) {
     found.clear();
-    while (found.size() < kFewestNeighbors) {
+    while (found.size() < kMinNeighbors) {
       internal::ComponentTree::Pair pair;
       tree.nearestExcept(i, found, pair);
       if (pair.from < 0)

@@ -26,11 +26,10 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
   internal::checkOptions(options);
   internal::checkNeighborLists("buildNeighborGraph", lists,
                                static_cast<std::size_t>(points.cols()));
-  NeighborGraph result = options.method == GraphMethod::NearestNeighbors
-                             ? internal::buildNearestNeighborGraph(points, lists,
-                                                                   neighborsToSearch(options))
-                             : internal::buildLocalDelaunayGraph(points, lists, options.agreement,
-                                                                 search, execution);
+  NeighborGraph result =
+      options.method == GraphMethod::NearestNeighbors
+          ? internal::buildNearestNeighborGraph(points, lists, neighborsToSearch(options))
+          : internal::buildLocalDelaunayGraph(points, lists, options.agreement, search, execution);
   result.report.edges = result.graph.edgeCount();
   return result;
 }

@@ -38,36 +38,22 @@ std::vector<Place> sortedPlaces(const Positions& points, const MortonCurve& curv
   return places;
 }
 
-}  // namespace
-
-OrderedPoints orderPoints(const Positions& points, int threads) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  OrderedPoints result;
-  if (n == 0)
-    return result;
-  threads = threadCount(threads, n, kShortPassThreshold);
-  const Eigen::Vector3d low = points.rowwise().minCoeff();
-  const Eigen::Vector3d high = points.rowwise().maxCoeff();
-  // An axis along which nothing differs may be so far away that it would not stay finite.
-  constexpr int most = 1000;
-  int largest = 0;
-  std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
-  result.exponent = std::max(exponentOfExtent(low, high), largest - most);
-  const PowerOfTwo scaled(-result.exponent);
-  std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
-
-  // Points that are the same lie in one cell; each is replaced by the first of them.
-  std::vector<Index>& vertex_of_input = result.distinct.vertex_of_input;
-  vertex_of_input.resize(n);
-  std::iota(vertex_of_input.begin(), vertex_of_input.end(), Index{0});
-  std::vector<Index>& input_of_node = result.input_of_node;
-  input_of_node.reserve(n);
+/// Fills input_of_node, and for each input point the first one at its position. Equal points lie in
+/// one cell of the curve.
+///
+/// \param places all points; those of each cell are put into another order.
+void mergeDuplicates(const Positions& points, std::vector<Place>& places, OrderedPoints& result) {
   const auto coordinates = [&](Index i) {
     return std::tuple(points(0, i), points(1, i), points(2, i));
   };
-  for (std::size_t begin = 0; begin < n;) {
+  std::vector<Index>& first_of_input = result.distinct.vertex_of_input;
+  first_of_input.resize(places.size());
+  std::iota(first_of_input.begin(), first_of_input.end(), Index{0});
+  std::vector<Index>& input_of_node = result.input_of_node;
+  input_of_node.reserve(places.size());
+  for (std::size_t begin = 0; begin < places.size();) {
     std::size_t end = begin + 1;
-    while (end < n && places[end].key == places[begin].key)
+    while (end < places.size() && places[end].key == places[begin].key)
       ++end;
     const auto of_cell = static_cast<std::ptrdiff_t>(input_of_node.size());
     if (end - begin > 1)
@@ -80,26 +66,54 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
     for (std::size_t i = begin; i < end; ++i) {
       const Index input = places[i].index;
       if (i > begin && coordinates(input) == coordinates(input_of_node.back()))
-        vertex_of_input[static_cast<std::size_t>(input)] = input_of_node.back();
+        first_of_input[static_cast<std::size_t>(input)] = input_of_node.back();
       else
         input_of_node.push_back(input);
     }
     std::sort(input_of_node.begin() + of_cell, input_of_node.end());
     begin = end;
   }
-  places = {};
+}
 
-  // Those that are the first of theirs are numbered in their order.
-  result.distinct.input_of_vertex.reserve(input_of_node.size());
-  for (std::size_t i = 0; i < n; ++i) {
+/// Numbers the distinct positions by their first input points.
+///
+/// \param distinct vertex_of_input holds the first input point of each, and then its vertex.
+void numberVertices(DistinctPoints& distinct) {
+  std::vector<Index>& vertex_of_input = distinct.vertex_of_input;
+  for (std::size_t i = 0; i < vertex_of_input.size(); ++i) {
     const auto first = static_cast<std::size_t>(vertex_of_input[i]);
     if (first == i) {
-      vertex_of_input[i] = static_cast<Index>(result.distinct.input_of_vertex.size());
-      result.distinct.input_of_vertex.push_back(static_cast<Index>(i));
+      vertex_of_input[i] = static_cast<Index>(distinct.input_of_vertex.size());
+      distinct.input_of_vertex.push_back(static_cast<Index>(i));
     } else {
       vertex_of_input[i] = vertex_of_input[first];  // which comes before
     }
   }
+}
+
+}  // namespace
+
+OrderedPoints orderPoints(const Positions& points, int threads) {
+  const auto n = static_cast<std::size_t>(points.cols());
+  OrderedPoints result;
+  if (n == 0)
+    return result;
+  threads = threadCount(threads, n, kShortPassThreshold);
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const Eigen::Vector3d high = points.rowwise().maxCoeff();
+  // An axis along which nothing differs may be so far away that it would not stay finite.
+  constexpr int kMaxExponent = 1000;
+  int largest = 0;
+  std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
+  result.exponent = std::max(exponentOfExtent(low, high), largest - kMaxExponent);
+  const PowerOfTwo scaled(-result.exponent);
+  std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
+
+  mergeDuplicates(points, places, result);
+  places = {};
+  numberVertices(result.distinct);
+  const std::vector<Index>& vertex_of_input = result.distinct.vertex_of_input;
+  const std::vector<Index>& input_of_node = result.input_of_node;
   result.vertex_of_node.resize(input_of_node.size());
   result.points.resize(3, static_cast<Eigen::Index>(input_of_node.size()));
   forEachBlock(input_of_node.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {

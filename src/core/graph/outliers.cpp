@@ -19,13 +19,13 @@ namespace spherical_param {
 namespace {
 
 /// Fewer span no plane.
-constexpr std::size_t kLeastNeighbors = 3;
+constexpr std::size_t kMinNeighbors = 3;
 /// Fewer positions cannot be meshed.
-constexpr std::size_t kLeastPositions = 4;
+constexpr std::size_t kMinPositions = 4;
 /// Neighbours with mean distances longer than so many times their median may be outliers.
-constexpr double kIsolated = 2.0;
+constexpr double kMaxDistanceRatio = 2.0;
 /// Neighbours whose spread across is less than this share of that along are on a line.
-constexpr double kFlatness = 1e-6;
+constexpr double kMinSpreadRatio = 1e-6;
 
 [[noreturn]] void fail(const std::string& what) {
   throw InvalidInput("findOutliers: " + what);
@@ -35,7 +35,7 @@ void checkOptions(const OutlierOptions& options) {
   if (!(options.sigma >= 0.0 && options.sigma <= 1000.0))
     fail("sigma = " + std::to_string(options.sigma) +
          " is out of range; use a value in [0, 1000], mostly 2 to 5");
-  if (options.k < static_cast<int>(kLeastNeighbors))
+  if (options.k < static_cast<int>(kMinNeighbors))
     fail("k = " + std::to_string(options.k) + " is too small; use 3 or more neighbours");
   if (!(options.least_score >= 0.0 && std::isfinite(options.least_score)))
     fail("least_score = " + std::to_string(options.least_score) +
@@ -73,7 +73,7 @@ double distanceFromPlane(const Positions& points, const Eigen::Vector3d& point,
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
   const Eigen::Vector3d& spread = axes.eigenvalues();  // ascending, squared
-  if (spread[1] <= kFlatness * kFlatness * spread[2]) {
+  if (spread[1] <= kMinSpreadRatio * kMinSpreadRatio * spread[2]) {
     const Eigen::Vector3d along = axes.eigenvectors().col(2);
     return spread[2] > 0.0 ? (centroid - centroid.dot(along) * along).norm() : centroid.norm();
   }
@@ -102,7 +102,7 @@ public:
       const auto rest = std::count_if(
           begin, end, [&](Index j) { return is_outlier[static_cast<std::size_t>(j)] == 0; });
       // With too few left, those that were there are better than none.
-      if (rest < end - begin && rest >= static_cast<std::ptrdiff_t>(kLeastNeighbors)) {
+      if (rest < end - begin && rest >= static_cast<std::ptrdiff_t>(kMinNeighbors)) {
         std::stable_partition(
             begin, end, [&](Index j) { return is_outlier[static_cast<std::size_t>(j)] == 0; });
         count_[i] = static_cast<std::size_t>(rest);
@@ -144,7 +144,7 @@ private:
   }
 
   double score(std::size_t i, std::vector<Neighbor>& around) const {
-    if (used_[i] < kLeastNeighbors)
+    if (used_[i] < kMinNeighbors)
       return 0.0;
     around.clear();
     for (std::size_t c = 0; c < used_[i]; ++c) {
@@ -155,7 +155,7 @@ private:
     const double scale = around[around.size() / 2].mean_distance;
     if (!(scale > 0.0))
       return 0.0;  // neighbours in one place have no scale
-    while (around.back().mean_distance > kIsolated * scale)
+    while (around.back().mean_distance > kMaxDistanceRatio * scale)
       around.pop_back();
     return distanceFromPlane(points_, points_.col(static_cast<Eigen::Index>(i)), around) / scale;
   }
@@ -215,7 +215,7 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
         found = true;
       }
     // With sigma and least_score near 0 there is no end to it before all points are outliers.
-    found = found && left > kLeastNeighbors;
+    found = found && left > kMinNeighbors;
   }
   internal::tell(report, 1.0);
   result.scores = scoring.scores();
@@ -231,7 +231,7 @@ Outliers findOutliers(const Positions& points, const OutlierOptions& options,
   checkFinite(points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
   const auto n = static_cast<std::size_t>(points.cols());
-  if (nodes.input_of_node.size() < kLeastPositions) {
+  if (nodes.input_of_node.size() < kMinPositions) {
     Outliers none;
     none.scores.assign(n, 0.0);
     return none;
