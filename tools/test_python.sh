@@ -18,8 +18,8 @@ strictly_typed() {
       --cache-dir "$work/mypy" src/python/examples/*.py
 }
 
-# What users get wrong must be told by mypy, or the types would be worth nothing.
-wrong_use_is_told() {
+# mypy must find wrong use.
+wrong_use_is_found() {
   cat >"$work/wrong.py" <<'END'
 import spherical_param
 
@@ -103,7 +103,7 @@ print(build_meta.build_sdist(sys.argv[1]))' "$work/sdist" &&
 need_packages python
 if check "python: module" build_release spherical_param_python; then
   check "python: strictly typed" strictly_typed || true
-  check "python: wrong use is told by its types" wrong_use_is_told || true
+  check "python: wrong use is found by its types" wrong_use_is_found || true
   check "python: stub is that of the extension" stub_is_that_of_the_extension || true
 fi
 if run "python: Open3D" tools/setup.sh open3d; then

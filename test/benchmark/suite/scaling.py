@@ -24,7 +24,7 @@ LEAST = {
     "triangulation": (2 * 24 + 32, 25, "one search, 3 flips with the circles that ask for them"),
     "optimization": (6 * 24 + 2 * 64, 170, "3 flips tried, 2 normals, 18 angles for the usual one, "
                      "the triangles near 2 others"),
-    "check": (6 * 12 + 2 * 24, 40, "the edges twice, the 2-ring of the graph for edges outside it, "
+    "quality": (6 * 12 + 2 * 24, 40, "the edges twice, the 2-ring of the graph for edges outside it, "
               "2 volumes"),
     "write": (12 + 2 * 13, 0, "12 bytes a point, 13 a triangle"),
 }  # fmt: skip

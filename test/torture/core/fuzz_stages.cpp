@@ -164,7 +164,33 @@ void checkGraph(const NeighborGraph& graph, std::size_t n) {
 
 using Call = std::function<void(Bytes&, const Positions&, Watch&)>;
 
-void fuzzPointSet(Bytes&, const Positions& points, Watch&) {
+void checkNeighbors(Bytes& bytes, const Positions& points, Watch& watch) {
+  // Points of an extent of about 1: squared distances neither overflow nor underflow.
+  if (!points.allFinite() || points.cols() == 0)
+    return;
+  const double largest = std::max(points.cwiseAbs().maxCoeff(), 1e-300);
+  const Positions scaled = points / largest;
+  const auto n = static_cast<std::size_t>(points.cols());
+  const int count = integerOr(bytes, 12);
+  const NeighborLists lists = findNearestNeighbors(scaled, count, executionFrom(bytes, watch));
+  if (!fuzz::areLists(lists, n, n))
+    finding("neighbours that are not points");
+  const NeighborLists nearest = fuzz::nearest(scaled, std::max(0, std::min(count, sizeOf(points))));
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto far = [&](const NeighborLists& of) {
+      double square = 0.0;
+      for (std::size_t e = of.offsets[i]; e < of.offsets[i + 1]; ++e)
+        square = std::max(
+            square,
+            (scaled.col(of.indices[e]) - scaled.col(static_cast<Eigen::Index>(i))).squaredNorm());
+      return square;
+    };
+    if (std::abs(far(lists) - far(nearest)) > 1e-14)
+      finding("neighbours that are not the nearest");
+  }
+}
+
+void fuzzPointSet(Bytes& bytes, const Positions& points, Watch& watch) {
   const DistinctPoints distinct = findDistinctPoints(points);
   if (distinct.input_of_vertex.size() != fuzz::countDistinct(points))
     finding("another number of distinct points");
@@ -180,6 +206,7 @@ void fuzzPointSet(Bytes&, const Positions& points, Watch&) {
   if (!fuzz::areUnitVectors(internal::projectFromCentroid(points)) ||
       !fuzz::areUnitVectors(internal::projectByRank(points)))
     finding("a start that is not of unit vectors");
+  checkNeighbors(bytes, points, watch);
 }
 
 void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
@@ -215,32 +242,6 @@ void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
   checkGraph(buildNeighborGraph(points, lists, options, search, executionFrom(bytes, watch)), n);
 }
 
-void fuzzNeighbors(Bytes& bytes, const Positions& points, Watch& watch) {
-  // Points of an extent of about 1: squared distances neither overflow nor underflow.
-  if (!points.allFinite() || points.cols() == 0)
-    return;
-  const double largest = std::max(points.cwiseAbs().maxCoeff(), 1e-300);
-  const Positions scaled = points / largest;
-  const auto n = static_cast<std::size_t>(points.cols());
-  const int count = integerOr(bytes, 12);
-  const NeighborLists lists = findNearestNeighbors(scaled, count, executionFrom(bytes, watch));
-  if (!fuzz::areLists(lists, n, n))
-    finding("neighbours that are not points");
-  const NeighborLists nearest = fuzz::nearest(scaled, std::max(0, std::min(count, sizeOf(points))));
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto far = [&](const NeighborLists& of) {
-      double square = 0.0;
-      for (std::size_t e = of.offsets[i]; e < of.offsets[i + 1]; ++e)
-        square = std::max(
-            square,
-            (scaled.col(of.indices[e]) - scaled.col(static_cast<Eigen::Index>(i))).squaredNorm());
-      return square;
-    };
-    if (std::abs(far(lists) - far(nearest)) > 1e-14)
-      finding("neighbours that are not the nearest");
-  }
-}
-
 void fuzzEmbedding(Bytes& bytes, const Positions& points, Watch& watch) {
   const Graph graph = graphFrom(bytes, points);
   EmbeddingOptions options;
@@ -256,7 +257,8 @@ void fuzzEmbedding(Bytes& bytes, const Positions& points, Watch& watch) {
   options.starts = atMost(10, integerOr(bytes, 2), 100);
   options.history.vertices = integerOr(bytes, 0);
   options.history.frames = integerOr(bytes, 20);
-  const Embedding result = embed(graph, points, options, bytes.byte(), executionFrom(bytes, watch));
+  const std::uint32_t seed = bytes.byte();
+  const Embedding result = embed(graph, points, options, seed, executionFrom(bytes, watch));
   if (result.directions.cols() != points.cols() ||
       (points.cols() > 0 && !fuzz::areUnitVectors(result.directions)))
     finding("the embedding is not of unit vectors");
@@ -319,9 +321,10 @@ void fuzzOptimization(Bytes& bytes, const Positions& points, Watch& watch) {
   const Graph graph = graphFrom(bytes, points);
   OptimizationOptions options;
   options.method = enumFrom<OptimizationMethod>(bytes, 3);
-  options.finish_on_points = bytes.oneIn(2);
-  const MeshOptimization result =
-      optimizeMesh(points, triangles, graph, options, bytes.byte(), executionFrom(bytes, watch));
+  const std::uint32_t seed = bytes.byte();
+  const Execution execution = executionFrom(bytes, watch);
+  options.finish_on_points = bytes.byte() % 2 == 0;
+  const MeshOptimization result = optimizeMesh(points, triangles, graph, options, seed, execution);
   if (!test::isSphereOverAll(result.triangles, sizeOf(points)))
     finding("the optimised mesh is not a sphere over all points");
 }
@@ -518,7 +521,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::array calls{fuzzPointSet,  fuzzTriangulation, fuzzGraph,   fuzzEmbedding,
                              fuzzOutliers,  fuzzChecks,        fuzzSurface, fuzzOptimization,
                              fuzzSmoothing, fuzzDiagnosis,     fuzzTexture, fuzzMorph,
-                             fuzzHarmonics, fuzzNeighbors};
+                             fuzzHarmonics};
   Bytes bytes(data, size);
   const std::uint8_t which = bytes.byte();
   Watch watch(bytes);
