@@ -65,7 +65,7 @@ void checkMesh(const Positions& points, const Triangles& triangles, const Positi
       throw InvalidInput(caller + "the start of vertex " + std::to_string(v) + " has length " +
                          std::to_string(start.col(v).norm()) + "; normalise it");
   const MeshTopology topology =
-      checkTopology(triangles, static_cast<std::size_t>(points.cols()), {threads});
+      checkTopology(triangles, static_cast<std::size_t>(points.cols()), threads);
   if (topology.isSphere())
     return;
   std::string fault = "it is no topological sphere";
@@ -222,10 +222,6 @@ public:
 
   Positions run(std::vector<SphereMapLevel>& levels, const internal::Report& report) {
     placeTetrahedron(hierarchy_.meshes.back(), sphere_);
-    double work = 0.0;
-    for (const MapMesh& mesh : hierarchy_.meshes)
-      work += static_cast<double>(mesh.vertex_count);
-    double done = 0.0;
     std::size_t batch = 0;
     for (std::size_t l = hierarchy_.meshes.size(); l-- > 0;) {
       const MapMesh& mesh = hierarchy_.meshes[l];
@@ -233,9 +229,7 @@ public:
         insert(hierarchy_.batches[batch], hierarchy_.batches[batch + 1]);
         ++batch;
       }
-      const double share = static_cast<double>(mesh.vertex_count);
       levels.push_back(relax(mesh, report));
-      done += share;
     }
     std::reverse(levels.begin(), levels.end());
     return std::move(sphere_);
