@@ -93,9 +93,10 @@ BestOfRuns runWithRetries(const OrderedPoints& nodes, const FindNeighbors& find_
   return best;
 }
 
-Result run(const Positions& points, const Options& options, const FindNeighbors& find_neighbors) {
-  checkOptions(options);
-  StageClock clock(options);
+Result run(const Positions& points, const Options& all, const FindNeighbors& find_neighbors) {
+  checkOptions(all);
+  StageClock clock(all);
+  const Options options = clock.optionsOfStages();
   OrderedPoints nodes = clock.time(
       "neighbors", [&] { return internal::orderCheckedPoints(points, options.threads); });
   BestOfRuns best = runWithRetries(nodes, find_neighbors, options, clock);

@@ -13,17 +13,32 @@ namespace spherical_param::internal {
 /// Times the stages, all runs together, and reports their beginning and end.
 class StageClock {
 public:
-  explicit StageClock(const Execution& execution) : execution_(execution) {}
+  /// \param options must outlive the clock.
+  explicit StageClock(const Options& options) : options_(options) {}
+  StageClock(const StageClock& other) = delete;  // optionsOfStages() points here
+  StageClock& operator=(const StageClock& other) = delete;
+
+  /// The options for the stages. Progress is reported as that of the stage that runs, whichever
+  /// functions it calls.
+  Options optionsOfStages() const {
+    Options options = options_;
+    if (options_.progress)
+      options.progress = [this](const Progress& progress) {
+        return options_.progress({stage_, progress.fraction});
+      };
+    return options;
+  }
 
   /// Runs a stage and returns its outcome.
   template <typename Work>
   auto time(const char* stage, const Work& work) {
-    tell(reportOf(execution_, stage), 0.0);
+    stage_ = stage;
+    tell(reportOf(options_, stage), 0.0);
     const auto begin = std::chrono::steady_clock::now();
     auto outcome = work();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     add(stage, seconds.count());
-    tell(reportOf(execution_, stage), 1.0);
+    tell(reportOf(options_, stage), 1.0);
     return outcome;
   }
 
@@ -31,16 +46,16 @@ public:
 
 private:
   void add(const char* stage, double seconds) {
-    const auto known = std::find_if(times_.begin(), times_.end(), [&](const StageTime& other) {
-      return other.name == stage;
-    });
+    const auto known = std::find_if(times_.begin(), times_.end(),
+                                    [&](const StageTime& other) { return other.name == stage; });
     if (known == times_.end())
       times_.push_back({stage, seconds});
     else
       known->seconds += seconds;
   }
 
-  const Execution& execution_;
+  const Options& options_;
+  const char* stage_ = "";
   std::vector<StageTime> times_;
 };
 

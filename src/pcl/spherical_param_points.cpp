@@ -28,11 +28,11 @@ public:
   SerialSearch(const UserSearch& search, const Options& options)
       : search_(search), options_(options) {}
 
-  /// One list for each of `queries`, with `count` neighbours and the point itself.
+  /// One list for each of `queries`, with `count` neighbours and the point itself, for the graph.
   NeighborLists find(const std::vector<Index>& queries, int count) const {
     NeighborLists lists;
     for (std::size_t i = 0; i < queries.size(); ++i) {
-      report(i, queries.size());
+      report("graph", i, queries.size());
       append(queries[i], count, lists);
     }
     return lists;
@@ -43,7 +43,7 @@ public:
   NeighborLists findAll(std::size_t size, int count) const {
     NeighborLists lists;
     for (std::size_t i = 0; i < search_.points.size(); ++i) {
-      report(i, search_.points.size());
+      report("neighbors", i, search_.points.size());
       lists.offsets.resize(static_cast<std::size_t>(search_.points[i]) + 1, lists.indices.size());
       append(search_.points[i], count, lists);
     }
@@ -59,10 +59,10 @@ private:
     lists.offsets.push_back(lists.indices.size());
   }
 
-  void report(std::size_t done, std::size_t all) const {
+  void report(const char* stage, std::size_t done, std::size_t all) const {
     constexpr std::size_t reports = 32;
     if (options_.progress && done % (all / reports + 1) == 0 &&
-        !options_.progress({"neighbors", static_cast<double>(done) / static_cast<double>(all)}))
+        !options_.progress({stage, static_cast<double>(done) / static_cast<double>(all)}))
       throw spherical_param::Cancelled("cancelled by the progress callback");
   }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <pcl/TextureMesh.h>
-#include <pcl/point_traits.h>
+#include <pcl/point_types.h>
 #include <pcl/surface/spherical_param_map.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
