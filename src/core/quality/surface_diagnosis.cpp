@@ -38,53 +38,53 @@ using internal::kPi;
 /// A region grows across edges longer than this [distance of the points at both ends]. So it takes
 /// in the triangles at the rim of an opening, whose corners are near each other in the graph:
 /// without them openings of 8 spacings measure 1.3 to 2.7 edges of their rim, with them 3.0 and up.
-constexpr double kLongEdge = 1.6;
+constexpr double kMinLongEdge = 1.6;
 
-/// The least diameter of a lid [distance of the points at its rim].
-constexpr double kMinLidDiameter = 5.0;
+/// The least diameter of a filled hole [distance of the points at its rim].
+constexpr double kMinHoleDiameter = 5.0;
 /// Neighbours in the graph that are more steps apart on the mesh were torn apart.
 constexpr int kMinHandleSteps = 8;
 /// The least gap between parts [distance of the points at the gap].
 constexpr double kMinPartGap = 4.0;
 
-/// The least diameter of a lid [length that a tenth of the triangles around it exceed]. Openings of
-/// 8 spacings have 3.0 and up, clouds that are dense along lines and coarse in between up to 1.9
-/// where the diameter is 5 spacings.
-constexpr double kLeastRimDiameters = 2.5;
+/// The least diameter of a filled hole [length that a tenth of the triangles around it exceed].
+/// Openings of 8 spacings have 3.0 and up, clouds that are dense along lines and coarse in between
+/// up to 1.9 where the diameter is 5 spacings.
+constexpr double kMinRimDiameters = 2.5;
 
-/// The least mean area of a lid's triangles [squared distance of the points at its rim]. Those of
-/// an even cloud have 0.43, openings of 8 spacings 1.9 and up, folds of dense points 0.5.
-constexpr double kLeastTriangleArea = 1.2;
+/// The least mean area of a filled hole's triangles [squared distance of the points at its rim].
+/// Those of an even cloud have 0.43, openings of 8 spacings 1.9 and up, folds of dense points 0.5.
+constexpr double kMinTriangleArea = 1.2;
 
 /// Length of the mean direction from a point to its near neighbours, median over the rim: 0.64 for
 /// all of a half disc. Of all near neighbours, openings have 0.33 to 0.53, cuts through handles,
 /// where those beyond the cut count, up to 0.16, folds mostly up to 0.29. Without the neighbours
 /// along the rim, which blur it where the rim is ragged, openings have 0.54 to 0.91, folds up to
 /// 0.47.
-constexpr double kLeastOneSidedness = 0.25;
-constexpr double kLeastInwardness = 0.5;
+constexpr double kMinOneSidedness = 0.25;
+constexpr double kMinInwardness = 0.5;
 
 /// Torn neighbours that count have normals less than 73 degrees apart, and are less than 37 degrees
 /// off both tangent planes: others are false neighbours, on sheets that nearly touch.
-constexpr double kLeastNormalCosine = 0.3;
-constexpr double kMostSlope = 0.6;
+constexpr double kMinNormalCosine = 0.3;
+constexpr double kMaxSlope = 0.6;
 
 /// The least number of torn neighbours of a handle. A cut with 9 points around it tears 18. The
 /// closed scans have 0, and up to 28 before the test of normals; random quarters of their points
 /// up to 9. The torus has 59, 212 and 2,416 in one place at 1,000, 5,000 and 50,000 points.
-constexpr std::size_t kLeastTornEdges = 12;
+constexpr std::size_t kMinTornEdges = 12;
 
-/// Above this share of edges outside the graph nothing but parts and openings can be told. Closed
-/// scans have up to 0.05, optimised meshes of scans from one side 0.04, of the torus 0.06 and of
-/// closed shapes with noise of half the distance of neighbours less still; noise twice as strong
-/// has 0.11 and more, and the torus 0.28 and more as long as its mesh is folded.
-constexpr double kFolded = 0.1;
+/// Above this fraction of edges outside the graph the mesh shows nothing but parts and openings.
+/// Closed scans have up to 0.05, optimised meshes of scans from one side 0.04, of the torus 0.06
+/// and of closed shapes with noise of half the distance of neighbours less still; noise twice as
+/// strong has 0.11 and more, and the torus 0.28 and more as long as its mesh is folded.
+constexpr double kMaxOutsideGraph = 0.1;
 
-/// Where the mesh tells nothing, openings are sought by their rims: at so many neighbours of each
-/// other the mean direction to the neighbours is at least so long. An opening of 8 spacings has 25
-/// points around.
-constexpr double kOneSidedInGraph = 0.4;
-constexpr std::size_t kLeastRim = 20;
+/// Where the mesh is folded, openings are sought by their rims: at least kMinRimPoints connected
+/// points at which the mean direction to the neighbours is at least this long. An opening of 8
+/// spacings has 25 points around.
+constexpr double kMinOneSidednessInGraph = 0.4;
+constexpr std::size_t kMinRimPoints = 20;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -98,7 +98,7 @@ struct Side {
   Index corner;
 };
 
-/// What the mesh has and the graph has not, and the other way round.
+/// The edges that the mesh has and the graph has not, and the other way round.
 struct Differences {
   /// Edges of the mesh whose ends are more than two steps apart in the graph, each from one side,
   /// by triangle and corner.
@@ -108,7 +108,7 @@ struct Differences {
   std::vector<Edge> edges;
 };
 
-/// The graph's rows, the mesh's triangles around each vertex, and what both say of an edge.
+/// The mesh and the graph of the points, with queries on both.
 class Surface {
 public:
   Surface(const Positions& points, const Triangles& triangles, const Graph& graph, int threads)
@@ -155,7 +155,7 @@ public:
                      distance(vertex(t, 2), vertex(t, 0))});
   }
 
-  /// What mesh and graph disagree on.
+  /// The edges that only one of mesh and graph has.
   Differences differences() const {
     const std::size_t n = graph_.size();
     std::vector<Differences> of_blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
@@ -196,7 +196,7 @@ private:
   public:
     void clear() { size_ = 0; }
     void add(Index v) {
-      // Whole packs are searched: what is not used is no vertex.
+      // Whole packs are searched: unused entries are -1, which is no vertex.
       if (size_ % kPack == 0)
         vertices_.resize(std::max(vertices_.size(), size_ + kPack));
       if (size_ % kPack == 0)
@@ -276,8 +276,8 @@ private:
   internal::CornerTable corners_;
 };
 
-double quantile(std::vector<double> values, double share) {
-  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+double quantile(std::vector<double> values, double fraction) {
+  const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + k, values.end());
   return values[static_cast<std::size_t>(k)];
 }
@@ -294,17 +294,17 @@ struct Region {
   double diameter = 0.0;
   double rim_triangle = 0.0;   ///< nine tenths of the triangles around it have no longer side
   double spacing = 0.0;        ///< distance of the points at its rim, median
-  double one_sidedness = 0.0;  ///< see kLeastOneSidedness
-  double inwardness = 0.0;     ///< see kLeastInwardness
+  double one_sidedness = 0.0;  ///< see kMinOneSidedness
+  double inwardness = 0.0;     ///< see kMinInwardness
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 
-  bool isWide(double least_diameter) const {
-    return diameter >= least_diameter * spacing && diameter >= kLeastRimDiameters * rim_triangle &&
-           area >= kLeastTriangleArea * spacing * spacing * static_cast<double>(triangles.size());
+  bool isWide() const {
+    return diameter >= kMinHoleDiameter * spacing && diameter >= kMinRimDiameters * rim_triangle &&
+           area >= kMinTriangleArea * spacing * spacing * static_cast<double>(triangles.size());
   }
 
   bool isOpening() const {
-    return one_sidedness >= kLeastOneSidedness && inwardness >= kLeastInwardness;
+    return one_sidedness >= kMinOneSidedness && inwardness >= kMinInwardness;
   }
 };
 
@@ -378,7 +378,7 @@ private:
   std::pair<Index, Index> nextBoundary(Index t, Index k, Index number) const {
     const Index around = surface_.vertex(t, k + 1);
     k = (k + 1) % 3;
-    // In no closed manifold there are as many steps around a vertex.
+    // A vertex has fewer triangles than the mesh: the loop ends on any input.
     for (std::size_t step = 0; step < triangle_count_ && !isBoundary(t, k, number); ++step) {
       t = surface_.beyond(t, k);
       k = 0;
@@ -445,7 +445,7 @@ private:
       int count = 0;
       int count_off_rim = 0;
       surface_.forEachNeighbor(v, [&](Index w, double length) {
-        if (length > kLongEdge * spacing(v))
+        if (length > kMinLongEdge * spacing(v))
           return;  // it may lead across the opening
         const Eigen::Vector3d direction = (surface_.point(w) - surface_.point(v)) / length;
         sum += direction;
@@ -466,7 +466,7 @@ private:
   }
 
   bool isLong(Index a, Index b) {
-    return surface_.distance(a, b) > kLongEdge * std::max(spacing(a), spacing(b));
+    return surface_.distance(a, b) > kMinLongEdge * std::max(spacing(a), spacing(b));
   }
 
   double spacing(Index v) {
@@ -483,7 +483,7 @@ private:
   std::map<Index, double> spacing_;
 };
 
-/// Tells how far apart vertices are on the mesh.
+/// Measures how far apart vertices are on the mesh.
 class MeshDistance {
 public:
   MeshDistance(const Surface& surface, std::size_t n) : surface_(surface), mark_(n, 0) {}
@@ -533,15 +533,15 @@ private:
 };
 
 /// The edges of the graph along the surface whose ends are far apart on the mesh: those between
-/// sheets that nearly touch are left out, unless the mesh has a lid there all the same.
+/// sheets that nearly touch are left out, unless the mesh fills a hole there.
 ///
 /// \param apart     those whose ends are more than two steps apart.
 /// \param regions   all that leaves the graph.
-/// \param lid_count the first so many are wide.
+/// \param wide_count number of wide regions, at the front.
 std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Edge>& apart,
-                            const std::vector<Region>& regions, std::size_t lid_count,
+                            const std::vector<Region>& regions, std::size_t wide_count,
                             std::size_t triangle_count, const std::vector<Edge>& bridges,
-                            std::size_t n, int steps) {
+                            std::size_t n) {
   if (apart.empty())
     return {};
   std::vector<char> in_region(triangle_count, 0);
@@ -549,7 +549,7 @@ std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Edge>& apa
   for (std::size_t r = 0; r < regions.size(); ++r) {
     for (const Index t : regions[r].triangles)
       in_region[at(t)] = 1;
-    if (r < lid_count && !regions[r].isOpening())
+    if (r < wide_count && !regions[r].isOpening())
       for (const Index v : regions[r].rim)
         at_cut[at(v)] = 1;
   }
@@ -566,7 +566,7 @@ std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Edge>& apa
   MeshDistance distance(surface, n);
   std::vector<Edge> torn;
   for (const auto& [a, b] : apart) {
-    if (!distance.exceeds(a, b, steps) ||
+    if (!distance.exceeds(a, b, kMinHandleSteps) ||
         std::binary_search(bridges.begin(), bridges.end(), Edge{a, b}))
       continue;
     if (at_cut[at(a)] != 0 || at_cut[at(b)] != 0) {
@@ -576,8 +576,8 @@ std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Edge>& apa
     const Eigen::Vector3d at_a = normal(a);
     const Eigen::Vector3d at_b = normal(b);
     const Eigen::Vector3d along = (surface.point(b) - surface.point(a)).normalized();
-    if (at_a.dot(at_b) >= kLeastNormalCosine && std::abs(along.dot(at_a)) <= kMostSlope &&
-        std::abs(along.dot(at_b)) <= kMostSlope)
+    if (at_a.dot(at_b) >= kMinNormalCosine && std::abs(along.dot(at_a)) <= kMaxSlope &&
+        std::abs(along.dot(at_b)) <= kMaxSlope)
       torn.push_back({a, b});
   }
   return torn;
@@ -628,7 +628,7 @@ std::vector<CollapsedHandle> handlesOf(const Surface& surface, const std::vector
   }
   std::vector<CollapsedHandle> result;
   for (auto& [group, handle] : handles) {
-    if (handle.edges < kLeastTornEdges)
+    if (handle.edges < kMinTornEdges)
       continue;
     sortUnique(handle.vertices);
     handle.center = meanOf(surface, handle.vertices);
@@ -654,7 +654,7 @@ bool hasRim(const Surface& surface, std::size_t n) {
       sum += (surface.point(w) - surface.point(static_cast<Index>(v))) / length;
       ++count;
     });
-    one_sided[v] = sum.norm() >= kOneSidedInGraph * count ? 1 : 0;
+    one_sided[v] = sum.norm() >= kMinOneSidednessInGraph * count ? 1 : 0;
   }
   internal::UnionFind rims(n);
   for (std::size_t v = 0; v < n; ++v)
@@ -666,11 +666,11 @@ bool hasRim(const Surface& surface, std::size_t n) {
   for (std::size_t v = 0; v < n; ++v)
     if (one_sided[v] != 0)
       ++sizes[at(rims.find(static_cast<Index>(v)))];
-  return *std::max_element(sizes.begin(), sizes.end()) >= kLeastRim;
+  return *std::max_element(sizes.begin(), sizes.end()) >= kMinRimPoints;
 }
 
-/// Handles of a surface with so many openings, by the cycles of its graph. A number that depends on
-/// how wide a gap in the graph has to be is none of the surface.
+/// Number of handles of a surface with the given number of openings, by the cycles of its graph.
+/// Empty if the number depends on how wide a gap in the graph has to be.
 std::optional<int> genusOf(const Graph& graph, std::size_t openings) {
   const std::optional<int> narrow = internal::countCycles(graph, 2);
   const std::optional<int> wide = narrow ? internal::countCycles(graph, 3) : std::nullopt;
@@ -705,7 +705,7 @@ private:
 
 /// Pairs of parts with a gap that is wide against the distance of the points; all ends are listed.
 std::vector<PartBridge> partsOf(const Surface& surface, const std::vector<Edge>& bridges,
-                                Parts& parts, double least_gap) {
+                                Parts& parts) {
   std::map<Edge, std::vector<Edge>> joints;
   for (const auto& [a, b] : bridges) {
     const Index of_a = parts.of(a);
@@ -728,7 +728,7 @@ std::vector<PartBridge> partsOf(const Surface& surface, const std::vector<Edge>&
     sortUnique(joint.vertices);
     joint.gap = quantile(gaps, 0.0);
     joint.spacing = quantile(spacings, 0.5);
-    if (joint.gap < least_gap * joint.spacing)
+    if (joint.gap < kMinPartGap * joint.spacing)
       continue;
     joint.center = meanOf(surface, joint.vertices);
     joint.points = std::min(parts.sizeOf(pair[0]), parts.sizeOf(pair[1]));
@@ -740,7 +740,7 @@ std::vector<PartBridge> partsOf(const Surface& surface, const std::vector<Edge>&
   return result;
 }
 
-/// What a wide region is a trace of; none for a fold.
+/// What a wide region is a trace of; empty for a fold.
 std::optional<SurfaceKind> causeOf(const Region& region, Parts* parts,
                                    const std::vector<PartBridge>& bridges,
                                    const std::vector<CollapsedHandle>& handles) {
@@ -843,7 +843,7 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
         number(joint.gap) + " apart " + place(joint.center));
   }
   const bool has_handles = diagnosis.genus && *diagnosis.genus > 0;
-  if (diagnosis.edges_outside_graph > kFolded)
+  if (diagnosis.edges_outside_graph > kMaxOutsideGraph)
     add((has_handles
              ? "a surface with " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle") +
                    ", over which the mesh is folded: "
@@ -874,96 +874,153 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
   return text.empty() ? "Looks like a closed genus-0 surface." : text + ".";
 }
 
+namespace {
+
+/// The edges of the graph that join its parts, {lower, higher}, ascending.
+std::vector<Edge> edgesOf(const std::vector<Bridge>& bridges) {
+  std::vector<Edge> edges;
+  edges.reserve(bridges.size());
+  for (const Bridge& bridge : bridges)
+    edges.push_back({std::min(bridge.from, bridge.to), std::max(bridge.from, bridge.to)});
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+/// Finds filled holes, handles and parts, and decides what the cloud shows.
+class Diagnosis {
+public:
+  Diagnosis(const Positions& points, const Triangles& triangles, const Graph& graph,
+            const std::vector<Bridge>& bridges, const DiagnosisOptions& options, int threads)
+      : graph_(graph), options_(options), bridges_(edgesOf(bridges)),
+        triangle_count_(static_cast<std::size_t>(triangles.cols())),
+        surface_(points, triangles, graph,
+                 internal::threadCount(threads, graph.size(), internal::kShortPassThreshold)),
+        differences_(surface_.differences()), search_(surface_, triangle_count_) {}
+
+  SurfaceDiagnosis run() {
+    result_.edges_outside_graph = static_cast<double>(differences_.sides.size()) /
+                                  (1.5 * static_cast<double>(triangle_count_));
+    is_folded_ = result_.edges_outside_graph > kMaxOutsideGraph;
+    findRegions();
+    findParts();
+    findHandles();
+    findFilledHoles();
+    if (options_.mark_triangles)
+      markTriangles();
+    result_.kind = kind();
+    result_.summary = summaryOf(result_);
+    shortenLists();
+    return std::move(result_);
+  }
+
+private:
+  /// Finds the regions that leave the graph, the wide ones first.
+  void findRegions() {
+    regions_ = search_.run(differences_.sides);
+    const auto wide_end = std::stable_partition(
+        regions_.begin(), regions_.end(), [](const Region& region) { return region.isWide(); });
+    // A folded mesh leaves the graph everywhere, whether the surface has holes or not.
+    wide_count_ = is_folded_ ? 0 : static_cast<std::size_t>(wide_end - regions_.begin());
+  }
+
+  /// Only graphs with bridges may be in parts.
+  void findParts() {
+    if (bridges_.empty())
+      return;
+    parts_.emplace(graph_, bridges_);
+    result_.bridges = partsOf(surface_, bridges_, *parts_);
+  }
+
+  /// A mesh that is folded, or was squeezed through a bridge, tears neighbours apart without
+  /// handles as well.
+  void findHandles() {
+    if (!result_.bridges.empty())
+      return;
+    if (is_folded_) {
+      if (!hasRim(surface_, graph_.size()))
+        result_.genus = genusOf(graph_, 0);
+      return;
+    }
+    result_.handles =
+        handlesOf(surface_, tornEdges(surface_, differences_.edges, regions_, wide_count_,
+                                      triangle_count_, bridges_, graph_.size()));
+    if (result_.handles.empty())
+      return;
+    const auto wide_end = regions_.begin() + static_cast<std::ptrdiff_t>(wide_count_);
+    const auto openings = std::count_if(regions_.begin(), wide_end,
+                                        [](const Region& region) { return region.isOpening(); });
+    result_.genus = genusOf(graph_, static_cast<std::size_t>(openings));
+    // Without handles, neighbours are torn apart where the mesh is folded.
+    if (result_.genus == 0)
+      result_.handles.clear();
+  }
+
+  void findFilledHoles() {
+    for (std::size_t r = 0; r < wide_count_; ++r) {
+      const Region& region = regions_[r];
+      const std::optional<SurfaceKind> cause =
+          causeOf(region, parts_ ? &*parts_ : nullptr, result_.bridges, result_.handles);
+      if (!cause)
+        continue;
+      result_.lids.push_back({*cause, region.triangles.size(), region.area, region.boundary_length,
+                              region.diameter, region.spacing, region.center,
+                              someOf(region.rim, options_.max_vertices), search_.loopsOf(region)});
+      filled_.insert(filled_.end(), region.triangles.begin(), region.triangles.end());
+    }
+    std::stable_sort(result_.lids.begin(), result_.lids.end(),
+                     [](const Lid& a, const Lid& b) { return a.area > b.area; });
+  }
+
+  void markTriangles() {
+    TriangleMarker marker(surface_, triangle_count_);
+    marker.mark(filled_, TriangleMarks::lid);
+    for (const CollapsedHandle& handle : result_.handles)
+      marker.markAround(handle.vertices, TriangleMarks::handle);
+    for (const PartBridge& bridge : result_.bridges)
+      marker.markAround(bridge.vertices, TriangleMarks::part_bridge);
+    marker.markBesides(differences_.sides, TriangleMarks::outside_graph);
+    result_.triangle_marks = marker.take();
+  }
+
+  SurfaceKind kind() const {
+    if (!result_.bridges.empty())
+      return SurfaceKind::SeveralParts;
+    if (!result_.handles.empty() || result_.genus.value_or(0) > 0)
+      return SurfaceKind::Handles;
+    if (is_folded_)
+      return SurfaceKind::Unclear;
+    return result_.openings() > 0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0;
+  }
+
+  void shortenLists() {
+    for (CollapsedHandle& handle : result_.handles)
+      handle.vertices = someOf(handle.vertices, options_.max_vertices);
+    for (PartBridge& bridge : result_.bridges)
+      bridge.vertices = someOf(bridge.vertices, options_.max_vertices);
+  }
+
+  const Graph& graph_;
+  const DiagnosisOptions& options_;
+  std::vector<Edge> bridges_;
+  std::size_t triangle_count_;
+  Surface surface_;
+  Differences differences_;
+  RegionSearch search_;
+  bool is_folded_ = false;
+  std::vector<Region> regions_;
+  std::size_t wide_count_ = 0;  ///< of regions_, at the front
+  std::optional<Parts> parts_;  ///< with bridges only
+  std::vector<Index> filled_;   ///< triangles of all filled holes
+  SurfaceDiagnosis result_;
+};
+
+}  // namespace
+
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
                                  const DiagnosisOptions& options, int threads) {
   checkInput(points, triangles, graph, bridges);
-  SurfaceDiagnosis result;
-  const auto triangle_count = static_cast<std::size_t>(triangles.cols());
-  std::vector<Edge> bridge_edges;
-  bridge_edges.reserve(bridges.size());
-  for (const Bridge& bridge : bridges)
-    bridge_edges.push_back({std::min(bridge.from, bridge.to), std::max(bridge.from, bridge.to)});
-  std::sort(bridge_edges.begin(), bridge_edges.end());
-
-  const Surface surface(
-      points, triangles, graph,
-      internal::threadCount(threads, graph.size(), internal::kShortPassThreshold));
-  const Differences difference = surface.differences();
-  const std::vector<Side>& outside = difference.sides;
-  result.edges_outside_graph =
-      static_cast<double>(outside.size()) / (1.5 * static_cast<double>(triangle_count));
-  RegionSearch search(surface, triangle_count);
-  std::vector<Region> regions = search.run(outside);
-  const auto lids_end =
-      std::stable_partition(regions.begin(), regions.end(), [&](const Region& region) {
-        return region.isWide(kMinLidDiameter);
-      });
-  const bool is_folded = result.edges_outside_graph > kFolded;
-  // What is folded leaves the graph everywhere: that is no lid.
-  const auto lid_count = is_folded ? 0 : static_cast<std::size_t>(lids_end - regions.begin());
-
-  // Only graphs with bridges may be in parts.
-  std::optional<Parts> parts;
-  if (!bridge_edges.empty()) {
-    parts.emplace(graph, bridge_edges);
-    result.bridges = partsOf(surface, bridge_edges, *parts, kMinPartGap);
-  }
-  // What is folded, or was squeezed through a bridge, is torn without handles as well.
-  if (!is_folded && result.bridges.empty())
-    result.handles =
-        handlesOf(surface, tornEdges(surface, difference.edges, regions, lid_count, triangle_count,
-                                     bridge_edges, graph.size(), kMinHandleSteps));
-  if (!result.handles.empty()) {
-    const auto openings =
-        std::count_if(regions.begin(), regions.begin() + static_cast<std::ptrdiff_t>(lid_count),
-                      [](const Region& region) { return region.isOpening(); });
-    result.genus = genusOf(graph, static_cast<std::size_t>(openings));
-    // Without handles, neighbours are torn apart where the mesh is folded.
-    if (result.genus == 0)
-      result.handles.clear();
-  } else if (is_folded && result.bridges.empty() && !hasRim(surface, graph.size())) {
-    result.genus = genusOf(graph, 0);
-  }
-  std::optional<TriangleMarker> marker;
-  if (options.mark_triangles)
-    marker.emplace(surface, triangle_count);
-  for (std::size_t r = 0; r < lid_count; ++r) {
-    const Region& region = regions[r];
-    const std::optional<SurfaceKind> cause =
-        causeOf(region, parts ? &*parts : nullptr, result.bridges, result.handles);
-    if (cause)
-      result.lids.push_back({*cause, region.triangles.size(), region.area, region.boundary_length,
-                             region.diameter, region.spacing, region.center,
-                             someOf(region.rim, options.max_vertices), search.loopsOf(region)});
-    if (cause && marker)
-      marker->mark(region.triangles, TriangleMarks::lid);
-  }
-  if (marker) {
-    for (const CollapsedHandle& handle : result.handles)
-      marker->markAround(handle.vertices, TriangleMarks::handle);
-    for (const PartBridge& bridge : result.bridges)
-      marker->markAround(bridge.vertices, TriangleMarks::part_bridge);
-    marker->markBesides(outside, TriangleMarks::outside_graph);
-    result.triangle_marks = marker->take();
-  }
-  std::stable_sort(result.lids.begin(), result.lids.end(),
-                   [](const Lid& a, const Lid& b) { return a.area > b.area; });
-  for (CollapsedHandle& handle : result.handles)
-    handle.vertices = someOf(handle.vertices, options.max_vertices);
-  for (PartBridge& bridge : result.bridges)
-    bridge.vertices = someOf(bridge.vertices, options.max_vertices);
-
-  if (!result.bridges.empty())
-    result.kind = SurfaceKind::SeveralParts;
-  else if (!result.handles.empty() || result.genus.value_or(0) > 0)
-    result.kind = SurfaceKind::Handles;
-  else if (is_folded)
-    result.kind = SurfaceKind::Unclear;
-  else if (result.openings() > 0)
-    result.kind = SurfaceKind::Open;
-  result.summary = summaryOf(result);
-  return result;
+  return Diagnosis(points, triangles, graph, bridges, options, threads).run();
 }
 
 }  // namespace spherical_param
