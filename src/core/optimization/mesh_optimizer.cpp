@@ -2,6 +2,7 @@
 
 #include "bit_mixing.h"
 #include "exact_predicates.h"
+#include "optimization_constants.h"
 #include "parallel.h"
 #include "self_intersection_of_fans.h"
 
@@ -13,21 +14,10 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Changes of the energy below this are rounding [mean length of the graph's edges].
-constexpr double kLeastGain = 1e-9;
-
-/// Changes of the energy of a few triangles below this share of it are rounding: less than 16
-/// terms, none negative, are added. A flip that gains no more could be made and taken back for
-/// ever.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+namespace tuned = optimization_constants;
 
 /// Candidates of flips between reports.
 constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
-/// the pairs.
-
-/// Neighbours in the graph up to so many mean lengths of a vertex's edges should be near on the
-/// mesh.
-constexpr double kNearNeighbor = 1.5;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -145,13 +135,13 @@ double MeshOptimizer::flipGain(Index t, int k, double floor) const {
   after += edge(c, a, cad, ca);
   after += edge(a, d, cad, ad);
   after += edge(d, b, cdb, db);
-  const double gain = std::abs(before - after) > kRounding * before ? before - after : 0.0;
+  const double gain = std::abs(before - after) > tuned::kRounding * before ? before - after : 0.0;
   // Beyond the range of double the difference is no number, and no gain.
   return gain > floor ? gain : floor;
 }
 
 void MeshOptimizer::queueFlip(Index t, int k) {
-  const double floor = kLeastGain * unit_;
+  const double floor = tuned::kMinGain * unit_;
   const double gain = flipGain(t, k, floor);
   if (gain <= floor)
     return;
@@ -257,7 +247,7 @@ std::size_t MeshOptimizer::flipAll(const Report& report) {
     return !are_most_settled || isNearChange(t, kChangedSinceFlips);
   };
   std::vector<std::vector<Candidate>> found((facets_.size() + kBlockSize - 1) / kBlockSize);
-  const double floor = kLeastGain * unit_;
+  const double floor = tuned::kMinGain * unit_;
   forEachBlock(facets_.size(), threads_, report,
                [&](std::size_t block, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
@@ -419,7 +409,7 @@ void MeshOptimizer::takeBack() {
 }
 
 bool MeshOptimizer::isGain(double change) {
-  return change < -kLeastGain;
+  return change < -tuned::kMinGain;
 }
 
 bool MeshOptimizer::relocate(Index v) {
@@ -561,7 +551,7 @@ bool MeshOptimizer::isRough(Index v, double cosine) const {
       mesh_.forEachAround(v, [&](Index t, int corner) {
         lengths += (points_->col(v) - points_->col(mesh_.vertex(t, (corner + 1) % 3))).norm();
       });
-      near = kNearNeighbor * lengths / mesh_.degree(v);
+      near = tuned::kMaxNearNeighbor * lengths / mesh_.degree(v);
     }
     return length > near;
   };
@@ -713,8 +703,7 @@ std::vector<std::uint8_t> MeshOptimizer::plainFans(const Report& report) const {
 
 std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const Report& report) const {
   const std::vector<std::uint8_t> fans = plainFans(report);
-  return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_,
-                               report);
+  return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_, report);
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {

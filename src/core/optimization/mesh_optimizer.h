@@ -2,8 +2,8 @@
 
 #include "progress.h"
 #include "sphere_mesh.h"
-#include "surface_energy.h"
 #include "spherical_param/types.h"
+#include "surface_energy.h"
 
 #include <array>
 #include <cstddef>

@@ -1,5 +1,6 @@
 #include "sampling_analysis.h"
 
+#include "optimization_constants.h"
 #include "parallel.h"
 
 #include <Eigen/Cholesky>
@@ -8,15 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
 namespace {
-
-/// Points that are looked at, about: the standard error of the mean is then below 0.02.
-constexpr std::size_t kSamples = 2500;
-/// Below so many points a quadric is not determined well enough.
-constexpr std::size_t kFewestPoints = 8;
 
 /// Sums over points.
 struct Sums {
@@ -39,22 +36,50 @@ Eigen::Vector2d deviator(double xx, double xy, double yy) {
                      : Eigen::Vector2d(0.0, 0.0);
 }
 
-void addAlignmentAt(std::size_t i, const Positions& points, const Graph& graph,
-                    std::vector<Index>& wide, Sums& sums) {
-  const auto row = [&](std::size_t v) {
-    return std::pair(graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v]),
-                     graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v + 1]));
+/// The neighbours of point i, and theirs, without i; ascending.
+void collectWide(std::size_t i, const Graph& graph, std::vector<Index>& wide) {
+  const auto append = [&](std::size_t v) {
+    wide.insert(wide.end(), graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v]),
+                graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v + 1]));
   };
-  const auto [begin, end] = row(i);
-  wide.assign(begin, end);
-  for (auto neighbor = begin; neighbor != end; ++neighbor) {
-    const auto [first, last] = row(static_cast<std::size_t>(*neighbor));
-    wide.insert(wide.end(), first, last);
-  }
+  wide.clear();
+  append(i);
+  for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+    append(static_cast<std::size_t>(graph.neighbors[e]));
   std::sort(wide.begin(), wide.end());
   wide.erase(std::unique(wide.begin(), wide.end()), wide.end());
   wide.erase(std::remove(wide.begin(), wide.end(), static_cast<Index>(i)), wide.end());
-  if (wide.size() < kFewestPoints)
+}
+
+/// The absolute curvature of the surface through local points, with the height as the first
+/// coordinate, in the coordinates (third, second). Empty if it is not determined.
+std::optional<Eigen::Matrix2d> bendingOf(const Eigen::Matrix3Xd& local) {
+  // Heights above the tangent plane: z = a x + b y + (c x^2 + 2 d x y + e y^2) / 2.
+  Eigen::Matrix<double, 5, 5> normal_matrix = Eigen::Matrix<double, 5, 5>::Zero();
+  Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
+  for (Eigen::Index v = 0; v < local.cols(); ++v) {
+    const double x = local(2, v);
+    const double y = local(1, v);
+    Eigen::Matrix<double, 5, 1> terms;
+    terms << x, y, x * x / 2.0, x * y, y * y / 2.0;
+    normal_matrix += terms * terms.transpose();
+    right += local(0, v) * terms;
+  }
+  const Eigen::Matrix<double, 5, 1> quadric = normal_matrix.ldlt().solve(right);
+  if (!quadric.allFinite())
+    return std::nullopt;
+  Eigen::Matrix2d hessian;
+  hessian << quadric[2], quadric[3], quadric[3], quadric[4];
+  // Bending by its amount, whatever its sign.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(hessian);
+  return principal.eigenvectors() * principal.eigenvalues().cwiseAbs().asDiagonal() *
+         principal.eigenvectors().transpose();
+}
+
+void addAlignmentAt(std::size_t i, const Positions& points, const Graph& graph,
+                    std::vector<Index>& wide, Sums& sums) {
+  collectWide(i, graph, wide);
+  if (wide.size() < optimization_constants::kMinQuadricPoints)
     return;
   const auto offset = [&](Index v) -> Eigen::Vector3d {
     return points.col(v) - points.col(static_cast<Eigen::Index>(i));
@@ -67,39 +92,22 @@ void addAlignmentAt(std::size_t i, const Positions& points, const Graph& graph,
     return;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   const Eigen::Matrix3d frame = axes.eigenvectors() / scale;
-
-  // Heights above the tangent plane: z = a x + b y + (c x^2 + 2 d x y + e y^2) / 2.
-  Eigen::Matrix<double, 5, 5> normal_matrix = Eigen::Matrix<double, 5, 5>::Zero();
-  Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
-  for (const Index v : wide) {
-    const Eigen::Vector3d local = frame.transpose() * offset(v);
-    const double x = local[2];
-    const double y = local[1];
-    Eigen::Matrix<double, 5, 1> terms;
-    terms << x, y, x * x / 2.0, x * y, y * y / 2.0;
-    normal_matrix += terms * terms.transpose();
-    right += local[0] * terms;
-  }
-  const Eigen::Matrix<double, 5, 1> quadric = normal_matrix.ldlt().solve(right);
-  if (!quadric.allFinite())
+  Eigen::Matrix3Xd local(3, static_cast<Eigen::Index>(wide.size()));
+  for (std::size_t j = 0; j < wide.size(); ++j)
+    local.col(static_cast<Eigen::Index>(j)) = frame.transpose() * offset(wide[j]);
+  const std::optional<Eigen::Matrix2d> bending = bendingOf(local);
+  if (!bending)
     return;
-  Eigen::Matrix2d hessian;
-  hessian << quadric[2], quadric[3], quadric[3], quadric[4];
-  // Bending by its amount, whatever its sign.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(hessian);
-  const Eigen::Matrix2d bending = principal.eigenvectors() *
-                                  principal.eigenvalues().cwiseAbs().asDiagonal() *
-                                  principal.eigenvectors().transpose();
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
-  for (auto neighbor = begin; neighbor != end; ++neighbor) {
-    const Eigen::Vector3d local = frame.transpose() * offset(*neighbor);
-    xx += local[2] * local[2];
-    xy += local[2] * local[1];
-    yy += local[1] * local[1];
+  for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+    const Eigen::Vector3d neighbor = frame.transpose() * offset(graph.neighbors[e]);
+    xx += neighbor[2] * neighbor[2];
+    xy += neighbor[2] * neighbor[1];
+    yy += neighbor[1] * neighbor[1];
   }
-  const Eigen::Vector2d of_bending = deviator(bending(0, 0), bending(0, 1), bending(1, 1));
+  const Eigen::Vector2d of_bending = deviator((*bending)(0, 0), (*bending)(0, 1), (*bending)(1, 1));
   const Eigen::Vector2d of_spread = deviator(xx, xy, yy);
   sums.agreement -= of_bending.dot(of_spread);
   sums.possible += of_bending.norm() * of_spread.norm();
@@ -121,7 +129,7 @@ double unevennessAt(std::size_t i, const Graph& graph) {
 
 Sampling analyzeSampling(const Positions& points, const Graph& graph, int threads) {
   const std::size_t n = graph.size();
-  const std::size_t step = std::max<std::size_t>(1, n / kSamples);
+  const std::size_t step = std::max<std::size_t>(1, n / optimization_constants::kTypicalSamples);
   const std::size_t samples = n / step;
   // A sample is some eight times the work of other loops' items.
   const Sums sums = sumOfBlocks(samples, threadCount(threads, 8 * samples, kParallelThreshold),

@@ -1,18 +1,12 @@
 #include "smoothed_mesh.h"
 
+#include "optimization_constants.h"
 #include "spherical_param/self_intersection.h"
 
 #include <limits>
 #include <utility>
 
 namespace spherical_param::internal {
-namespace {
-
-/// Rounds of smoothing and optimising on the smoothed points.
-constexpr int kMaxRounds = 3;
-
-}  // namespace
-
 SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
                         const SmoothingOptions& options, OptimizationMethod method,
                         std::uint32_t seed, const Execution& execution) {
@@ -20,7 +14,8 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
   SmoothedMesh best;
   best.report.self_intersections = std::numeric_limits<std::size_t>::max();
   Triangles current = triangles;
-  for (int round = 0; round == 0 || (is_full && round < kMaxRounds); ++round) {
+  for (int round = 0;
+       round == 0 || (is_full && round < optimization_constants::kMaxSmoothingRounds); ++round) {
     Smoothing smoothing = smoothSurface(points, current, options, execution.threads);
     std::size_t& count = smoothing.report.self_intersections;
     count = findSelfIntersections(smoothing.points, current, execution).size();
