@@ -1,5 +1,7 @@
 #pragma once
 
+#include "spherical_param/execution.h"
+#include "spherical_param/neighbor_graph.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/LU>
@@ -194,24 +196,48 @@ inline NeighborLists spiralNeighbors(const Positions& points, int k) {
   return lists;
 }
 
-/// The shares that run(progress) tells, none if one of them from another thread.
-template <typename Run>
-std::vector<double> sharesOf(const Run& run) {
-  std::vector<double> shares;
-  const std::thread::id caller = std::this_thread::get_id();
-  bool is_from_caller = true;
-  run([&](double share) {
-    is_from_caller = is_from_caller && std::this_thread::get_id() == caller;
-    shares.push_back(share);
-    return true;
-  });
-  return is_from_caller ? shares : std::vector<double>();
+/// Options of the graph of the k nearest neighbours.
+inline GraphOptions nearest(int k = 25) {
+  GraphOptions options;
+  options.method = GraphMethod::NearestNeighbors;
+  options.k = k;
+  return options;
 }
 
-/// Whether some shares never fall, and are in [0, 1].
-inline bool areShares(const std::vector<double>& shares) {
-  return std::is_sorted(shares.begin(), shares.end()) && !shares.empty() && shares.front() >= 0.0 &&
-         shares.back() <= 1.0;
+/// Execution on so many threads.
+inline Execution onThreads(int threads) {
+  Execution execution;
+  execution.threads = threads;
+  return execution;
+}
+
+/// Execution that reports the fractions of progress to a callback, which may be empty.
+inline Execution reportingTo(const std::function<bool(double)>& callback) {
+  Execution execution;
+  if (callback)
+    execution.progress = [callback](const Progress& progress) { return callback(progress.fraction); };
+  return execution;
+}
+
+/// The fractions that run(callback) reports; none if one of them comes from another thread.
+template <typename Run>
+std::vector<double> fractionsOf(const Run& run) {
+  std::vector<double> fractions;
+  const std::thread::id caller = std::this_thread::get_id();
+  bool is_from_caller = true;
+  run([&](double fraction) {
+    is_from_caller = is_from_caller && std::this_thread::get_id() == caller;
+    fractions.push_back(fraction);
+    return true;
+  });
+  return is_from_caller ? fractions : std::vector<double>();
+}
+
+/// Whether there are some, all in [0, 1].
+inline bool areFractions(const std::vector<double>& fractions) {
+  return !fractions.empty() && std::all_of(fractions.begin(), fractions.end(), [](double fraction) {
+    return fraction >= 0.0 && fraction <= 1.0;
+  });
 }
 
 /// The results of run(0) ... run(count - 1), each computed in a thread of its own at the same time.

@@ -26,8 +26,8 @@ TEST(Concurrency, ReconstructionsAgreeWithSingleOnes) {
   constexpr std::size_t count = 4;
   Options options;
   options.threads = 1;
-  options.max_iterations = 50;
-  options.k = 8;
+  options.embedding.max_iterations = 50;
+  options.graph.k = 8;
   const auto run = [&](std::size_t i) {
     const Positions points = ellipsoid(300 + 50 * static_cast<Index>(i));
     return reconstruct(points, test::bruteForceNeighbors(points, 8), options,
@@ -50,7 +50,7 @@ TEST(Concurrency, TriangulationsAgreeWithSingleOnes) {
     constexpr std::size_t count = 4;
     std::vector<Triangles> alone(count);
     const auto run = [method](std::size_t i) {
-      return triangulateSphere(test::randomSphere(500 + 100 * static_cast<Index>(i), i), method)
+      return triangulateSphere(test::randomSphere(500 + 100 * static_cast<Index>(i), i), {method})
           .triangles;
     };
     for (std::size_t i = 0; i < count; ++i)

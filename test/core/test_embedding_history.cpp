@@ -1,6 +1,8 @@
-#include "spherical_param/embedding_history.h"
+#include "embedding_history.h"
 
 #include "helpers.h"
+#include "iterative_embedding.h"
+#include "multilevel_embedding.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/sphere_triangulation.h"
 
@@ -18,6 +20,11 @@
 namespace spherical_param {
 namespace {
 
+using internal::buildGraphHierarchy;
+using internal::EmbeddingObserver;
+using internal::EmbeddingRecorder;
+using internal::EmbeddingState;
+using internal::GraphHierarchy;
 using test::graphOfMesh;
 using test::spiralSphere;
 
@@ -29,6 +36,19 @@ Graph dentedGraph(Index n) {
     points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
   points.row(2) *= 1.7;
   return graphOfMesh(points, triangulateSphere(sphere).triangles);
+}
+
+struct Setting : EmbeddingOptions, Execution {
+  EmbeddingObserver observer;
+};
+
+Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
+                        const Setting& setting) {
+  return internal::embedByLevels(graph, hierarchy, setting, setting.observer, setting);
+}
+
+Embedding iterate(const Graph& graph, const Positions& start, const Setting& setting) {
+  return internal::embedIteratively(graph, start, setting, setting.observer, setting);
 }
 
 struct Seen {
@@ -51,29 +71,28 @@ EmbeddingObserver into(std::vector<Seen>& states) {
 
 TEST(EmbeddingObserver, SeesEveryLevelFromTheStartToTheEndAndChangesNothing) {
   const Graph graph = dentedGraph(6000);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   for (const EdgeWeights weights : {EdgeWeights::Adaptive, EdgeWeights::Uniform})
     for (const int threads : {1, 3}) {
-      MultilevelOptions options;
+      Setting options;
       options.weights = weights;
       options.starts = 4;
       options.threads = threads;
-      options.solved_size = 1000;
-      const MultilevelEmbedding alone = embedMultilevel(graph, hierarchy, options);
+      const Embedding alone = embedByLevels(graph, hierarchy, options);
       std::vector<Seen> states;
       options.observer = into(states);
-      const MultilevelEmbedding seen = embedMultilevel(graph, hierarchy, options);
+      const Embedding seen = embedByLevels(graph, hierarchy, options);
       EXPECT_EQ(alone.directions, seen.directions);
-      EXPECT_EQ(alone.residual, seen.residual);
-      EXPECT_EQ(alone.starts, seen.starts);
-      EXPECT_EQ(alone.levels.back().newton_iterations, seen.levels.back().newton_iterations);
+      EXPECT_EQ(alone.report.residual, seen.report.residual);
+      EXPECT_EQ(alone.report.starts, seen.report.starts);
+      EXPECT_EQ(alone.report.levels.back().newton_iterations, seen.report.levels.back().newton_iterations);
 
       ASSERT_FALSE(states.empty());
       EXPECT_EQ(states.front().level, hierarchy.levels.size());
       EXPECT_EQ(states.front().step, EmbeddingStep::Start);
       EXPECT_EQ(states.back().step, EmbeddingStep::End);
       EXPECT_EQ(states.back().directions, seen.directions);
-      EXPECT_EQ(states.back().residual, seen.residual);
+      EXPECT_EQ(states.back().residual, seen.report.residual);
       EXPECT_TRUE(std::is_sorted(states.begin(), states.end(),
                                  [](const Seen& a, const Seen& b) { return a.level > b.level; }));
       // Each level goes on from where the coarser one ended: its seeds are where they were.
@@ -92,21 +111,21 @@ TEST(EmbeddingObserver, SeesEveryLevelFromTheStartToTheEndAndChangesNothing) {
 
 TEST(EmbeddingObserver, SeesEveryIterationOfThePapersSolver) {
   const Graph graph = dentedGraph(5000);
-  EmbeddingOptions options;
+  Setting options;
   options.max_iterations = 12;
   options.threads = 3;
-  const Embedding alone = embedOnSphere(graph, spiralSphere(5000), options);
+  const Embedding alone = iterate(graph, spiralSphere(5000), options);
   std::vector<Seen> states;
   options.observer = into(states);
-  const Embedding seen = embedOnSphere(graph, spiralSphere(5000), options);
+  const Embedding seen = iterate(graph, spiralSphere(5000), options);
   EXPECT_EQ(alone.directions, seen.directions);
-  EXPECT_EQ(alone.residuals, seen.residuals);
+  EXPECT_EQ(alone.report.residuals, seen.report.residuals);
   ASSERT_EQ(states.size(), 14U);
   for (int i = 0; i < 13; ++i) {
     const Seen& state = states[static_cast<std::size_t>(i)];
     EXPECT_EQ(state.step, EmbeddingStep::Iteration);
     EXPECT_EQ(state.iteration, i);
-    EXPECT_EQ(state.residual, seen.residuals[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(state.residual, seen.report.residuals[static_cast<std::size_t>(i)]);
     // The residual that is told is that of the state.
     EXPECT_NEAR(meanTangentialLaplacian(graph, state.directions, options.weights), *state.residual,
                 1e-9 * *state.residual);
@@ -121,27 +140,27 @@ TEST(EmbeddingObserver, WhatItThrowsIsPassedOn) {
     if (state.step == EmbeddingStep::End || state.iteration == 2)
       throw std::runtime_error("enough");
   };
-  EmbeddingOptions iterative;
+  Setting iterative;
   iterative.observer = fail;
-  EXPECT_THROW(embedOnSphere(graph, spiralSphere(3000), iterative), std::runtime_error);
-  MultilevelOptions multilevel;
+  EXPECT_THROW(iterate(graph, spiralSphere(3000), iterative), std::runtime_error);
+  Setting multilevel;
   multilevel.observer = fail;
-  EXPECT_THROW(embedMultilevel(graph, buildGraphHierarchy(graph, {200, 1}), multilevel),
+  EXPECT_THROW(embedByLevels(graph, buildGraphHierarchy(graph, 1, 200), multilevel),
                std::runtime_error);
 }
 
 TEST(EmbeddingRecorder, KeepsAtMostWhatIsAskedForAndAlwaysBothEnds) {
   const Graph graph = dentedGraph(6000);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   std::vector<Seen> states;
-  MultilevelOptions options;
+  Setting options;
   options.observer = into(states);
-  const MultilevelEmbedding embedding = embedMultilevel(graph, hierarchy, options);
+  const Embedding embedding = embedByLevels(graph, hierarchy, options);
   for (const auto& [vertices, frames] : std::vector<std::pair<Index, int>>{
            {1, 2}, {4, 3}, {150, 7}, {250, 40}, {700, 12}, {1500, 40}, {5999, 5}, {60000, 1000}}) {
     EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, frames});
     options.observer = std::ref(recorder);
-    embedMultilevel(graph, hierarchy, options);
+    embedByLevels(graph, hierarchy, options);
     const EmbeddingHistory history = recorder.take();
     EXPECT_LE(history.vertices.size(), static_cast<std::size_t>(vertices));
     EXPECT_GE(3 * history.vertices.size(),
@@ -153,7 +172,7 @@ TEST(EmbeddingRecorder, KeepsAtMostWhatIsAskedForAndAlwaysBothEnds) {
     EXPECT_EQ(history.frames.front().level, hierarchy.levels.size());
     EXPECT_EQ(history.frames.front().step, EmbeddingStep::Start);
     EXPECT_EQ(history.frames.back().step, EmbeddingStep::End);
-    EXPECT_EQ(history.frames.back().residual, embedding.residual);
+    EXPECT_EQ(history.frames.back().residual, embedding.report.residual);
     for (std::size_t i = 0; i < history.vertices.size(); ++i)
       EXPECT_EQ(history.frames.back().sphere.col(static_cast<Index>(i)),
                 embedding.directions.col(history.vertices[i]));
@@ -162,7 +181,7 @@ TEST(EmbeddingRecorder, KeepsAtMostWhatIsAskedForAndAlwaysBothEnds) {
 
 TEST(EmbeddingRecorder, CarriesCoarseStatesAsTheSolverDoes) {
   const Graph graph = dentedGraph(6000);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   ASSERT_GE(hierarchy.levels.size(), 2U);
   for (const Index vertices : {300, 6000}) {
     EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, 10});
@@ -189,7 +208,7 @@ TEST(EmbeddingRecorder, CarriesCoarseStatesAsTheSolverDoes) {
 TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
   const Positions sphere = spiralSphere(6000);
   const Graph graph = graphOfMesh(sphere, triangulateSphere(sphere).triangles);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {200, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   for (const Index vertices : {400, 900, 1500}) {
     EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, 10});
     const EmbeddingHistory history = recorder.take();

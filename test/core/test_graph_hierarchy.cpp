@@ -1,4 +1,4 @@
-#include "spherical_param/graph_hierarchy.h"
+#include "graph_hierarchy.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
@@ -19,6 +19,9 @@
 namespace spherical_param {
 namespace {
 
+using internal::buildGraphHierarchy;
+using internal::GraphHierarchy;
+using internal::HierarchyLevel;
 using test::graphOfMesh;
 using test::randomSphere;
 
@@ -55,7 +58,7 @@ bool areJoined(const Graph& graph, std::size_t i, std::size_t j) {
 class GraphHierarchyOneLevel : public testing::Test {
 protected:
   const Graph fine_ = sphereGraph(randomSphere(600, 5));
-  const GraphHierarchy hierarchy_ = buildGraphHierarchy(fine_, {300, 1});
+  const GraphHierarchy hierarchy_ = buildGraphHierarchy(fine_, 1, 300);
   const HierarchyLevel& level_ = hierarchy_.levels.at(0);
 };
 
@@ -182,7 +185,7 @@ TEST_F(GraphHierarchyOneLevel, InterpolationGoesByInverseDistance) {
 
 TEST(GraphHierarchy, LevelsAreSeveralTimesSmallerConnectedAndSymmetric) {
   const Graph graph = sphereGraph(randomSphere(20000, 7));
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {100, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 100);
   ASSERT_GE(hierarchy.levels.size(), 3U);
   double finer = 20000.0;
   for (const HierarchyLevel& level : hierarchy.levels) {
@@ -212,7 +215,7 @@ TEST(GraphHierarchy, EnergyIsAboutTheSameOnAllLevels) {
   };
   Positions u = points;
   const double finest = energy(graph, u);
-  for (const HierarchyLevel& level : buildGraphHierarchy(graph, {100, 1}).levels) {
+  for (const HierarchyLevel& level : buildGraphHierarchy(graph, 1, 100).levels) {
     Positions coarse(3, static_cast<Eigen::Index>(level.seeds.size()));
     for (std::size_t s = 0; s < level.seeds.size(); ++s)
       coarse.col(static_cast<Eigen::Index>(s)) = u.col(level.seeds[s]);
@@ -223,9 +226,9 @@ TEST(GraphHierarchy, EnergyIsAboutTheSameOnAllLevels) {
 
 TEST(GraphHierarchy, SameSeedSameLevels) {
   const Graph graph = sphereGraph(randomSphere(3000, 2));
-  const GraphHierarchy one = buildGraphHierarchy(graph, {100, 1});
-  const GraphHierarchy again = buildGraphHierarchy(graph, {100, 1});
-  const GraphHierarchy other = buildGraphHierarchy(graph, {100, 2});
+  const GraphHierarchy one = buildGraphHierarchy(graph, 1, 100);
+  const GraphHierarchy again = buildGraphHierarchy(graph, 1, 100);
+  const GraphHierarchy other = buildGraphHierarchy(graph, 2, 100);
   EXPECT_EQ(one.levels[0].seeds, again.levels[0].seeds);
   EXPECT_EQ(one.levels[1].graph.lengths, again.levels[1].graph.lengths);
   EXPECT_NE(one.levels[0].seeds, other.levels[0].seeds);
@@ -234,9 +237,9 @@ TEST(GraphHierarchy, SameSeedSameLevels) {
 TEST(GraphHierarchy, SameBitsForAnyNumberOfThreads) {
   // Enough nodes for several threads.
   const Graph graph = sphereGraph(randomSphere(60000, 3));
-  const GraphHierarchy one = buildGraphHierarchy(graph, {1000, 1, 1});
+  const GraphHierarchy one = buildGraphHierarchy(graph, 1, 1000, test::onThreads(1));
   for (const int threads : {2, 3}) {
-    const GraphHierarchy several = buildGraphHierarchy(graph, {1000, 1, threads});
+    const GraphHierarchy several = buildGraphHierarchy(graph, 1, 1000, test::onThreads(threads));
     ASSERT_EQ(several.levels.size(), one.levels.size());
     for (std::size_t l = 0; l < one.levels.size(); ++l) {
       const HierarchyLevel& a = one.levels[l];
@@ -255,13 +258,13 @@ TEST(GraphHierarchy, SameBitsForAnyNumberOfThreads) {
 TEST(GraphHierarchy, LengthsWhoseSumsOverflowDoNotHang) {
   Graph graph = sphereGraph(randomSphere(100, 1));
   std::fill(graph.lengths.begin(), graph.lengths.end(), 5e307);
-  EXPECT_EQ(buildGraphHierarchy(graph, {50, 1}).levels.size(), 1U);
+  EXPECT_EQ(buildGraphHierarchy(graph, 1, 50).levels.size(), 1U);
 }
 
 TEST(GraphHierarchy, PathsBeyondTheRangeOfDoubleStayLengths) {
   Graph graph = sphereGraph(randomSphere(2000, 1));
   std::fill(graph.lengths.begin(), graph.lengths.end(), std::numeric_limits<double>::max());
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, {20, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 20);
   EXPECT_GT(hierarchy.levels.size(), 2U);
   for (const HierarchyLevel& level : hierarchy.levels) {
     for (std::size_t i = 0; i < level.graph.size(); ++i) {
@@ -285,7 +288,7 @@ TEST(GraphHierarchy, RefusesLengthsThatAreNone) {
                              std::numeric_limits<double>::infinity(), std::nan("")}) {
     Graph graph = sphereGraph(randomSphere(100, 1));
     graph.lengths[7] = wrong;
-    EXPECT_THROW(buildGraphHierarchy(graph, {20, 1}), InvalidInput) << wrong;
+    EXPECT_THROW(buildGraphHierarchy(graph, 1, 20), InvalidInput) << wrong;
   }
 }
 
@@ -306,7 +309,7 @@ TEST(GraphHierarchy, NeverFewerThanFourNodes) {
       }
     graph.offsets.push_back(graph.neighbors.size());
   }
-  EXPECT_TRUE(buildGraphHierarchy(graph, {4, 1}).levels.empty());
+  EXPECT_TRUE(buildGraphHierarchy(graph, 1, 4).levels.empty());
 }
 
 TEST(GraphHierarchy, RefusesBadInput) {

@@ -88,8 +88,21 @@ void expectSound(const Positions& points, const NeighborGraph& result) {
   EXPECT_EQ(countReachable(graph, -1), points.cols());
 }
 
+/// All that a graph of local Delaunay neighbourhoods depends on.
+struct Setting : Execution {
+  StarAgreement agreement = StarAgreement::Both;
+  NeighborSearch search;
+};
+
+NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
+                                      const Setting& setting = {}) {
+  GraphOptions options;
+  options.agreement = setting.agreement;
+  return buildNeighborGraph(points, lists, options, setting.search, setting);
+}
+
 NeighborGraph build(const Positions& points, int k = 12, int threads = 0) {
-  LocalDelaunayOptions options;
+  Setting options;
   options.threads = threads;
   options.search = bruteForceSearch(points);
   return buildLocalDelaunayGraph(points, bruteForceNeighbors(points, k), options);
@@ -186,11 +199,11 @@ TEST(LocalDelaunayGraph, JoinsThePairsWhoseStarsAmongAllPointsAgree) {
 
   const NeighborGraph result = build(points);
   expectSound(points, result);
-  EXPECT_EQ(result.uncertified, 0);
-  EXPECT_EQ(result.weak, 0);
-  EXPECT_EQ(result.components, 1);
-  EXPECT_TRUE(result.bridges.empty());
-  EXPECT_TRUE(result.without_tangent_plane.empty());
+  EXPECT_EQ(result.report.uncertified, 0);
+  EXPECT_EQ(result.report.weak, 0);
+  EXPECT_EQ(result.report.components, 1);
+  EXPECT_TRUE(result.report.bridges.empty());
+  EXPECT_TRUE(result.report.without_tangent_plane.empty());
   EXPECT_EQ(edgesOf(result.graph), expected);
 }
 
@@ -211,7 +224,7 @@ TEST(LocalDelaunayGraph, OneStarIsEnoughWhereThatIsAskedFor) {
     }
   }
   ASSERT_GT(either.size(), both.size());
-  LocalDelaunayOptions options;
+  Setting options;
   options.search = bruteForceSearch(points);
   const NeighborLists lists = bruteForceNeighbors(points, 12);
   EXPECT_EQ(edgesOf(buildLocalDelaunayGraph(points, lists, options).graph), both);
@@ -219,7 +232,7 @@ TEST(LocalDelaunayGraph, OneStarIsEnoughWhereThatIsAskedFor) {
   const NeighborGraph result = buildLocalDelaunayGraph(points, lists, options);
   expectSound(points, result);
   EXPECT_EQ(edgesOf(result.graph), either);
-  EXPECT_EQ(result.weak, 0);
+  EXPECT_EQ(result.report.weak, 0);
 }
 
 TEST(LocalDelaunayGraph, OneStarGivesAllThatTwoGive) {
@@ -229,7 +242,7 @@ TEST(LocalDelaunayGraph, OneStarGivesAllThatTwoGive) {
   for (const Positions& points :
        {jitteredSheet(12, 0.0, 2), test::cubeGrid(6), horizontally(randomSphere(80, 2), away),
         horizontally(jitteredSheet(8, 0.0, 4), jitteredSheet(8, 0.7, 5)), randomSphere(5, 6)}) {
-    LocalDelaunayOptions options;
+    Setting options;
     options.search = bruteForceSearch(points);
     const NeighborLists lists = bruteForceNeighbors(points, 12);
     const NeighborGraph both = buildLocalDelaunayGraph(points, lists, options);
@@ -237,9 +250,9 @@ TEST(LocalDelaunayGraph, OneStarGivesAllThatTwoGive) {
     options.threads = 1;
     const NeighborGraph either = buildLocalDelaunayGraph(points, lists, options);
     expectSound(points, either);
-    EXPECT_LE(either.weak, both.weak);
-    EXPECT_LE(either.components, both.components);
-    EXPECT_GE(either.graph.edgeCount() + both.bridges.size(), both.graph.edgeCount());
+    EXPECT_LE(either.report.weak, both.report.weak);
+    EXPECT_LE(either.report.components, both.report.components);
+    EXPECT_GE(either.graph.edgeCount() + both.report.bridges.size(), both.graph.edgeCount());
     options.threads = 3;
     const NeighborGraph again = buildLocalDelaunayGraph(points, lists, options);
     EXPECT_EQ(again.graph.neighbors, either.graph.neighbors);
@@ -264,7 +277,7 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
     return result;
   };
   std::vector<std::pair<std::vector<Index>, int>> asked;
-  LocalDelaunayOptions options;
+  Setting options;
   options.search = [&](const std::vector<Index>& some, int count) {
     asked.emplace_back(some, count);
     return bruteForceSearch(points)(some, count);
@@ -277,21 +290,21 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
   ASSERT_GE(asked.size(), 1U);
   EXPECT_EQ(asked[0].first, first);
   EXPECT_EQ(asked[0].second, 24);
-  EXPECT_EQ(result.searched_again, static_cast<Index>(first.size()));
+  EXPECT_EQ(result.report.searched_again, static_cast<Index>(first.size()));
   ASSERT_EQ(asked.size(), second.empty() ? 1U : 2U);
   if (!second.empty()) {
     EXPECT_EQ(asked[1].first, second);
     EXPECT_EQ(asked[1].second, 32);
   }
-  EXPECT_EQ(result.uncertified, static_cast<Index>(uncertified(32).size()));
+  EXPECT_EQ(result.report.uncertified, static_cast<Index>(uncertified(32).size()));
 }
 
 TEST(LocalDelaunayGraph, WithoutASearchTheListsAreAllThereIs) {
   const Positions points = randomSphere(300, 3);
-  const NeighborGraph result = buildLocalDelaunayGraph(points, bruteForceNeighbors(points, 12), {});
+  const NeighborGraph result = buildLocalDelaunayGraph(points, bruteForceNeighbors(points, 12));
   expectSound(points, result);
-  EXPECT_EQ(result.searched_again, 0);
-  EXPECT_GT(result.uncertified, 0);
+  EXPECT_EQ(result.report.searched_again, 0);
+  EXPECT_GT(result.report.uncertified, 0);
 }
 
 TEST(LocalDelaunayGraph, TheSearchMakesUpForListsThatAreShortOrEmpty) {
@@ -366,7 +379,7 @@ TEST(LocalDelaunayGraph, SquaresHaveNoDiagonals) {
       points.col(row * rows + column) << 0.1 * column, 0.1 * row, 0.3;
   const NeighborGraph result = build(points);
   expectSound(points, result);
-  EXPECT_TRUE(result.without_tangent_plane.empty());
+  EXPECT_TRUE(result.report.without_tangent_plane.empty());
   for (int row = 1; row + 1 < rows; ++row)
     for (int column = 1; column + 1 < rows; ++column) {
       const Index i = row * rows + column;
@@ -395,10 +408,10 @@ TEST(LocalDelaunayGraph, BridgesAreTheClosestPairsWithDifferentEnds) {
   const Positions points = horizontally(left, right);
   const NeighborGraph result = build(points);
   expectSound(points, result);
-  EXPECT_EQ(result.components, 2);
-  ASSERT_EQ(result.bridges.size(), 3U);
+  EXPECT_EQ(result.report.components, 2);
+  ASSERT_EQ(result.report.bridges.size(), 3U);
   std::set<Index> taken;
-  for (const Bridge& bridge : result.bridges) {
+  for (const Bridge& bridge : result.report.bridges) {
     double shortest = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < 60; ++i)
       for (Index j = 60; j < 120; ++j)
@@ -415,8 +428,8 @@ TEST(LocalDelaunayGraph, PointsOnALineHaveNoTangentPlane) {
     points.col(i) = Eigen::Vector3d(1.0, 2.0, 3.0) * (0.01 * i);
   const NeighborGraph result = build(points);
   expectSound(points, result);
-  EXPECT_EQ(static_cast<Index>(result.without_tangent_plane.size()), points.cols());
-  EXPECT_EQ(result.uncertified, 0);
+  EXPECT_EQ(static_cast<Index>(result.report.without_tangent_plane.size()), points.cols());
+  EXPECT_EQ(result.report.uncertified, 0);
 }
 
 TEST(LocalDelaunayGraph, OnScanLinesTheNextLineIsFound) {
@@ -429,10 +442,10 @@ TEST(LocalDelaunayGraph, OnScanLinesTheNextLineIsFound) {
       points.col(line * 30 + k) << 0.1 * k + jitter(random), line + jitter(random), 0.0;
   const NeighborGraph result = build(points);
   expectSound(points, result);
-  EXPECT_EQ(result.components, 1);
-  EXPECT_TRUE(result.bridges.empty());
+  EXPECT_EQ(result.report.components, 1);
+  EXPECT_TRUE(result.report.bridges.empty());
   std::vector<bool> has_plane(static_cast<std::size_t>(points.cols()), true);
-  for (const Index i : result.without_tangent_plane)
+  for (const Index i : result.report.without_tangent_plane)
     has_plane[static_cast<std::size_t>(i)] = false;
   for (int line = 1; line < 11; ++line)
     EXPECT_TRUE(has_plane[static_cast<std::size_t>(line * 30 + 15)]);
@@ -445,7 +458,7 @@ TEST(LocalDelaunayGraph, TinyCloudsHaveNoTangentPlanes) {
       const NeighborGraph result = build(points);
       expectSound(points, result);
       if (n <= 10) {
-        EXPECT_EQ(static_cast<Index>(result.without_tangent_plane.size()), n);
+        EXPECT_EQ(static_cast<Index>(result.report.without_tangent_plane.size()), n);
       }
     }
   EXPECT_EQ(edgesOf(build(randomSphere(4, 1)).graph).size(), 12U);
@@ -467,7 +480,7 @@ TEST(LocalDelaunayGraph, TinyCloudsHaveTheGabrielGraph) {
           expected.insert({i, j});
       }
     const NeighborGraph result = build(points);
-    if (result.weak > 0)
+    if (result.report.weak > 0)
       continue;
     EXPECT_EQ(edgesOf(result.graph), expected);
     ++compared;
@@ -598,7 +611,7 @@ TEST(LocalDelaunayGraph, PermutedPointsHaveTheSameGraph) {
 TEST(LocalDelaunayGraph, AnyNumberOfThreadsGivesTheSameBits) {
   const Positions points = randomSphere(6000, 24);
   const NeighborLists lists = bruteForceNeighbors(points, 12);
-  LocalDelaunayOptions options;
+  Setting options;
   options.threads = 1;
   const NeighborGraph expected = buildLocalDelaunayGraph(points, lists, options);
   EXPECT_EQ(countReachable(expected.graph, -1), points.cols());
@@ -608,14 +621,14 @@ TEST(LocalDelaunayGraph, AnyNumberOfThreadsGivesTheSameBits) {
     EXPECT_EQ(result.graph.offsets, expected.graph.offsets);
     EXPECT_EQ(result.graph.neighbors, expected.graph.neighbors);
     EXPECT_EQ(result.graph.lengths, expected.graph.lengths);
-    EXPECT_EQ(result.uncertified, expected.uncertified);
-    EXPECT_EQ(result.weak, expected.weak);
+    EXPECT_EQ(result.report.uncertified, expected.report.uncertified);
+    EXPECT_EQ(result.report.weak, expected.report.weak);
   }
 }
 
 TEST(LocalDelaunayGraph, AnswersOfTheSearchAreChecked) {
   const Positions points = randomSphere(50, 25);
-  LocalDelaunayOptions options;
+  Setting options;
   options.search = [](const std::vector<Index>&, int) { return NeighborLists(); };
   const NeighborLists lists = bruteForceNeighbors(points, 4);
   EXPECT_THROW(buildLocalDelaunayGraph(points, lists, options), InvalidInput);
@@ -647,34 +660,29 @@ TEST(LocalDelaunayGraph, BadInputIsInvalidInput) {
   bad.offsets.pop_back();
   EXPECT_THROW(buildLocalDelaunayGraph(points, bad), InvalidInput);
   const auto refused = [&](const auto& change) {
-    LocalDelaunayOptions options;
+    Setting options;
     change(options);
     EXPECT_THROW(buildLocalDelaunayGraph(points, good, options), InvalidInput);
     EXPECT_THROW(buildLocalDelaunayGraph(Positions(3, 0), {}, options), InvalidInput);
   };
-  refused([](LocalDelaunayOptions& options) { options.tangent_neighbors = 2; });
-  refused([](LocalDelaunayOptions& options) { options.max_candidates = 9; });
-  refused([](LocalDelaunayOptions& options) { options.max_slope = 0.0; });
-  refused([](LocalDelaunayOptions& options) { options.max_slope = 1.01; });
-  refused([](LocalDelaunayOptions& options) { options.max_slope = std::nan(""); });
-  refused([](LocalDelaunayOptions& options) { options.threads = -1; });
-  refused([](LocalDelaunayOptions& options) { options.threads = 1025; });
+  refused([](Setting& options) { options.threads = -1; });
+  refused([](Setting& options) { options.threads = 1025; });
 }
 
 TEST(LocalDelaunayGraph, ProgressRisesAndCancels) {
   const Positions points = test::spiralSphere(300000);
   const NeighborLists lists = test::spiralNeighbors(points, 12);
   const auto run = [&](const std::function<bool(double)>& progress) {
-    LocalDelaunayOptions options;
-    options.progress = progress;
+    Setting options;
+    options.progress = test::reportingTo(progress).progress;
     return buildLocalDelaunayGraph(points, lists, options);
   };
-  const std::vector<double> shares = test::sharesOf(run);
-  EXPECT_TRUE(test::areShares(shares));
-  EXPECT_EQ(shares.back(), 1.0);
-  EXPECT_GE(shares.size(), 10U);
+  const std::vector<double> fractions = test::fractionsOf(run);
+  EXPECT_TRUE(test::areFractions(fractions));
+  EXPECT_EQ(fractions.back(), 1.0);
+  EXPECT_GE(fractions.size(), 10U);
   EXPECT_EQ(run({}).graph.neighbors, run([](double) { return true; }).graph.neighbors);
-  for (const int last : {1, 4, static_cast<int>(shares.size())}) {
+  for (const int last : {1, 4, static_cast<int>(fractions.size())}) {
     int count = 0;
     EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
     EXPECT_EQ(count, last);

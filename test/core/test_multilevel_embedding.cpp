@@ -1,8 +1,11 @@
-#include "spherical_param/sphere_embedding.h"
+#include "spherical_param/embedding.h"
 
 #include "embedding_energy.h"
 #include "embedding_newton.h"
+#include "graph_hierarchy.h"
+#include "iterative_embedding.h"
 #include "multigrid.h"
+#include "multilevel_embedding.h"
 #include "planar_start.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
@@ -21,7 +24,10 @@
 namespace spherical_param {
 namespace {
 
+using internal::buildGraphHierarchy;
 using internal::EmbeddingEnergy;
+using internal::GraphHierarchy;
+using internal::HierarchyLevel;
 using internal::TangentBasis;
 using internal::TangentVector;
 using test::bentTube;
@@ -33,6 +39,8 @@ using test::Tube;
 
 constexpr EdgeWeights kAllWeights[] = {EdgeWeights::Uniform, EdgeWeights::InverseLength,
                                        EdgeWeights::Adaptive};
+
+const internal::EdgeWeightLaw kAdaptive(EdgeWeights::Adaptive, 3.0);
 
 /// An ellipsoid with dents and its true edges.
 struct Cloud {
@@ -53,13 +61,13 @@ Cloud dentedCloud(Index n) {
   return cloud;
 }
 
-MultilevelEmbedding embed(const Graph& graph, const MultilevelOptions& options = {},
+Embedding solve(const Graph& graph, const Setting& options = {},
                           const HierarchyOptions& hierarchy = {200, 1}) {
-  return embedMultilevel(graph, buildGraphHierarchy(graph, hierarchy), options);
+  return embedByLevels(graph, buildGraphHierarchy(graph, hierarchy), options);
 }
 
-MultilevelOptions converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive) {
-  MultilevelOptions options;
+Setting converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive) {
+  Setting options;
   options.tolerance = tolerance;
   options.weights = weights;
   return options;
@@ -85,7 +93,7 @@ TangentVector randomTangent(Eigen::Index n, unsigned seed) {
 }
 
 struct EnergyCase {
-  bool uniform;
+  EdgeWeights weights;
   double exponent;
   bool barrier;
 };
@@ -94,8 +102,9 @@ class EnergyDerivatives : public testing::TestWithParam<EnergyCase> {};
 
 TEST_P(EnergyDerivatives, AgreeWithDifferences) {
   const Cloud cloud = dentedCloud(60);
-  const auto [uniform, exponent, barrier] = GetParam();
-  EmbeddingEnergy energy(cloud.graph, uniform, exponent, 1);
+  const auto [weights, exponent, barrier] = GetParam();
+  const internal::EdgeWeightLaw law(weights, exponent);
+  EmbeddingEnergy energy(cloud.graph, law, 1);
   if (barrier)
     energy.addBarrier(randomSphere(60, 8));
   const Positions u = randomSphere(60, 3);
@@ -132,17 +141,17 @@ TEST_P(EnergyDerivatives, AgreeWithDifferences) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Energies, EnergyDerivatives,
-                         testing::Values(EnergyCase{false, 3.0, false},
-                                         EnergyCase{false, 4.5, false},
-                                         EnergyCase{true, 2.0, false},
-                                         EnergyCase{false, 2.0, false}, EnergyCase{true, 2.0, true},
-                                         EnergyCase{false, 3.0, true}));
+                         testing::Values(EnergyCase{EdgeWeights::Adaptive, 3.0, false},
+                                         EnergyCase{EdgeWeights::Adaptive, 4.5, false},
+                                         EnergyCase{EdgeWeights::Uniform, 3.0, false},
+                                         EnergyCase{EdgeWeights::InverseLength, 3.0, false}, EnergyCase{EdgeWeights::Uniform, 3.0, true},
+                                         EnergyCase{EdgeWeights::Adaptive, 3.0, true}));
 
 TEST(EmbeddingEnergy, GradientIsTheTangentialLaplacianTimesTheWeights) {
   const Cloud cloud = dentedCloud(200);
   const Positions u = randomSphere(200, 4);
   Positions gradient;
-  const EmbeddingEnergy energy(cloud.graph, false, 3.0, 1);
+  const EmbeddingEnergy energy(cloud.graph, kAdaptive, 1);
   EXPECT_NEAR(energy.gradient(u, gradient).absolute,
               meanTangentialLaplacian(cloud.graph, u, EdgeWeights::Adaptive), 1e-14);
   for (Eigen::Index i = 0; i < 200; ++i)
@@ -175,11 +184,11 @@ TEST(PlanarStart, CentralNodesOfATubeAreInItsMiddle) {
 
 TEST(MultigridPreconditioner, IsSymmetricAndSolvesDirectlyWithoutLevels) {
   const Cloud cloud = dentedCloud(1500);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {100, 1});
-  const Positions u = embed(cloud.graph).directions;
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1, 100);
+  const Positions u = solve(cloud.graph).directions;
   const std::vector<TangentBasis> bases = internal::tangentBases(u);
   EmbeddingEnergy::Hessian hessian;
-  EmbeddingEnergy(cloud.graph, false, 3.0, 1).hessian(u, bases, hessian);
+  EmbeddingEnergy(cloud.graph, kAdaptive, 1).hessian(u, bases, hessian);
   internal::MultigridPreconditioner cycle(hierarchy, 0, 1);
   cycle.compute(hessian.matrix, bases);
   const TangentVector x = randomTangent(1500, 1);
@@ -246,16 +255,16 @@ Eigen::VectorXd denseCycle(const GraphHierarchy& hierarchy, std::size_t level,
 
 TEST(MultigridPreconditioner, IsTheCycleOfDenseMatricesForEachMatrixInTurn) {
   const Cloud cloud = dentedCloud(300);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {10, 1});
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1, 10);
   ASSERT_GE(hierarchy.levels.size(), 2U);
-  Positions u = embed(cloud.graph).directions;
+  Positions u = solve(cloud.graph).directions;
   internal::MultigridPreconditioner cycle(hierarchy, 0, 1);
   const GraphHierarchy none;
   internal::MultigridPreconditioner direct(none, 0, 1);
   for (unsigned turn = 0; turn < 3; ++turn) {
     const std::vector<TangentBasis> bases = internal::tangentBases(u);
     EmbeddingEnergy::Hessian hessian;
-    EmbeddingEnergy(cloud.graph, false, 3.0, 1).hessian(u, bases, hessian);
+    EmbeddingEnergy(cloud.graph, kAdaptive, 1).hessian(u, bases, hessian);
     // Well above the rotations, for which the matrix is nearly singular.
     for (std::size_t i = 0; i < hessian.matrix.size(); ++i)
       for (std::size_t e = hessian.matrix.offsets[i]; e < hessian.matrix.offsets[i + 1]; ++e)
@@ -277,10 +286,10 @@ TEST(MultigridPreconditioner, IsTheCycleOfDenseMatricesForEachMatrixInTurn) {
 
 TEST(MinimizeByNewton, EndsWhereNothingKeepsTheEmbeddingFromCollapsing) {
   const Cloud cloud = dentedCloud(300);
-  Positions u = embed(cloud.graph).directions * 0.1;
+  Positions u = solve(cloud.graph).directions * 0.1;
   u.row(2).array() += 1.0;
   u.colwise().normalize();
-  const EmbeddingEnergy energy(cloud.graph, false, 3.0, 1);
+  const EmbeddingEnergy energy(cloud.graph, kAdaptive, 1);
   const GraphHierarchy none;
   internal::NewtonOptions options;
   options.relative_tolerance = 1e-4;
@@ -308,32 +317,32 @@ TEST(MultilevelEmbedding, IcosahedronByHand) {
     }
   points.colwise().normalize();
   const Graph graph = graphOfMesh(points, triangulateSphere(points).triangles);
-  const MultilevelEmbedding result = embed(graph, converging(1e-12));
-  ASSERT_TRUE(result.converged());
+  const Embedding result = solve(graph, converging(1e-12));
+  ASSERT_TRUE(result.report.converged());
   const Eigen::MatrixXd cosines = result.directions.transpose() * result.directions;
   const Eigen::MatrixXd expected = points.transpose() * points;
   EXPECT_LT((cosines - expected).cwiseAbs().maxCoeff(), 1e-9);
   // 30 edges as long on the sphere as in space, of squared length 4 / (golden + 2).
-  EXPECT_NEAR(result.energy, 30.0 * 4.0 / (golden + 2.0) / 3.0, 1e-9);
+  EXPECT_NEAR(result.report.energy, 30.0 * 4.0 / (golden + 2.0) / 3.0, 1e-9);
 }
 
 TEST(MultilevelEmbedding, TangentialLaplacianVanishes) {
   const Cloud cloud = dentedCloud(12000);
-  const MultilevelEmbedding result = embed(cloud.graph, converging(1e-12));
-  EXPECT_TRUE(result.converged());
+  const Embedding result = solve(cloud.graph, converging(1e-12));
+  EXPECT_TRUE(result.report.converged());
   EXPECT_LT(meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive), 1e-12);
   EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
-  EXPECT_EQ(result.residuals.back(), result.residual);
-  EXPECT_GT(result.residuals.front(), 1e-5);
+  EXPECT_EQ(result.report.residuals.back(), result.report.residual);
+  EXPECT_GT(result.report.residuals.front(), 1e-5);
 }
 
 TEST(MultilevelEmbedding, OtherExponentsConverge) {
   const Cloud cloud = dentedCloud(2000);
   for (const double exponent : {2.5, 4.0, 6.0}) {
-    MultilevelOptions options = converging(1e-11);
+    Setting options = converging(1e-11);
     options.exponent = exponent;
-    const MultilevelEmbedding result = embed(cloud.graph, options);
-    EXPECT_TRUE(result.converged()) << exponent;
+    const Embedding result = solve(cloud.graph, options);
+    EXPECT_TRUE(result.report.converged()) << exponent;
     EXPECT_LT(
         meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive, exponent),
         1e-11);
@@ -344,12 +353,12 @@ TEST(MultilevelEmbedding, OtherExponentsConverge) {
 
 TEST(MultilevelEmbedding, SameMinimumWhateverTheStart) {
   const Cloud cloud = dentedCloud(3000);
-  const MultilevelEmbedding one = embed(cloud.graph, converging(1e-12), {200, 1});
+  const Embedding one = solve(cloud.graph, converging(1e-12), 200, 1);
   for (const std::uint32_t seed : {2U, 3U, 4U}) {
-    MultilevelOptions options = converging(1e-12);
+    Setting options = converging(1e-12);
     options.starts = 1;
-    const MultilevelEmbedding other = embed(cloud.graph, options, {300, seed});
-    EXPECT_NEAR(other.energy, one.energy, 1e-9 * one.energy);
+    const Embedding other = solve(cloud.graph, options, 300, seed);
+    EXPECT_NEAR(other.report.energy, one.report.energy, 1e-9 * one.report.energy);
     // Up to a rotation or reflection: the angles between nodes are the same.
     for (Eigen::Index i = 0; i + 7 < 3000; i += 7)
       EXPECT_NEAR(one.directions.col(i).dot(one.directions.col(i + 7)),
@@ -363,9 +372,9 @@ TEST(MultilevelEmbedding, UnfoldsABentTubeThatTheIterationFolds) {
   const auto folded = [&](const Positions& directions) {
     return shareBeyondTwoSteps(graph, triangulateSphere(directions).triangles);
   };
-  EXPECT_GT(folded(embedOnSphere(graph, tube.points).directions), 0.01);
-  EXPECT_LT(folded(embed(graph).directions), 0.001);
-  EXPECT_LT(folded(embed(graph, converging(1e-9)).directions), 0.001);
+  EXPECT_GT(folded(internal::embedIteratively(graph, tube.points, {}, {}, {}).directions), 0.01);
+  EXPECT_LT(folded(solve(graph).directions), 0.001);
+  EXPECT_LT(folded(solve(graph, converging(1e-9)).directions), 0.001);
 }
 
 TEST(MultilevelEmbedding, LongTubesDoNotUnderflow) {
@@ -374,8 +383,8 @@ TEST(MultilevelEmbedding, LongTubesDoNotUnderflow) {
   for (const double turn : {0.0, 3.0}) {
     const Tube tube = bentTube(60.0, turn, 12);
     const Graph graph = graphOfMesh(tube.points, tube.triangles);
-    const MultilevelEmbedding result = embed(graph, {}, {1000, 1});
-    ASSERT_NE(result.stop_reason, StopReason::Collapsed);
+    const Embedding result = solve(graph, {}, 1000, 1);
+    ASSERT_NE(result.report.stop_reason, StopReason::Collapsed);
     const SphereTriangulation sphere = triangulateSphere(result.directions);
     EXPECT_EQ(sphere.coincident, 0);
     EXPECT_LT(shareBeyondTwoSteps(graph, sphere.triangles), 0.01);
@@ -386,19 +395,19 @@ TEST(MultilevelEmbedding, AllWeightsUnfoldWithoutCollapse) {
   const Cloud cloud = dentedCloud(4000);
   for (const EdgeWeights weights : kAllWeights)
     for (const bool converge : {false, true}) {
-      MultilevelOptions options = converging(1e-10, weights);
+      Setting options = converging(1e-10, weights);
       if (!converge)
         options.tolerance.reset();
-      const MultilevelEmbedding result = embed(cloud.graph, options);
+      const Embedding result = solve(cloud.graph, options);
       if (!converge) {
-        EXPECT_EQ(result.stop_reason, StopReason::Unfinished);
+        EXPECT_EQ(result.report.stop_reason, StopReason::Unfinished);
       } else {
         // The pull of the barrier is left to the weights that need one.
-        EXPECT_LT(result.residual, weights == EdgeWeights::Adaptive ? 1e-10 : 1e-4);
-        EXPECT_EQ(result.converged(), result.residual <= 1e-10);
+        EXPECT_LT(result.report.residual, weights == EdgeWeights::Adaptive ? 1e-10 : 1e-4);
+        EXPECT_EQ(result.report.converged(), result.report.residual <= 1e-10);
       }
-      EXPECT_LT(result.centroid_norm, 0.3);
-      EXPECT_NEAR(result.residual, meanTangentialLaplacian(cloud.graph, result.directions, weights),
+      EXPECT_LT(result.report.centroid_norm, 0.3);
+      EXPECT_NEAR(result.report.residual, meanTangentialLaplacian(cloud.graph, result.directions, weights),
                   1e-12);
       EXPECT_LT(shareBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
                 1e-3);
@@ -408,7 +417,7 @@ TEST(MultilevelEmbedding, AllWeightsUnfoldWithoutCollapse) {
 TEST(MultilevelEmbedding, StepsDoNotGrowWithTheGraph) {
   const auto steps = [](Index n) {
     const Cloud cloud = dentedCloud(n);
-    return embed(cloud.graph, converging(1e-10)).levels.front().linear_iterations;
+    return solve(cloud.graph, converging(1e-10)).report.levels.front().linear_iterations;
   };
   const int small = steps(3000);
   EXPECT_GT(small, 0);
@@ -417,35 +426,35 @@ TEST(MultilevelEmbedding, StepsDoNotGrowWithTheGraph) {
 
 TEST(MultilevelEmbedding, ReportsItsLevels) {
   const Cloud cloud = dentedCloud(5000);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {200, 1});
-  const MultilevelEmbedding result = embedMultilevel(cloud.graph, hierarchy, converging(1e-9));
-  ASSERT_EQ(result.levels.size(), hierarchy.levels.size() + 1);
-  EXPECT_EQ(result.levels[0].nodes, 5000U);
-  EXPECT_EQ(result.levels[0].edges, cloud.graph.edgeCount());
-  EXPECT_GT(result.levels[0].newton_iterations, 0);
-  for (std::size_t l = 1; l < result.levels.size(); ++l) {
-    EXPECT_EQ(result.levels[l].nodes, hierarchy.levels[l - 1].graph.size());
-    EXPECT_EQ(result.levels[l].edges, hierarchy.levels[l - 1].graph.edgeCount());
-    EXPECT_GT(result.levels[l].newton_iterations, 0);
-    EXPECT_LT(result.levels[l].residual, 1e-4);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1, 200);
+  const Embedding result = embedByLevels(cloud.graph, hierarchy, converging(1e-9));
+  ASSERT_EQ(result.report.levels.size(), hierarchy.levels.size() + 1);
+  EXPECT_EQ(result.report.levels[0].nodes, 5000U);
+  EXPECT_EQ(result.report.levels[0].edges, cloud.graph.edgeCount());
+  EXPECT_GT(result.report.levels[0].newton_iterations, 0);
+  for (std::size_t l = 1; l < result.report.levels.size(); ++l) {
+    EXPECT_EQ(result.report.levels[l].nodes, hierarchy.levels[l - 1].graph.size());
+    EXPECT_EQ(result.report.levels[l].edges, hierarchy.levels[l - 1].graph.edgeCount());
+    EXPECT_GT(result.report.levels[l].newton_iterations, 0);
+    EXPECT_LT(result.report.levels[l].residual, 1e-4);
   }
-  EXPECT_EQ(result.starts, 2);
-  EXPECT_EQ(result.collapsed_starts, 0);
+  EXPECT_EQ(result.report.starts, 2);
+  EXPECT_EQ(result.report.collapsed_starts, 0);
 }
 
 TEST(MultilevelEmbedding, SameBitsForAnyNumberOfThreads) {
   // More nodes than single passes need to be shared among threads.
   const Cloud cloud = dentedCloud(60000);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph);
+  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1);
   for (const EdgeWeights weights : {EdgeWeights::Adaptive, EdgeWeights::Uniform}) {
-    MultilevelOptions options = converging(1e-7, weights);
+    Setting options = converging(1e-7, weights);
     options.threads = 1;
-    const MultilevelEmbedding one = embedMultilevel(cloud.graph, hierarchy, options);
+    const Embedding one = embedByLevels(cloud.graph, hierarchy, options);
     options.threads = 3;
-    const MultilevelEmbedding three = embedMultilevel(cloud.graph, hierarchy, options);
+    const Embedding three = embedByLevels(cloud.graph, hierarchy, options);
     EXPECT_EQ(one.directions, three.directions);
-    EXPECT_EQ(one.residuals, three.residuals);
-    EXPECT_EQ(one.energy, three.energy);
+    EXPECT_EQ(one.report.residuals, three.report.residuals);
+    EXPECT_EQ(one.report.energy, three.report.energy);
   }
 }
 
@@ -453,14 +462,14 @@ TEST(MultilevelEmbedding, GraphsOfAllSizes) {
   for (Index n = 4; n <= 40; ++n) {
     const Positions points = randomSphere(n, static_cast<std::uint64_t>(n));
     const Graph graph = graphOfMesh(points, triangulateSphere(points).triangles);
-    const MultilevelEmbedding result = embed(graph, converging(1e-10), {4, 1});
-    EXPECT_NE(result.stop_reason, StopReason::Unfinished) << n;
-    if (result.stop_reason != StopReason::Collapsed) {
+    const Embedding result = solve(graph, converging(1e-10), 4, 1);
+    EXPECT_NE(result.report.stop_reason, StopReason::Unfinished) << n;
+    if (result.report.stop_reason != StopReason::Collapsed) {
       ASSERT_EQ(result.directions.cols(), n);
       EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14) << n;
     }
   }
-  EXPECT_EQ(embedMultilevel(Graph(), GraphHierarchy()).directions.cols(), 0);
+  EXPECT_EQ(embed(Graph(), Positions(3, 0)).directions.cols(), 0);
 }
 
 TEST(MultilevelEmbedding, CollapsedStartsAreRejectedAndABarrierIsAdded) {
@@ -475,13 +484,13 @@ TEST(MultilevelEmbedding, CollapsedStartsAreRejectedAndABarrierIsAdded) {
       }
     path.offsets.push_back(path.neighbors.size());
   }
-  const MultilevelEmbedding result = embed(path);
-  EXPECT_EQ(result.starts, 4);
-  EXPECT_EQ(result.collapsed_starts, 2);
-  EXPECT_TRUE(result.added_barrier);
+  const Embedding result = solve(path);
+  EXPECT_EQ(result.report.starts, 4);
+  EXPECT_EQ(result.report.collapsed_starts, 2);
+  EXPECT_TRUE(result.report.added_barrier);
   ASSERT_EQ(result.directions.cols(), n);
-  EXPECT_LT(result.centroid_norm, 0.9);
-  EXPECT_FALSE(embed(dentedCloud(2000).graph).added_barrier);
+  EXPECT_LT(result.report.centroid_norm, 0.9);
+  EXPECT_FALSE(solve(dentedCloud(2000).graph).report.added_barrier);
 }
 
 TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
@@ -497,103 +506,58 @@ TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
       }
     open.offsets.push_back(open.neighbors.size());
   }
-  const std::array<MultilevelOptions, 2> all_options = {MultilevelOptions(), converging(1e-9)};
-  for (const MultilevelOptions& options : all_options) {
-    const MultilevelEmbedding result = embed(open, options);
+  const std::array<Setting, 2> all_options = {Setting(), converging(1e-9)};
+  for (const Setting& options : all_options) {
+    const Embedding result = solve(open, options);
     ASSERT_EQ(result.directions.cols(), kept);
-    EXPECT_LT(result.centroid_norm, 0.95);
+    EXPECT_LT(result.report.centroid_norm, 0.95);
     EXPECT_LT(shareBeyondTwoSteps(open, triangulateSphere(result.directions).triangles), 0.1);
   }
 }
 
-TEST(MultilevelEmbedding, ProgressRisesAndCancels) {
+TEST(MultilevelEmbedding, ProgressIsReportedAndCancels) {
   const Cloud cloud = dentedCloud(3000);
-  MultilevelOptions options = converging(1e-9);
-  double last = 0.0;
+  Setting options = converging(1e-9);
   int calls = 0;
-  options.progress = [&](double share, double) {
-    EXPECT_GE(share, last);
-    EXPECT_LE(share, 1.0);
-    last = share;
+  options.progress = [&](const Progress& progress) {
+    EXPECT_GE(progress.fraction, 0.0);
+    EXPECT_LE(progress.fraction, 1.0);
     ++calls;
     return true;
   };
-  embed(cloud.graph, options);
+  solve(cloud.graph, options);
   EXPECT_GT(calls, 5);
-  EXPECT_GT(last, 0.9);
   for (int stop = 1; stop < calls; stop += 3) {
     int count = 0;
-    options.progress = [&](double, double) { return ++count < stop; };
-    EXPECT_THROW(embed(cloud.graph, options), Cancelled);
+    options.progress = [&](const Progress&) { return ++count < stop; };
+    EXPECT_THROW(solve(cloud.graph, options), Cancelled);
     EXPECT_EQ(count, stop);
   }
 }
 
-TEST(MultilevelEmbedding, ProgressTellsOfEverySweep) {
-  const Cloud cloud = dentedCloud(6000);
-  MultilevelOptions options;
-  options.solved_size = 0;
-  std::set<double> shares;
-  options.progress = [&](double share, double) {
-    shares.insert(share);
-    return true;
-  };
-  const MultilevelEmbedding watched = embed(cloud.graph, options);
-  EXPECT_EQ(*shares.rbegin(), 1.0);
-  EXPECT_GE(shares.size(),
-            (watched.levels.size() - 1) * static_cast<std::size_t>(options.sweeps + 2));
-  options.progress = {};
-  EXPECT_EQ(embed(cloud.graph, options).directions, watched.directions);
-}
-
 TEST(MultilevelEmbedding, StartsOfSeveralThreadsTellTheCallingOneAlone) {
   const Cloud cloud = dentedCloud(1200);
-  MultilevelOptions options;
+  Setting options;
   options.starts = 5;
   options.threads = 1;
-  const MultilevelEmbedding one = embed(cloud.graph, options, {1000, 1});
+  const Embedding one = solve(cloud.graph, options, 1000, 1);
   const std::thread::id caller = std::this_thread::get_id();
   int calls = 0;
   options.threads = 3;
-  options.progress = [&](double, double) {
+  options.progress = [&](const Progress&) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
     ++calls;
     return true;
   };
-  const MultilevelEmbedding several = embed(cloud.graph, options, {1000, 1});
-  EXPECT_EQ(several.starts, 5);
+  const Embedding several = solve(cloud.graph, options, 1000, 1);
+  EXPECT_EQ(several.report.starts, 5);
   EXPECT_EQ(several.directions, one.directions);
-  EXPECT_EQ(several.levels.back().newton_iterations, one.levels.back().newton_iterations);
+  EXPECT_EQ(several.report.levels.back().newton_iterations, one.report.levels.back().newton_iterations);
   for (int last = 0; last < calls; last += 3) {
     int left = last;
-    options.progress = [&](double, double) { return left-- > 0; };
-    EXPECT_THROW(embed(cloud.graph, options, {1000, 1}), Cancelled);
+    options.progress = [&](const Progress&) { return left-- > 0; };
+    EXPECT_THROW(solve(cloud.graph, options, 1000, 1), Cancelled);
   }
-}
-
-TEST(MultilevelEmbedding, RefusesBadInput) {
-  const Cloud cloud = dentedCloud(300);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, {50, 1});
-  const auto refuses = [&](const auto& change) {
-    MultilevelOptions options;
-    change(options);
-    EXPECT_THROW(embedMultilevel(cloud.graph, hierarchy, options), InvalidInput);
-  };
-  const double nan = std::nan("");
-  refuses([](MultilevelOptions& o) { o.exponent = 2.0; });
-  refuses([](MultilevelOptions& o) { o.exponent = 16.5; });
-  refuses([&](MultilevelOptions& o) { o.exponent = nan; });
-  refuses([](MultilevelOptions& o) { o.lambda = 0.0; });
-  refuses([](MultilevelOptions& o) { o.lambda = 1.5; });
-  refuses([](MultilevelOptions& o) { o.sweeps = -1; });
-  refuses([](MultilevelOptions& o) { o.solved_size = -1; });
-  refuses([](MultilevelOptions& o) { o.tolerance = -1.0; });
-  refuses([&](MultilevelOptions& o) { o.tolerance = nan; });
-  refuses([](MultilevelOptions& o) { o.starts = 0; });
-  refuses([](MultilevelOptions& o) { o.starts = 101; });
-  refuses([](MultilevelOptions& o) { o.threads = -1; });
-  refuses([](MultilevelOptions& o) { o.threads = 1025; });
-  EXPECT_THROW(embedMultilevel(dentedCloud(200).graph, hierarchy), InvalidInput);
 }
 
 }  // namespace

@@ -76,16 +76,16 @@ TEST(NeighborGraph, HoldsExactlyTheNearestNeighboursOfEitherEnd) {
       expected.insert({static_cast<Index>(i), lists.indices[e]});
       expected.insert({lists.indices[e], static_cast<Index>(i)});
     }
-  const NeighborGraph result = buildNeighborGraph(points, lists, {k});
-  EXPECT_EQ(result.components, 1);
-  EXPECT_TRUE(result.bridges.empty());
+  const NeighborGraph result = buildNeighborGraph(points, lists, test::nearest(k));
+  EXPECT_EQ(result.report.components, 1);
+  EXPECT_TRUE(result.report.bridges.empty());
   EXPECT_EQ(edgesOf(result.graph), expected);
   EXPECT_EQ(result.graph.neighbors.size(), expected.size());
 }
 
 TEST(NeighborGraph, LengthsAreDistancesAndRowsAreSorted) {
   const Positions points = randomSphere(200, 2);
-  const Graph graph = buildNeighborGraph(points, bruteForceNeighbors(points, 6), {6}).graph;
+  const Graph graph = buildNeighborGraph(points, bruteForceNeighbors(points, 6), test::nearest(6)).graph;
   ASSERT_EQ(graph.lengths.size(), graph.neighbors.size());
   for (std::size_t i = 0; i < graph.size(); ++i)
     for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
@@ -113,8 +113,8 @@ TEST(NeighborGraph, ListsMayBeUnsortedLongerAndHoldThePointItself) {
                  random);
     messy.offsets.push_back(messy.indices.size());
   }
-  EXPECT_EQ(edgesOf(buildNeighborGraph(points, messy, {5}).graph),
-            edgesOf(buildNeighborGraph(points, bruteForceNeighbors(points, 5), {5}).graph));
+  EXPECT_EQ(edgesOf(buildNeighborGraph(points, messy, test::nearest(5)).graph),
+            edgesOf(buildNeighborGraph(points, bruteForceNeighbors(points, 5), test::nearest(5)).graph));
 }
 
 TEST(NeighborGraph, PiecesAreJoinedByTheirMinimumSpanningTree) {
@@ -129,11 +129,11 @@ TEST(NeighborGraph, PiecesAreJoinedByTheirMinimumSpanningTree) {
     points = horizontally(points, part);
     component.insert(component.end(), 20, piece);
   }
-  const NeighborGraph result = buildNeighborGraph(points, bruteForceNeighbors(points, 6), {6});
-  ASSERT_EQ(result.components, pieces);
-  ASSERT_EQ(result.bridges.size(), static_cast<std::size_t>(pieces) - 1);
+  const NeighborGraph result = buildNeighborGraph(points, bruteForceNeighbors(points, 6), test::nearest(6));
+  ASSERT_EQ(result.report.components, pieces);
+  ASSERT_EQ(result.report.bridges.size(), static_cast<std::size_t>(pieces) - 1);
   double total = 0.0;
-  for (const Bridge& bridge : result.bridges) {
+  for (const Bridge& bridge : result.report.bridges) {
     EXPECT_NE(component[static_cast<std::size_t>(bridge.from)],
               component[static_cast<std::size_t>(bridge.to)]);
     EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
@@ -149,29 +149,29 @@ TEST(NeighborGraph, EmptyListsGiveTheMinimumSpanningTreeOfThePoints) {
   const Positions points = test::cubeGrid(5);  // all ties
   NeighborLists empty;
   empty.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
-  const NeighborGraph result = buildNeighborGraph(points, empty);
-  EXPECT_EQ(result.components, points.cols());
-  EXPECT_EQ(static_cast<Index>(result.bridges.size()), points.cols() - 1);
+  const NeighborGraph result = buildNeighborGraph(points, empty, test::nearest());
+  EXPECT_EQ(result.report.components, points.cols());
+  EXPECT_EQ(static_cast<Index>(result.report.bridges.size()), points.cols() - 1);
   EXPECT_EQ(countReachable(result.graph), points.cols());
-  for (const Bridge& bridge : result.bridges)
+  for (const Bridge& bridge : result.report.bridges)
     EXPECT_DOUBLE_EQ(bridge.length, 0.25);
 }
 
 TEST(NeighborGraph, BadInputIsInvalidInput) {
   const Positions points = randomSphere(10, 5);
   const NeighborLists good = bruteForceNeighbors(points, 4);
-  EXPECT_THROW(buildNeighborGraph(points, good, {2}), InvalidInput);
+  EXPECT_THROW(buildNeighborGraph(points, good, test::nearest(2)), InvalidInput);
   NeighborLists bad = good;
   bad.indices[3] = 10;
-  EXPECT_THROW(buildNeighborGraph(points, bad), InvalidInput);
+  EXPECT_THROW(buildNeighborGraph(points, bad, test::nearest()), InvalidInput);
   bad.indices[3] = -1;
-  EXPECT_THROW(buildNeighborGraph(points, bad), InvalidInput);
+  EXPECT_THROW(buildNeighborGraph(points, bad, test::nearest()), InvalidInput);
   bad = good;
   bad.offsets.pop_back();
-  EXPECT_THROW(buildNeighborGraph(points, bad), InvalidInput);
+  EXPECT_THROW(buildNeighborGraph(points, bad, test::nearest()), InvalidInput);
   bad = good;
   std::swap(bad.offsets[2], bad.offsets[3]);
-  EXPECT_THROW(buildNeighborGraph(points, bad), InvalidInput);
+  EXPECT_THROW(buildNeighborGraph(points, bad, test::nearest()), InvalidInput);
 }
 
 }  // namespace

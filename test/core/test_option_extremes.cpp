@@ -1,3 +1,4 @@
+#include "embedding_starts.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/morphing.h"
@@ -94,7 +95,7 @@ std::vector<Positions> clouds() {
 /// A map that is one to one: the points are on the sphere.
 struct Mapped {
   explicit Mapped(const Positions& cloud)
-      : points(cloud), sphere(projectFromCentroid(cloud)),
+      : points(cloud), sphere(internal::projectFromCentroid(cloud)),
         triangles(triangulateSphere(sphere).triangles) {}
   Positions points;
   Positions sphere;
@@ -105,114 +106,40 @@ Graph graphOf(const Positions& points) {
   return buildNeighborGraph(points, bruteForceNeighbors(points, 8)).graph;
 }
 
-TEST(OptionExtremes, ReconstructAnswersOrNamesTheOption) {
+TEST(OptionExtremes, ManyExtremesTogetherAreMeshed) {
   for (const Positions& points : clouds()) {
-    const NeighborLists lists = bruteForceNeighbors(points, 12);
-    const auto n = static_cast<Index>(points.cols());
-    const std::function<void(const Options&)> call = [&](const Options& options) {
-      const Result result = reconstruct(points, lists, options);
-      EXPECT_TRUE(isSphereOverAll(result.triangles, n));
-      EXPECT_TRUE(result.sphere.allFinite());
-    };
-    Options iterative;
-    iterative.solver = EmbeddingMethod::Iterative;
-    for (Options options : {Options(), iterative}) {
-      EXPECT_VALUES(options, graph, 2, call);
-      EXPECT_VALUES(options, solver, 2, call);
-      EXPECT_VALUES(options, hull, 2, call);
-      EXPECT_VALUES(options, weights, 3, call);
-      EXPECT_VALUES(options, optimization, 3, call);
-      EXPECT_RANGE(options, k, call, Ints{3, kMostInt}, Ints{2, 0, -1, kLeastInt});
-      EXPECT_RANGE(options, lambda, call, Reals{kTiny, 1e-300, 1.0},
-                   Reals{0.0, -kTiny, 1.0000000000000002, kInfinity, -kInfinity, kNan, kHuge});
-      EXPECT_RANGE(options, tolerance, call, Reals{0.0, kTiny, kHuge, kInfinity},
-                   Reals{-kTiny, -kInfinity, kNan});
-      EXPECT_RANGE(options, max_iterations, call, Ints{0, 1}, Ints{-1, kLeastInt});
-      EXPECT_RANGE(options, stagnation_window, call, Ints{0, 2, kMostInt}, Ints{1, -1, kLeastInt});
-      EXPECT_RANGE(options, starts, call, Ints{1, 100}, Ints{0, 101, kLeastInt, kMostInt});
-      EXPECT_RANGE(options, attempts, call, Ints{1, 100}, Ints{0, 101, kLeastInt, kMostInt});
-      EXPECT_RANGE(options, seed, call, std::vector<std::uint32_t>{0, 0xffffffffU},
-                   std::vector<std::uint32_t>{});
-      expectRange(
-          "steps", options, [](Options& o, int steps) { o.smoothing_steps = steps; }, call,
-          Ints{0, 1, 10000}, Ints{-1, 10001, kLeastInt, kMostInt});
-      expectRange(
-          "vertices", options, [](Options& o, int value) { o.history.vertices = value; }, call,
-          Ints{0, 1, 1 << 24}, Ints{-1, (1 << 24) + 1, kLeastInt, kMostInt});
-      options.history.vertices = 10;
-      expectRange(
-          "frames", options, [](Options& o, int value) { o.history.frames = value; }, call,
-          Ints{2, 10000}, Ints{1, 0, 10001, kLeastInt, kMostInt});
-      EXPECT_RANGE(options, threads, call, kThreads, kNoThreads);
-    }
-    EXPECT_RANGE(Options(), exponent, call, Reals{2.0000000000000004, 16.0},
-                 Reals{2.0, 16.000000000000004, 0.0, -3.0, kInfinity, kNan, kTiny});
-    EXPECT_RANGE(iterative, exponent, call, Reals{3.0}, Reals{2.5, 4.0, kNan});
-    iterative.max_iterations = kMostInt;
-    iterative.tolerance = 1e-2;
-    call(iterative);
-    // Many extremes together.
     Options all;
-    all.k = kMostInt;
-    all.lambda = kTiny;
-    all.tolerance = kInfinity;
-    all.exponent = 16.0;
-    all.starts = 1;
+    all.graph.k = kMostInt;
+    all.embedding.damping = kTiny;
+    all.embedding.tolerance = 1.0;
+    all.embedding.exponent = 16.0;
+    all.embedding.starts = 1;
+    all.embedding.history = {1 << 24, 10000};
     all.seed = 0xffffffffU;
     all.threads = 1024;
-    all.history = {1 << 24, 10000};
     all.details = true;
-    call(all);
+    for (const EmbeddingMethod method : {EmbeddingMethod::Multilevel, EmbeddingMethod::Iterative}) {
+      all.embedding.method = method;
+      const Result result = reconstruct(points, all);
+      EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(points.cols())));
+      EXPECT_TRUE(result.sphere.allFinite());
+      all.embedding.exponent = 3.0;
+      all.embedding.max_iterations = kMostInt;
+      all.embedding.damping = 0.5;
+      all.embedding.tolerance = 1e-2;
+    }
   }
 }
 
 TEST(OptionExtremes, StagesAnswerOrNameTheOption) {
   for (const Positions& points : clouds()) {
     const NeighborLists lists = bruteForceNeighbors(points, 12);
-    const Graph graph = graphOf(points);
     const Mapped mapped(points);
-
-    const std::function<void(const NeighborGraphOptions&)> nearest =
-        [&](const NeighborGraphOptions& o) { buildNeighborGraph(points, lists, o); };
-    EXPECT_RANGE(NeighborGraphOptions(), k, nearest, Ints{3, kMostInt}, Ints{2, kLeastInt});
-
-    const std::function<void(const LocalDelaunayOptions&)> local =
-        [&](const LocalDelaunayOptions& o) { buildLocalDelaunayGraph(points, lists, o); };
-    const LocalDelaunayOptions delaunay;
-    EXPECT_VALUES(delaunay, agreement, 2, local);
-    EXPECT_RANGE(delaunay, tangent_neighbors, local, Ints{3, 32}, Ints{2, kLeastInt});
-    EXPECT_RANGE(delaunay, max_candidates, local, Ints{10, kMostInt}, Ints{9, -1, kLeastInt});
-    EXPECT_RANGE(delaunay, max_slope, local, Reals{kTiny, 1.0}, Reals{0.0, 1.1, kInfinity, kNan});
-    EXPECT_RANGE(delaunay, threads, local, kThreads, kNoThreads);
-
-    const std::function<void(const EmbeddingOptions&)> iterate = [&](const EmbeddingOptions& o) {
-      embedOnSphere(graph, points, o);
+    const std::function<void(const GraphOptions&)> build = [&](const GraphOptions& o) {
+      buildNeighborGraph(points, lists, o);
     };
-    EmbeddingOptions embedding;
-    embedding.max_iterations = 50;
-    EXPECT_VALUES(embedding, weights, 3, iterate);
-    EXPECT_RANGE(embedding, stagnation_change, iterate, Reals{0.0, kHuge, kInfinity},
-                 Reals{-kTiny, kNan});
-    EXPECT_RANGE(embedding, threads, iterate, kThreads, kNoThreads);
-
-    const std::function<void(const HierarchyOptions&)> coarsen = [&](const HierarchyOptions& o) {
-      embedMultilevel(graph, buildGraphHierarchy(graph, o));
-    };
-    EXPECT_RANGE(HierarchyOptions(), coarsest_size, coarsen, Ints{4, kMostInt},
-                 Ints{3, 0, kLeastInt});
-    EXPECT_RANGE(HierarchyOptions(), threads, coarsen, kThreads, kNoThreads);
-
-    const std::function<void(const MultilevelOptions&)> multilevel =
-        [&](const MultilevelOptions& o) { embedMultilevel(graph, GraphHierarchy(), o); };
-    EXPECT_VALUES(MultilevelOptions(), weights, 3, multilevel);
-    EXPECT_RANGE(MultilevelOptions(), sweeps, multilevel, Ints{0, 1000}, Ints{-1, kLeastInt});
-    EXPECT_RANGE(MultilevelOptions(), solved_size, multilevel, Ints{0, kMostInt},
-                 Ints{-1, kLeastInt});
-    EXPECT_RANGE(MultilevelOptions(), threads, multilevel, kThreads, kNoThreads);
-
-    const std::function<void(const TriangulationOptions&)> triangulate =
-        [&](const TriangulationOptions& o) { triangulateSphere(mapped.sphere, o); };
-    EXPECT_VALUES(TriangulationOptions(), method, 2, triangulate);
+    EXPECT_VALUES(GraphOptions(), agreement, 2, build);
+    EXPECT_RANGE(GraphOptions(), k, build, Ints{3, kMostInt}, Ints{2, kLeastInt});
 
     const std::function<void(const OutlierOptions&)> outliers = [&](const OutlierOptions& o) {
       findOutliers(points, lists, o);
@@ -221,47 +148,53 @@ TEST(OptionExtremes, StagesAnswerOrNameTheOption) {
                  Reals{-kTiny, 1000.1, kInfinity, kNan});
     EXPECT_RANGE(OutlierOptions(), k, outliers, Ints{3, kMostInt}, Ints{2, kLeastInt});
     EXPECT_RANGE(OutlierOptions(), least_score, outliers, Reals{0.0, kHuge}, Reals{-kTiny, kNan});
-    EXPECT_RANGE(OutlierOptions(), threads, outliers, kThreads, kNoThreads);
-
-    const std::function<void(const OptimizationOptions&)> optimize =
-        [&](const OptimizationOptions& o) { optimizeMesh(points, mapped.triangles, graph, o); };
-    EXPECT_VALUES(OptimizationOptions(), method, 3, optimize);
-    EXPECT_RANGE(OptimizationOptions(), threads, optimize, kThreads, kNoThreads);
 
     const std::function<void(const SmoothingOptions&)> smooth = [&](const SmoothingOptions& o) {
       EXPECT_TRUE(smoothSurface(points, mapped.triangles, o).points.allFinite());
     };
-    EXPECT_VALUES(SmoothingOptions(), method, 3, smooth);
-    EXPECT_RANGE(SmoothingOptions(), steps, smooth, Ints{0, 10000},
-                 Ints{-1, 10001, kLeastInt, kMostInt});
-    EXPECT_RANGE(SmoothingOptions(), threads, smooth, kThreads, kNoThreads);
-    SmoothingOptions umbrella;
-    umbrella.method = SmoothingMethod::Umbrella;
+    EXPECT_VALUES(SmoothingOptions(), method, 2, smooth);
     expectRange(
-        "lambda", umbrella, [](SmoothingOptions& o, double x) { o.umbrella_lambda = x; }, smooth,
-        Reals{kTiny, 1.0}, Reals{0.0, 1.1, kInfinity, kNan});
-    SmoothingOptions taubin;
-    taubin.method = SmoothingMethod::Taubin;
-    expectRange(
-        "lambda", taubin, [](SmoothingOptions& o, double x) { o.taubin_lambda = x; }, smooth,
-        Reals{kTiny, 0.9}, Reals{0.0, 1.1, kInfinity, kNan});
-    expectRange(
-        "pass", taubin, [](SmoothingOptions& o, double x) { o.taubin_pass_band = x; }, smooth,
-        Reals{0.0, 0.1}, Reals{-kTiny, 1.0, kInfinity, kNan});
+        "smoothing", SmoothingOptions(), [](SmoothingOptions& o, int steps) { o.steps = steps; },
+        smooth, Ints{0, 10000}, Ints{-1, 10001, kLeastInt, kMostInt});
+  }
+}
 
-    const std::function<void(const SelfIntersectionOptions&)> intersect =
-        [&](const SelfIntersectionOptions& o) {
-          findSelfIntersections(points, mapped.triangles, o);
-        };
-    EXPECT_RANGE(SelfIntersectionOptions(), threads, intersect, kThreads, kNoThreads);
-    const std::function<void(const TopologyOptions&)> check = [&](const TopologyOptions& o) {
-      checkTopology(mapped.triangles, static_cast<std::size_t>(points.cols()), o);
-    };
-    EXPECT_RANGE(TopologyOptions(), threads, check, kThreads, kNoThreads);
-    const std::function<void(const MeasureOptions&)> measure = [&](const MeasureOptions& o) {
-      measureMesh(points, mapped.triangles, o);
-    };
-    EXPECT_RANGE(MeasureOptions(), threads, measure, kThreads, kNoThreads);
+TEST(OptionExtremes, ThreadsOutOfRangeAreRefusedByEveryStage) {
+  const Positions points = randomSphere(200, 7);
+  const NeighborLists lists = bruteForceNeighbors(points, 12);
+  const Graph graph = graphOf(points);
+  const Mapped mapped(points);
+  const Triangles& triangles = mapped.triangles;
+  const auto n = static_cast<std::size_t>(points.cols());
+  const std::vector<std::pair<const char*, std::function<void(const Execution&)>>> stages{
+      {"reconstruct",
+       [&](const Execution& e) {
+         Options options;
+         options.threads = e.threads;
+         reconstruct(points, options);
+       }},
+      {"findNearestNeighbors", [&](const Execution& e) { findNearestNeighbors(points, 12, e); }},
+      {"buildNeighborGraph",
+       [&](const Execution& e) { buildNeighborGraph(points, lists, {}, {}, e); }},
+      {"embed", [&](const Execution& e) { embed(graph, points, {}, 1, e); }},
+      {"optimizeMesh",
+       [&](const Execution& e) { optimizeMesh(points, triangles, graph, {}, 1, e); }},
+      {"findSelfIntersections",
+       [&](const Execution& e) { findSelfIntersections(points, triangles, e); }},
+      {"findOutliers", [&](const Execution& e) { findOutliers(points, lists, {}, e); }},
+      {"smoothSurface",
+       [&](const Execution& e) { smoothSurface(points, triangles, {}, e.threads); }},
+      {"checkTopology", [&](const Execution& e) { checkTopology(triangles, n, e.threads); }},
+      {"measureMesh", [&](const Execution& e) { measureMesh(points, triangles, e.threads); }},
+      {"diagnoseSurface",
+       [&](const Execution& e) { diagnoseSurface(points, triangles, graph, {}, {}, e.threads); }}};
+  for (const auto& [name, run] : stages) {
+    for (const int threads : kThreads)
+      EXPECT_EQ(refusalOf([&, &call = run] { call(onThreads(threads)); }), "") << name;
+    for (const int threads : kNoThreads)
+      EXPECT_NE(refusalOf([&, &call = run] { call(onThreads(threads)); }).find("threads"),
+                std::string::npos)
+          << name << " with " << threads;
   }
 }
 
@@ -344,25 +277,7 @@ TEST(OptionExtremes, MapsAnswerOrNameTheOption) {
   }
 }
 
-TEST(OptionExtremes, DiagnosisAnswersOrNamesTheOption) {
-  for (const Positions& points : clouds()) {
-    const Mapped mapped(points);
-    const Graph graph = graphOf(points);
-    const std::function<void(const DiagnosisOptions&)> diagnose = [&](const DiagnosisOptions& o) {
-      diagnoseSurface(points, mapped.triangles, graph, {}, o);
-    };
-    const DiagnosisOptions options;
-    EXPECT_RANGE(options, lid_diameter, diagnose, Reals{kTiny, kHuge, kInfinity},
-                 Reals{0.0, -1.0, kNan});
-    EXPECT_RANGE(options, part_gap, diagnose, Reals{kTiny, kHuge, kInfinity},
-                 Reals{0.0, -1.0, kNan});
-    EXPECT_RANGE(options, handle_steps, diagnose, Ints{3, 100}, Ints{2, 101, kLeastInt, kMostInt});
-    EXPECT_RANGE(options, threads, diagnose, kThreads, kNoThreads);
-  }
-}
-
-// --- Data that do not fit
-// -------------------------------------------------------------------------
+// --- Data that do not fit ------------------------------------------------------------------------
 
 TEST(BrokenData, GraphsThatDoNotFitAreInvalidInput) {
   const Positions points = randomSphere(30, 2);
@@ -377,24 +292,11 @@ TEST(BrokenData, GraphsThatDoNotFitAreInvalidInput) {
   broken[5].offsets[0] = 1;
   for (std::size_t i = 0; i < broken.size(); ++i) {
     const Graph& graph = broken[i];
-    EXPECT_THROW(buildGraphHierarchy(graph), InvalidInput) << i;
-    EXPECT_THROW(embedOnSphere(graph, points), InvalidInput) << i;
-    EXPECT_THROW(embedMultilevel(graph, GraphHierarchy()), InvalidInput) << i;
+    EXPECT_THROW(embed(graph, points), InvalidInput) << i;
     EXPECT_THROW(meanTangentialLaplacian(graph, mapped.sphere, EdgeWeights::Uniform), InvalidInput)
         << i;
     EXPECT_THROW(optimizeMesh(points, mapped.triangles, graph), InvalidInput) << i;
   }
-  HierarchyOptions coarsening;
-  coarsening.coarsest_size = 4;
-  const GraphHierarchy hierarchy = buildGraphHierarchy(good, coarsening);
-  ASSERT_FALSE(hierarchy.levels.empty());
-  std::vector<GraphHierarchy> wrong(4, hierarchy);
-  wrong[0].levels[0].aggregate_of[7] = 30;
-  wrong[1].levels[0].seeds[0] = -1;
-  wrong[2].levels[0].prolongation.resize(29, 3);
-  wrong[3].levels[0].graph.neighbors[0] = 1000;
-  for (const GraphHierarchy& other : wrong)
-    EXPECT_THROW(embedMultilevel(good, other), InvalidInput);
 }
 
 TEST(BrokenData, MeshesAndAtlasesThatDoNotFitAreInvalidInput) {
@@ -479,7 +381,7 @@ Work reconstruction(const Positions& points, Options options) {
     Options with = options;
     if (callback)
       with.progress = [&](const Progress& progress) { return callback(progress.fraction); };
-    const Result result = reconstruct(points, bruteForceNeighbors(points, 12), with);
+    const Result result = reconstruct(points, with);
     return Outcome(result.triangles, result.sphere);
   };
 }
@@ -490,30 +392,16 @@ Positions noisySphere() {
 
 TEST(ProgressCallback, EndsReconstructAtEveryCall) {
   Options options;
-  options.smoothing_steps = 2;
-  options.history.vertices = 10;
+  options.smoothing.steps = 2;
+  options.embedding.history.vertices = 10;
   expectEndsAtEveryCall(reconstruction(tetrahedron(), options));
   expectEndsAtEveryCall(reconstruction(noisySphere(), options));
   Options of_paper;
-  of_paper.graph = GraphMethod::NearestNeighbors;
-  of_paper.solver = EmbeddingMethod::Iterative;
-  of_paper.hull = TriangulationMethod::Qhull;
-  of_paper.max_iterations = 20;
+  of_paper.graph.method = GraphMethod::NearestNeighbors;
+  of_paper.embedding.method = EmbeddingMethod::Iterative;
+  of_paper.triangulation.method = TriangulationMethod::Qhull;
+  of_paper.embedding.max_iterations = 20;
   expectEndsAtEveryCall(reconstruction(noisySphere(), of_paper));
-}
-
-TEST(ProgressCallback, EndsReconstructBySearchAtEveryCall) {
-  const Positions points = noisySphere();
-  expectEndsAtEveryCall([&](const Callback& callback) {
-    Options options;
-    if (callback)
-      options.progress = [&](const Progress& progress) { return callback(progress.fraction); };
-    const Result result = reconstruct(
-        points,
-        [](const Positions& nodes, const std::vector<Index>&) { return bruteForceSearch(nodes); },
-        options);
-    return Outcome(result.triangles, result.sphere);
-  });
 }
 
 TEST(ProgressCallback, EndsStagesAtEveryCall) {
@@ -522,56 +410,43 @@ TEST(ProgressCallback, EndsStagesAtEveryCall) {
   const Graph graph = graphOf(points);
   const Mapped mapped(points);
   const Triangles none(3, 0);
+  const auto number = [&](std::size_t count) {
+    return Outcome(none, Positions::Constant(3, 1, static_cast<double>(count)));
+  };
   expectEndsAtEveryCall([&](const Callback& callback) {
-    LocalDelaunayOptions options;
-    options.progress = callback;
-    const NeighborGraph made = buildLocalDelaunayGraph(points, lists, options);
-    return Outcome(none, Positions::Constant(3, 1, static_cast<double>(made.graph.edgeCount())));
+    return number(
+        buildNeighborGraph(points, lists, {}, {}, reportingTo(callback)).graph.edgeCount());
   });
-  expectEndsAtEveryCall([&](const Callback& callback) {
-    EmbeddingOptions options;
-    options.max_iterations = 10;
-    if (callback)
-      options.progress = [&](int, double residual) { return callback(residual); };
-    return Outcome(none, embedOnSphere(graph, points, options).directions);
-  });
-  expectEndsAtEveryCall([&](const Callback& callback) {
-    HierarchyOptions coarsening;
-    coarsening.coarsest_size = 10;
-    coarsening.progress = callback;
-    MultilevelOptions options;
-    options.tolerance = 1e-6;
-    if (callback)
-      options.progress = [&](double share, double) { return callback(share); };
-    return Outcome(
-        none, embedMultilevel(graph, buildGraphHierarchy(graph, coarsening), options).directions);
-  });
+  for (const auto method : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel})
+    expectEndsAtEveryCall([&](const Callback& callback) {
+      EmbeddingOptions options;
+      options.method = method;
+      options.max_iterations = 10;
+      options.tolerance = 1e-6;
+      return Outcome(none, embed(graph, points, options, 1, reportingTo(callback)).directions);
+    });
   for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
     expectEndsAtEveryCall([&](const Callback& callback) {
-      TriangulationOptions options;
-      options.method = method;
-      options.progress = callback;
-      return Outcome(triangulateSphere(mapped.sphere, options).triangles, Positions(3, 0));
+      const Execution execution = reportingTo(callback);
+      return Outcome(triangulateSphere(mapped.sphere, {method}, execution).triangles,
+                     Positions(3, 0));
     });
   for (const auto method :
        {OptimizationMethod::None, OptimizationMethod::Flips, OptimizationMethod::Full})
     expectEndsAtEveryCall([&](const Callback& callback) {
       OptimizationOptions options;
       options.method = method;
-      // This one may throw, and has no other say.
-      if (callback)
-        options.progress = [&](double share) {
-          if (!callback(share))
-            throw Cancelled("optimizeMesh");
-        };
-      return Outcome(optimizeMesh(points, mapped.triangles, graph, options).triangles,
-                     Positions(3, 0));
+      const Execution execution = reportingTo(callback);
+      return Outcome(
+          optimizeMesh(points, mapped.triangles, graph, options, 1, execution).triangles,
+          Positions(3, 0));
     });
   expectEndsAtEveryCall([&](const Callback& callback) {
-    SelfIntersectionOptions options;
-    options.progress = callback;
-    const auto pairs = findSelfIntersections(points, mapped.triangles, options);
-    return Outcome(none, Positions::Constant(3, 1, static_cast<double>(pairs.size())));
+    return number(
+        findSelfIntersections(points, mapped.triangles, reportingTo(callback)).size());
+  });
+  expectEndsAtEveryCall([&](const Callback& callback) {
+    return number(findOutliers(points, {}, reportingTo(callback)).indices.size());
   });
 }
 

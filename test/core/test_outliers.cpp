@@ -228,13 +228,10 @@ TEST(Outliers, SameBitsForAnyNumberOfThreads) {
   const Index n = 6000;
   const Positions points = horizontally(test::spiralSphere(n), shell(1.5, 50));
   const NeighborLists lists = bruteForceNeighbors(points, 12);
-  OutlierOptions options;
-  options.threads = 1;
-  const Outliers one = findOutliers(points, lists, options);
+  const Outliers one = findOutliers(points, lists, {}, test::onThreads(1));
   EXPECT_EQ(one.indices.size(), 50U);
   for (const int threads : {2, 5, 0}) {
-    options.threads = threads;
-    const Outliers several = findOutliers(points, lists, options);
+    const Outliers several = findOutliers(points, lists, {}, test::onThreads(threads));
     EXPECT_EQ(one.indices, several.indices);
     EXPECT_EQ(one.scores, several.scores);
     EXPECT_EQ(one.mean, several.mean);
@@ -306,7 +303,46 @@ TEST(Outliers, OptionsOutOfRangeAreInvalidInput) {
   for (const int k : {2, 0, -5})
     EXPECT_THROW(with([&](OutlierOptions& o) { o.k = k; }), InvalidInput);
   for (const int threads : {-1, 1025})
-    EXPECT_THROW(with([&](OutlierOptions& o) { o.threads = threads; }), InvalidInput);
+    EXPECT_THROW(findOutliers(points, {}, test::onThreads(threads)), InvalidInput);
+}
+
+// --- Of a cloud: neighbours are found, and repeated points may occur -------------------------------
+
+TEST(OutliersOfACloud, AreThoseWithTheNeighboursOfTheCaller) {
+  const Positions points = horizontally(test::randomSphere(1500, 14), shell(1.5, 6));
+  const Outliers found = findOutliers(points);
+  EXPECT_EQ(found.indices, lastOf(1506, 6));
+  EXPECT_EQ(found.indices, outliersOf(points).indices);
+  EXPECT_EQ(found.scores.size(), 1506U);
+}
+
+TEST(OutliersOfACloud, RepeatedPointsAreAllOutliersOrNone) {
+  const Positions far = shell(1.5, 6);
+  const Positions sphere = test::spiralSphere(1500);
+  const Positions points =
+      horizontally(horizontally(far, sphere), horizontally(far, sphere.leftCols(20)));
+  const Outliers found = findOutliers(points);
+  std::vector<Index> expected{0, 1, 2, 3, 4, 5};
+  for (Index i = 0; i < 6; ++i)
+    expected.push_back(1506 + i);
+  EXPECT_EQ(found.indices, expected);
+  ASSERT_EQ(found.scores.size(), 1532U);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_EQ(found.scores[i], found.scores[1506 + i]);
+}
+
+TEST(OutliersOfACloud, FewerThanFourPositionsHaveNone) {
+  for (Index n = 0; n < 4; ++n) {
+    const Positions points = test::randomSphere(n, 15).replicate(1, 3);
+    const Outliers found = findOutliers(points);
+    EXPECT_TRUE(found.indices.empty());
+    EXPECT_EQ(found.scores.size(), static_cast<std::size_t>(points.cols()));
+  }
+}
+
+TEST(OutliersOfACloud, CanBeCancelled) {
+  const Positions points = test::spiralSphere(2000);
+  EXPECT_THROW(findOutliers(points, {}, test::reportingTo([](double) { return false; })), Cancelled);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "reference/edge_flips.h"
 #include "reference/graph_coarsening.h"
 #include "reference/self_intersection.h"
-#include "spherical_param/graph_hierarchy.h"
+#include "graph_hierarchy.h"
 #include "spherical_param/neighbor_graph.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
@@ -19,17 +19,16 @@ namespace spherical_param {
 namespace {
 
 Graph graphOf(const Positions& points) {
-  LocalDelaunayOptions options;
-  options.search = test::bruteForceSearch(points);
-  return buildLocalDelaunayGraph(points, test::bruteForceNeighbors(points, 12), options).graph;
+  return buildNeighborGraph(points, test::bruteForceNeighbors(points, 12), {},
+                            test::bruteForceSearch(points))
+      .graph;
 }
 
 void expectTheSameLevel(const Graph& graph, std::uint32_t seed) {
-  HierarchyOptions options;
-  options.coarsest_size = static_cast<Index>(graph.size()) - 1;
-  options.seed = seed;
-  const HierarchyLevel level = buildGraphHierarchy(graph, options).levels.at(0);
-  const HierarchyLevel expected = reference::coarsen(graph, seed);
+  const auto size = static_cast<Index>(graph.size());
+  const internal::HierarchyLevel level =
+      internal::buildGraphHierarchy(graph, seed, size - 1).levels.at(0);
+  const internal::HierarchyLevel expected = reference::coarsen(graph, seed);
   EXPECT_EQ(level.seeds, expected.seeds);
   EXPECT_EQ(level.aggregate_of, expected.aggregate_of);
   EXPECT_EQ(level.graph.offsets, expected.graph.offsets);

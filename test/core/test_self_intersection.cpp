@@ -42,7 +42,7 @@ Mesh make(std::initializer_list<std::array<double, 3>> points,
 }
 
 Pairs pairsOf(const Mesh& mesh, int threads = 1) {
-  return findSelfIntersections(mesh.points, mesh.triangles, SelfIntersectionOptions{threads});
+  return findSelfIntersections(mesh.points, mesh.triangles, test::onThreads(threads));
 }
 
 /// Two triangles without a common vertex.
@@ -481,9 +481,9 @@ TEST(SelfIntersection, ThreadsDoNotMatterForASet) {
   for (Index t = 0; t < mesh.triangles.cols(); t += 3)
     of.push_back(t);
   const Pairs pairs =
-      findSelfIntersectionsOf(mesh.points, mesh.triangles, of, SelfIntersectionOptions{1});
+      findSelfIntersectionsOf(mesh.points, mesh.triangles, of, test::onThreads(1));
   EXPECT_FALSE(pairs.empty());
-  EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of, SelfIntersectionOptions{3}),
+  EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of, test::onThreads(3)),
             pairs);
 }
 
@@ -518,17 +518,16 @@ TEST(SelfIntersection, ProgressRisesAndCancels) {
   const std::vector<Index> some{0, 5, 100};
   for (const bool of_some : {false, true}) {
     const auto run = [&](const std::function<bool(double)>& progress) {
-      SelfIntersectionOptions options;
-      options.progress = progress;
+      const Execution options = test::reportingTo(progress);
       return of_some ? findSelfIntersectionsOf(points, both, some, options)
                      : findSelfIntersections(points, both, options);
     };
-    const std::vector<double> shares = test::sharesOf(run);
-    EXPECT_TRUE(test::areShares(shares));
-    EXPECT_EQ(shares.back(), 1.0);
-    EXPECT_GE(shares.size(), of_some ? 6U : 12U);
+    const std::vector<double> fractions = test::fractionsOf(run);
+    EXPECT_TRUE(test::areFractions(fractions));
+    EXPECT_EQ(fractions.back(), 1.0);
+    EXPECT_GE(fractions.size(), of_some ? 6U : 12U);
     EXPECT_EQ(run([](double) { return true; }), run({}));
-    for (const int last : {1, 3, static_cast<int>(shares.size())}) {
+    for (const int last : {1, 3, static_cast<int>(fractions.size())}) {
       int count = 0;
       EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
       EXPECT_EQ(count, last);

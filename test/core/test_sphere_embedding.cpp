@@ -1,6 +1,8 @@
-#include "spherical_param/sphere_embedding.h"
+#include "spherical_param/embedding.h"
 
+#include "embedding_starts.h"
 #include "helpers.h"
+#include "iterative_embedding.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/neighbor_graph.h"
 
@@ -27,7 +29,12 @@ Positions bumpyCloud(Index n) {
 }
 
 Graph graphOf(const Positions& points, int k) {
-  return buildNeighborGraph(points, bruteForceNeighbors(points, k), {k}).graph;
+  return buildNeighborGraph(points, bruteForceNeighbors(points, k), test::nearest(k)).graph;
+}
+
+Embedding iterate(const Graph& graph, const Positions& start, const EmbeddingOptions& options = {},
+                  int threads = 0) {
+  return internal::embedIteratively(graph, start, options, {}, test::onThreads(threads));
 }
 
 /// Figure 3 of the paper, word by word, without regard for speed: returns the state and the mean
@@ -75,19 +82,19 @@ TEST(SphereEmbedding, IsTheIterationOfFigure3) {
       const auto expected = figure3(graph, points, weights, lambda, steps);
       EmbeddingOptions options;
       options.weights = weights;
-      options.lambda = lambda;
+      options.damping = lambda;
       options.max_iterations = steps;
       options.tolerance = 0.0;
-      const Embedding result = embedOnSphere(graph, points, options);
-      EXPECT_EQ(result.stop_reason, StopReason::IterationLimit);
-      EXPECT_EQ(result.iterations, steps);
-      ASSERT_EQ(result.residuals.size(), static_cast<std::size_t>(steps) + 1);
+      const Embedding result = iterate(graph, points, options);
+      EXPECT_EQ(result.report.stop_reason, StopReason::IterationLimit);
+      EXPECT_EQ(result.report.iterations, steps);
+      ASSERT_EQ(result.report.residuals.size(), static_cast<std::size_t>(steps) + 1);
       // Rounding of 25 steps of a contracting iteration.
       for (std::size_t step = 0; step <= 25; ++step)
-        EXPECT_NEAR(result.residuals[step], expected[step].second, 1e-13);
+        EXPECT_NEAR(result.report.residuals[step], expected[step].second, 1e-13);
       EXPECT_LT((result.directions - expected.back().first).cwiseAbs().maxCoeff(), 1e-12);
-      EXPECT_EQ(result.residual, result.residuals.back());
-      EXPECT_NEAR(result.residual, meanTangentialLaplacian(graph, result.directions, weights),
+      EXPECT_EQ(result.report.residual, result.report.residuals.back());
+      EXPECT_NEAR(result.report.residual, meanTangentialLaplacian(graph, result.directions, weights),
                   1e-14);
     }
 }
@@ -107,9 +114,9 @@ TEST(SphereEmbedding, OctahedronIsAFixedPoint) {
   for (const EdgeWeights weights : kAllWeights) {
     EmbeddingOptions options;
     options.weights = weights;
-    const Embedding result = embedOnSphere(graphOf(points * 3.0, 4), points, options);
-    EXPECT_TRUE(result.converged());
-    EXPECT_EQ(result.iterations, 0);
+    const Embedding result = iterate(graphOf(points * 3.0, 4), points, options);
+    EXPECT_TRUE(result.report.converged());
+    EXPECT_EQ(result.report.iterations, 0);
     EXPECT_LT((result.directions - points).cwiseAbs().maxCoeff(), 1e-15);
   }
 }
@@ -124,10 +131,10 @@ TEST(SphereEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
   options.max_iterations = 20000;
   options.tolerance = 1e-10;
   const Graph graph = graphOf(points, 10);
-  const Embedding result = embedOnSphere(graph, points, options);
-  EXPECT_EQ(result.stop_reason, StopReason::Converged);
+  const Embedding result = iterate(graph, points, options);
+  EXPECT_EQ(result.report.stop_reason, StopReason::Converged);
   EXPECT_LE(meanTangentialLaplacian(graph, result.directions, options.weights), 1.01e-10);
-  EXPECT_LT(result.iterations, 20000);
+  EXPECT_LT(result.report.iterations, 20000);
 }
 
 TEST(SphereEmbedding, StagnationIsTold) {
@@ -136,17 +143,17 @@ TEST(SphereEmbedding, StagnationIsTold) {
   options.tolerance = 0.0;
   options.max_iterations = 1000000;
   options.stagnation_window = 50;
-  const Embedding result = embedOnSphere(graphOf(points, 8), points, options);
-  EXPECT_EQ(result.stop_reason, StopReason::Stagnated);
-  const auto tail = result.residuals.end() - 50;
-  EXPECT_LE(*std::max_element(tail, result.residuals.end()) -
-                *std::min_element(tail, result.residuals.end()),
-            options.stagnation_change * *std::max_element(tail, result.residuals.end()));
+  const Embedding result = iterate(graphOf(points, 8), points, options);
+  EXPECT_EQ(result.report.stop_reason, StopReason::Stagnated);
+  const auto tail = result.report.residuals.end() - 50;
+  EXPECT_LE(*std::max_element(tail, result.report.residuals.end()) -
+                *std::min_element(tail, result.report.residuals.end()),
+            1e-5 * *std::max_element(tail, result.report.residuals.end()));
 }
 
 TEST(SphereEmbedding, DirectionsAreUnitVectors) {
   const Positions points = bumpyCloud(500);
-  const Embedding result = embedOnSphere(graphOf(points, 10), points);
+  const Embedding result = iterate(graphOf(points, 10), points);
   EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-15 * 4);
 }
 
@@ -160,17 +167,15 @@ TEST(SphereEmbedding, SameBitsForAnyNumberOfThreads) {
         lists.indices.push_back(i + step);
     lists.offsets.push_back(lists.indices.size());
   }
-  const Graph graph = buildNeighborGraph(points, lists).graph;
+  const Graph graph = buildNeighborGraph(points, lists, test::nearest()).graph;
   for (const EdgeWeights weights : kAllWeights) {
     EmbeddingOptions options;
     options.weights = weights;
     options.max_iterations = 15;
-    options.threads = 1;
-    const Embedding one = embedOnSphere(graph, points, options);
+    const Embedding one = iterate(graph, points, options, 1);
     for (const int threads : {2, 3, 0}) {
-      options.threads = threads;
-      const Embedding several = embedOnSphere(graph, points, options);
-      EXPECT_EQ(one.residuals, several.residuals);
+      const Embedding several = iterate(graph, points, options, threads);
+      EXPECT_EQ(one.report.residuals, several.report.residuals);
       EXPECT_EQ(one.directions, several.directions);
     }
   }
@@ -189,24 +194,24 @@ TEST(SphereEmbedding, CollapseIsToldNotConvergence) {
     EmbeddingOptions options;
     options.weights = weights;
     options.max_iterations = 0;
-    const Embedding result = embedOnSphere(graphOf(points, 10), points, options);
-    EXPECT_EQ(result.stop_reason, StopReason::Collapsed);
-    EXPECT_FALSE(result.converged());
-    EXPECT_GT(result.centroid_norm, 0.9);
+    const Embedding result = iterate(graphOf(points, 10), points, options);
+    EXPECT_EQ(result.report.stop_reason, StopReason::Collapsed);
+    EXPECT_FALSE(result.report.converged());
+    EXPECT_GT(result.report.centroid_norm, 0.9);
   }
 }
 
 TEST(SphereEmbedding, CentringUndoesAPassingCollapse) {
   const Positions points = sphereWithOutlier(400);
-  const Embedding result = embedOnSphere(graphOf(points, 10), points);
-  EXPECT_NE(result.stop_reason, StopReason::Collapsed);
-  EXPECT_LT(result.centroid_norm, 0.1);
+  const Embedding result = iterate(graphOf(points, 10), points);
+  EXPECT_NE(result.report.stop_reason, StopReason::Collapsed);
+  EXPECT_LT(result.report.centroid_norm, 0.1);
 }
 
 TEST(SphereEmbedding, RankStartIsNeverCollapsed) {
   for (const Positions& points : {sphereWithOutlier(400), Positions(randomSphere(100, 1) * 1e-300),
                                   Positions(Positions::Constant(3, 50, 2.0)), bumpyCloud(1000)}) {
-    const Positions directions = projectByRank(points);
+    const Positions directions = internal::projectByRank(points);
     EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
     // All on one meridian: the mean radius is pi / 4.
     EXPECT_LT(directions.rowwise().mean().norm(), 0.8);
@@ -217,54 +222,54 @@ TEST(SphereEmbedding, ProjectionGivesEveryPointADirection) {
   Positions points = test::horizontally(randomSphere(10, 1), -randomSphere(10, 1));
   points = test::horizontally(points, Positions::Zero(3, 1));  // the centroid itself
   for (const double scale : {1.0, 1e-300, 1e300}) {
-    const Positions directions = projectFromCentroid(points * scale);
+    const Positions directions = internal::projectFromCentroid(points * scale);
     EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
     EXPECT_LT((directions.leftCols(20) - points.leftCols(20)).cwiseAbs().maxCoeff(), 1e-14);
   }
 }
 
-TEST(SphereEmbedding, ProgressIsToldAndCancels) {
+TEST(SphereEmbedding, EachIterationReportsAndMayCancel) {
   const Positions points = bumpyCloud(100);
   const Graph graph = graphOf(points, 6);
   EmbeddingOptions options;
+  options.method = EmbeddingMethod::Iterative;
   options.max_iterations = 10;
-  std::vector<int> iterations;
-  std::vector<double> residuals;
-  options.progress = [&](int iteration, double residual) {
-    iterations.push_back(iteration);
-    residuals.push_back(residual);
-    return true;
+  const auto run = [&](const std::function<bool(double)>& callback) {
+    return embed(graph, points, options, 1, test::reportingTo(callback));
   };
-  EXPECT_EQ(embedOnSphere(graph, points, options).residuals, residuals);
-  EXPECT_EQ(iterations, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
-  options.progress = [](int iteration, double) { return iteration < 3; };
-  EXPECT_THROW(embedOnSphere(graph, points, options), Cancelled);
+  const std::vector<double> fractions = test::fractionsOf(run);
+  EXPECT_TRUE(test::areFractions(fractions));
+  EXPECT_GE(fractions.size(), 10U);
+  EXPECT_THROW(run([](double fraction) { return fraction < 0.3; }), Cancelled);
 }
 
 TEST(SphereEmbedding, BadInputIsInvalidInput) {
   const Positions points = randomSphere(20, 1);
   const Graph graph = graphOf(points, 5);
-  const auto with = [&](auto change) {
-    EmbeddingOptions options;
-    change(options);
-    return options;
-  };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(embedOnSphere(graph, randomSphere(19, 1)), InvalidInput);
-  EXPECT_THROW(embedOnSphere(graph, points * nan), InvalidInput);
-  for (const double lambda : {0.0, -0.1, 1.01, nan})
-    EXPECT_THROW(embedOnSphere(graph, points, with([&](auto& o) { o.lambda = lambda; })),
-                 InvalidInput);
-  for (const double tolerance : {-1e-9, nan})
-    EXPECT_THROW(embedOnSphere(graph, points, with([&](auto& o) { o.tolerance = tolerance; })),
-                 InvalidInput);
-  EXPECT_THROW(embedOnSphere(graph, points, with([](auto& o) { o.max_iterations = -1; })),
-               InvalidInput);
-  for (const int threads : {-1, 1025})
-    EXPECT_THROW(embedOnSphere(graph, points, with([&](auto& o) { o.threads = threads; })),
-                 InvalidInput);
-  EXPECT_THROW(embedOnSphere(graph, points, with([](auto& o) { o.stagnation_window = 1; })),
-               InvalidInput);
+  for (const EmbeddingMethod method : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel}) {
+    EmbeddingOptions options;
+    options.method = method;
+    EXPECT_THROW(embed(graph, randomSphere(19, 1), options), InvalidInput);
+    EXPECT_THROW(embed(graph, points * nan, options), InvalidInput);
+    for (const int threads : {-1, 1025})
+      EXPECT_THROW(embed(graph, points, options, 1, test::onThreads(threads)), InvalidInput);
+    const auto refuses = [&](const auto& change) {
+      EmbeddingOptions bad = options;
+      change(bad);
+      EXPECT_THROW(embed(graph, points, bad), InvalidInput);
+    };
+    for (const double damping : {0.0, -0.1, 1.01, nan})
+      refuses([&](EmbeddingOptions& o) { o.damping = damping; });
+    for (const double tolerance : {-1e-9, nan})
+      refuses([&](EmbeddingOptions& o) { o.tolerance = tolerance; });
+    for (const double exponent : {2.0, 16.5, nan})
+      refuses([&](EmbeddingOptions& o) { o.exponent = exponent; });
+    for (const int starts : {0, 101})
+      refuses([&](EmbeddingOptions& o) { o.starts = starts; });
+    refuses([](EmbeddingOptions& o) { o.max_iterations = -1; });
+    refuses([](EmbeddingOptions& o) { o.stagnation_window = 1; });
+  }
   EXPECT_THROW(meanTangentialLaplacian(graph, randomSphere(3, 1), EdgeWeights::Uniform),
                InvalidInput);
 }

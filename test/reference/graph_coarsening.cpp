@@ -83,8 +83,8 @@ void offer(std::map<Index, double>& row, Index to, double length) {
 
 }  // namespace
 
-HierarchyLevel coarsen(const Graph& graph, std::uint32_t seed) {
-  HierarchyLevel level;
+internal::HierarchyLevel coarsen(const Graph& graph, std::uint32_t seed) {
+  internal::HierarchyLevel level;
   level.seeds = independentSet(graph, seed);
   std::vector<double> distances;
   findCells(graph, level.seeds, level.aggregate_of, distances);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/graph_hierarchy.h"
+#include "graph_hierarchy.h"
 #include "spherical_param/types.h"
 
 #include <cstdint>
@@ -12,6 +12,6 @@ namespace spherical_param::reference {
 /// maps.
 ///
 /// \param graph connected, with positive edge lengths.
-HierarchyLevel coarsen(const Graph& graph, std::uint32_t seed);
+internal::HierarchyLevel coarsen(const Graph& graph, std::uint32_t seed);
 
 }  // namespace spherical_param::reference
