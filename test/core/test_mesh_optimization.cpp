@@ -209,7 +209,7 @@ std::vector<Case> roughCases() {
 }
 
 /// Ends work that is told of more often.
-internal::ShareReport reportUpTo(int most) {
+internal::Report reportUpTo(int most) {
   return [most, told = 0](double) mutable {
     if (++told > most)
       throw std::runtime_error("told of too often: it may go on for ever");
@@ -414,7 +414,7 @@ TEST(MeshOptimizer, EnergyOfACubeIsThatOfItsEdgesAndCircles) {
   // 12 edges of length 1 are bent by a right angle; the 12 k^2 triangles have half a diagonal of
   // their cell as circumradius. 1e-6: acos near 1 is off by 1e-8, on flat edges of length 60.
   const double expected = 12.0 * test::kPi / 2.0 + 0.3 * 12.0 * k * k * std::sqrt(0.5) / k;
-  EXPECT_NEAR(result.energy, expected, 1e-6);
+  EXPECT_NEAR(result.report.energy, expected, 1e-6);
   EXPECT_NEAR(energyOf(of.points, result.triangles, Bend::Angle, 0.3), expected, 1e-6);
 }
 
@@ -666,7 +666,7 @@ TEST(MeshOptimization, AScrambledSphereFindsBackToItsHull) {
     const double volume = test::volumeOf(of.points, true_mesh.triangles);
     // Some diagonals of nearly square cells may be the other ones.
     EXPECT_NEAR(test::volumeOf(of.points, result.triangles), volume, 1e-3 * volume);
-    EXPECT_LE(result.energy, 1.01 * energyOf(of.points, true_mesh.triangles, Bend::Angle, 0.3));
+    EXPECT_LE(result.report.energy, 1.01 * energyOf(of.points, true_mesh.triangles, Bend::Angle, 0.3));
   }
 }
 
@@ -1048,11 +1048,11 @@ TEST(SamplingAnalysis, SameBitsForAnyNumberOfThreads) {
   const Positions points = Eigen::Vector3d(1.0, 0.5, 0.25).asDiagonal() * sphere;
   const Graph graph = graphOfMesh(points, triangulateSphere(sphere).triangles);
   const Sampling one = analyzeSampling(points, graph, 1);
-  EXPECT_NE(one.report.alignment, 0.0);
+  EXPECT_NE(one.alignment, 0.0);
   for (const int threads : {2, 4}) {
     const Sampling other = analyzeSampling(points, graph, threads);
-    EXPECT_EQ(one.report.alignment, other.report.alignment);
-    EXPECT_EQ(one.report.unevenness, other.report.unevenness);
+    EXPECT_EQ(one.alignment, other.alignment);
+    EXPECT_EQ(one.unevenness, other.unevenness);
   }
 }
 

@@ -552,11 +552,11 @@ TEST(Morphing, ProgressNeverFallsAndMayCancel) {
   const Mapped second = meshOf(secondBlob(), test::spiralSphere(400));
   MorphOptions options;
   options.pairs = {{1, 2}, {200, 300}};
-  const std::vector<double> shares = test::sharesOf([&](const auto& progress) {
+  const std::vector<double> shares = test::fractionsOf([&](const auto& progress) {
     options.progress = progress;
     morphSurfaces(first.surface(), second.surface(), options);
   });
-  EXPECT_TRUE(test::areShares(shares));
+  EXPECT_TRUE(test::areFractions(shares));
   EXPECT_EQ(shares.back(), 1.0);
   for (const std::size_t calls : {std::size_t{1}, shares.size() / 2}) {
     std::size_t count = 0;

@@ -61,9 +61,16 @@ Cloud dentedCloud(Index n) {
   return cloud;
 }
 
-Embedding solve(const Graph& graph, const Setting& options = {},
-                          const HierarchyOptions& hierarchy = {200, 1}) {
-  return embedByLevels(graph, buildGraphHierarchy(graph, hierarchy), options);
+struct Setting : EmbeddingOptions, Execution {};
+
+Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
+                        const Setting& setting = {}) {
+  return internal::embedByLevels(graph, hierarchy, setting, {}, setting);
+}
+
+Embedding solve(const Graph& graph, const Setting& setting = {}, Index coarsest_size = 200,
+                std::uint32_t seed = 1) {
+  return embedByLevels(graph, buildGraphHierarchy(graph, seed, coarsest_size), setting);
 }
 
 Setting converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive) {
@@ -386,7 +393,7 @@ TEST(MultilevelEmbedding, LongTubesDoNotUnderflow) {
     const Embedding result = solve(graph, {}, 1000, 1);
     ASSERT_NE(result.report.stop_reason, StopReason::Collapsed);
     const SphereTriangulation sphere = triangulateSphere(result.directions);
-    EXPECT_EQ(sphere.coincident, 0);
+    EXPECT_EQ(sphere.report.coincident, 0);
     EXPECT_LT(shareBeyondTwoSteps(graph, sphere.triangles), 0.01);
   }
 }

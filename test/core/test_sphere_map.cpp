@@ -517,8 +517,8 @@ TEST(SphereMap, TellsHowFarItIs) {
     options.progress = progress;
     computeSphereMap(sphere.points, sphere.triangles, sphere.points, options);
   };
-  const std::vector<double> shares = test::sharesOf(run);
-  EXPECT_TRUE(test::areShares(shares));
+  const std::vector<double> shares = test::fractionsOf(run);
+  EXPECT_TRUE(test::areFractions(shares));
   EXPECT_EQ(shares.back(), 1.0);
   EXPECT_THROW(run([](double share) { return share < 0.5; }), Cancelled);
 }
