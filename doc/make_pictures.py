@@ -22,7 +22,7 @@ PICTURES = ROOT / "doc" / "pictures"
 GITHUB = ROOT / ".github"
 FRONT = "--view=0,0"
 SIDE = "--view=30,10"
-PAPER = ["-solver", "iterative", "-graph", "knn"]
+PAPER = ["-embedding", "iterative", "-graph", "knn"]
 
 
 def run(program, *arguments):
@@ -39,9 +39,9 @@ def scan(shape, points, *options):
 
 def mesh(cloud, name, *options):
     """Meshes a cloud without retries; how many pairs of triangles intersect in the mesh that is written."""
-    run("reconstruction", cloud, f"{name}.ply", "-json", "report.json", "-attempts", 1, *options)
+    run("reconstruction", cloud, f"{name}.ply", "-json", "report.json", "-retries", 0, *options)
     report = json.loads(pathlib.Path("report.json").read_text())
-    count = (report["smoothing"] if "-smooth" in options else report)["self_intersections"]
+    count = (report["smoothing"] if "-smoothing" in options else report)["self_intersections"]
     return f"{count:,} self-intersection{'' if count == 1 else 's'}"
 
 
@@ -81,7 +81,7 @@ def morph():
 
 def pipeline():
     cloud = scan("hand", 4000)
-    mesh(cloud, "first", "-optimize", "none", "-sphere", "sphere.ply")
+    mesh(cloud, "first", "-optimization", "none", "-sphere", "sphere.ply")
     mesh(cloud, "last")
     draw(PICTURES / "pipeline.png", "1320x360", [(cloud, "points"), ("sphere.ply", "embedding, triangulated"),
          ("first.ply", "the same triangles in space"), ("last.ply", "optimised mesh")],
@@ -91,21 +91,21 @@ def pipeline():
 def embedding():
     cloud, views = scan("hand", 8000), []
     for name, text, options in (("iteration", "the paper's iteration", PAPER), ("multilevel", "multilevel", [])):
-        said = mesh(cloud, name, "-optimize", "none", "-sphere", f"{name}_sphere.ply", *options)
+        said = mesh(cloud, name, "-optimization", "none", "-sphere", f"{name}_sphere.ply", *options)
         views += [(f"{name}_sphere.ply", text), (f"{name}.ply", f"its mesh: {said}")]
     draw(PICTURES / "embedding.png", "1320x350", views, "--colors=multilevel_sphere.ply", FRONT)
 
 
 def optimisation():
     cloud = scan("hand", 8000)
-    views = [(f"{method}.ply", f"{method}: {mesh(cloud, method, '-optimize', method, *PAPER)}")
+    views = [(f"{method}.ply", f"{method}: {mesh(cloud, method, '-optimization', method, *PAPER)}")
              for method in ("none", "flips", "full")]  # fmt: skip
     draw(PICTURES / "optimisation.png", "1200x400", views, "--focus=0,0,0.2", "--zoom=2", FRONT)
 
 
 def smoothing():
     cloud = scan("animal", 12000, "-noise", 1.5)
-    views = [(f"smooth_{steps}.ply", f"-smooth {steps}: {mesh(cloud, f'smooth_{steps}', '-smooth', steps)}")
+    views = [(f"smooth_{steps}.ply", f"-smoothing {steps}: {mesh(cloud, f'smooth_{steps}', '-smoothing', steps)}")
              for steps in (1, 5, 30)]  # fmt: skip
     said = mesh(cloud, "smooth_0")
     draw(PICTURES / "smoothing.png", "1320x340", [("smooth_0.ply", f"as scanned: {said}"), *views], SIDE)
