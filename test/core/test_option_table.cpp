@@ -88,8 +88,9 @@ TEST(OptionTable, AValueThatIsSetIsReadBackAndChangesNoOtherOption) {
       EXPECT_EQ(row.get(options), value) << row.name << " = " << textOf(value);
       EXPECT_NO_THROW(checkOptions(options)) << row.name << " = " << textOf(value);
       for (const OptionRow& other : optionTable())
-        if (other.name != row.name)
+        if (other.name != row.name) {
           EXPECT_EQ(other.get(options), other.get(Options())) << row.name << " " << other.name;
+        }
     }
 }
 
