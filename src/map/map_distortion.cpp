@@ -21,13 +21,13 @@ namespace {
 using Eigen::Vector3d;
 
 /// Twice an area below this many times the longest side squared is rounding of the cross product.
-constexpr double kLeastArea = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kMinArea = 16.0 * std::numeric_limits<double>::epsilon();
 /// What is not finite counts as this, so that means are finite: a triangle that is collapsed on the
 /// sphere has no finite distortion.
-constexpr double kMost = 1e300;
+constexpr double kUnbounded = 1e300;
 
 double bounded(double value) {
-  return value < kMost ? value : kMost;
+  return value < kUnbounded ? value : kUnbounded;
 }
 
 /// A triangle by two of its sides, from the same corner.
@@ -44,7 +44,7 @@ struct Sides {
   double longestSquared() const {
     return std::max({first.squaredNorm(), second.squaredNorm(), (second - first).squaredNorm()});
   }
-  bool isDegenerate() const { return !(twice_area > kLeastArea * longestSquared()); }
+  bool isDegenerate() const { return !(twice_area > kMinArea * longestSquared()); }
 
   /// Angles at the corners [rad].
   Vector3d angles() const {

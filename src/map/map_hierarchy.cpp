@@ -19,9 +19,9 @@ using Eigen::Vector3d;
 
 /// Triangles stand for this share of the mean at least: the image of a cluster of points, however
 /// small it is in space, is one that coordinates of double tell apart.
-constexpr double kLeastMass = 1e-6;
+constexpr double kMinMass = 1e-6;
 /// A vertex of more neighbours is only taken out if there are too few others.
-constexpr Index kMostCoarseNeighbors = 8;
+constexpr Index kMaxCoarseNeighbors = 8;
 /// This share of the candidates, the cheapest, is considered for a batch.
 constexpr double kShareOfCandidates = 0.7;
 /// With fewer vertices than this they are taken out one at a time.
@@ -277,7 +277,7 @@ std::vector<double> massesOf(const Positions& points, const Triangles& triangles
     return masses;
   }
   for (double& mass : masses)
-    mass = std::max(mass / sum, kLeastMass / static_cast<double>(m));
+    mass = std::max(mass / sum, kMinMass / static_cast<double>(m));
   return masses;
 }
 
@@ -295,7 +295,7 @@ public:
 
   MapHierarchy run(const Report& report) {
     const auto n = static_cast<double>(alive_.size());
-    Index most_neighbors = kMostCoarseNeighbors;
+    Index most_neighbors = kMaxCoarseNeighbors;
     while (alive_.size() > 4) {
       const std::size_t before = alive_.size();
       takeOut(most_neighbors);
@@ -304,7 +304,7 @@ public:
       if (gone == 0 || (gone < before / 20 && before > static_cast<std::size_t>(kFewVertices)))
         most_neighbors = most_neighbors < (Index{1} << 29) ? 2 * most_neighbors : most_neighbors;
       else
-        most_neighbors = std::max(kMostCoarseNeighbors, most_neighbors / 2);
+        most_neighbors = std::max(kMaxCoarseNeighbors, most_neighbors / 2);
       const auto kept = static_cast<double>(hierarchy_.meshes.back().vertex_count);
       const double ratio = kept > 1000.0 ? 0.5 : 0.8;
       if (static_cast<double>(alive_.size()) <= ratio * kept || alive_.size() == 4)

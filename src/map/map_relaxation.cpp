@@ -25,7 +25,7 @@ constexpr double kThinnest = 0.05;
 /// Logarithms of ratios of areas below this count by their squares rather.
 constexpr double kSmallLog = 0.05;
 /// Vertices of a colour for several threads: to move one takes about a microsecond.
-constexpr std::size_t kLeastOfColor = 2048;
+constexpr std::size_t kMinParallelColor = 2048;
 
 /// A triangle of vertex u and two neighbours, on the sphere.
 struct Image {
@@ -227,6 +227,39 @@ Vector2d newtonStep(const Model& model) {
   return -(axis * (axis.dot(model.gradient) / high) + across * (across.dot(model.gradient) / low));
 }
 
+/// Numbers the vertices by colours, such that no two neighbours have the same: each vertex takes
+/// the lowest colour that no neighbour has.
+void colorVertices(const Triangles& triangles, const CornerTable& corners, Index vertex_count,
+                   MapRows& rows) {
+  const auto n = static_cast<std::size_t>(vertex_count);
+  std::vector<Index> color(n, -1);
+  std::vector<Index> taken_by;  // of each colour, the last vertex with a neighbour that has it
+  for (Index v = 0; v < vertex_count; ++v) {
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      const Index other = color[static_cast<std::size_t>(triangles(nextCorner(k), t))];
+      if (other >= 0)
+        taken_by[static_cast<std::size_t>(other)] = v;
+    });
+    Index c = 0;
+    while (static_cast<std::size_t>(c) < taken_by.size() &&
+           taken_by[static_cast<std::size_t>(c)] == v)
+      ++c;
+    if (static_cast<std::size_t>(c) == taken_by.size())
+      taken_by.push_back(-1);
+    color[static_cast<std::size_t>(v)] = c;
+  }
+
+  rows.colors.assign(taken_by.size() + 1, 0);
+  for (const Index c : color)
+    ++rows.colors[static_cast<std::size_t>(c) + 1];
+  for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c)
+    rows.colors[c + 1] += rows.colors[c];
+  rows.vertices.resize(n);
+  std::vector<std::uint32_t> next(rows.colors.begin(), rows.colors.end() - 1);
+  for (Index v = 0; v < vertex_count; ++v)
+    rows.vertices[next[static_cast<std::size_t>(color[static_cast<std::size_t>(v)])]++] = v;
+}
+
 }  // namespace
 
 Vector3d mapCotangents(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
@@ -273,34 +306,8 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
   });
   const CornerTable corners(triangles, n, threads);
 
-  // Colours: the lowest that no neighbour has.
-  std::vector<Index> color(n, -1);
-  std::vector<Index> taken_by;  // of each colour, the last vertex with a neighbour that has it
-  for (Index v = 0; v < vertex_count; ++v) {
-    corners.forEachCorner(v, [&](Index t, Index k) {
-      const Index other = color[static_cast<std::size_t>(triangles(nextCorner(k), t))];
-      if (other >= 0)
-        taken_by[static_cast<std::size_t>(other)] = v;
-    });
-    Index c = 0;
-    while (static_cast<std::size_t>(c) < taken_by.size() &&
-           taken_by[static_cast<std::size_t>(c)] == v)
-      ++c;
-    if (static_cast<std::size_t>(c) == taken_by.size())
-      taken_by.push_back(-1);
-    color[static_cast<std::size_t>(v)] = c;
-  }
-
   MapRows rows;
-  rows.colors.assign(taken_by.size() + 1, 0);
-  for (const Index c : color)
-    ++rows.colors[static_cast<std::size_t>(c) + 1];
-  for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c)
-    rows.colors[c + 1] += rows.colors[c];
-  rows.vertices.resize(n);
-  std::vector<std::uint32_t> next(rows.colors.begin(), rows.colors.end() - 1);
-  for (Index v = 0; v < vertex_count; ++v)
-    rows.vertices[next[static_cast<std::size_t>(color[static_cast<std::size_t>(v)])]++] = v;
+  colorVertices(triangles, corners, vertex_count, rows);
   rows.begin.resize(n + 1);
   rows.begin[0] = 0;
   for (std::size_t i = 0; i < n; ++i)
@@ -373,7 +380,7 @@ double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy,
   for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c) {
     const std::size_t first = rows.colors[c];
     const std::size_t count = rows.colors[c + 1] - first;
-    const int threads = threadCount(requested, count, kLeastOfColor);
+    const int threads = threadCount(requested, count, kMinParallelColor);
     gain += sumOfBlocks(count, threads, 0.0, [&](std::size_t begin, std::size_t end) {
       double part = 0.0;
       for (std::size_t i = first + begin; i < first + end; ++i)

@@ -23,12 +23,10 @@
 namespace spherical_param {
 namespace {
 
-/// Shares of the work that are done after its parts.
-
-constexpr std::size_t kLeastSamples = 12;
+constexpr std::size_t kMinSamples = 12;
 constexpr std::size_t kMaxGridSamples = std::size_t{1} << 24U;
 /// The motion solves dense systems of twice the size.
-constexpr std::size_t kMostPairs = 4096;
+constexpr std::size_t kMaxPairs = 4096;
 /// Vertices of both meshes become one if they are nearer than this share of the shortest of their
 /// edges: it moves the map by less than a mesh can show, and both shapes keep all their vertices.
 constexpr double kSameVertex = 0.1;
@@ -40,12 +38,12 @@ constexpr double kSameVertex = 0.1;
 void checkOptions(const MorphOptions& options) {
   internal::checkEnum("morphSurfaces: connectivity", options.connectivity,
                       MorphConnectivity::Resampled);
-  if (options.samples < kLeastSamples || options.samples > kMaxGridSamples)
+  if (options.samples < kMinSamples || options.samples > kMaxGridSamples)
     fail("samples = " + std::to_string(options.samples) + " is out of range; use " +
-         std::to_string(kLeastSamples) + " to " + std::to_string(kMaxGridSamples));
-  if (options.pairs.size() > kMostPairs)
+         std::to_string(kMinSamples) + " to " + std::to_string(kMaxGridSamples));
+  if (options.pairs.size() > kMaxPairs)
     fail(std::to_string(options.pairs.size()) + " pairs are too many; use " +
-         std::to_string(kMostPairs) + " at most");
+         std::to_string(kMaxPairs) + " at most");
 }
 
 /// The pairs that may be honoured, each once.
@@ -263,6 +261,28 @@ void sampleBoth(const SphereSurface& first, const SphereSurface& second, const P
   morph.second_places = locate(sphere, second.triangles());
 }
 
+/// Sets the partners of the vertices whose landmarks arrived, and adds the other pairs to the
+/// impossible ones. \return the places of the landmarks that arrived
+std::vector<Eigen::Vector3d> honouredPairs(const PairChoice& choice,
+                                           const std::vector<internal::Landmark>& landmarks,
+                                           const internal::SphereWarp& warp,
+                                           std::vector<Index>& partner,
+                                           std::vector<ImpossiblePair>& impossible) {
+  std::vector<Eigen::Vector3d> places;
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (!warp.reasons[i].empty()) {
+      for (const std::size_t number : choice.numbers[i])
+        impossible.push_back({number, warp.reasons[i]});
+      continue;
+    }
+    partner[static_cast<std::size_t>(choice.pairs[i].second)] = choice.pairs[i].first;
+    places.push_back(landmarks[i].target);
+  }
+  std::sort(impossible.begin(), impossible.end(),
+            [](const auto& one, const auto& other) { return one.pair < other.pair; });
+  return places;
+}
+
 }  // namespace
 
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
@@ -277,8 +297,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> directions;
     for (const PointPair& pair : choice.pairs)
       directions.emplace_back(first.sphere().col(pair.first), second.sphere().col(pair.second));
-    morph.rotation = internal::searchRotation(first, second, directions, options.threads,
-                                              report);
+    morph.rotation = internal::searchRotation(first, second, directions, options.threads, report);
   }
   morph.alignment_error = internal::alignmentError(first, second, morph.rotation, options.threads);
 
@@ -290,8 +309,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   for (const PointPair& pair : choice.pairs)
     landmarks.push_back({pair.second, first.sphere().col(pair.first)});
   internal::SphereWarp warp =
-      internal::moveLandmarks(sphere, second.triangles(), landmarks, options.threads,
-                              report);
+      internal::moveLandmarks(sphere, second.triangles(), landmarks, options.threads, report);
   if (internal::countFlipped(warp.sphere, second.triangles(), options.threads) > 0)
     throw ComputeError("morphSurfaces: the second map has triangles that rounding flips when it "
                        "is rotated; use a map of less distortion, or align = false");
@@ -299,18 +317,8 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   morph.worst_pair = warp.worst;
 
   std::vector<Index> partner(static_cast<std::size_t>(sphere.cols()), -1);
-  std::vector<Eigen::Vector3d> places;
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    if (!warp.reasons[i].empty()) {
-      for (const std::size_t number : choice.numbers[i])
-        morph.impossible.push_back({number, warp.reasons[i]});
-      continue;
-    }
-    partner[static_cast<std::size_t>(choice.pairs[i].second)] = choice.pairs[i].first;
-    places.push_back(landmarks[i].target);
-  }
-  std::sort(morph.impossible.begin(), morph.impossible.end(),
-            [](const auto& one, const auto& other) { return one.pair < other.pair; });
+  const std::vector<Eigen::Vector3d> places =
+      honouredPairs(choice, landmarks, warp, partner, morph.impossible);
 
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);

@@ -7,9 +7,9 @@
 #include "parallel.h"
 #include "sample_elimination.h"
 #include "sphere_mesh.h"
-#include "vertex_normals.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
+#include "vertex_normals.h"
 
 #include <Eigen/Geometry>
 
@@ -28,7 +28,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostVertices = std::size_t{1} << 29;
+constexpr std::size_t kMaxVertices = std::size_t{1} << 29;
 constexpr int kLargestSide = 16385;
 
 /// A grid has `factor` f^2 + 2 vertices.
@@ -399,7 +399,7 @@ private:
 
 int gridFrequency(SphereGrid grid, std::size_t vertices) {
   const auto factor = static_cast<double>(factorOf(grid));
-  const double most = std::floor(std::sqrt(static_cast<double>(kMostVertices - 2) / factor));
+  const double most = std::floor(std::sqrt(static_cast<double>(kMaxVertices - 2) / factor));
   const double wanted = std::max(0.0, static_cast<double>(vertices) - 2.0) / factor;
   // Nearest in vertices: between f and f + 1, the middle of their squares.
   double f = std::floor(std::sqrt(wanted));
@@ -412,10 +412,10 @@ std::size_t gridVertices(SphereGrid grid, int frequency) {
   const std::size_t factor = factorOf(grid);
   internal::checkEnum("gridVertices: grid", grid, SphereGrid::Octahedral);
   const auto f = static_cast<std::size_t>(std::max(frequency, 0));
-  if (frequency < 1 || f * f > (kMostVertices - 2) / factor)
+  if (frequency < 1 || f * f > (kMaxVertices - 2) / factor)
     throw InvalidInput("gridVertices: frequency = " + std::to_string(frequency) +
                        " is not possible; use 1 to " +
-                       std::to_string(gridFrequency(grid, kMostVertices)));
+                       std::to_string(gridFrequency(grid, kMaxVertices)));
   return factor * f * f + 2;
 }
 

@@ -24,12 +24,14 @@ constexpr std::size_t kCoarseSamples = 160;
 constexpr std::size_t kCandidates = 12;
 constexpr double kApart = 0.25;
 constexpr std::size_t kMediumSamples = 512;
+/// Descents that end nearer to each other have found the same rotation [rad].
+constexpr double kSameEnd = 0.05;
 /// Of these the best are improved once more.
 constexpr std::size_t kFinalists = 3;
 constexpr std::size_t kFineSamples = 4096;
 /// Half the side of the table of positions, in cells.
 constexpr int kTableCells = 48;
-constexpr int kMostSteps = 60;
+constexpr int kMaxSteps = 60;
 /// A descent has ended when its steps are as short [rad].
 constexpr double kMinTurn = 1e-9;
 
@@ -281,7 +283,7 @@ public:
                                              int threads) const {
     LocalModel here = model(rotation, pairs, true, threads);
     double damping = 1e-3;
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
       Eigen::Matrix3d damped = here.hessian;
       damped.diagonal() += damping * here.hessian.diagonal();
       damped.diagonal().array() += 1e-12;
@@ -317,6 +319,61 @@ double angleBetween(const Eigen::Matrix3d& one, const Eigen::Matrix3d& other) {
   return Eigen::AngleAxisd(one.transpose() * other).angle();
 }
 
+struct RankedRotation {
+  double error;
+  std::size_t number;
+  bool operator<(const RankedRotation& other) const {
+    return error != other.error ? error < other.error : number < other.number;
+  }
+};
+
+/// All rotations that are tried, least error first.
+std::vector<RankedRotation> rankRotations(const UnitSurface& first, const UnitSurface& second,
+                                          const DirectionPairs& pairs, int threads) {
+  const PositionTable table_first(first, threads);
+  const PositionTable table_second(second, threads);
+  const Problem coarse(first, second, kCoarseSamples);
+  std::vector<RankedRotation> candidates(kRotations);
+  forEachItem(
+      kRotations, threadCount(threads, kRotations, kParallelThreshold),
+      [&](std::size_t, std::size_t i) {
+        const Eigen::Matrix3d rotation = rotationOf(i);
+        double sum = 0.0;
+        for (const Sample& sample : coarse.ofFirst())
+          sum += (table_second.at(rotation * sample.direction) - sample.position).squaredNorm();
+        for (const Sample& sample : coarse.ofSecond())
+          sum += (table_first.at(rotation.transpose() * sample.direction) - sample.position)
+                     .squaredNorm();
+        double error = 0.5 * sum / static_cast<double>(kCoarseSamples);
+        for (const auto& [from, to] : pairs)
+          error += (rotation * from - to).squaredNorm() / static_cast<double>(pairs.size());
+        candidates[i] = {error, i};
+      });
+  std::sort(candidates.begin(), candidates.end());
+  return candidates;
+}
+
+/// Whether a rotation is farther than `apart` [rad] from all of some others.
+bool isApart(const Eigen::Matrix3d& rotation, const std::vector<Eigen::Matrix3d>& others,
+             double apart) {
+  return std::all_of(others.begin(), others.end(), [&](const Eigen::Matrix3d& other) {
+    return angleBetween(rotation, other) > apart;
+  });
+}
+
+/// The best rotations that are apart from each other.
+std::vector<Eigen::Matrix3d> chooseStarts(const std::vector<RankedRotation>& candidates) {
+  std::vector<Eigen::Matrix3d> starts;
+  for (const RankedRotation& candidate : candidates) {
+    const Eigen::Matrix3d rotation = rotationOf(candidate.number);
+    if (isApart(rotation, starts, kApart))
+      starts.push_back(rotation);
+    if (starts.size() == kCandidates)
+      break;
+  }
+  return starts;
+}
+
 }  // namespace
 
 double alignmentError(const SphereSurface& first, const SphereSurface& second,
@@ -327,54 +384,15 @@ double alignmentError(const SphereSurface& first, const SphereSurface& second,
 }
 
 Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& second,
-                               const DirectionPairs& pairs, int threads,
-                               const Report& report) {
+                               const DirectionPairs& pairs, int threads, const Report& report) {
   const UnitSurface unit_first(first);
   const UnitSurface unit_second(second);
-  const PositionTable table_first(unit_first, threads);
-  const PositionTable table_second(unit_second, threads);
+  tell(report, 0.0);
+  const std::vector<RankedRotation> candidates =
+      rankRotations(unit_first, unit_second, pairs, threads);
   tell(report, 0.0);
 
-  struct Candidate {
-    double error;
-    std::size_t number;
-    bool operator<(const Candidate& other) const {
-      return error != other.error ? error < other.error : number < other.number;
-    }
-  };
-  std::vector<Candidate> candidates(kRotations);
-  {
-    const Problem coarse(unit_first, unit_second, kCoarseSamples);
-    forEachItem(
-        kRotations, threadCount(threads, kRotations, kParallelThreshold),
-        [&](std::size_t, std::size_t i) {
-          const Eigen::Matrix3d rotation = rotationOf(i);
-          double sum = 0.0;
-          for (const Sample& sample : coarse.ofFirst())
-            sum += (table_second.at(rotation * sample.direction) - sample.position).squaredNorm();
-          for (const Sample& sample : coarse.ofSecond())
-            sum += (table_first.at(rotation.transpose() * sample.direction) - sample.position)
-                       .squaredNorm();
-          double error = 0.5 * sum / static_cast<double>(kCoarseSamples);
-          for (const auto& [from, to] : pairs)
-            error += (rotation * from - to).squaredNorm() / static_cast<double>(pairs.size());
-          candidates[i] = {error, i};
-        });
-  }
-  std::sort(candidates.begin(), candidates.end());
-  tell(report, 0.0);
-
-  std::vector<Eigen::Matrix3d> starts;
-  for (const Candidate& candidate : candidates) {
-    const Eigen::Matrix3d rotation = rotationOf(candidate.number);
-    const bool is_apart = std::all_of(starts.begin(), starts.end(), [&](const auto& other) {
-      return angleBetween(rotation, other) > kApart;
-    });
-    if (is_apart)
-      starts.push_back(rotation);
-    if (starts.size() == kCandidates)
-      break;
-  }
+  const std::vector<Eigen::Matrix3d> starts = chooseStarts(candidates);
   std::vector<std::pair<double, Eigen::Matrix3d>> ends(starts.size());
   {
     const Problem medium(unit_first, unit_second, kMediumSamples);
@@ -391,10 +409,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
   std::vector<Eigen::Matrix3d> tried;
   for (const auto& end : ends) {
     // Descents from several starts often end at one place.
-    const bool is_new = std::all_of(tried.begin(), tried.end(), [&](const auto& other) {
-      return angleBetween(end.second, other) > 0.05;
-    });
-    if (!is_new)
+    if (!isApart(end.second, tried, kSameEnd))
       continue;
     tried.push_back(end.second);
     const auto improved = fine.descend(end.second, pairs, threads);

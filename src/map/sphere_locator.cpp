@@ -209,24 +209,30 @@ SphereHit SphereLocator::locate(const Vector3d& direction) const {
   if (hit.triangle < 0)
     return hit;
 
+  hit.weights = weightsIn(hit.triangle, unit, hit_sides);
+  return hit;
+}
+
+Vector3d SphereLocator::weightsIn(Index triangle, const Vector3d& unit,
+                                  const std::array<int, 3>& sides) const {
   // Differences from the direction keep the digits in a tiny triangle. The weights are those of
   // where the ray meets the plane of the corners.
   std::array<Vector3d, 3> corners;
   for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = sphere_->col((*triangles_)(static_cast<Eigen::Index>(k), hit.triangle)) - unit;
+    corners[k] = sphere_->col((*triangles_)(static_cast<Eigen::Index>(k), triangle)) - unit;
+  Vector3d weights;
   for (std::size_t k = 0; k < 3; ++k) {
     const double volume = unit.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3]));
-    hit.weights[static_cast<Eigen::Index>(k)] = hit_sides[k] > 0 ? std::max(0.0, volume) : 0.0;
+    weights[static_cast<Eigen::Index>(k)] = sides[k] > 0 ? std::max(0.0, volume) : 0.0;
   }
-  double sum = hit.weights.sum();
+  double sum = weights.sum();
   if (!(sum > 0.0)) {
-    // All is rounding: the middle of what is not excluded.
+    // All is rounding: the middle of the sides and corners that are not excluded.
     for (std::size_t k = 0; k < 3; ++k)
-      hit.weights[static_cast<Eigen::Index>(k)] = hit_sides[k] > 0 ? 1.0 : 0.0;
-    sum = hit.weights.sum();
+      weights[static_cast<Eigen::Index>(k)] = sides[k] > 0 ? 1.0 : 0.0;
+    sum = weights.sum();
   }
-  hit.weights /= sum;
-  return hit;
+  return weights / sum;
 }
 
 }  // namespace spherical_param::internal

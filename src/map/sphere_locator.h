@@ -2,6 +2,7 @@
 
 #include "spherical_param/types.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -30,6 +31,11 @@ public:
   SphereHit locate(const Eigen::Vector3d& direction) const;
 
 private:
+  /// Weights of the corners of a triangle at a direction.
+  /// \param sides signs of the determinants of the direction and the side opposite to each corner
+  Eigen::Vector3d weightsIn(Index triangle, const Eigen::Vector3d& unit,
+                            const std::array<int, 3>& sides) const;
+
   struct Box {
     double lower[3];
     double upper[3];

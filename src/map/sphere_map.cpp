@@ -213,7 +213,7 @@ public:
     for (const float mass : hierarchy.meshes.front().masses)
       mass_ += static_cast<double>(mass);
     const double area = options.area_weight;
-    const double angle = std::max(1.0 - area, kLeastAngleWeight);
+    const double angle = std::max(1.0 - area, kMinAngleWeight);
     const double area_of_mass = kAreaOfSphere / mass_;
     final_ = {angle, (1.0 - kRatioShare) * area, kRatioShare * area, area_of_mass};
     const double mild_area = std::min(area, kMildAreaWeight);
@@ -237,7 +237,7 @@ public:
 
 private:
   /// Areas alone do not say where in its ring a vertex is best.
-  static constexpr double kLeastAngleWeight = 0.02;
+  static constexpr double kMinAngleWeight = 0.02;
   static constexpr double kAreaOfSphere = 12.566370614359172;  // 4 pi
   /// Share of the ratio in the weight of areas, the logarithm has the rest. The more of that, the
   /// more triangles have just their areas, but the rougher is the map: others next to them are
@@ -279,14 +279,14 @@ private:
       internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
       const double gain = internal::sweepMap(sphere_, rows, final_, options_.threads);
       value -= gain;
-      goes_on = gain > kLeastGain * value;
+      goes_on = gain > kMinGain * value;
     }
     level.energy = value / mass_;
     return level;
   }
 
   /// A sweep that gains less, relative to the energy, is the last of its level.
-  static constexpr double kLeastGain = 1e-4;
+  static constexpr double kMinGain = 1e-4;
 
   const MapHierarchy& hierarchy_;
   const SphereMapOptions& options_;
@@ -304,11 +304,10 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
   checkMesh(points, triangles, start, options.threads);
   const internal::Report report = internal::reportOf(options, "map");
   internal::tell(report, 0.0);
-  const MapHierarchy hierarchy = internal::buildMapHierarchy(points, triangles, options.threads,
-                                                             report);
+  const MapHierarchy hierarchy =
+      internal::buildMapHierarchy(points, triangles, options.threads, report);
   SphereMap map;
-  const Positions refined =
-      Refinement(hierarchy, options).run(map.levels, report);
+  const Positions refined = Refinement(hierarchy, options).run(map.levels, report);
   Positions sphere(3, points.cols());
   for (std::size_t i = 0; i < hierarchy.order.size(); ++i)
     sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));

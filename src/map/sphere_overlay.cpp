@@ -119,9 +119,9 @@ struct Crossings {
   std::size_t end(Index edge) const { return offsets[static_cast<std::size_t>(edge) + 1]; }
 };
 
-/// \param triangle_of of the points that are no vertices of `through`
+/// \param places of the vertices of `mesh` in `through`
 Crossings crossingsOf(const ArcMesh& mesh, const ArcMesh& through,
-                      const std::vector<Index>& triangle_of, int threads) {
+                      const std::vector<SphereLocation>& places, int threads) {
   const auto count = static_cast<std::size_t>(mesh.edgeCount());
   std::vector<std::vector<Index>> of_block((count + kBlockSize - 1) / kBlockSize);
   std::vector<std::size_t> sizes(count, 0);
@@ -133,7 +133,7 @@ Crossings crossingsOf(const ArcMesh& mesh, const ArcMesh& through,
       const std::array<Index, 2> ends = mesh.ends(static_cast<Index>(e));
       const std::size_t before = of_block[block].size();
       const ArcMesh::Walk walk = through.walk(
-          ends[0], ends[1], triangle_of[static_cast<std::size_t>(ends[0])], of_block[block]);
+          ends[0], ends[1], places[static_cast<std::size_t>(ends[0])].triangle, of_block[block]);
       sizes[e] = of_block[block].size() - before;
       crossings.along[e] = walk.along;
       if (walk.lost)
@@ -210,66 +210,58 @@ std::array<Index, 2> ArcMesh::ends(Index edge) const {
   return {vertex(corner / 3, (corner % 3 + 1) % 3), vertex(corner / 3, (corner % 3 + 2) % 3)};
 }
 
-ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index>& crossed) const {
-  Walk result;
-  // The corner opposite to the side by which the arc leaves its first triangle.
+bool ArcMesh::leavesBetween(Index from, Index to, Index right, Index left) const {
+  return orientationOf(points_, from, right, to) > 0 && orientationOf(points_, from, left, to) < 0;
+}
+
+ArcMesh::Exit ArcMesh::leaveVertex(Index from, Index to) const {
+  const Index first = corner_at_[static_cast<std::size_t>(from)];
+  Index around = first;
+  do {
+    const Index t = around / 3;
+    const Index k = around % 3;
+    const Index right = vertex(t, (k + 1) % 3);
+    const Index left = vertex(t, (k + 2) % 3);
+    if (right == to || left == to) {
+      const Index opposite = 3 * t + (k + (right == to ? 2 : 1)) % 3;
+      return {{false, edge_of_[static_cast<std::size_t>(opposite)], -1}, -1};
+    }
+    if (leavesBetween(from, to, right, left)) {
+      if (orientationOf(points_, right, left, to) > 0)
+        return {{false, -1, t}, -1};
+      return {{}, around};
+    }
+    around = nextAround(around);
+  } while (around != first);
+  return {{true, -1, -1}, -1};
+}
+
+ArcMesh::Exit ArcMesh::leaveTriangle(Index triangle, Index from, Index to) const {
+  bool is_inside = true;
   Index corner = -1;
-  const auto leaves_by = [&](Index right, Index left) {
-    return orientationOf(points_, from, right, to) > 0 &&
-           orientationOf(points_, from, left, to) < 0;
-  };
-  if (isVertex(from)) {
-    const Index first = corner_at_[static_cast<std::size_t>(from)];
-    Index around = first;
-    do {
-      const Index t = around / 3;
-      const Index k = around % 3;
-      const Index right = vertex(t, (k + 1) % 3);
-      const Index left = vertex(t, (k + 2) % 3);
-      if (right == to || left == to) {
-        const Index opposite = 3 * t + (k + (right == to ? 2 : 1)) % 3;
-        result.along = edge_of_[static_cast<std::size_t>(opposite)];
-        return result;
-      }
-      if (leaves_by(right, left)) {
-        corner = around;
-        break;
-      }
-      around = nextAround(around);
-    } while (around != first);
-    if (corner < 0) {
-      result.lost = true;
-      return result;
-    }
-    if (orientationOf(points_, vertex(corner / 3, (corner % 3 + 1) % 3),
-                      vertex(corner / 3, (corner % 3 + 2) % 3), to) > 0) {
-      result.triangle = corner / 3;
-      return result;
-    }
-  } else {
-    bool inside = true;
-    for (Index k = 0; k < 3; ++k) {
-      if (vertex(start, k) == to)
-        return result;
-      const Index right = vertex(start, (k + 1) % 3);
-      const Index left = vertex(start, (k + 2) % 3);
-      if (right == to || left == to)
-        continue;
-      if (orientationOf(points_, right, left, to) < 0) {
-        inside = false;
-        if (leaves_by(right, left))
-          corner = 3 * start + k;
-      }
-    }
-    if (inside) {
-      result.triangle = start;
-      return result;
-    }
-    if (corner < 0) {
-      result.lost = true;
-      return result;
+  for (Index k = 0; k < 3; ++k) {
+    if (vertex(triangle, k) == to)
+      return {{}, -1};
+    const Index right = vertex(triangle, (k + 1) % 3);
+    const Index left = vertex(triangle, (k + 2) % 3);
+    if (right == to || left == to)
+      continue;
+    if (orientationOf(points_, right, left, to) < 0) {
+      is_inside = false;
+      if (leavesBetween(from, to, right, left))
+        corner = 3 * triangle + k;
     }
   }
+  if (is_inside)
+    return {{false, -1, triangle}, -1};
+  return {{corner < 0, -1, -1}, corner};
+}
+
+ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index>& crossed) const {
+  const Exit exit = isVertex(from) ? leaveVertex(from, to) : leaveTriangle(start, from, to);
+  Index corner = exit.corner;
+  if (corner < 0)
+    return exit.walk;
   for (std::size_t steps = 0; steps <= across_.size(); ++steps) {
     crossed.push_back(edge_of_[static_cast<std::size_t>(corner)]);
     const Index entry = across_[static_cast<std::size_t>(corner)];
@@ -280,23 +272,13 @@ ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index
     const Index right = vertex(t, (k + 2) % 3);
     const Index apex = vertex(t, k);
     if (apex == to)
-      return result;
-    if (orientationOf(points_, from, to, apex) > 0) {
-      corner = 3 * t + (k + 1) % 3;
-      if (orientationOf(points_, right, apex, to) > 0) {
-        result.triangle = t;
-        return result;
-      }
-    } else {
-      corner = 3 * t + (k + 2) % 3;
-      if (orientationOf(points_, apex, left, to) > 0) {
-        result.triangle = t;
-        return result;
-      }
-    }
+      return {};
+    const bool is_right = orientationOf(points_, from, to, apex) > 0;
+    corner = 3 * t + (k + (is_right ? 1 : 2)) % 3;
+    if (orientationOf(points_, is_right ? right : apex, is_right ? apex : left, to) > 0)
+      return {false, -1, t};
   }
-  result.lost = true;
-  return result;
+  return {true, -1, -1};
 }
 
 std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& triangles,
@@ -327,215 +309,276 @@ std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& 
   return locations;
 }
 
+namespace {
+
+/// The vertices of two meshes in one numbering: those of the first, then the others of the second.
+struct CommonVertices {
+  Positions points;
+  Triangles second_triangles;  ///< of the second mesh, renumbered
+
+  CommonVertices(const Positions& first, const Positions& second, const Triangles& triangles,
+                 const std::vector<Index>& partner)
+      : second_triangles(3, triangles.cols()) {
+    std::vector<Index> number(partner);
+    auto count = static_cast<Index>(first.cols());
+    for (Index& i : number)
+      if (i < 0)
+        i = count++;
+    points.resize(3, count);
+    points.leftCols(first.cols()) = first;
+    for (std::size_t i = 0; i < number.size(); ++i)
+      points.col(number[i]) = second.col(static_cast<Eigen::Index>(i));
+    for (Eigen::Index i = 0; i < triangles.size(); ++i)
+      second_triangles.data()[i] = number[static_cast<std::size_t>(triangles.data()[i])];
+  }
+};
+
+/// Builds the overlay as a map of half-edges: its nodes are the vertices of both meshes and the
+/// crossings of their edges, each half-edge leaves a node and has a twin, and the half-edges of a
+/// node are numbered counter-clockwise.
+class OverlayBuilder {
+public:
+  OverlayBuilder(const CommonVertices& vertices, const Triangles& first_triangles, int threads)
+      : points_(vertices.points), triangles_{&first_triangles, &vertices.second_triangles},
+        threads_(threads), vertex_count_(static_cast<std::size_t>(points_.cols())),
+        mesh_a_(points_, first_triangles), mesh_b_(points_, vertices.second_triangles) {}
+
+  SphereOverlay build() {
+    locateVertices();
+    findCrossings();
+    matchCrossings();
+    placeCrossings();
+    numberHalfEdges();
+    joinTwins();
+    traceFaces();
+    return std::move(overlay_);
+  }
+
+private:
+  void locateVertices() {
+    const std::vector<Index> order = mortonOrder(points_);
+    const std::array<std::vector<SphereLocation>*, 2> places{&overlay_.first, &overlay_.second};
+    std::array<bool, 2> is_lost{};
+    forEachTask(2, std::min(threads_, 2), [&](std::size_t, std::size_t m) {
+      const std::vector<SphereLocation> found = locateAll(points_, *triangles_[m], order);
+      is_lost[m] = found.size() != order.size();
+      places[m]->resize(vertex_count_);
+      for (std::size_t q = 0; q < found.size(); ++q)
+        (*places[m])[static_cast<std::size_t>(order[q])] = found[q];
+    });
+    if (is_lost[0] || is_lost[1])
+      failLost();
+  }
+
+  void findCrossings() {
+    of_b_ = crossingsOf(mesh_b_, mesh_a_, overlay_.first, threads_);
+    of_a_ = crossingsOf(mesh_a_, mesh_b_, overlay_.second, threads_);
+    crossing_count_ = of_b_.edges.size();
+    if (of_a_.edges.size() != crossing_count_)
+      failLost();
+    node_count_ = vertex_count_ + crossing_count_;
+    overlay_.first.resize(node_count_);
+    overlay_.second.resize(node_count_);
+  }
+
+  /// Finds the node of each crossing on the edges of the first mesh: nodes are numbered along the
+  /// edges of the second.
+  void matchCrossings() {
+    std::vector<std::pair<Index, Index>> by_edge(crossing_count_);  // edge of the second, node
+    std::vector<std::size_t> end(of_a_.offsets.begin(), of_a_.offsets.end() - 1);
+    for (Index e = 0; e < mesh_b_.edgeCount(); ++e)
+      for (std::size_t c = of_b_.begin(e); c < of_b_.end(e); ++c) {
+        const auto a = static_cast<std::size_t>(of_b_.edges[c]);
+        if (end[a] >= of_a_.offsets[a + 1])
+          failLost();
+        by_edge[end[a]++] = {e, static_cast<Index>(vertex_count_ + c)};
+      }
+    nodes_of_a_.resize(crossing_count_);
+    for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
+      const auto first = by_edge.begin() + static_cast<std::ptrdiff_t>(of_a_.begin(e));
+      const auto last = by_edge.begin() + static_cast<std::ptrdiff_t>(of_a_.end(e));
+      for (std::size_t c = of_a_.begin(e); c < of_a_.end(e); ++c) {
+        const auto found = std::lower_bound(first, last, std::pair(of_a_.edges[c], Index{0}));
+        if (found == last || found->first != of_a_.edges[c])
+          failLost();
+        nodes_of_a_[c] = found->second;
+      }
+    }
+  }
+
+  void placeCrossings() {
+    std::vector<double> share_of_a(crossing_count_);
+    std::vector<double> share_of_b(crossing_count_);
+    from_left_.resize(crossing_count_);
+    for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
+      const std::array<Index, 2> ends = mesh_a_.ends(e);
+      double least = 0.0;
+      for (std::size_t c = of_a_.begin(e); c < of_a_.end(e); ++c) {
+        const auto node = static_cast<std::size_t>(nodes_of_a_[c]);
+        const std::size_t x = node - vertex_count_;
+        const std::array<Index, 2> other = mesh_b_.ends(of_a_.edges[c]);
+        const std::array<double, 2> shares = crossingOf(points_, ends, other);
+        share_of_a[x] = shares[0];
+        share_of_b[x] = shares[1];
+        ascend(share_of_a[x], least);
+        from_left_[x] = orientationOf(points_, ends[0], ends[1], other[0]) > 0 ? 1 : 0;
+        overlay_.first[node] = placeOn(mesh_a_, e, share_of_a[x]);
+      }
+    }
+    overlay_.directions.resize(3, static_cast<Eigen::Index>(node_count_));
+    overlay_.directions.leftCols(points_.cols()) = points_;
+    for (Index e = 0; e < mesh_b_.edgeCount(); ++e) {
+      double least = 0.0;
+      for (std::size_t x = of_b_.begin(e); x < of_b_.end(e); ++x) {
+        ascend(share_of_b[x], least);
+        overlay_.second[vertex_count_ + x] = placeOn(mesh_b_, e, share_of_b[x]);
+        const std::array<Index, 2> ends = mesh_a_.ends(of_b_.edges[x]);
+        overlay_.directions.col(static_cast<Eigen::Index>(vertex_count_ + x)) =
+            ((1.0 - share_of_a[x]) * points_.col(ends[0]) + share_of_a[x] * points_.col(ends[1]))
+                .normalized();
+      }
+    }
+  }
+
+  /// A half-edge that leaves a vertex.
+  struct Spoke {
+    Index edge;
+    bool is_second, is_begin;
+    Index towards;
+  };
+
+  /// The half-edges of a vertex, counter-clockwise.
+  void findSpokes(Index v, std::vector<Spoke>& spokes) const {
+    spokes.clear();
+    if (mesh_a_.isVertex(v))
+      mesh_a_.forEachEdgeAt(v, [&](Index edge, bool is_begin, Index towards) {
+        spokes.push_back({edge, false, is_begin, towards});
+      });
+    if (!mesh_b_.isVertex(v))
+      return;
+    mesh_b_.forEachEdgeAt(v, [&](Index edge, bool is_begin, Index towards) {
+      if (of_b_.along[static_cast<std::size_t>(edge)] < 0)
+        spokes.push_back({edge, true, is_begin, towards});
+    });
+    if (!mesh_a_.isVertex(v))
+      return;
+    const Index zero = spokes[0].towards;
+    const auto half = [&](const Spoke& spoke) {
+      return spoke.towards != zero && orientationOf(points_, v, zero, spoke.towards) < 0;
+    };
+    std::sort(spokes.begin() + 1, spokes.end(), [&](const Spoke& one, const Spoke& other) {
+      const bool half_of_one = half(one);
+      const bool half_of_other = half(other);
+      if (half_of_one != half_of_other)
+        return half_of_other;
+      return one.towards != other.towards &&
+             orientationOf(points_, v, one.towards, other.towards) > 0;
+    });
+  }
+
+  void numberHalfEdges() {
+    offsets_.assign(node_count_ + 1, 0);
+    ends_of_a_.assign(2 * static_cast<std::size_t>(mesh_a_.edgeCount()), 0);
+    ends_of_b_.assign(2 * static_cast<std::size_t>(mesh_b_.edgeCount()), 0);
+    std::vector<Spoke> spokes;
+    for (std::size_t v = 0; v < vertex_count_; ++v) {
+      findSpokes(static_cast<Index>(v), spokes);
+      for (std::size_t i = 0; i < spokes.size(); ++i) {
+        const Spoke& spoke = spokes[i];
+        std::vector<std::size_t>& ends = spoke.is_second ? ends_of_b_ : ends_of_a_;
+        ends[2 * static_cast<std::size_t>(spoke.edge) + (spoke.is_begin ? 0 : 1)] = offsets_[v] + i;
+      }
+      offsets_[v + 1] = offsets_[v] + spokes.size();
+    }
+    for (std::size_t v = vertex_count_; v < node_count_; ++v)
+      offsets_[v + 1] = offsets_[v] + 4;
+    origin_.resize(offsets_.back());
+    for (std::size_t v = 0; v < node_count_; ++v)
+      std::fill(origin_.begin() + static_cast<std::ptrdiff_t>(offsets_[v]),
+                origin_.begin() + static_cast<std::ptrdiff_t>(offsets_[v + 1]),
+                static_cast<Index>(v));
+  }
+
+  /// Around a crossing: on along the first's edge, left of it, back, right of it.
+  void joinTwins() {
+    twin_.resize(offsets_.back());
+    const auto join = [this](std::size_t one, std::size_t other) {
+      twin_[one] = other;
+      twin_[other] = one;
+    };
+    for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
+      std::size_t out = ends_of_a_[2 * static_cast<std::size_t>(e)];
+      for (std::size_t c = of_a_.begin(e); c < of_a_.end(e); ++c) {
+        const std::size_t begin = offsets_[static_cast<std::size_t>(nodes_of_a_[c])];
+        join(out, begin + 2);
+        out = begin;
+      }
+      join(out, ends_of_a_[2 * static_cast<std::size_t>(e) + 1]);
+    }
+    for (Index e = 0; e < mesh_b_.edgeCount(); ++e) {
+      if (of_b_.along[static_cast<std::size_t>(e)] >= 0)
+        continue;
+      std::size_t out = ends_of_b_[2 * static_cast<std::size_t>(e)];
+      for (std::size_t x = of_b_.begin(e); x < of_b_.end(e); ++x) {
+        const std::size_t begin = offsets_[vertex_count_ + x];
+        join(out, begin + (from_left_[x] != 0 ? 1 : 3));
+        out = begin + (from_left_[x] != 0 ? 3 : 1);
+      }
+      join(out, ends_of_b_[2 * static_cast<std::size_t>(e) + 1]);
+    }
+  }
+
+  /// The face to the left of a half-edge continues, where that ends, by the next one clockwise.
+  void traceFaces() {
+    overlay_.offsets.push_back(0);
+    std::vector<char> is_done(twin_.size(), 0);
+    for (std::size_t start = 0; start < twin_.size(); ++start) {
+      if (is_done[start] != 0)
+        continue;
+      std::size_t half_edge = start;
+      do {
+        is_done[half_edge] = 1;
+        overlay_.corners.push_back(origin_[half_edge]);
+        const std::size_t back = twin_[half_edge];
+        const auto v = static_cast<std::size_t>(origin_[back]);
+        half_edge = back == offsets_[v] ? offsets_[v + 1] - 1 : back - 1;
+      } while (half_edge != start);
+      overlay_.offsets.push_back(overlay_.corners.size());
+      if (overlay_.corners.size() - overlay_.offsets[overlay_.offsets.size() - 2] < 3)
+        failLost();
+    }
+    // Euler: else the edges would cross more often than was found, or rotations would be wrong.
+    if (node_count_ + overlay_.offsets.size() - 1 != twin_.size() / 2 + 2)
+      failLost();
+  }
+
+  const Positions& points_;
+  std::array<const Triangles*, 2> triangles_;
+  int threads_;
+  std::size_t vertex_count_;
+  std::size_t crossing_count_ = 0;
+  std::size_t node_count_ = 0;
+  ArcMesh mesh_a_;
+  ArcMesh mesh_b_;
+  Crossings of_a_;
+  Crossings of_b_;
+  std::vector<Index> nodes_of_a_;     ///< crossings in the order along the edges of the first mesh
+  std::vector<char> from_left_;       ///< whether the second's edge comes from left of the first's
+  std::vector<std::size_t> offsets_;  ///< nodes + 1: the half-edges of each node
+  std::vector<std::size_t> ends_of_a_;  ///< half-edges at both ends of each edge of the first mesh
+  std::vector<std::size_t> ends_of_b_;  ///< the same of the second mesh
+  std::vector<std::size_t> twin_;
+  std::vector<Index> origin_;
+  SphereOverlay overlay_;
+};
+
+}  // namespace
+
 SphereOverlay overlaySpheres(const Positions& first, const Triangles& first_triangles,
                              const Positions& second, const Triangles& second_triangles,
                              const std::vector<Index>& partner, int threads) {
-  // One numbering for the vertices of both.
-  std::vector<Index> number(partner);
-  auto vertex_count = static_cast<Index>(first.cols());
-  for (Index& i : number)
-    if (i < 0)
-      i = vertex_count++;
-  Positions points(3, vertex_count);
-  points.leftCols(first.cols()) = first;
-  for (std::size_t i = 0; i < number.size(); ++i)
-    points.col(number[i]) = second.col(static_cast<Eigen::Index>(i));
-  Triangles renumbered(3, second_triangles.cols());
-  for (Eigen::Index i = 0; i < renumbered.size(); ++i)
-    renumbered.data()[i] = number[static_cast<std::size_t>(second_triangles.data()[i])];
-
-  std::vector<Index> order(static_cast<std::size_t>(vertex_count));
-  {
-    const std::vector<Index> morton = mortonOrder(points);
-    std::copy(morton.begin(), morton.end(), order.begin());
-  }
-  const ArcMesh mesh_a(points, first_triangles);
-  const ArcMesh mesh_b(points, renumbered);
-  std::vector<SphereLocation> in_a(order.size());
-  std::vector<SphereLocation> in_b(order.size());
-  std::vector<Index> triangle_a(order.size(), -1);
-  std::vector<Index> triangle_b(order.size(), -1);
-  {
-    const std::array<const Triangles*, 2> triangles{&first_triangles, &renumbered};
-    bool lost = false;
-    forEachTask(2, std::min(threads, 2), [&](std::size_t, std::size_t m) {
-      const std::vector<SphereLocation> found = locateAll(points, *triangles[m], order);
-      for (std::size_t q = 0; q < found.size(); ++q) {
-        const auto i = static_cast<std::size_t>(order[q]);
-        (m == 0 ? in_a : in_b)[i] = found[q];
-        (m == 0 ? triangle_a : triangle_b)[i] = found[q].triangle;
-      }
-    });
-    for (std::size_t i = 0; i < order.size(); ++i)
-      lost = lost || triangle_a[i] < 0 || triangle_b[i] < 0;
-    if (lost)
-      failLost();
-  }
-
-  const Crossings of_b = crossingsOf(mesh_b, mesh_a, triangle_a, threads);
-  const Crossings of_a = crossingsOf(mesh_a, mesh_b, triangle_b, threads);
-  const std::size_t crossing_count = of_b.edges.size();
-  if (of_a.edges.size() != crossing_count)
-    failLost();
-
-  SphereOverlay overlay;
-  const std::size_t w = order.size() + crossing_count;
-  overlay.first = std::move(in_a);
-  overlay.second = std::move(in_b);
-  overlay.first.resize(w);
-  overlay.second.resize(w);
-
-  // The crossings of each edge of the first mesh, by the edge of the second, to be found there.
-  std::vector<std::pair<Index, Index>> by_edge(crossing_count);  // edge of the second, node
-  {
-    std::vector<std::size_t> end(of_a.offsets.begin(), of_a.offsets.end() - 1);
-    for (Index e = 0; e < mesh_b.edgeCount(); ++e)
-      for (std::size_t c = of_b.begin(e); c < of_b.end(e); ++c) {
-        const auto a = static_cast<std::size_t>(of_b.edges[c]);
-        if (end[a] >= of_a.offsets[a + 1])
-          failLost();
-        by_edge[end[a]++] = {e, static_cast<Index>(order.size() + c)};
-      }
-  }
-  std::vector<Index> nodes_of_a(crossing_count);  // in the order along the edges of the first
-  std::vector<double> share_of_a(crossing_count);
-  std::vector<double> share_of_b(crossing_count);
-  std::vector<char> from_left(crossing_count);  // the second's edge comes from left of the first's
-  for (Index e = 0; e < mesh_a.edgeCount(); ++e) {
-    const auto begin = by_edge.begin() + static_cast<std::ptrdiff_t>(of_a.begin(e));
-    const auto end = by_edge.begin() + static_cast<std::ptrdiff_t>(of_a.end(e));
-    const std::array<Index, 2> ends = mesh_a.ends(e);
-    double least = 0.0;
-    for (std::size_t c = of_a.begin(e); c < of_a.end(e); ++c) {
-      const auto found = std::lower_bound(begin, end, std::pair(of_a.edges[c], Index{0}));
-      if (found == end || found->first != of_a.edges[c])
-        failLost();
-      nodes_of_a[c] = found->second;
-      const auto x = static_cast<std::size_t>(found->second) - order.size();
-      const std::array<Index, 2> other = mesh_b.ends(found->first);
-      const std::array<double, 2> shares = crossingOf(points, ends, other);
-      share_of_a[x] = shares[0];
-      share_of_b[x] = shares[1];
-      ascend(share_of_a[x], least);
-      from_left[x] = orientationOf(points, ends[0], ends[1], other[0]) > 0 ? 1 : 0;
-      overlay.first[static_cast<std::size_t>(found->second)] = placeOn(mesh_a, e, share_of_a[x]);
-    }
-  }
-  overlay.directions.resize(3, static_cast<Eigen::Index>(w));
-  overlay.directions.leftCols(vertex_count) = points;
-  for (Index e = 0; e < mesh_b.edgeCount(); ++e) {
-    double least = 0.0;
-    for (std::size_t x = of_b.begin(e); x < of_b.end(e); ++x) {
-      ascend(share_of_b[x], least);
-      overlay.second[order.size() + x] = placeOn(mesh_b, e, share_of_b[x]);
-      const std::array<Index, 2> ends = mesh_a.ends(of_b.edges[x]);
-      overlay.directions.col(static_cast<Eigen::Index>(order.size() + x)) =
-          ((1.0 - share_of_a[x]) * points.col(ends[0]) + share_of_a[x] * points.col(ends[1]))
-              .normalized();
-    }
-  }
-
-  // The way out of each node along each of its edges, counter-clockwise.
-  std::vector<std::size_t> ways(w + 1, 0);
-  std::vector<std::size_t> way_a(2 * static_cast<std::size_t>(mesh_a.edgeCount()), 0);
-  std::vector<std::size_t> way_b(2 * static_cast<std::size_t>(mesh_b.edgeCount()), 0);
-  {
-    struct Way {
-      Index edge;
-      bool is_second, is_begin;
-      Index towards;
-    };
-    std::vector<Way> around;
-    for (Index v = 0; v < vertex_count; ++v) {
-      around.clear();
-      if (mesh_a.isVertex(v))
-        mesh_a.forEachEdgeAt(v, [&](Index edge, bool is_begin, Index towards) {
-          around.push_back({edge, false, is_begin, towards});
-        });
-      if (mesh_b.isVertex(v))
-        mesh_b.forEachEdgeAt(v, [&](Index edge, bool is_begin, Index towards) {
-          if (of_b.along[static_cast<std::size_t>(edge)] < 0)
-            around.push_back({edge, true, is_begin, towards});
-        });
-      if (mesh_a.isVertex(v) && mesh_b.isVertex(v)) {
-        const Index zero = around[0].towards;
-        const auto half = [&](const Way& way) {
-          return way.towards != zero && orientationOf(points, v, zero, way.towards) < 0;
-        };
-        std::sort(around.begin() + 1, around.end(), [&](const Way& one, const Way& other) {
-          const bool half_of_one = half(one);
-          const bool half_of_other = half(other);
-          if (half_of_one != half_of_other)
-            return half_of_other;
-          return one.towards != other.towards &&
-                 orientationOf(points, v, one.towards, other.towards) > 0;
-        });
-      }
-      const std::size_t begin = ways[static_cast<std::size_t>(v)];
-      for (std::size_t i = 0; i < around.size(); ++i)
-        (around[i].is_second
-             ? way_b
-             : way_a)[2 * static_cast<std::size_t>(around[i].edge) + (around[i].is_begin ? 0 : 1)] =
-            begin + i;
-      ways[static_cast<std::size_t>(v) + 1] = begin + around.size();
-    }
-  }
-  for (std::size_t v = order.size(); v < w; ++v)
-    ways[v + 1] = ways[v] + 4;
-
-  std::vector<std::size_t> twin(ways[w]);
-  std::vector<Index> origin(ways[w]);
-  for (std::size_t v = 0; v < w; ++v)
-    std::fill(origin.begin() + static_cast<std::ptrdiff_t>(ways[v]),
-              origin.begin() + static_cast<std::ptrdiff_t>(ways[v + 1]), static_cast<Index>(v));
-  const auto join = [&twin](std::size_t one, std::size_t other) {
-    twin[one] = other;
-    twin[other] = one;
-  };
-  // Around a crossing: on along the first's edge, left of it, back, right of it.
-  for (Index e = 0; e < mesh_a.edgeCount(); ++e) {
-    std::size_t out = way_a[2 * static_cast<std::size_t>(e)];
-    for (std::size_t c = of_a.begin(e); c < of_a.end(e); ++c) {
-      const std::size_t begin = ways[static_cast<std::size_t>(nodes_of_a[c])];
-      join(out, begin + 2);
-      out = begin;
-    }
-    join(out, way_a[2 * static_cast<std::size_t>(e) + 1]);
-  }
-  for (Index e = 0; e < mesh_b.edgeCount(); ++e) {
-    if (of_b.along[static_cast<std::size_t>(e)] >= 0)
-      continue;
-    std::size_t out = way_b[2 * static_cast<std::size_t>(e)];
-    for (std::size_t x = of_b.begin(e); x < of_b.end(e); ++x) {
-      const std::size_t begin = ways[order.size() + x];
-      join(out, begin + (from_left[x] != 0 ? 1 : 3));
-      out = begin + (from_left[x] != 0 ? 3 : 1);
-    }
-    join(out, way_b[2 * static_cast<std::size_t>(e) + 1]);
-  }
-
-  // The face to the left of a way goes on, where that ends, by the next way clockwise.
-  overlay.offsets.push_back(0);
-  std::vector<char> is_done(twin.size(), 0);
-  for (std::size_t start = 0; start < twin.size(); ++start) {
-    if (is_done[start] != 0)
-      continue;
-    std::size_t way = start;
-    do {
-      is_done[way] = 1;
-      overlay.corners.push_back(origin[way]);
-      const std::size_t back = twin[way];
-      const auto v = static_cast<std::size_t>(origin[back]);
-      way = back == ways[v] ? ways[v + 1] - 1 : back - 1;
-    } while (way != start);
-    overlay.offsets.push_back(overlay.corners.size());
-    if (overlay.corners.size() - overlay.offsets[overlay.offsets.size() - 2] < 3)
-      failLost();
-  }
-  // Euler: else the edges would cross more often than was found, or rotations would be wrong.
-  if (w + overlay.offsets.size() - 1 != twin.size() / 2 + 2)
-    failLost();
-  return overlay;
+  const CommonVertices vertices(first, second, second_triangles, partner);
+  return OverlayBuilder(vertices, first_triangles, threads).build();
 }
 
 }  // namespace spherical_param::internal

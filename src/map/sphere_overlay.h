@@ -37,7 +37,7 @@ public:
 
   /// What an arc from one direction to another meets.
   struct Walk {
-    bool lost = false;    ///< it has no end: the triangles are not as they should be
+    bool lost = false;    ///< it has no end: the triangles do not cover the sphere once
     Index along = -1;     ///< the edge that it is itself
     Index triangle = -1;  ///< that holds its end, unless that is a vertex
   };
@@ -64,6 +64,15 @@ public:
   }
 
 private:
+  /// How an arc leaves the triangles at its beginning.
+  struct Exit {
+    Walk walk;     ///< if the arc ends there
+    Index corner;  ///< else: opposite to the side that the arc crosses; -1: none
+  };
+  Exit leaveVertex(Index from, Index to) const;
+  Exit leaveTriangle(Index triangle, Index from, Index to) const;
+  bool leavesBetween(Index from, Index to, Index right, Index left) const;
+
   /// The corner at the same vertex in the next triangle around it, counter-clockwise.
   Index nextAround(Index corner) const {
     const Index begin = corner - corner % 3;
@@ -83,7 +92,7 @@ private:
 
 /// The triangle that holds each of some points; each point is a vertex or in the mesh's sphere.
 /// \param queries columns of `points`, in an order in which neighbours are near each other.
-/// \return empty if the triangles are not as they should be; of vertices, some triangle at them.
+/// \return empty if the triangles do not cover the sphere once; of vertices, some triangle at them.
 std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& triangles,
                                       const std::vector<Index>& queries);
 

@@ -21,10 +21,10 @@ namespace {
 /// A step x -> (x + s(x)) / |x + s(x)| of a tangential field is locally one to one where |s|^2 +
 /// |Ds|^2 < 1, as I + (s, Ds) then has an inverse; and a map of the sphere that is so everywhere is
 /// one to one. The field is examined at some places: the bound leaves room for those between.
-constexpr double kMostSlope = 0.4;
+constexpr double kMaxSlope = 0.4;
 /// Landmarks collide if they come nearer to each other than this share of the least of their
 /// distances at the beginning and the end.
-constexpr double kLeastApproach = 0.25;
+constexpr double kMinApproach = 0.25;
 /// Places on their ways where their distances are examined.
 constexpr std::size_t kPathSamples = 48;
 /// Detours that are tried [rad at the middle, as a share of the way and 0.1].
@@ -80,7 +80,7 @@ struct Path {
 /// How much too near to each other two ways come: 0 for not at all, 1 for a crash.
 double conflictOf(const Path& one, const Path& other) {
   const double apart =
-      kLeastApproach * std::min((one.from - other.from).norm(), (one.to - other.to).norm());
+      kMinApproach * std::min((one.from - other.from).norm(), (one.to - other.to).norm());
   if ((one.from - other.from).norm() - one.reach() - other.reach() > apart)
     return 0.0;
   double nearest = std::numeric_limits<double>::infinity();
@@ -498,7 +498,7 @@ SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
         break;
       const Field field(places, values, support);
       const auto [slope, where] = steepestOf(field, places, spread, threads);
-      if (farthest > 0.25 || !field.isFinite() || !(slope <= kMostSlope * kMostSlope)) {
+      if (farthest > 0.25 || !field.isFinite() || !(slope <= kMaxSlope * kMaxSlope)) {
         step = 0.5 * (goal - t);
         if (is_last || step < kMinStep) {
           stuck = static_cast<std::ptrdiff_t>(active[std::min(where, active.size() - 1)]);

@@ -33,7 +33,7 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 /// The landmarks move along arcs, with detours where they would come too near each other, and carry
 /// the sphere with them: in each of many steps every point moves along a smooth tangential field
 /// that takes the landmarks on their way. It is the field of least norm of Wendland's kernel (1995)
-/// of the chord. Each step is short enough to be one to one; see kMostSlope. Between its vertices
+/// of the chord. Each step is short enough to be one to one; see kMaxSlope. Between its vertices
 /// the mesh only follows the field about: where one of its triangles is flipped after a step even
 /// so, vertices beside it are moved between their neighbours.
 ///
@@ -41,7 +41,6 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 /// \param landmarks different vertices, different targets.
 /// The same, bit by bit, for any number of threads.
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
-                         const std::vector<Landmark>& landmarks, int threads,
-                         const Report& report);
+                         const std::vector<Landmark>& landmarks, int threads, const Report& report);
 
 }  // namespace spherical_param::internal

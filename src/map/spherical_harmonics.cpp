@@ -16,12 +16,12 @@ namespace {
 using Eigen::Vector3d;
 
 using internal::kPi;
-constexpr int kMostDegree = 512;
+constexpr int kMaxDegree = 512;
 
 void checkDegree(const char* function, int degree) {
-  if (degree < 0 || degree > kMostDegree)
+  if (degree < 0 || degree > kMaxDegree)
     throw InvalidInput(std::string(function) + ": degree = " + std::to_string(degree) +
-                       " is out of range; use 0 to " + std::to_string(kMostDegree));
+                       " is out of range; use 0 to " + std::to_string(kMaxDegree));
 }
 
 void checkDirection(const char* function, const Vector3d& direction) {

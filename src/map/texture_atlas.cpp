@@ -5,6 +5,7 @@
 
 #include "exact_predicates.h"
 #include "option_checks.h"
+#include "pi.h"
 #include "sphere_cutting.h"
 
 #include <Eigen/Geometry>
@@ -23,8 +24,6 @@ using internal::CellSide;
 using internal::CutSphere;
 using internal::PlaneSigns;
 using internal::SphereCells;
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Planes of sphere_cutting.h.
 constexpr int x_plane = 0;
@@ -99,13 +98,13 @@ Eigen::Vector2d coordinatesIn(const TextureAtlasOptions& options, const std::vec
   case SphereChart::Equirectangular: {
     const double y_sign = cell[1].sign;
     // The cell decides between both ends of the image.
-    const double longitude = point.y() == 0.0 && point.x() < 0.0 ? y_sign * pi
+    const double longitude = point.y() == 0.0 && point.x() < 0.0 ? y_sign * internal::kPi
                              : point.x() == 0.0 && point.y() == 0.0
                                  ? 0.0
                                  : std::atan2(point.y(), point.x());
     const double latitude = std::atan2(point.z(), std::hypot(point.x(), point.y()));
-    return {std::clamp((1.0 + longitude / pi) / 2.0, 0.0, 1.0),
-            std::clamp(0.5 + latitude / pi, 0.0, 1.0)};
+    return {std::clamp((1.0 + longitude / internal::kPi) / 2.0, 0.0, 1.0),
+            std::clamp(0.5 + latitude / internal::kPi, 0.0, 1.0)};
   }
   case SphereChart::Octahedral: {
     const double sum = point.cwiseAbs().sum();

@@ -17,9 +17,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostRounds = 100;
+constexpr int kMaxRounds = 100;
 constexpr int kSweepsOfRound = 5;
-constexpr int kLeastRings = 2;     ///< that are slid around triangles that intersect
+constexpr int kMinRings = 2;       ///< that are slid around triangles that intersect
 constexpr int kRoundsOfRing = 10;  ///< after which there is one more
 constexpr int kTriedSteps = 4;     ///< each half as long as the one before
 constexpr double kFirstStep = 0.5;
@@ -43,12 +43,12 @@ public:
     report.after = pairs.size();
     ResampledMesh best;
     std::vector<bool> moved_of_best;
-    for (; !pairs.empty() && report.rounds < kMostRounds; ++report.rounds) {
+    for (; !pairs.empty() && report.rounds < kMaxRounds; ++report.rounds) {
       if (best.points.cols() == 0) {
         best = mesh_;
         moved_of_best = moved_;
       }
-      const std::vector<Index> zone = around(pairs, kLeastRings + report.rounds / kRoundsOfRing);
+      const std::vector<Index> zone = around(pairs, kMinRings + report.rounds / kRoundsOfRing);
       for (int sweep = 0; sweep < kSweepsOfRound; ++sweep)
         for (const Index v : zone)
           slide(v);

@@ -19,9 +19,9 @@ using Vector5d = Eigen::Matrix<double, 5, 1>;
 
 /// Neighbours of a vertex with more triangles do not add their own: a hub would have all vertices
 /// count for all.
-constexpr std::size_t kMostAround = 32;
+constexpr std::size_t kMaxAround = 32;
 /// Heights of neighbours that leave something to be seen of how well five coefficients fit.
-constexpr std::size_t kLeastNeighbors = 7;
+constexpr std::size_t kMinNeighbors = 7;
 /// Root mean square of the residual in shares of that of the heights: a quadric is sure below the
 /// first, and means nothing above the second. A fold of a plane has 0.2 to 0.4.
 constexpr double kSureResidual = 0.08;
@@ -36,7 +36,7 @@ constexpr double kSurePivots = 1e-2;
 constexpr double kWrongPivots = 1e-3;
 /// The surface leaves the triangles by no more than this share of the length of the edges: the
 /// height of an arc over its chord, for an arc of 90 degrees.
-constexpr double kMostDisplacement = 0.2;
+constexpr double kMaxDisplacement = 0.2;
 
 /// 0 for x at `zero`, 1 at `one` and beyond, in between a smooth step.
 double smoothStep(double zero, double one, double x) {
@@ -80,12 +80,12 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
   if (!(quadric.size > 0.0))
     return quadric;
   for (std::size_t i = 0; i < nearest; ++i)
-    if (corners.countAt(around[i]) <= kMostAround)
+    if (corners.countAt(around[i]) <= kMaxAround)
       add_neighbors(around[i]);
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   around.erase(std::remove(around.begin(), around.end(), vertex), around.end());
-  if (around.size() < kLeastNeighbors)
+  if (around.size() < kMinNeighbors)
     return quadric;
 
   const Vector3d normal = normals_.col(vertex);
@@ -161,7 +161,7 @@ VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights
     const auto& c = quadric.coefficients;
     const double height = c[0] * x + c[1] * y + c[2] * x * x + c[3] * x * y + c[4] * y * y;
     const double displacement =
-        std::clamp(height - vertex_normal.dot(p), -kMostDisplacement, kMostDisplacement);
+        std::clamp(height - vertex_normal.dot(p), -kMaxDisplacement, kMaxDisplacement);
     moved += share * quadric.size * displacement * vertex_normal;
     normal += share * (vertex_normal - (c[0] + 2.0 * c[2] * x + c[3] * y) * basis.col(0) -
                        (c[1] + c[3] * x + 2.0 * c[4] * y) * basis.col(1))

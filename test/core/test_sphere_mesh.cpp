@@ -393,7 +393,7 @@ TEST(SphereMesh, HubsOfManyTrianglesAreTakenDownAndPutBack) {
   expectSound(mesh, n);
   mesh.split(place, 0);
   expectSound(mesh, n);
-  mesh.takeBack();
+  mesh.rollBack();
   EXPECT_EQ(stateOf(mesh, n), before);
   expectSound(mesh, n);
 }
@@ -413,14 +413,14 @@ TEST(SphereMesh, TakeBackRestoresEverythingToTheLastIndex) {
     for (int i = 0; i < length; ++i)
       made += moves.any() ? 1 : 0;
     if (round % 2 == 0) {
-      mesh.takeBack();
+      mesh.rollBack();
       ASSERT_EQ(stateOf(mesh, n), before);
     } else {
       const State after = stateOf(mesh, n);
-      mesh.keep();
+      mesh.commit();
       ASSERT_EQ(stateOf(mesh, n), after);
       // What was kept is not taken back later, and nothing is written down any more.
-      mesh.takeBack();
+      mesh.rollBack();
       ASSERT_EQ(stateOf(mesh, n), after);
       ASSERT_TRUE(made == 0 || !(after == before));
     }
@@ -438,7 +438,7 @@ TEST(SphereMesh, MovesAfterTakeBackAreThoseOfAMeshThatNeverMoved) {
   Moves moves(mesh, n, 8);
   for (int i = 0; i < 500; ++i)
     moves.any();
-  mesh.takeBack();
+  mesh.rollBack();
   // The list of free places is restored as well: the same moves use the same places.
   Moves one(mesh, n, 9);
   Moves other(untouched, n, 9);

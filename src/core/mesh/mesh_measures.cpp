@@ -15,7 +15,7 @@ namespace {
 
 /// Volumes below this share of the box's diagonal cubed are rounding: a centroid would be the
 /// quotient of two errors.
-constexpr double kLeastVolume = 1e-12;
+constexpr double kMinVolume = 1e-12;
 
 /// Sums over a mesh, corners as seen from an origin.
 struct SolidSums {
@@ -92,9 +92,9 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   SolidSums solid;
   SurfaceSums surface;
   // Each sum has one thread, which adds in the order of the triangles.
-  [[maybe_unused]] const int threads =
-      std::min(2, internal::threadCount(requested_threads, static_cast<std::size_t>(triangles.cols()),
-                                        internal::kShortPassThreshold));
+  [[maybe_unused]] const int threads = std::min(
+      2, internal::threadCount(requested_threads, static_cast<std::size_t>(triangles.cols()),
+                               internal::kShortPassThreshold));
 #ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
 #endif
@@ -113,7 +113,7 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
 
   const double diagonal = (measures.box_max - measures.box_min).norm();
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // from the origin of the sums
-  if (std::abs(measures.volume) > kLeastVolume * diagonal * diagonal * diagonal)
+  if (std::abs(measures.volume) > kMinVolume * diagonal * diagonal * diagonal)
     center = solid.first / (24.0 * measures.volume);
   else if (measures.area > 0.0)
     center = surface.first / (6.0 * measures.area);

@@ -74,7 +74,7 @@ private:
 };
 
 /// Parts of a mesh that are paired on their own at first: each takes memory.
-constexpr std::size_t kMostParts = 4;
+constexpr std::size_t kMaxParts = 4;
 
 }  // namespace
 
@@ -93,7 +93,7 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
     neighbors_[static_cast<std::size_t>(other.triangle)][other.corner] = side.triangle;
   };
   const std::size_t parts =
-      std::min(kMostParts, static_cast<std::size_t>(threadCount(threads, m, kShortPassThreshold)));
+      std::min(kMaxParts, static_cast<std::size_t>(threadCount(threads, m, kShortPassThreshold)));
   std::vector<std::vector<SidePairing::Side>> left(parts);
   // A block of nothing but its number for each part.
   forEachBlock(
@@ -298,10 +298,10 @@ bool SphereMesh::flip(Index triangle, int corner) {
   return true;
 }
 
-void SphereMesh::takeBack() {
+void SphereMesh::rollBack() {
   for (auto change = changes_.rbegin(); change != changes_.rend(); ++change)
     *change->first = change->second;
-  keep();
+  commit();
 }
 
 Triangles SphereMesh::triangles() const {

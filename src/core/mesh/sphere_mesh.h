@@ -18,10 +18,10 @@ class SphereMesh {
 public:
   /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices,
   /// with
-  ///                  indices in range; isSphere() tells whether they are.
+  ///                  indices in range; see isSphere().
   SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
 
-  /// Tells whether the mesh is as it should be, right after it was made.
+  /// Whether the mesh is as it should be, right after it was made.
   bool isSphere(int threads = 1) const;
 
   /// Places for triangles; those that merge() freed are no triangles.
@@ -63,7 +63,7 @@ public:
     } while (t != first);
   }
 
-  /// Tells whether two vertices of the mesh have a common edge.
+  /// Whether two vertices of the mesh have a common edge.
   bool areJoined(Index v, Index w) const;
 
   /// Splits a triangle in three by a vertex that is not in the mesh. The parts are the triangle
@@ -79,14 +79,14 @@ public:
   /// `corner`, as corner 0; the neighbour has it as corner 0 too.
   bool flip(Index triangle, int corner);
 
-  /// Begins to write down all changes, until keep() or takeBack(). There must be room for all
+  /// Begins to write down all changes, until commit() or rollBack(). There must be room for all
   /// splits: places that merge() freed.
   void record() { is_recording_ = true; }
-  void keep() {
+  void commit() {
     is_recording_ = false;
     changes_.clear();
   }
-  void takeBack();
+  void rollBack();
 
   Triangles triangles() const;
 

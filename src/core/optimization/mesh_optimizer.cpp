@@ -394,13 +394,13 @@ void MeshOptimizer::begin() {
 }
 
 void MeshOptimizer::keep() {
-  mesh_.keep();
+  mesh_.commit();
   is_recording_ = false;
   old_facets_.clear();
 }
 
 void MeshOptimizer::takeBack() {
-  mesh_.takeBack();
+  mesh_.rollBack();
   for (auto old = old_facets_.rbegin(); old != old_facets_.rend(); ++old)
     facets_[at(old->first)] = old->second;
   energy_ = energy_before_;

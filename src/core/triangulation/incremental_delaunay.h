@@ -13,7 +13,7 @@ struct SphereDelaunay {
 };
 
 /// Most points that incrementalDelaunay() takes: sides of triangles are numbered in 32 bits.
-constexpr Index kMostDelaunayPoints = Index{1} << 29;
+constexpr Index kMaxDelaunayPoints = Index{1} << 29;
 
 /// Triangulates points on the sphere by inserting one after the other into the triangle that holds
 /// it, with edge flips until all triangles around it are Delaunay (C. L. Lawson, 1977).
@@ -27,7 +27,7 @@ constexpr Index kMostDelaunayPoints = Index{1} << 29;
 /// that coincide in the plane share the triangles of the first of them evenly, as vertices of
 /// their own.
 ///
-/// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= kMostDelaunayPoints.
+/// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= kMaxDelaunayPoints.
 /// \param report     told of the share that is done.
 /// Cost: O(n log n) expected, about 100 bytes a point.
 SphereDelaunay incrementalDelaunay(const Positions& directions, const Report& report = {});

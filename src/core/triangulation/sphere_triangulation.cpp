@@ -194,7 +194,7 @@ private:
     return std::abs(side) <= kPredicateTolerance * scale ? 0.0 : side / scale;
   }
 
-  /// Tells whether d is inside the circle of a, b, c (counter-clockwise) on the unit sphere beyond
+  /// Whether d is inside the circle of a, b, c (counter-clockwise) on the unit sphere beyond
   /// rounding. The plain determinant of the convex hull loses all digits for points closer than
   /// 1e-8; here the height of q above the tangent plane at d is replaced by its exact value on the
   /// sphere, (q - d) . d = -|q - d|^2 / 2.
@@ -344,10 +344,10 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
 
 SphereTriangulation triangulateIncrementally(const Positions& directions,
                                              const internal::Report& report) {
-  if (directions.cols() > internal::kMostDelaunayPoints)
+  if (directions.cols() > internal::kMaxDelaunayPoints)
     throw InvalidInput("triangulateSphere: " + std::to_string(directions.cols()) +
                        " points; TriangulationMethod::Incremental takes at most " +
-                       std::to_string(internal::kMostDelaunayPoints));
+                       std::to_string(internal::kMaxDelaunayPoints));
   internal::SphereDelaunay delaunay = internal::incrementalDelaunay(directions, report);
   SphereTriangulation result;
   result.triangles = std::move(delaunay.triangles);
