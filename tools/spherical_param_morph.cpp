@@ -103,7 +103,7 @@ struct Settings {
   std::array<std::string, 2> inputs;
   std::string output;
   std::vector<std::string> frames;  ///< their files
-  FileFormat format = FileFormat::Ply;
+  FileFormat format = nullptr;
   std::string pairs;  ///< empty: none
   Alignment alignment = Alignment::Rotation;
   MorphConnectivity connectivity = MorphConnectivity::AllVertices;
@@ -322,8 +322,8 @@ void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& cloud
   options.connectivity = settings.connectivity;
   options.samples = settings.samples;
   options.threads = settings.threads();
-  options.progress = [&console](double share) {
-    console.update(share, "");
+  options.progress = [&console](const spherical_param::Progress& progress) {
+    console.update(progress.fraction);
     return true;
   };
   std::vector<std::size_t> numbers;  // of the pairs, among those of the file
@@ -367,7 +367,7 @@ void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& cloud
   }
   morph.topology = spherical_param::checkTopology(
       morph.result.triangles, static_cast<std::size_t>(morph.result.first.cols()),
-      {settings.threads()});
+      settings.threads());
   morph.stages.push_back(
       {"morph", console.end(std::to_string(morph.result.first.cols()) + " vertices")});
 }
@@ -384,14 +384,13 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
   console.begin("verify");
   std::size_t sum = 0;
   for (std::size_t frame = 0; frame < settings.frames.size(); ++frame) {
-    spherical_param::SelfIntersectionOptions options;
-    options.threads = settings.threads();
-    // The values as they are in the file.
-    const Positions positions = positionsOf(settings, morph, frame).cast<float>().cast<double>();
+    spherical_param::Execution execution;
+    execution.threads = settings.threads();
+    const Positions positions = asWritten(positionsOf(settings, morph, frame));
     morph.self_intersections.push_back(
-        spherical_param::findSelfIntersections(positions, morph.result.triangles, options).size());
+        spherical_param::findSelfIntersections(positions, morph.result.triangles, execution).size());
     sum += morph.self_intersections.back();
-    console.update(timeOf(settings, frame), "");
+    console.update(timeOf(settings, frame));
   }
   morph.stages.push_back({"verify", console.end(counted(sum, "self-intersection"))});
 }
@@ -402,18 +401,15 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
   console.begin("write");
   PointData vertices;
   const auto count = static_cast<std::size_t>(morph.result.first.cols());
-  vertices.points.resize(count);
   if (morph.hasColors()) {
     vertices.colors.resize(count);
     vertices.has_alpha = clouds[0].cloud.data.has_alpha || clouds[1].cloud.data.has_alpha;
   }
   for (std::size_t frame = 0; frame < settings.frames.size(); ++frame) {
     const double t = timeOf(settings, frame);
-    const Positions positions = positionsOf(settings, morph, frame);
+    vertices.points = toPoints(positionsOf(settings, morph, frame));
     for (std::size_t i = 0; i < count; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      const Eigen::Vector3f point = positions.col(column).cast<float>();
-      vertices.points[i] = {point.x(), point.y(), point.z()};
       if (morph.hasColors()) {
         const Eigen::Vector4d color =
             (1.0 - t) * morph.colors[0].col(column) + t * morph.colors[1].col(column);
@@ -429,7 +425,7 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
     writeMesh(*files.back(), MeshView(vertices, morph.result.triangles), settings.format,
               settings.report.encoding);
     files.back()->finish();
-    console.update(t, "");
+    console.update(t);
   }
   morph.stages.push_back({"write", console.end(counted(settings.frames.size(), "frame"))});
 }
@@ -536,15 +532,6 @@ void run(const std::vector<std::string>& words) {
 
   Console console(settings.report.printsText());
   printParameters(settings, console);
-  StagePlan stages = productStages(settings.product);
-  const StagePlan again = stages;
-  stages.insert(stages.end(), again.begin(), again.end());
-  stages.emplace_back("morph", 50.0);
-  if (settings.check) {
-    stages.emplace_back("verify", 100.0);
-  }
-  stages.emplace_back("write", 40.0);
-  console.plan(stages);
 
   std::array<MappedCloud, 2> clouds;
   Morph morph;

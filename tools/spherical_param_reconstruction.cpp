@@ -53,7 +53,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
      "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
     {"A failure, unless the scan is a closed surface and nothing else is wrong",
      "scan.ply mesh.ply -strict"},
-    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers 4 -smooth 5"},
+    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers 4 -smoothing 5"},
 };
 
 std::string helpText() {
@@ -72,9 +72,9 @@ std::string helpText() {
 struct Settings {
   std::string input;
   std::string output;
-  FileFormat output_format = FileFormat::Ply;
+  FileFormat output_format = nullptr;
   std::string sphere;  ///< empty: not wanted
-  FileFormat sphere_format = FileFormat::Ply;
+  FileFormat sphere_format = nullptr;
   std::string page;     ///< empty: not wanted
   std::string command;  ///< that does the same again
   OutputSettings report;
@@ -83,7 +83,6 @@ struct Settings {
 
 const Names<SmoothingMethod> smoothing_names = {
     {"umbrella", SmoothingMethod::Umbrella},
-    {"taubin", SmoothingMethod::Taubin},
     {"biharmonic", SmoothingMethod::Biharmonic},
 };
 
@@ -158,25 +157,25 @@ Json optionsToJson(const Settings& settings) {
   return json;
 }
 
-/// The indices of vertices in the input.
-std::vector<int> inputIndices(const Reconstruction& reconstruction,
-                              const std::vector<Index>& vertices) {
-  std::vector<int> indices;
+/// The numbers of vertices in the input.
+std::vector<Index> inputIndices(const CloudReconstruction& cloud,
+                                const std::vector<Index>& vertices) {
+  std::vector<Index> indices;
   indices.reserve(vertices.size());
   for (const Index vertex : vertices) {
-    indices.push_back(reconstruction.getVertexIndices()[static_cast<std::size_t>(vertex)]);
+    indices.push_back(cloud.point_of_vertex[static_cast<std::size_t>(vertex)]);
   }
   return indices;
 }
 
-Json graphToJson(const Settings& settings, const Reconstruction& reconstruction) {
-  const spherical_param::GraphReport& graph = reconstruction.getResult().graph;
-  const pcl::Indices& cloud_indices = reconstruction.getVertexIndices();
-  const auto index_of = [&cloud_indices](Index vertex) {
-    return cloud_indices[static_cast<std::size_t>(vertex)];
+Json graphToJson(const Settings& settings, const CloudReconstruction& cloud) {
+  const spherical_param::GraphReport& graph = cloud.result.graph;
+  const auto index_of = [&cloud](Index vertex) {
+    return cloud.point_of_vertex[static_cast<std::size_t>(vertex)];
   };
   Json json;
-  json["method"] = nameOf(settings.reconstruction.options.graph, graph_names);
+  json["method"] = optionText(settings.reconstruction.options, "graph");
+  json["k"] = spherical_param::neighborsToSearch(settings.reconstruction.options.graph);
   json["edges"] = graph.edges;
   json["components"] = graph.components;
   json["bridges"] = Json::array();
@@ -185,7 +184,7 @@ Json graphToJson(const Settings& settings, const Reconstruction& reconstruction)
         {{"from", index_of(bridge.from)}, {"to", index_of(bridge.to)}, {"length", bridge.length}});
   }
   json["without_tangent_plane_count"] = graph.without_tangent_plane.size();
-  json["without_tangent_plane"] = inputIndices(reconstruction, graph.without_tangent_plane);
+  json["without_tangent_plane"] = inputIndices(cloud, graph.without_tangent_plane);
   json["searched_again"] = graph.searched_again;
   json["uncertified"] = graph.uncertified;
   json["weak"] = graph.weak;
@@ -215,14 +214,14 @@ std::optional<double> coarseningRatio(const std::vector<spherical_param::LevelRe
 bool hasBarrier(const Settings& settings, const spherical_param::EmbeddingReport& embedding) {
   return !embedding.levels.empty() &&
          (embedding.added_barrier ||
-          settings.reconstruction.options.weights != EdgeWeights::Adaptive);
+          settings.reconstruction.options.embedding.weights != EdgeWeights::Adaptive);
 }
 
-Json embeddingToJson(const Settings& settings, const Reconstruction& reconstruction) {
-  const spherical_param::EmbeddingReport& embedding = reconstruction.getResult().embedding;
+Json embeddingToJson(const Settings& settings, const CloudReconstruction& cloud) {
+  const spherical_param::EmbeddingReport& embedding = cloud.result.embedding;
   const std::vector<spherical_param::LevelReport>& levels = embedding.levels;
   Json json;
-  json["solver"] = nameOf(settings.reconstruction.options.solver, solver_names);
+  json["method"] = optionText(settings.reconstruction.options, "embedding");
   json["centroid_norm"] = embedding.centroid_norm;
   // The iteration knows neither levels nor energy.
   if (levels.empty()) {
@@ -252,9 +251,9 @@ Json embeddingToJson(const Settings& settings, const Reconstruction& reconstruct
 }
 
 /// The first pairs of triangles that intersect.
-Json selfIntersectionsToJson(const Reconstruction& reconstruction) {
+Json selfIntersectionsToJson(const CloudReconstruction& cloud) {
   constexpr std::size_t most_pairs = 1000;
-  const auto& pairs = reconstruction.getSelfIntersections();
+  const auto& pairs = cloud.result.self_intersections;
   Json json = Json::array();
   for (std::size_t i = 0; i < std::min(most_pairs, pairs.size()); ++i) {
     json.push_back({pairs[i][0], pairs[i][1]});
@@ -265,7 +264,7 @@ Json selfIntersectionsToJson(const Reconstruction& reconstruction) {
 Json optimizationToJson(const Settings& settings,
                         const spherical_param::OptimizationReport& optimization) {
   Json json;
-  json["method"] = nameOf(settings.reconstruction.options.optimization, optimization_names);
+  json["method"] = optionText(settings.reconstruction.options, "optimization");
   json["energy"] = optimization.energy;
   json["rough"] = optimization.rough;
   json["noisy"] = optimization.noise_steps > 0;
@@ -287,24 +286,24 @@ Json optimizationToJson(const Settings& settings,
   return json;
 }
 
-Json attemptsToJson(const std::vector<spherical_param::AttemptReport>& attempts) {
+Json runsToJson(const std::vector<spherical_param::RunReport>& runs) {
   Json json = Json::array();
-  for (const spherical_param::AttemptReport& attempt : attempts) {
-    json.push_back({{"description", attempt.description},
-                    {"self_intersections", attempt.self_intersections},
-                    {"energy", attempt.energy},
-                    {"seconds", attempt.seconds},
-                    {"chosen", attempt.chosen}});
+  for (const spherical_param::RunReport& run : runs) {
+    json.push_back({{"description", run.description},
+                    {"self_intersections", run.self_intersections},
+                    {"energy", run.energy},
+                    {"seconds", run.seconds},
+                    {"chosen", run.chosen}});
   }
   return json;
 }
 
 Json smoothingToJson(const Settings& settings, const spherical_param::SmoothingReport& smoothing) {
-  if (settings.reconstruction.options.smoothing_steps == 0) {
+  if (settings.reconstruction.options.smoothing.steps == 0) {
     return nullptr;
   }
-  return {{"steps", settings.reconstruction.options.smoothing_steps},
-          {"method", nameOf(spherical_param::SmoothingOptions().method, smoothing_names)},
+  return {{"steps", settings.reconstruction.options.smoothing.steps},
+          {"method", nameOf(settings.reconstruction.options.smoothing.method, smoothing_names)},
           {"max_displacement", smoothing.max_displacement},
           {"mean_displacement", smoothing.mean_displacement},
           {"rms_displacement", smoothing.rms_displacement},
@@ -313,17 +312,17 @@ Json smoothingToJson(const Settings& settings, const spherical_param::SmoothingR
           {"self_intersections", smoothing.self_intersections}};
 }
 
-Json loopsToJson(const Reconstruction& reconstruction,
+Json loopsToJson(const CloudReconstruction& cloud,
                  const std::vector<std::vector<Index>>& loops) {
   Json json = Json::array();
   for (const std::vector<Index>& loop : loops) {
-    json.push_back(inputIndices(reconstruction, loop));
+    json.push_back(inputIndices(cloud, loop));
   }
   return json;
 }
 
-Json diagnosisToJson(const Reconstruction& reconstruction) {
-  const spherical_param::SurfaceDiagnosis& diagnosis = reconstruction.getDiagnosis();
+Json diagnosisToJson(const CloudReconstruction& cloud) {
+  const spherical_param::SurfaceDiagnosis& diagnosis = cloud.result.diagnosis;
   Json json;
   json["kind"] = nameOf(diagnosis.kind, surface_names);
   json["looks_closed_genus0"] = diagnosis.looksClosedGenus0();
@@ -338,15 +337,15 @@ Json diagnosisToJson(const Reconstruction& reconstruction) {
                             {"triangles", lid.triangles},
                             {"area", lid.area},
                             {"boundary_length", lid.boundary_length},
-                            {"vertices", inputIndices(reconstruction, lid.vertices)},
-                            {"loops", loopsToJson(reconstruction, lid.loops)}});
+                            {"vertices", inputIndices(cloud, lid.vertices)},
+                            {"loops", loopsToJson(cloud, lid.loops)}});
   }
   json["handles"] = Json::array();
   for (const spherical_param::CollapsedHandle& handle : diagnosis.handles) {
     json["handles"].push_back({{"location", toJson(handle.center)},
                                {"size", handle.size},
                                {"edges", handle.edges},
-                               {"vertices", inputIndices(reconstruction, handle.vertices)}});
+                               {"vertices", inputIndices(cloud, handle.vertices)}});
   }
   json["bridges"] = Json::array();
   for (const spherical_param::PartBridge& bridge : diagnosis.bridges) {
@@ -355,7 +354,7 @@ Json diagnosisToJson(const Reconstruction& reconstruction) {
                                {"spacing", bridge.spacing},
                                {"points", bridge.points},
                                {"other_points", bridge.other_points},
-                               {"vertices", inputIndices(reconstruction, bridge.vertices)}});
+                               {"vertices", inputIndices(cloud, bridge.vertices)}});
   }
   return json;
 }
@@ -378,25 +377,23 @@ Json outliersToJson(const Settings& settings, const std::optional<OutlierRemoval
   if (!outliers) {
     return nullptr;
   }
-  return {{"method", nameOf(settings.reconstruction.outlier_method, outlier_names)},
-          {"sigma", *settings.reconstruction.outlier_sigma},
-          {"threshold", outliers->threshold ? Json(*outliers->threshold) : Json(nullptr)},
-          {"count", outliers->indices.size()},
-          {"indices", outliers->indices}};
+  return {{"sigma", *settings.reconstruction.outlier_sigma},
+          {"threshold", outliers->threshold},
+          {"count", outliers->points.size()},
+          {"indices", outliers->points}};
 }
 
 Json report(const Settings& settings, const CloudReconstruction& cloud) {
-  const Reconstruction& reconstruction = cloud.reconstruction;
-  const spherical_param::Result& result = cloud.result();
+    const spherical_param::Result& result = cloud.result;
   Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
   json["output"] = settings.output;
   json["options"] = optionsToJson(settings);
   json["points"] = cloud.data.points.size();
-  json["ignored_points"] = reconstruction.getIgnoredPointCount();
+  json["ignored_points"] = cloud.ignored;
   json["outliers"] = outliersToJson(settings, cloud.outliers);
-  json["duplicates"] = result.duplicates;
+  json["duplicates"] = result.duplicates();
   json["vertices"] = result.vertexCount();
   json["triangles"] = result.triangles.cols();
   json["closed"] = result.topology.closed;
@@ -404,28 +401,26 @@ Json report(const Settings& settings, const CloudReconstruction& cloud) {
   json["oriented"] = result.topology.oriented;
   json["components"] = result.topology.components;
   json["genus"] = result.topology.genus ? Json(*result.topology.genus) : Json(nullptr);
-  json["volume"] = result.volume;
-  json["area"] = result.area;
-  json["self_intersections"] = reconstruction.getSelfIntersections().size();
-  json["self_intersecting_pairs"] = selfIntersectionsToJson(reconstruction);
+  json["self_intersections"] = cloud.result.self_intersections.size();
+  json["self_intersecting_pairs"] = selfIntersectionsToJson(cloud);
   json["measures"] = measuresToJson(result.measures);
-  json["diagnosis"] = diagnosisToJson(reconstruction);
-  json["edges_outside_graph"] = result.edges_outside_graph;
-  json["converged"] = reconstruction.hasConverged();
+  json["diagnosis"] = diagnosisToJson(cloud);
+  json["edges_outside_graph"] = result.diagnosis.edges_outside_graph;
+  json["converged"] = result.embedding.converged();
   json["stop_reason"] = nameOf(result.embedding.stop_reason, stop_reason_names);
   json["iterations"] = result.embedding.iterations;
   json["fallback_start"] = result.embedding.fallback_start;
   json["residual"] = result.embedding.residual;
   json["residuals"] = result.embedding.residuals;
-  json["graph"] = graphToJson(settings, reconstruction);
-  json["embedding"] = embeddingToJson(settings, reconstruction);
-  json["triangulation"] = {{"method", nameOf(settings.reconstruction.options.hull, hull_names)},
+  json["graph"] = graphToJson(settings, cloud);
+  json["embedding"] = embeddingToJson(settings, cloud);
+  json["triangulation"] = {{"method", optionText(settings.reconstruction.options, "triangulation")},
                            {"hull_vertices", result.triangulation.hull_vertices},
                            {"reinserted", result.triangulation.reinserted},
                            {"coincident", result.triangulation.coincident},
                            {"hull_rejected", result.triangulation.hull_rejected}};
   json["optimization"] = optimizationToJson(settings, result.optimization);
-  json["attempts"] = attemptsToJson(result.attempts);
+  json["runs"] = runsToJson(result.runs);
   json["smoothing"] = smoothingToJson(settings, result.smoothing);
   json["stages"] = toJson(cloud.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
@@ -439,7 +434,7 @@ void printGraph(const Settings& settings, const spherical_param::GraphReport& gr
                 std::to_string(graph.edges) + " (" +
                     counted(static_cast<std::size_t>(graph.components), "component") + ", " +
                     counted(graph.bridges.size(), "bridge") + ")");
-  if (settings.reconstruction.options.graph == GraphMethod::LocalDelaunay) {
+  if (settings.reconstruction.options.graph.method == GraphMethod::LocalDelaunay) {
     console.entry("local Delaunay", std::to_string(graph.searched_again) + " searched again, " +
                                         std::to_string(graph.uncertified) + " uncertified, " +
                                         std::to_string(graph.weak) + " weak");
@@ -498,10 +493,10 @@ void printPhases(const std::vector<spherical_param::OptimizationPhase>& phases, 
 /// How the mesh was optimised.
 std::string optimized(const Settings& settings,
                       const spherical_param::OptimizationReport& optimization) {
-  if (settings.reconstruction.options.optimization == OptimizationMethod::None) {
-    return "no (-optimize none)";
+  if (settings.reconstruction.options.optimization.method == OptimizationMethod::None) {
+    return "no (-optimization none)";
   }
-  return nameOf(settings.reconstruction.options.optimization, optimization_names) + ", energy " +
+  return optionText(settings.reconstruction.options, "optimization") + ", energy " +
          formatted(optimization.energy, 6) +
          (optimization.noise_steps > 0
               ? ", noisy: on positions after " + std::to_string(optimization.noise_steps) +
@@ -520,24 +515,24 @@ std::string appearance(const spherical_param::SurfaceDiagnosis& diagnosis) {
   return oneLine(begins ? diagnosis.summary.substr(beginning.size()) : diagnosis.summary);
 }
 
-void printAttempts(const std::vector<spherical_param::AttemptReport>& attempts, Console& console) {
-  // Of one alone the other lines tell all.
-  for (std::size_t i = 0; attempts.size() > 1 && i < attempts.size(); ++i) {
-    console.entry("attempt " + std::to_string(i + 1),
-                  oneLine(attempts[i].description) + ": " +
-                      counted(attempts[i].self_intersections, "self-intersection") + ", energy " +
-                      formatted(attempts[i].energy, 6) + (attempts[i].chosen ? ", chosen" : ""));
+void printRuns(const std::vector<spherical_param::RunReport>& runs, Console& console) {
+  // One run alone is described by the other lines.
+  for (std::size_t i = 0; runs.size() > 1 && i < runs.size(); ++i) {
+    console.entry("run " + std::to_string(i + 1),
+                  oneLine(runs[i].description) + ": " +
+                      counted(runs[i].self_intersections, "self-intersection") + ", energy " +
+                      formatted(runs[i].energy, 6) + (runs[i].chosen ? ", chosen" : ""));
   }
 }
 
 void printSmoothing(const Settings& settings, const spherical_param::SmoothingReport& smoothing,
                     Console& console) {
-  if (settings.reconstruction.options.smoothing_steps == 0) {
+  if (settings.reconstruction.options.smoothing.steps == 0) {
     return;
   }
   console.entry(
       "smoothed",
-      counted(static_cast<std::size_t>(settings.reconstruction.options.smoothing_steps), "step") +
+      counted(static_cast<std::size_t>(settings.reconstruction.options.smoothing.steps), "step") +
           ", points moved by " + formatted(smoothing.mean_displacement, 3) + " (mean), " +
           formatted(smoothing.max_displacement, 3) + " (max)");
   console.entry("", "volume " + formatted(smoothing.volume_before, 6) + " -> " +
@@ -546,8 +541,8 @@ void printSmoothing(const Settings& settings, const spherical_param::SmoothingRe
 }
 
 /// Whether the embedding converged, and why it ended.
-std::string convergence(const Settings& settings, const Reconstruction& reconstruction) {
-  const spherical_param::EmbeddingReport& embedding = reconstruction.getResult().embedding;
+std::string convergence(const Settings& settings, const CloudReconstruction& cloud) {
+  const spherical_param::EmbeddingReport& embedding = cloud.result.embedding;
   if (embedding.stop_reason == StopReason::Unfinished) {
     return "not asked for (-tolerance does)";
   }
@@ -556,23 +551,22 @@ std::string convergence(const Settings& settings, const Reconstruction& reconstr
           ? counted(static_cast<std::size_t>(embedding.iterations), "iteration")
           : counted(static_cast<std::size_t>(embedding.levels.front().newton_iterations),
                     "Newton iteration");
-  return yesOrNo(reconstruction.hasConverged()) + " (" +
+  return yesOrNo(embedding.converged()) + " (" +
          nameOf(embedding.stop_reason, stop_reason_names) + " after " + steps +
          (hasBarrier(settings, embedding) ? ", the pull of a barrier is left)" : ")");
 }
 
 void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
-  const Reconstruction& reconstruction = cloud.reconstruction;
-  const spherical_param::Result& result = cloud.result();
+    const spherical_param::Result& result = cloud.result;
   printHierarchy(result.embedding.levels, console);
   printPhases(result.optimization.phases, console);
   console.entry("points", std::to_string(cloud.data.points.size()));
   if (cloud.outliers) {
-    console.entry("outliers", std::to_string(cloud.outliers->indices.size()) + " left out");
+    console.entry("outliers", std::to_string(cloud.outliers->points.size()) + " left out");
   }
   console.entry("used", std::to_string(result.vertexCount()) + " (" +
-                            std::to_string(result.duplicates) + " duplicate, " +
-                            std::to_string(reconstruction.getIgnoredPointCount()) + " not finite)");
+                            std::to_string(result.duplicates()) + " duplicate, " +
+                            std::to_string(cloud.ignored) + " not finite)");
   printGraph(settings, result.graph, console);
   if (!result.embedding.levels.empty()) {
     console.entry("starts tried",
@@ -582,7 +576,7 @@ void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Co
     console.entry("energy", formatted(result.embedding.energy, 6));
   }
   console.entry("residual", formatted(result.embedding.residual, 4));
-  console.entry("converged", convergence(settings, reconstruction));
+  console.entry("converged", convergence(settings, cloud));
   console.entry("hull vertices",
                 std::to_string(result.triangulation.hull_vertices) + " (" +
                     std::to_string(result.triangulation.reinserted) + " put back, " +
@@ -593,9 +587,9 @@ void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Co
   console.entry("oriented", yesOrNo(result.topology.oriented));
   console.entry("genus",
                 result.topology.genus ? std::to_string(*result.topology.genus) : "undefined");
-  printAttempts(result.attempts, console);
+  printRuns(result.runs, console);
   console.entry("optimised", optimized(settings, result.optimization));
-  console.entry("self-intersections", std::to_string(reconstruction.getSelfIntersections().size()));
+  console.entry("self-intersections", std::to_string(cloud.result.self_intersections.size()));
   printSmoothing(settings, result.smoothing, console);
   console.entry("looks like", appearance(result.diagnosis));
   console.entry("volume", formatted(result.measures.volume, 6));
@@ -618,12 +612,6 @@ void run(const std::vector<std::string>& words) {
 
   Console console(settings.report.printsText());
   printParameters(settings, console);
-  StagePlan stages = reconstructionStages(settings.reconstruction);
-  stages.emplace_back("write", 2.0);
-  if (!settings.page.empty()) {
-    stages.emplace_back("report", 3.0);
-  }
-  console.plan(stages);
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, console, cloud);
 
@@ -633,12 +621,12 @@ void run(const std::vector<std::string>& words) {
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), meshOf(cloud), settings.output_format, settings.report.encoding,
-            [&](double share) { console.update(share_of_file * share, ""); });
+            [&](double share) { console.update(share_of_file * share); });
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
-    writeMesh(*files.back(), sphereOf(cloud, cloud.result().sphere), settings.sphere_format,
+    writeMesh(*files.back(), sphereOf(cloud, cloud.result.sphere), settings.sphere_format,
               settings.report.encoding,
-              [&](double share) { console.update(0.5 + 0.5 * share, ""); });
+              [&](double share) { console.update(0.5 + 0.5 * share); });
   }
   for (const auto& file : files) {
     file->finish();

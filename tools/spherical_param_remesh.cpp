@@ -26,7 +26,6 @@
 #include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/version.h"
 
-#include <pcl/surface/spherical_param_remesh.h>
 
 #include <algorithm>
 #include <array>
@@ -122,13 +121,13 @@ struct Settings {
   std::string output;
   bool reads_image = false;  ///< a geometry image becomes a mesh; else the input is a cloud
   bool writes_image = false;
-  FileFormat output_format = FileFormat::Ply;  ///< unless it is an image
+  FileFormat output_format = nullptr;         ///< unless it is an image
   Sampling sampling = Sampling::Icosahedral;   ///< octahedral for an image
   std::optional<std::size_t> points;           ///< none: as many as the mesh has vertices
   std::optional<int> side;                     ///< none: as the points say
   SurfaceFit fit = SurfaceFit::Smooth;
   std::string sphere;  ///< empty: not wanted
-  FileFormat sphere_format = FileFormat::Ply;
+  FileFormat sphere_format = nullptr;
   std::string harmonics;  ///< empty: not wanted
   bool series = false;
   int degree = 32;
@@ -333,11 +332,6 @@ struct Output {
   bool isCloud() const { return mesh.triangles.cols() == 0; }
 };
 
-/// The values as they are in files.
-Positions rounded(const Positions& positions) {
-  return positions.cast<float>().cast<double>();
-}
-
 /// The colours of places in a mesh, between those of the corners of the triangles.
 std::vector<Color> interpolatedColors(const MappedCloud& mapped,
                                       const std::vector<SphereLocation>& locations) {
@@ -406,17 +400,17 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
   const ResampledMesh& mesh = output.mesh;
   if (!output.isCloud()) {
     output.topology =
-        spherical_param::checkTopology(mesh.triangles, output.pointCount(), {settings.threads()});
+        spherical_param::checkTopology(mesh.triangles, output.pointCount(), settings.threads());
     output.measures =
-        spherical_param::measureMesh(mesh.points, mesh.triangles, {settings.threads()});
-    spherical_param::SelfIntersectionOptions options;
-    options.threads = settings.threads();
-    options.progress = [&console](double share) {
-      console.update(0.5 * share, "");
+        spherical_param::measureMesh(mesh.points, mesh.triangles, settings.threads());
+    spherical_param::Execution execution;
+    execution.threads = settings.threads();
+    execution.progress = [&console](const spherical_param::Progress& progress) {
+      console.update(0.5 * progress.fraction);
       return true;
     };
     output.self_intersections =
-        spherical_param::findSelfIntersections(mesh.points, mesh.triangles, options);
+        spherical_param::findSelfIntersections(mesh.points, mesh.triangles, execution);
     if (!settings.reads_image) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
@@ -458,7 +452,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   if (!output.isCloud() && !mapped.colors.empty()) {
     output.colors = interpolatedColors(mapped, surface.evaluate(output.mesh.directions).locations);
   }
-  output.mesh.points = rounded(output.mesh.points);
+  output.mesh.points = asWritten(output.mesh.points);
   if (settings.writes_image) {
     output.image = spherical_param::geometryImageOfMesh(output.mesh);
   }
@@ -467,34 +461,15 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
 void makeFromImage(const Settings& settings, Output& output, Console& console) {
   console.begin("read");
   output.image =
-      readGeometryImage(settings.input, [&console](double share) { console.update(share, ""); });
+      readGeometryImage(settings.input, [&console](double share) { console.update(share); });
   const std::string size = std::to_string(output.image.side);
   output.stages.push_back({"read", console.end(size + " x " + size + " pixels")});
   output.frequency = (output.image.side - 1) / 2;
   console.begin("resample");
   output.mesh = spherical_param::meshOfGeometryImage(output.image);
-  output.mesh.points = rounded(output.mesh.points);
+  output.mesh.points = asWritten(output.mesh.points);
   output.stages.push_back(
       {"resample", console.end(std::to_string(output.pointCount()) + " points")});
-}
-
-StagePlan stagesOf(const Settings& settings) {
-  StagePlan stages;
-  if (settings.reads_image) {
-    stages.emplace_back("read", 2.0);
-  } else {
-    stages = productStages(settings.product);
-    stages.emplace_back("surface", 5.0);
-    if (settings.needsHarmonics()) {
-      stages.emplace_back("harmonics", 5.0);
-    }
-  }
-  stages.emplace_back("resample", 5.0);
-  if (settings.slides()) {
-    stages.emplace_back("untangle", 10.0);
-  }
-  stages.insert(stages.end(), {{"verify", 10.0}, {"write", 2.0}});
-  return stages;
 }
 
 std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud& mapped,
@@ -645,7 +620,7 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
 PointData toVertices(const Output& output, const MappedCloud& mapped) {
   PointData vertices;
   vertices.points = toPoints(output.mesh.points);
-  vertices.normals = toPoints(output.mesh.normals);
+  vertices.normals = toNormals(output.mesh.normals);
   vertices.colors = output.colors;
   vertices.has_alpha = mapped.cloud.data.has_alpha;
   return vertices;
@@ -656,7 +631,7 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
                                                Output& output, Console& console) {
   console.begin("write");
   const double share_of_file = settings.sphere.empty() ? 1.0 : 0.5;
-  const auto update = [&](double share) { console.update(share_of_file * share, ""); };
+  const auto update = [&](double share) { console.update(share_of_file * share); };
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
   if (settings.writes_image) {
@@ -671,7 +646,7 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
       sphere.leaveOutNormals();
       sphere.moveTo(output.mesh.directions);
       writeMesh(*files.back(), sphere, settings.sphere_format, settings.report.encoding,
-                [&](double share) { console.update(0.5 + 0.5 * share, ""); });
+                [&](double share) { console.update(0.5 + 0.5 * share); });
     }
   }
   if (!settings.harmonics.empty()) {
@@ -695,7 +670,6 @@ void run(const std::vector<std::string>& words) {
 
   Console console(settings.report.printsText());
   printParameters(settings, console);
-  console.plan(stagesOf(settings));
   MappedCloud mapped;
   Output output;
   runLibrary("cannot remesh " + inQuotes(settings.input), kReportIt, [&] {

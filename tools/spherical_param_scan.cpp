@@ -79,9 +79,9 @@ std::string listText() {
 /// What the user asked for.
 struct Settings {
   std::string output;
-  FileFormat output_format = FileFormat::Pcd;
+  FileFormat output_format = nullptr;
   std::string truth;  ///< empty: not wanted
-  FileFormat truth_format = FileFormat::Ply;
+  FileFormat truth_format = nullptr;
   bool normals = false;
   ScanOptions scan;
 };
@@ -154,7 +154,7 @@ void run(const std::vector<std::string>& words) {
   PointData cloud;
   cloud.points = toPoints(scan.points);
   if (settings.normals) {
-    cloud.normals = toPoints(scan.normals);
+    cloud.normals = toNormals(scan.normals);
   }
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));

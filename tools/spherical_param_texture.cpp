@@ -278,12 +278,6 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
                                                 std::to_string(output.image.height) + " pixels")});
 }
 
-StagePlan stagesOf(const Settings& settings) {
-  StagePlan stages = productStages(settings.product);
-  stages.insert(stages.end(), {{"atlas", 10.0}, {"image", 5.0}, {"write", 10.0}});
-  return stages;
-}
-
 std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud& mapped) {
   std::vector<std::string> warnings = warningsOf(mapped.cloud);
   if (mapped.colors.empty() && !settings.cells) {
@@ -337,7 +331,7 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
   console.begin("write");
   const TexturedMesh mesh = makeTexturedMesh(output.atlas, mapped.points, mapped.triangles());
   const std::string png = encodePng(output.image);
-  console.update(0.5, "");
+  console.update(0.5);
   std::vector<std::unique_ptr<OutputFile>> files;
   const auto open = [&files](const std::string& path) -> OutputFile& {
     files.push_back(std::make_unique<OutputFile>(path));
@@ -377,7 +371,6 @@ void run(const std::vector<std::string>& words) {
 
   Console console(settings.report.printsText());
   printParameters(settings, console);
-  console.plan(stagesOf(settings));
   MappedCloud mapped;
   Output output;
   runLibrary("cannot texture " + inQuotes(settings.input), kReportIt,

@@ -4,25 +4,21 @@
 #include "common/header_checks.h"
 #include "common/input_file.h"
 #include "common/record_reader.h"
-#include "common/text_clouds.h"
-
-#include <cstdint>
 
 namespace spherical_param::tools {
 
+PointData readPcd(const std::string& path, const FileProgress& progress) {
+  return readRecords(path, checkPcdHeader(path, checkInputFile(path)), progress);
+}
+
+PointData readPly(const std::string& path, const FileProgress& progress) {
+  return readRecords(path, checkPlyHeader(path, checkInputFile(path)), progress);
+}
+
 PointData readCloud(const std::string& path, const FileProgress& progress) {
   const FileFormat format = requireFormat(path, FileUse::ReadCloud);
-  const std::uint64_t file_size = checkInputFile(path);
-  switch (format) {
-  case FileFormat::Pcd:
-    return readRecords(path, checkPcdHeader(path, file_size), progress);
-  case FileFormat::Ply:
-    return readRecords(path, checkPlyHeader(path, file_size), progress);
-  case FileFormat::Obj:
-    return readObj(path, progress);
-  default:
-    return readXyz(path, progress);
-  }
+  checkInputFile(path);
+  return format->read_cloud(path, progress);
 }
 
 }  // namespace spherical_param::tools

@@ -14,7 +14,8 @@ namespace spherical_param::tools {
 /// PCL's readers are not used: they trust the file, so that a broken one may end the program
 /// without a message. Ours are fuzzed (test/torture/readers).
 ///
-/// \param progress told of the share that is read; may be empty. \throw UsageError, Failure.
+/// \param progress is called with the fraction that is read; may be empty.
+/// \throw UsageError, Failure.
 PointData readCloud(const std::string& path, const FileProgress& progress = {});
 
 }  // namespace spherical_param::tools

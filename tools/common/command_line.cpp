@@ -17,7 +17,8 @@ namespace po = boost::program_options;
 
 /// Options that every tool has.
 std::vector<OptionInfo> commonOptions() {
-  return {{"h", "", "show this help (also -help)"}, {"version", "", "show the version"}};
+  return {{"h", "", "show this help (also -help)", false},
+          {"version", "", "show the version", false}};
 }
 
 /// Tells whether a word is one of the options. Boost would take it for the value of the one before.
@@ -48,7 +49,7 @@ void refuseUnknownOptions(const std::vector<std::string>& words,
 CommandLine::CommandLine(const std::vector<std::string>& words,
                          const std::vector<OptionInfo>& options) {
   std::vector<OptionInfo> known = commonOptions();
-  known.push_back({"help", "", ""});
+  known.push_back({"help", "", "", false});
   known.insert(known.end(), options.begin(), options.end());
   po::options_description description;
   for (const OptionInfo& option : known) {
@@ -124,8 +125,15 @@ std::string describeOptions(const std::vector<OptionInfo>& options) {
   for (const OptionInfo& option : listed) {
     width = std::max(width, option.name.size() + option.argument.size());
   }
+  std::stable_partition(listed.begin(), listed.end(),
+                        [](const OptionInfo& option) { return !option.expert; });
   std::string text;
+  bool expert = false;
   for (const OptionInfo& option : listed) {
+    if (option.expert && !expert) {
+      text += "\nExpert options:\n";
+    }
+    expert = option.expert;
     const std::string left =
         "  -" + option.name + (option.argument.empty() ? "" : " " + option.argument);
     text += left + std::string(width + 6 - left.size(), ' ') + option.help + "\n";

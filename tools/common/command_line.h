@@ -13,6 +13,7 @@ struct OptionInfo {
   std::string name;      ///< without dash
   std::string argument;  ///< what follows it, e.g. "N"; empty for a switch
   std::string help;      ///< one line
+  bool expert = false;   ///< listed apart
 };
 
 /// A command line in the style of the PCL tools: `-opt value`, `--opt value`, `-opt=value` and
@@ -48,7 +49,7 @@ std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_li
 /// Tables of options one after the other.
 std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables);
 
-/// The lines of a help text that list the options, with -h and -version.
+/// The lines of a help text that list the options, with -h and -version; those of experts last.
 std::string describeOptions(const std::vector<OptionInfo>& options);
 
 /// The lines of a help text with examples: of each what it does, and the words after the tool's

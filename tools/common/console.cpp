@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t label_width = 20;
 constexpr std::size_t bar_width = 24;
 constexpr std::chrono::milliseconds redraw_interval{50};
-/// A stage that tells nothing for so long is drawn anew, with the time that has passed.
+/// A stage without a report for this long is drawn again, with the time that has passed.
 constexpr std::chrono::milliseconds longest_silence{1000};
 
 std::string padded(const std::string& label) {
@@ -47,7 +47,7 @@ Console::~Console() {
     drawer_.join();
   }
   if (bar_drawn_) {
-    // An error message shall begin on a line of its own.
+    // An error message begins on a line of its own.
     print("\n");
     std::fflush(stdout);
   }
@@ -67,10 +67,6 @@ void Console::entry(const std::string& label, const std::string& value) {
   print("  " + padded(label) + value + "\n");
 }
 
-void Console::plan(std::vector<std::pair<std::string, double>> stages) {
-  plan_ = std::move(stages);
-}
-
 void Console::begin(const std::string& stage) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -83,16 +79,15 @@ void Console::begin(const std::string& stage) {
   if (enabled_ && terminal_ && !drawer_.joinable()) {
     drawer_ = std::thread([this] { keepDrawing(); });
   }
-  update(0.0, "");
+  update(0.0);
 }
 
-void Console::update(double fraction, const std::string& detail) {
+void Console::update(double fraction) {
   if (!enabled_ || !terminal_) {
     return;
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  fraction_ = std::max(fraction_, std::clamp(fraction, 0.0, 1.0));
-  detail_ = detail;
+  fraction_ = std::clamp(fraction, 0.0, 1.0);
   if (Clock::now() - drawn_ >= redraw_interval) {
     draw();
   }
@@ -102,30 +97,13 @@ void Console::draw() {
   const Clock::time_point now = Clock::now();
   drawn_ = now;
   bar_drawn_ = true;
-  const auto percent = [](double share) {
-    const std::string text = std::to_string(static_cast<int>(share * 100.0));
-    return std::string(text.size() < 3 ? 3 - text.size() : 0, ' ') + text + " %";
-  };
-  double before = 0.0;
-  double all = 0.0;
-  for (const auto& stage : plan_) {
-    all += stage.second;
-  }
-  const auto planned = std::find_if(plan_.begin(), plan_.end(),
-                                    [this](const auto& stage) { return stage.first == stage_; });
-  for (auto stage = plan_.begin(); stage != planned; ++stage) {
-    before += stage->second;
-  }
-  if (planned != plan_.end()) {
-    overall_ = std::max(overall_, (before + fraction_ * planned->second) / all);
-  }
+  const std::string percent = std::to_string(static_cast<int>(fraction_ * 100.0));
   const auto filled = static_cast<std::size_t>(fraction_ * static_cast<double>(bar_width));
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - start_).count();
   // \033[K clears the rest of the line, left over from a longer one.
   print("\r  " + padded(stage_) + "[" + std::string(filled, '#') +
-        std::string(bar_width - filled, '.') + "] " + percent(fraction_) +
-        (plan_.empty() ? "" : "  all" + percent(overall_)) + "  " + std::to_string(seconds) +
-        " s  " + detail_ + "\033[K");
+        std::string(bar_width - filled, '.') + "] " + std::string(3 - percent.size(), ' ') +
+        percent + " %  " + std::to_string(seconds) + " s\033[K");
   std::fflush(stdout);
 }
 

@@ -5,14 +5,12 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::tools {
 
-/// What a tool says on the standard output: pairs of label and value, and stages of work with
-/// their time. A stage is a progress bar on a terminal, which is drawn anew every second even if
-/// nothing is told of it, else one line at its end.
+/// The standard output of a tool: pairs of label and value, and stages of work with their time. A
+/// stage is a progress bar on a terminal, which is drawn again every second even without a report,
+/// else one line at its end.
 class Console {
 public:
   /// \param enabled false: nothing is printed, times are measured nevertheless.
@@ -26,15 +24,10 @@ public:
   /// Prints a label and its value.
   void entry(const std::string& label, const std::string& value);
 
-  /// Tells which stages there will be, in their order, and how long each takes compared with the
-  /// others: bars then show the share of the whole as well. It never falls, though stages may be
-  /// repeated.
-  void plan(std::vector<std::pair<std::string, double>> stages);
-
   /// Begins a stage.
   void begin(const std::string& stage);
-  /// Draws the bar of the stage; fraction in [0, 1]. A lower one than before changes nothing.
-  void update(double fraction, const std::string& detail);
+  /// Draws the bar of the stage; fraction in [0, 1].
+  void update(double fraction);
   /// Ends the stage. \return its time [s].
   double end(const std::string& detail);
 
@@ -52,8 +45,6 @@ private:
 
   bool enabled_;
   bool terminal_;
-  std::vector<std::pair<std::string, double>> plan_;
-  double overall_ = 0.0;  ///< share of the plan that is done
   Clock::time_point start_;
 
   std::mutex mutex_;  ///< of all that follows
@@ -63,7 +54,6 @@ private:
   bool bar_drawn_ = false;
   std::string stage_;
   double fraction_ = 0.0;
-  std::string detail_;
   Clock::time_point begin_;
   Clock::time_point drawn_;
   std::thread drawer_;

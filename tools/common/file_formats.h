@@ -1,18 +1,19 @@
 #pragma once
 
-#include <optional>
+#include "formats/formats.h"
+
 #include <string>
 
 namespace spherical_param::tools {
 
-/// File formats, named by the extension of a file.
-enum class FileFormat { Pcd, Ply, Obj, Vtk, Xyz, Stl, Off };
+/// A row of the table of formats.
+using FileFormat = const FormatRow*;
 
 /// What a file is wanted for.
 enum class FileUse { ReadCloud, WriteCloud, WriteMesh };
 
-/// The format that the extension stands for, in upper or lower case; none if it is unknown.
-std::optional<FileFormat> formatOf(const std::string& path);
+/// The format that the extension stands for, in upper or lower case; null if it is unknown.
+FileFormat formatOf(const std::string& path);
 
 /// The extensions that can be used that way, e.g. ".ply .obj".
 std::string extensionsFor(FileUse use);

@@ -4,7 +4,7 @@
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "common/text.h"
-#include "spherical_param/embedding_history.h"
+#include "spherical_param/embedding.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
 
@@ -209,13 +209,8 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
 
 /// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
 void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& arrays) {
-  const std::vector<int>& indices = cloud.reconstruction.getVertexIndices();
   const auto input = [&](Index vertex) {
-    return static_cast<std::size_t>(indices[static_cast<std::size_t>(vertex)]);
-  };
-  const auto place = [&](std::size_t i) {
-    const Point& point = cloud.data.points[i];
-    return Eigen::Vector3d(point[0], point[1], point[2]);
+    return static_cast<std::size_t>(cloud.point_of_vertex[static_cast<std::size_t>(vertex)]);
   };
   if (!cloud.data.colors.empty()) {
     std::vector<std::uint8_t> colors;
@@ -226,20 +221,20 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
     arrays.add("colors", 3, colors);
   }
   const Eigen::AlignedBox3d box = boxOf(mesh.positions);
-  if (cloud.result().smoothed.cols() != 0) {
+  if (cloud.result.smoothed.cols() != 0) {
     Positions points(3, mesh.positions.cols());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      points.col(static_cast<Eigen::Index>(i)) = place(input(mesh.vertices[i]));
+      points.col(static_cast<Eigen::Index>(i)) = cloud.data.position(input(mesh.vertices[i]));
     }
     arrays.addPoints("cloud", points, boxOf(points));
   }
-  if (cloud.outliers && !cloud.outliers->indices.empty()) {
-    const std::size_t all = cloud.outliers->indices.size();
+  if (cloud.outliers && !cloud.outliers->points.empty()) {
+    const std::size_t all = cloud.outliers->points.size();
     const std::size_t count = std::min(all, max_outliers);
     Positions points(3, static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
       points.col(static_cast<Eigen::Index>(i)) =
-          place(static_cast<std::size_t>(cloud.outliers->indices[i * all / count]));
+          cloud.data.position(static_cast<std::size_t>(cloud.outliers->points[i * all / count]));
     }
     // One far off comes to the side of a box around the mesh, where it can be seen.
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
@@ -249,7 +244,7 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
 
 /// Adds the unfolding, and returns its frames.
 Json addHistory(const CloudReconstruction& cloud, Arrays& arrays) {
-  const Result& result = cloud.result();
+  const Result& result = cloud.result;
   const EmbeddingHistory& history = result.history;
   const std::size_t all = history.vertices.size();
   const std::size_t count =
@@ -326,8 +321,8 @@ std::string parseHtmlReport(const CommandLine& command_line) {
 }
 
 void keepForHtmlReport(ReconstructionSettings& settings) {
-  settings.options.history.vertices = max_history_vertices;
-  settings.options.history.frames = max_history_frames;
+  settings.options.embedding.history.vertices = max_history_vertices;
+  settings.options.embedding.history.frames = max_history_frames;
   settings.options.details = true;
 }
 
@@ -382,11 +377,11 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
   json["tool"] = {{"name", input.tool}, {"version", SPHERICAL_PARAM_VERSION}};
   json["command"] = input.command;
   json["report"] = input.report;
-  json["mesh"] = {{"vertices", cloud.result().vertexCount()},
-                  {"triangles", cloud.result().triangles.cols()},
+  json["mesh"] = {{"vertices", cloud.result.vertexCount()},
+                  {"triangles", cloud.result.triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
                   {"shown_triangles", mesh.triangles.cols()}};
-  json["outliers"] = cloud.outliers ? cloud.outliers->indices.size() : 0;
+  json["outliers"] = cloud.outliers ? cloud.outliers->points.size() : 0;
   json["sphere_turn"] = Json::array();
   for (Eigen::Index i = 0; i < 9; ++i) {
     json["sphere_turn"].push_back(turn(i / 3, i % 3));

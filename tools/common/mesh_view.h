@@ -12,8 +12,7 @@ namespace spherical_param::tools {
 
 using Triangle = std::array<std::int32_t, 3>;  ///< counter-clockwise from outside
 
-/// What is to be written, taken from where it is: a mesh of many points is not copied for that.
-/// All that it was made of must outlive it.
+/// A mesh to be written. Nothing is copied: all that it was made of must outlive it.
 class MeshView {
 public:
   /// A mesh as it is.
@@ -37,7 +36,7 @@ public:
         triangle_count_(static_cast<std::size_t>(triangles.cols())), corners_(triangles.data()),
         has_normals_(!data.normals.empty()) {}
 
-  /// Puts the vertices elsewhere.
+  /// Gives the vertices other positions.
   ///
   /// \param places 3 x vertices.
   void moveTo(const Positions& places) { places_ = &places; }
@@ -53,10 +52,10 @@ public:
     if (places_ == nullptr) {
       return data_->points[index(vertex)];
     }
-    const Eigen::Vector3f place = places_->col(static_cast<Eigen::Index>(vertex)).cast<float>();
+    const auto place = places_->col(static_cast<Eigen::Index>(vertex));
     return {place.x(), place.y(), place.z()};
   }
-  const Point& normal(std::size_t vertex) const { return data_->normals[index(vertex)]; }
+  const Normal& normal(std::size_t vertex) const { return data_->normals[index(vertex)]; }
   const Color& color(std::size_t vertex) const { return data_->colors[index(vertex)]; }
   Triangle triangle(std::size_t t) const {
     const std::int32_t* const corners = corners_ + 3 * t;

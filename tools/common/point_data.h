@@ -2,52 +2,47 @@
 
 #include "spherical_param/types.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace spherical_param::tools {
 
-using Point = std::array<float, 3>;
+using Point = std::array<double, 3>;        ///< coordinates [unit of the file]
+using FloatTriple = std::array<float, 3>;   ///< as files store it
+using Normal = FloatTriple;                 ///< of length 1
 using Color = std::array<std::uint8_t, 4>;  ///< red, green, blue, alpha in 0 ... 255
 
-inline Point toPoint(const std::array<double, 3>& values) {
+inline FloatTriple toFloat(const std::array<double, 3>& values) {
   return {static_cast<float>(values[0]), static_cast<float>(values[1]),
           static_cast<float>(values[2])};
 }
 
-/// 3 x n, in single precision.
 inline std::vector<Point> toPoints(const Positions& positions) {
-  std::vector<Point> points;
-  points.reserve(static_cast<std::size_t>(positions.cols()));
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    const Eigen::Vector3f point = positions.col(i).cast<float>();
-    points.push_back({point.x(), point.y(), point.z()});
-  }
+  std::vector<Point> points(static_cast<std::size_t>(positions.cols()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    Eigen::Map<Eigen::Vector3d>(points[i].data()) = positions.col(static_cast<Eigen::Index>(i));
   return points;
+}
+
+inline std::vector<Normal> toNormals(const Positions& directions) {
+  std::vector<Normal> normals;
+  normals.reserve(static_cast<std::size_t>(directions.cols()));
+  for (const Point& direction : toPoints(directions))
+    normals.push_back(toFloat(direction));
+  return normals;
 }
 
 /// Points and what belongs to each of them.
 struct PointData {
-  std::vector<Point> points;   ///< coordinates [unit of the file], finite or not
-  std::vector<Point> normals;  ///< one per point, or none at all
-  std::vector<Color> colors;   ///< one per point, or none at all
-  bool has_alpha = false;      ///< the alpha of the colours comes from a file; else it is 255
-  /// Largest change of a coordinate that was stored with more digits than single precision has
-  /// [unit of the file].
-  double rounding = 0.0;
+  std::vector<Point> points;    ///< finite or not
+  std::vector<Normal> normals;  ///< one per point, or none at all
+  std::vector<Color> colors;    ///< one per point, or none at all
+  bool has_alpha = false;       ///< the alpha of the colours comes from a file; else it is 255
 
-  /// Adds a point in single precision, which is PCL's, and takes note of what that changes.
-  void addPoint(const std::array<double, 3>& values) {
-    const Point point = toPoint(values);
-    for (std::size_t d = 0; d < 3; ++d) {
-      if (std::isfinite(point[d])) {
-        rounding = std::max(rounding, std::abs(values[d] - static_cast<double>(point[d])));
-      }
-    }
-    points.push_back(point);
+  Eigen::Map<const Eigen::Vector3d> position(std::size_t i) const {
+    return Eigen::Map<const Eigen::Vector3d>(points[i].data());
   }
 };
 

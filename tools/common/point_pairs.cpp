@@ -71,10 +71,9 @@ private:
     }
     int nearest = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (const int index : cloud.reconstruction.getVertexIndices()) {
-      const Point& point = cloud.data.points[static_cast<std::size_t>(index)];
+    for (const Index index : cloud.point_of_vertex) {
       const double distance =
-          (Eigen::Vector3f(point[0], point[1], point[2]).cast<double>() - place).squaredNorm();
+          (cloud.data.position(static_cast<std::size_t>(index)) - place).squaredNorm();
       if (distance < least) {
         least = distance;
         nearest = index;
@@ -85,12 +84,12 @@ private:
 
   /// Through the points that were meshed: duplicates have one vertex.
   static Index vertexOf(int point, const CloudReconstruction& cloud) {
-    const pcl::Indices& used = cloud.reconstruction.getUsedIndices();
-    const auto found = std::find(used.begin(), used.end(), point);
-    if (found == used.end()) {
+    const std::vector<Index>& meshed = cloud.meshed;
+    const auto found = std::lower_bound(meshed.begin(), meshed.end(), point);
+    if (found == meshed.end() || *found != point) {
       return -1;
     }
-    return cloud.result().vertex_of_input[static_cast<std::size_t>(found - used.begin())];
+    return cloud.result.vertex_of_input[static_cast<std::size_t>(found - meshed.begin())];
   }
 
   const std::string& path_;

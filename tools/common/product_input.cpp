@@ -35,9 +35,9 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
   if (cloud.data.colors.empty()) {
     return colors;
   }
-  colors.reserve(cloud.reconstruction.getVertexIndices().size());
-  for (const int index : cloud.reconstruction.getVertexIndices()) {
-    colors.push_back(cloud.data.colors[static_cast<std::size_t>(index)]);
+  colors.reserve(cloud.point_of_vertex.size());
+  for (const Index point : cloud.point_of_vertex) {
+    colors.push_back(cloud.data.colors[static_cast<std::size_t>(point)]);
   }
   return colors;
 }
@@ -92,12 +92,6 @@ Json productOptionsToJson(const ProductSettings& settings) {
   return json;
 }
 
-StagePlan productStages(const ProductSettings& settings) {
-  StagePlan stages = reconstructionStages(settings.reconstruction);
-  stages.emplace_back("map", settings.map.sweeps == 0 ? 20.0 : 200.0);
-  return stages;
-}
-
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
               MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
@@ -105,13 +99,13 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   mapped.colors = vertexColors(mapped.cloud);
   console.begin("map");
   SphereMapOptions options = settings.map;
-  options.progress = [&console](double share) {
-    console.update(share, "");
+  options.progress = [&console](const Progress& progress) {
+    console.update(progress.fraction);
     return true;
   };
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
     mapped.map =
-        computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.result().sphere, options);
+        computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.result.sphere, options);
   });
   mapped.cloud.stages.push_back({"map", console.end("")});
 }
@@ -120,7 +114,7 @@ void addMapToJson(const MappedCloud& mapped, Json& json) {
   json["input_points"] = mapped.cloud.data.points.size();
   json["vertices"] = mapped.points.cols();
   json["mesh_triangles"] = mapped.triangles().cols();
-  json["mesh_self_intersections"] = mapped.cloud.reconstruction.getSelfIntersections().size();
+  json["mesh_self_intersections"] = mapped.cloud.result.self_intersections.size();
   addToJson(mapped.map.distortion, json);
   json["embedding_distortion"] = Json::object();
   addToJson(mapped.map.before, json["embedding_distortion"]);
@@ -131,7 +125,7 @@ void printMap(const MappedCloud& mapped, Console& console) {
   console.entry("input points", std::to_string(mapped.cloud.data.points.size()));
   console.entry("vertices", std::to_string(mapped.points.cols()));
   console.entry("mesh", std::to_string(mapped.triangles().cols()) + " triangles, " +
-                            counted(mapped.cloud.reconstruction.getSelfIntersections().size(),
+                            counted(mapped.cloud.result.self_intersections.size(),
                                     "self-intersection"));
   console.entry("flipped on sphere",
                 std::to_string(map.distortion.flipped_triangles) +

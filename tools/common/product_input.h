@@ -41,11 +41,8 @@ struct MappedCloud {
   std::vector<Color> colors;  ///< of the vertices: v, or none if the cloud has no colours
   SphereMap map;
 
-  const Triangles& triangles() const { return cloud.result().triangles; }
+  const Triangles& triangles() const { return cloud.result.triangles; }
 };
-
-/// The stages of mapCloud(), in the unit of reconstructionStages().
-StagePlan productStages(const ProductSettings& settings);
 
 /// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.
 /// \throw UsageError, Failure

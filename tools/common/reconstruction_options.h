@@ -3,8 +3,6 @@
 #include "common/command_line.h"
 #include "common/console.h"
 #include "common/json_report.h"
-#include "common/names.h"
-#include "common/outlier_removal.h"
 #include "spherical_param/reconstruct.h"
 
 #include <optional>
@@ -14,42 +12,34 @@
 
 namespace spherical_param::tools {
 
-extern const Names<GraphMethod> graph_names;
-extern const Names<EmbeddingMethod> solver_names;
-extern const Names<EdgeWeights> weight_names;
-extern const Names<TriangulationMethod> hull_names;
-extern const Names<OptimizationMethod> optimization_names;
-extern const Names<OutlierMethod> outlier_names;
-
 /// How a cloud is to be meshed.
 struct ReconstructionSettings {
-  std::optional<double> outlier_sigma;  ///< none: outliers are not looked for
-  OutlierMethod outlier_method = OutlierMethod::Paper;
-  Options options;      ///< the number of threads is never 0
-  bool strict = false;  ///< warnings are a failure, see requireNoWarnings()
+  std::optional<double> outlier_sigma;  ///< nothing: outliers are not looked for
+  Options options;                      ///< the number of threads is never 0
+  bool strict = false;                  ///< warnings are a failure, see requireNoWarnings()
 };
 
-/// The lines of the options of the reconstruction, from -graph to -threads.
+/// The lines of the options of the reconstruction: those of the library's table, and a few more.
 std::vector<OptionInfo> reconstructionOptions();
 
-/// Refuses options that would change nothing as well. \throw UsageError
+/// Refuses options that would have no effect as well. \throw UsageError
 ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line);
 
-/// Prints what is in force.
+/// Prints the values in force.
 void printReconstructionOptions(const ReconstructionSettings& settings, Console& console);
 
-/// What is in force; what has no say with the chosen methods is null.
+/// The values in force; null for options without effect, and for those that are unset.
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings);
 
-/// With -strict, ends the tool with exit code 1 if there is a warning. To be called last: whoever
-/// asks for a failure still wants to look at what was made. \throw Failure
+/// The value in force of an option of the library's table, as text.
+std::string optionText(const Options& options, const std::string& name);
+
+/// With -strict, ends the tool with exit code 1 if there is a warning. To be called last, when all
+/// files are written. \throw Failure
 ///
 /// \param warnings of each input, which is named with them.
 void requireNoWarnings(
     const ReconstructionSettings& settings,
     const std::vector<std::pair<std::string, std::vector<std::string>>>& warnings);
-
-/// Tells whether the solver is the paper's.
-bool isIterative(const Options& options);
 
 }  // namespace spherical_param::tools

@@ -194,9 +194,9 @@ private:
     Record record(layout_.storage);
     for (std::size_t i = 0; i < count; ++i) {
       isText() ? readNumbers(record) : readBytes(record);
-      data.addPoint(record.reals(*coordinates));
+      data.points.push_back(record.reals(*coordinates));
       if (normals) {
-        data.normals.push_back(toPoint(record.reals(*normals)));
+        data.normals.push_back(toFloat(record.reals(*normals)));
       }
       if (colors.any()) {
         data.colors.push_back(colors.of(record));

@@ -21,17 +21,22 @@ enum class ByteOrder { Little, Big };
 /// Puts numbers and text of a file together and hands them to the file in blocks.
 class RecordWriter {
 public:
-  /// \param records lines, or vertices and triangles, that there will be.
-  RecordWriter(OutputFile& file, std::size_t records, const FileProgress& progress)
-      : file_(file), records_(records), progress_(progress) {
+  /// \param in_double coordinates of points are doubles, not floats.
+  /// \param progress  is called with the fraction that is written; may be empty.
+  RecordWriter(OutputFile& file, bool in_double, const FileProgress& progress)
+      : file_(file), in_double_(in_double), progress_(progress) {
     block_.reserve(block_size + longest_part);
   }
+
+  bool inDouble() const { return in_double_; }
+  /// \param records lines, or vertices and triangles, that will be written.
+  void expect(std::size_t records) { records_ = records; }
 
   void text(std::string_view part) {
     block_ += part;
     sendIfFull();
   }
-  /// 9 digits tell every two floats apart.
+  /// 9 digits distinguish any two floats.
   void number(float value) {
     std::array<char, 32> digits;
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
@@ -43,7 +48,24 @@ public:
     block_.append(digits.data(),
                   std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
   }
+  /// The fewest digits that distinguish the value from any other double.
+  void number(double value) {
+    std::array<char, 32> digits;
+    block_.append(digits.data(),
+                  std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  }
+  void numbers(const FloatTriple& values) {
+    number(values[0]);
+    block_ += ' ';
+    number(values[1]);
+    block_ += ' ';
+    number(values[2]);
+  }
   void numbers(const Point& values) {
+    if (!in_double_) {
+      numbers(toFloat(values));
+      return;
+    }
     number(values[0]);
     block_ += ' ';
     number(values[1]);
@@ -65,8 +87,25 @@ public:
     std::memcpy(&bits, &value, sizeof bits);
     word(bits, order);
   }
-  void words(const Point& values, ByteOrder order) {
+  void word(double value, ByteOrder order) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    const auto low = static_cast<std::uint32_t>(bits);
+    const auto high = static_cast<std::uint32_t>(bits >> 32U);
+    word(order == ByteOrder::Little ? low : high, order);
+    word(order == ByteOrder::Little ? high : low, order);
+  }
+  void words(const FloatTriple& values, ByteOrder order) {
     for (const float value : values) {
+      word(value, order);
+    }
+  }
+  void words(const Point& values, ByteOrder order) {
+    if (!in_double_) {
+      words(toFloat(values), order);
+      return;
+    }
+    for (const double value : values) {
       word(value, order);
     }
   }
@@ -106,13 +145,14 @@ private:
       return;
     }
     finish();
-    if (progress_) {
+    if (progress_ && records_ > 0) {
       progress_(std::min(1.0, static_cast<double>(written_) / static_cast<double>(records_)));
     }
   }
 
   OutputFile& file_;
-  std::size_t records_;
+  bool in_double_;
+  std::size_t records_ = 0;
   std::size_t written_ = 0;
   const FileProgress& progress_;
   std::string block_;

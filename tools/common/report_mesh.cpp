@@ -105,9 +105,9 @@ std::vector<std::uint8_t> marksOf(const Result& result, int threads) {
     mark = static_cast<std::uint8_t>(mark & ~TriangleMarks::self_intersection);
   }
   if (result.smoothing.self_intersections > 0) {
-    SelfIntersectionOptions options;
-    options.threads = threads;
-    for (const auto& pair : findSelfIntersections(result.smoothed, result.triangles, options)) {
+    Execution execution;
+    execution.threads = threads;
+    for (const auto& pair : findSelfIntersections(result.smoothed, result.triangles, execution)) {
       for (const Index t : pair) {
         marks[at(t)] = static_cast<std::uint8_t>(marks[at(t)] | TriangleMarks::self_intersection);
       }
@@ -222,7 +222,7 @@ std::vector<Index> orderOnSphere(const Positions& sphere) {
 }
 
 ReportMesh reportMesh(const CloudReconstruction& cloud, std::size_t max_triangles, int threads) {
-  const Result& result = cloud.result();
+  const Result& result = cloud.result;
   ReportMesh mesh;
   mesh.vertices = orderOnSphere(result.sphere);
   mesh.positions = picked(vertexPositions(cloud), mesh.vertices);

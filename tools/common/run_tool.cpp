@@ -6,8 +6,6 @@
 #include "common/text.h"
 #include "spherical_param/version.h"
 
-#include <pcl/console/print.h>
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -120,8 +118,6 @@ int runTool(const std::string& tool, int argc, char** argv,
   try {
     try {
       handleSignals();
-      // What PCL has to say is in our own messages.
-      pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
       working_tool = tool.c_str();
       body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
       return finished(static_cast<int>(ExitCode::Done));

@@ -8,8 +8,8 @@
 
 namespace spherical_param::tools {
 
-/// Runs a tool: quiet libraries, temporary files removed on signals, and every exception told as
-/// one line of cause and one of remedy on the standard error. \return the exit code of main().
+/// Runs a tool: temporary files are removed on signals, and every exception becomes one line of
+/// cause and one of remedy on the standard error. \return the exit code of main().
 ///
 /// \param body is given the words of the command line without the program's name.
 int runTool(const std::string& tool, int argc, char** argv,

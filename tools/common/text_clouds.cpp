@@ -98,7 +98,7 @@ public:
     if (!colors_possible_ && !normals_possible_) {
       values_ = {};
     } else {
-      values_.push_back(toPoint(*values));
+      values_.push_back(toFloat(*values));
     }
   }
 
@@ -107,7 +107,7 @@ public:
       data.normals = std::move(values_);
     } else if (colors_possible_ && data.colors.empty()) {
       data.colors.reserve(values_.size());
-      for (const Point& values : values_) {
+      for (const Normal& values : values_) {
         data.colors.push_back(toColor({values[0], values[1], values[2]}, 1.0));
       }
     }
@@ -118,7 +118,7 @@ private:
   std::size_t first_column_;
   bool colors_possible_ = true;
   bool normals_possible_ = true;
-  std::vector<Point> values_;  ///< exact for colours
+  std::vector<Normal> values_;  ///< exact for colours
 };
 
 bool isColumnTitle(const Words& words) {
@@ -147,7 +147,7 @@ PointData readXyz(const std::string& path, const FileProgress& progress) {
     if (!point) {
       failLine(path, line, "does not begin with three numbers");
     }
-    data.addPoint(*point);
+    data.points.push_back(*point);
     for (ColumnTriple& triple : further) {
       triple.add(words);
     }
@@ -180,7 +180,7 @@ std::optional<std::size_t> objIndex(std::string_view word, std::size_t count) {
 struct ObjContent {
   PointData data;  ///< points only
   std::vector<std::array<double, 3>> colors;
-  std::vector<Point> normals;
+  std::vector<Normal> normals;
   std::vector<std::optional<std::size_t>> normal_of_point;
   bool normals_referenced = false;
 };
@@ -200,12 +200,12 @@ void readObjCorner(std::string_view word, ObjContent& content) {
   }
 }
 
-std::vector<Point> objNormals(const ObjContent& content) {
+std::vector<Normal> objNormals(const ObjContent& content) {
   if (!content.normals_referenced) {
     return content.normals.size() == content.data.points.size() ? content.normals
-                                                                : std::vector<Point>();
+                                                                : std::vector<Normal>();
   }
-  std::vector<Point> normals;
+  std::vector<Normal> normals;
   for (std::size_t i = 0; i < content.data.points.size(); ++i) {
     if (i >= content.normal_of_point.size() || !content.normal_of_point[i]) {
       return {};  // a vertex without normal: there is none to keep for it
@@ -230,10 +230,10 @@ PointData readObj(const std::string& path, const FileProgress& progress) {
         failLine(path, line, "has no three numbers");
       }
       if (words[0] == "vn") {
-        content.normals.push_back(toPoint(*values));
+        content.normals.push_back(toFloat(*values));
         return;
       }
-      content.data.addPoint(*values);
+      content.data.points.push_back(*values);
       if (const auto color = threeNumbers(words, 4)) {
         content.colors.push_back(*color);
       }
@@ -249,7 +249,7 @@ PointData readObj(const std::string& path, const FileProgress& progress) {
   if (content.data.points.empty()) {
     failContent(path, "it has no points");
   }
-  std::vector<Point> normals = objNormals(content);
+  std::vector<Normal> normals = objNormals(content);
 
   PointData data = std::move(content.data);
   data.normals = std::move(normals);

@@ -17,7 +17,7 @@
 namespace spherical_param::tools {
 namespace {
 
-Point toPoint(const Eigen::Vector3d& value) {
+FloatTriple toTriple(const Eigen::Vector3d& value) {
   return {static_cast<float>(value.x()), static_cast<float>(value.y()),
           static_cast<float>(value.z())};
 }
@@ -73,10 +73,10 @@ TexturedMesh makeTexturedMesh(const TextureAtlas& atlas, const Positions& points
   mesh.points.reserve(atlas.vertices.size());
   mesh.normals.reserve(atlas.vertices.size());
   for (Eigen::Index v = 0; v < at_vertices.cols(); ++v) {
-    mesh.points.push_back(toPoint(at_vertices.col(v)));
+    mesh.points.push_back(toTriple(at_vertices.col(v)));
     // Programs expect unit vectors, also where triangles have no area.
     const Eigen::Vector3d normal = normals.col(v).stableNormalized();
-    mesh.normals.push_back(toPoint(normal.isZero(0.0) ? Eigen::Vector3d::UnitZ() : normal));
+    mesh.normals.push_back(toTriple(normal.isZero(0.0) ? Eigen::Vector3d::UnitZ() : normal));
   }
   mesh.coordinates.reserve(static_cast<std::size_t>(atlas.coordinates.cols()));
   for (Eigen::Index i = 0; i < atlas.coordinates.cols(); ++i) {
@@ -128,9 +128,9 @@ void writeGlb(OutputFile& file, const TexturedMesh& mesh, const std::string& png
   constexpr int repeat = 10497;
 
   const std::size_t count = mesh.coordinates.size();
-  Point lowest = mesh.points.front();
-  Point highest = mesh.points.front();
-  for (const Point& point : mesh.points) {
+  FloatTriple lowest = mesh.points.front();
+  FloatTriple highest = mesh.points.front();
+  for (const FloatTriple& point : mesh.points) {
     for (std::size_t d = 0; d < 3; ++d) {
       lowest[d] = std::min(lowest[d], point[d]);
       highest[d] = std::max(highest[d], point[d]);
@@ -180,7 +180,7 @@ void writeGlb(OutputFile& file, const TexturedMesh& mesh, const std::string& png
                   "write .ply or .obj, or give -size a smaller number");
   }
   const FileProgress no_progress;
-  RecordWriter writer(file, 1, no_progress);
+  RecordWriter writer(file, false, no_progress);
   const auto word = [&writer](std::size_t value) {
     writer.word(static_cast<std::uint32_t>(value), ByteOrder::Little);
   };
@@ -218,7 +218,7 @@ void writeTexturedPly(OutputFile& file, const TexturedMesh& mesh, const std::str
                       Encoding encoding) {
   const bool is_binary = encoding == Encoding::Binary;
   const FileProgress no_progress;
-  RecordWriter writer(file, 1, no_progress);
+  RecordWriter writer(file, false, no_progress);
   writer.line("ply");
   writer.line(is_binary ? "format binary_little_endian 1.0" : "format ascii 1.0");
   writer.line("comment TextureFile " + image_name);
@@ -268,9 +268,9 @@ void writeTexturedPly(OutputFile& file, const TexturedMesh& mesh, const std::str
 void writeTexturedObj(OutputFile& file, const TexturedMesh& mesh,
                       const std::string& material_name) {
   const FileProgress no_progress;
-  RecordWriter writer(file, 1, no_progress);
+  RecordWriter writer(file, false, no_progress);
   writer.line("mtllib " + material_name);
-  for (const Point& point : mesh.points) {
+  for (const FloatTriple& point : mesh.points) {
     writer.text("v ");
     writer.numbers(point);
     writer.endLine();
@@ -282,7 +282,7 @@ void writeTexturedObj(OutputFile& file, const TexturedMesh& mesh,
     writer.number(v);
     writer.endLine();
   }
-  for (const Point& normal : mesh.normals) {
+  for (const FloatTriple& normal : mesh.normals) {
     writer.text("vn ");
     writer.numbers(normal);
     writer.endLine();

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "common/block_reader.h"
+#include "common/mesh_view.h"
+#include "common/point_data.h"
+#include "common/record_writer.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spherical_param::tools {
+
+/// How numbers are stored in formats that have both.
+enum class Encoding { Binary, Ascii };
+
+using CloudReader = PointData(const std::string& path, const FileProgress& progress);
+using MeshFormatWriter = void(RecordWriter& writer, const MeshView& mesh, Encoding encoding);
+
+/// A file format, named by the extension of a file. Functions that do not exist are null.
+struct FormatRow {
+  std::string_view extension;  ///< with the dot, in lower case
+  CloudReader* read_cloud;
+  MeshFormatWriter* write_cloud;
+  MeshFormatWriter* write_mesh;
+};
+
+/// All formats. A new one is a file beside this one, its name in the list below, and a row.
+extern const std::vector<FormatRow> format_table;
+
+CloudReader readPcd, readPly, readObj, readXyz;
+MeshFormatWriter writePcd, writePly, writeObj, writeVtk, writeXyz, writeStl, writeOff;
+
+}  // namespace spherical_param::tools

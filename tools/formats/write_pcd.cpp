@@ -1,0 +1,59 @@
+#include "formats/formats.h"
+#include "formats/mesh_parts.h"
+
+namespace spherical_param::tools {
+namespace {
+
+void writeHeader(RecordWriter& writer, const MeshView& mesh) {
+  std::string fields = "x y z";
+  std::string sizes = writer.inDouble() ? " 8 8 8" : " 4 4 4";
+  std::string types = "F F F";
+  std::string counts = " 1 1 1";
+  if (mesh.hasNormals()) {
+    fields += " normal_x normal_y normal_z";
+    sizes += " 4 4 4";
+    types += " F F F";
+    counts += " 1 1 1";
+  }
+  if (mesh.hasColors()) {
+    fields += mesh.hasAlpha() ? " rgba" : " rgb";
+    sizes += " 4";
+    types += mesh.hasAlpha() ? " U" : " F";
+    counts += " 1";
+  }
+  writer.line("# .PCD v0.7 - Point Cloud Data file format");
+  writer.line("VERSION 0.7");
+  writer.line("FIELDS " + fields);
+  writer.line("SIZE" + sizes);
+  writer.line("TYPE " + types);
+  writer.line("COUNT" + counts);
+  writer.line("WIDTH " + std::to_string(mesh.vertexCount()));
+  writer.line("HEIGHT 1");
+  writer.line("VIEWPOINT 0 0 0 1 0 0 0");
+  writer.line("POINTS " + std::to_string(mesh.vertexCount()));
+  writer.line("DATA binary");
+}
+
+}  // namespace
+
+/// The header has the lines of PCL's own, in their order.
+void writePcd(RecordWriter& writer, const MeshView& mesh, Encoding /*binary only*/) {
+  writer.expect(mesh.vertexCount());
+  writeHeader(writer, mesh);
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    writer.words(mesh.point(i), ByteOrder::Little);
+    if (mesh.hasNormals()) {
+      writer.words(mesh.normal(i), ByteOrder::Little);
+    }
+    if (mesh.hasColors()) {
+      const Color& color = mesh.color(i);
+      const std::uint32_t alpha = mesh.hasAlpha() ? color[3] : 0U;
+      writer.word(alpha << 24U | std::uint32_t{color[0]} << 16U | std::uint32_t{color[1]} << 8U |
+                      std::uint32_t{color[2]},
+                  ByteOrder::Little);
+    }
+    writer.endRecord();
+  }
+}
+
+}  // namespace spherical_param::tools
