@@ -16,11 +16,11 @@
 #include "common/product_input.h"
 #include "common/run_tool.h"
 #include "common/text.h"
+#include "spherical_param/map/morphing.h"
+#include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/map/morphing.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/version.h"
 
 #include <Eigen/Core>
@@ -388,7 +388,8 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
     execution.threads = settings.threads();
     const Positions positions = asWritten(positionsOf(settings, morph, frame));
     morph.self_intersections.push_back(
-        spherical_param::findSelfIntersections(positions, morph.result.triangles, execution).size());
+        spherical_param::findSelfIntersections(positions, morph.result.triangles, execution)
+            .size());
     sum += morph.self_intersections.back();
     console.update(timeOf(settings, frame));
   }

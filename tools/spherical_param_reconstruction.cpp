@@ -312,8 +312,7 @@ Json smoothingToJson(const Settings& settings, const spherical_param::SmoothingR
           {"self_intersections", smoothing.self_intersections}};
 }
 
-Json loopsToJson(const CloudReconstruction& cloud,
-                 const std::vector<std::vector<Index>>& loops) {
+Json loopsToJson(const CloudReconstruction& cloud, const std::vector<std::vector<Index>>& loops) {
   Json json = Json::array();
   for (const std::vector<Index>& loop : loops) {
     json.push_back(inputIndices(cloud, loop));
@@ -384,7 +383,7 @@ Json outliersToJson(const Settings& settings, const std::optional<OutlierRemoval
 }
 
 Json report(const Settings& settings, const CloudReconstruction& cloud) {
-    const spherical_param::Result& result = cloud.result;
+  const spherical_param::Result& result = cloud.result;
   Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
@@ -551,13 +550,13 @@ std::string convergence(const Settings& settings, const CloudReconstruction& clo
           ? counted(static_cast<std::size_t>(embedding.iterations), "iteration")
           : counted(static_cast<std::size_t>(embedding.levels.front().newton_iterations),
                     "Newton iteration");
-  return yesOrNo(embedding.converged()) + " (" +
-         nameOf(embedding.stop_reason, stop_reason_names) + " after " + steps +
+  return yesOrNo(embedding.converged()) + " (" + nameOf(embedding.stop_reason, stop_reason_names) +
+         " after " + steps +
          (hasBarrier(settings, embedding) ? ", the pull of a barrier is left)" : ")");
 }
 
 void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
-    const spherical_param::Result& result = cloud.result;
+  const spherical_param::Result& result = cloud.result;
   printHierarchy(result.embedding.levels, console);
   printPhases(result.optimization.phases, console);
   console.entry("points", std::to_string(cloud.data.points.size()));
@@ -625,8 +624,7 @@ void run(const std::vector<std::string>& words) {
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
     writeMesh(*files.back(), sphereOf(cloud, cloud.result.sphere), settings.sphere_format,
-              settings.report.encoding,
-              [&](double share) { console.update(0.5 + 0.5 * share); });
+              settings.report.encoding, [&](double share) { console.update(0.5 + 0.5 * share); });
   }
   for (const auto& file : files) {
     file->finish();

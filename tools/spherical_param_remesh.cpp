@@ -18,14 +18,13 @@
 #include "common/product_input.h"
 #include "common/run_tool.h"
 #include "common/text.h"
-#include "spherical_param/mesh_measures.h"
-#include "spherical_param/mesh_topology.h"
 #include "spherical_param/map/resampling.h"
-#include "spherical_param/self_intersection.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/spherical_harmonics.h"
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/mesh_topology.h"
+#include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
-
 
 #include <algorithm>
 #include <array>
@@ -74,11 +73,6 @@ constexpr int longest_side = 16385;
 constexpr std::int64_t most_even_points = std::int64_t{1} << 24;
 constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
 
-/// Those of the call in C++.
-spherical_param::SphereMapOptions mapDefaults() {
-  return pcl::SphericalParamRemeshOptions().map;
-}
-
 const std::vector<OptionInfo> own_options = {
     {"grid", "NAME", "icosahedral or octahedral: meshes; even: a cloud (icosahedral)"},
     {"points", "N", "number of points, of meshes the nearest possible (as the mesh of the cloud)"},
@@ -89,8 +83,8 @@ const std::vector<OptionInfo> own_options = {
     {"series", "", "output the surface of that series"},
     {"degree", "L", "degree of the series, up to 512 (32)"},
 };
-const std::vector<OptionInfo> option_table =
-    joined({own_options, productOptions(mapDefaults()), outputOptions()});
+const std::vector<OptionInfo> option_table = joined(
+    {own_options, productOptions(spherical_param::mapOptionsForResampling()), outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -122,9 +116,9 @@ struct Settings {
   bool reads_image = false;  ///< a geometry image becomes a mesh; else the input is a cloud
   bool writes_image = false;
   FileFormat output_format = nullptr;         ///< unless it is an image
-  Sampling sampling = Sampling::Icosahedral;   ///< octahedral for an image
-  std::optional<std::size_t> points;           ///< none: as many as the mesh has vertices
-  std::optional<int> side;                     ///< none: as the points say
+  Sampling sampling = Sampling::Icosahedral;  ///< octahedral for an image
+  std::optional<std::size_t> points;          ///< none: as many as the mesh has vertices
+  std::optional<int> side;                    ///< none: as the points say
   SurfaceFit fit = SurfaceFit::Smooth;
   std::string sphere;  ///< empty: not wanted
   FileFormat sphere_format = nullptr;
@@ -241,7 +235,7 @@ Settings parseSettings(const CommandLine& command_line) {
         static_cast<int>(parseInteger("degree", command_line.value("degree", ""), {0, 512}));
   }
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line, mapDefaults());
+  settings.product = parseProductOptions(command_line, spherical_param::mapOptionsForResampling());
   checkCombination(command_line, settings);
   if (settings.writes_image) {
     settings.sampling = Sampling::Octahedral;
@@ -401,8 +395,7 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
   if (!output.isCloud()) {
     output.topology =
         spherical_param::checkTopology(mesh.triangles, output.pointCount(), settings.threads());
-    output.measures =
-        spherical_param::measureMesh(mesh.points, mesh.triangles, settings.threads());
+    output.measures = spherical_param::measureMesh(mesh.points, mesh.triangles, settings.threads());
     spherical_param::Execution execution;
     execution.threads = settings.threads();
     execution.progress = [&console](const spherical_param::Progress& progress) {

@@ -425,6 +425,13 @@ GridSphere makeGridSphere(SphereGrid grid, int frequency) {
                                          : OctahedralSquare(frequency).grid();
 }
 
+SphereMapOptions mapOptionsForResampling() {
+  SphereMapOptions options;
+  options.area_weight = 0.5;
+  options.sweeps = 40;
+  return options;
+}
+
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid) {
   SurfaceSamples samples = surface.evaluate(grid.directions);
   return {std::move(samples.positions), std::move(samples.normals), grid.directions,

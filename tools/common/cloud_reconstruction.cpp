@@ -107,8 +107,7 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
 std::vector<std::string> warningsOf(const CloudReconstruction& cloud) {
   std::vector<std::string> warnings;
   if (cloud.ignored > 0) {
-    warnings.push_back(counted(cloud.ignored, "point") +
-                       (cloud.ignored == 1 ? " was" : " were") +
+    warnings.push_back(counted(cloud.ignored, "point") + (cloud.ignored == 1 ? " was" : " were") +
                        " left out: the coordinates are not finite.");
   }
   const std::vector<std::string>& further = cloud.result.warnings;

@@ -22,8 +22,8 @@ public:
       return;
     }
     box_.extend(point);
-    rounding_ = std::max(rounding_,
-                         (point - point.cast<float>().cast<double>()).cwiseAbs().maxCoeff());
+    rounding_ =
+        std::max(rounding_, (point - point.cast<float>().cast<double>()).cwiseAbs().maxCoeff());
   }
   bool needsDouble() const {
     return !box_.isEmpty() && rounding_ > kMaxRounding * box_.diagonal().norm();

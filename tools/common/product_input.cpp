@@ -124,9 +124,9 @@ void printMap(const MappedCloud& mapped, Console& console) {
   const SphereMap& map = mapped.map;
   console.entry("input points", std::to_string(mapped.cloud.data.points.size()));
   console.entry("vertices", std::to_string(mapped.points.cols()));
-  console.entry("mesh", std::to_string(mapped.triangles().cols()) + " triangles, " +
-                            counted(mapped.cloud.result.self_intersections.size(),
-                                    "self-intersection"));
+  console.entry("mesh",
+                std::to_string(mapped.triangles().cols()) + " triangles, " +
+                    counted(mapped.cloud.result.self_intersections.size(), "self-intersection"));
   console.entry("flipped on sphere",
                 std::to_string(map.distortion.flipped_triangles) +
                     " (embedding: " + std::to_string(map.before.flipped_triangles) + ")");

@@ -40,7 +40,7 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
       setOption(scratch, row.name, value);
       return value;
     } catch (const InvalidInput&) {
-      // Told below, in the words of the command line.
+      // Reported below, in the words of the command line.
     }
   }
   throw UsageError("option -" + row.name + ": " + inQuotes(text) + " is not " + rangeOf(row),
@@ -58,9 +58,9 @@ Options parseOptions(const CommandLine& command_line) {
     const auto failed = failedCondition(row, options);
     if (failed && command_line.has(row.name)) {
       const auto& [other, needed] = *failed;
-      throw UsageError(
-          "option -" + row.name + " does nothing with -" + other + " " + optionText(options, other),
-          "leave -" + row.name + " out, or give -" + other + " " + needed);
+      throw UsageError("option -" + row.name + " does nothing with -" + other + " " +
+                           optionText(options, other),
+                       "leave -" + row.name + " out, or give -" + other + " " + needed);
     }
   }
 #ifdef _OPENMP
@@ -71,7 +71,7 @@ Options parseOptions(const CommandLine& command_line) {
   return options;
 }
 
-Json toJson(const OptionValue& value) {
+Json jsonOf(const OptionValue& value) {
   return std::visit(
       [](const auto& content) -> Json {
         if constexpr (std::is_same_v<std::decay_t<decltype(content)>, std::monostate>) {
@@ -86,7 +86,7 @@ Json toJson(const OptionValue& value) {
 }  // namespace
 
 std::string optionText(const Options& options, const std::string& name) {
-  return textOf(findOption(name).get(options));
+  return spherical_param::textOf(findOption(name).get(options));
 }
 
 std::vector<OptionInfo> reconstructionOptions() {
@@ -94,14 +94,16 @@ std::vector<OptionInfo> reconstructionOptions() {
   const Options defaults;
   for (const OptionRow& row : optionTable()) {
     const std::string argument = !row.choices.empty() ? "NAME" : row.is_integer ? "N" : "X";
-    lines.push_back({row.name, argument,
-                     row.help + ": " + rangeOf(row) + " (" + textOf(row.get(defaults)) + ")",
-                     row.expert});
+    lines.push_back(
+        {row.name, argument,
+         row.help + ": " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
+         row.expert});
   }
   lines.push_back(
       {"outliers", "SIGMA",
-       "leave out points that lie this number of standard deviations off, 0 to 1000 (off)"});
-  lines.push_back({"strict", "", "end with exit code 1 after a warning; all files are written"});
+       "leave out points that lie this number of standard deviations off, 0 to 1000 (off)", false});
+  lines.push_back(
+      {"strict", "", "end with exit code 1 after a warning; all files are written", false});
   return lines;
 }
 
@@ -120,7 +122,7 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
   for (const OptionRow& row : optionTable()) {
     const OptionValue value = row.get(settings.options);
     if (value.index() != 0 && !failedCondition(row, settings.options)) {
-      console.entry(row.name, textOf(value));
+      console.entry(row.name, spherical_param::textOf(value));
     }
   }
   if (settings.outlier_sigma) {
@@ -134,8 +136,8 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   Json json;
   for (const OptionRow& row : optionTable()) {
-    json[row.name] = failedCondition(row, settings.options) ? Json(nullptr)
-                                                            : toJson(row.get(settings.options));
+    json[row.name] =
+        failedCondition(row, settings.options) ? Json(nullptr) : jsonOf(row.get(settings.options));
   }
   json["outliers"] = settings.outlier_sigma ? Json(*settings.outlier_sigma) : Json(nullptr);
   json["strict"] = settings.strict;

@@ -15,8 +15,8 @@ namespace spherical_param::tools {
 
 /// A mesh with a texture in single precision, as it is written.
 struct TexturedMesh {
-  std::vector<FloatTriple> points;                      ///< each vertex once, also on cuts
-  std::vector<FloatTriple> normals;                     ///< one per vertex
+  std::vector<FloatTriple> points;                ///< each vertex once, also on cuts
+  std::vector<FloatTriple> normals;               ///< one per vertex
   std::vector<std::array<float, 2>> coordinates;  ///< u to the right and v up
   std::vector<Index> vertex_of_coordinate;        ///< each coordinate belongs to one vertex
   std::vector<std::array<Index, 3>> triangles;    ///< of vertices

@@ -9,7 +9,8 @@ void writeOff(RecordWriter& writer, const MeshView& mesh, Encoding /*text only*/
   writer.text(!mesh.hasColors() ? "" : "C");
   writer.text(!mesh.hasNormals() ? "" : "N");
   writer.line("OFF");
-  writer.line(std::to_string(mesh.vertexCount()) + " " + std::to_string(mesh.triangleCount()) + " 0");
+  writer.line(std::to_string(mesh.vertexCount()) + " " + std::to_string(mesh.triangleCount()) +
+              " 0");
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     writer.numbers(mesh.point(i));
     if (mesh.hasNormals()) {

@@ -24,15 +24,7 @@ struct SphericalParamRemeshOptions {
   /** \brief Parameters of the map to the sphere, which by default keeps angles more than for other
    * uses: long thin triangles cut across folds of the surface. Where no threads are given, those of
    * the reconstruction are used, in all steps. */
-  spherical_param::SphereMapOptions map = makeMapOptions();
-
-private:
-  static spherical_param::SphereMapOptions makeMapOptions() {
-    spherical_param::SphereMapOptions options;
-    options.area_weight = 0.5;
-    options.sweeps = 40;
-    return options;
-  }
+  spherical_param::SphereMapOptions map = spherical_param::mapOptionsForResampling();
 };
 
 /** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere: closed,
