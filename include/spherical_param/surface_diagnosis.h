@@ -80,7 +80,8 @@ struct SurfaceDiagnosis {
   std::vector<Lid> lids;                         ///< by falling area
   std::vector<CollapsedHandle> handles;          ///< by falling number of edges
   std::vector<PartBridge> bridges;               ///< by falling number of points
-  /// Share of the mesh's edges that join points more than two steps apart in the graph, in [0, 1].
+  /// Fraction of the mesh's edges that join points more than two steps apart in the graph, in [0,
+  /// 1].
   double edges_outside_graph = 0.0;
   /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
   /// none where that was not needed, as neighbours are nowhere torn apart, or cannot be told.
@@ -96,21 +97,23 @@ struct SurfaceDiagnosis {
   std::size_t openings() const;
 };
 
-/// SurfaceDiagnosis::summary, from all else: for who changed the unit of what was found.
+/// Composes SurfaceDiagnosis::summary anew, for callers who have changed the unit of the findings.
 ///
-/// \param diagnosis of which all but the summary counts.
+/// \param diagnosis its summary is not read.
 /// \return one sentence.
 std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 
-/// Tells whether a cloud looks like a closed genus-0 surface: the mesh always is one, whatever the
-/// cloud shows. An opening is closed by triangles that leave the graph and are long against the
+/// Decides whether a cloud looks like a closed genus-0 surface: the mesh always is one, whatever
+/// the cloud shows. An opening is closed by triangles that leave the graph and are long against the
 /// distance of the points around them; a handle is cut, and neighbours become distant; the graph
 /// itself falls into the parts that were joined by bridges.
 ///
 /// \param points    3 x n, finite; extent about 1, or at least such that areas are numbers.
 /// \param triangles 3 x m, a closed manifold over the points.
-/// \param graph     n nodes, lengths in the unit of the points: local Delaunay neighbourhoods, on
-///                  which all thresholds were measured.
+/// \param graph     n nodes, lengths in the unit of the points. The thresholds were measured on
+/// local
+///                  Delaunay neighbourhoods and hold for the 8 nearest neighbours as well; of a
+///                  graph with a mean degree above 12, the 8 shortest edges of each point are used.
 /// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
 /// \param options what is listed
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
@@ -125,8 +128,9 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// opening.
 ///
 /// Not guaranteed: openings of less than some 8 spacings and handles of less than some 9 points
-/// around are not told from uneven sampling. A place without points in the middle of dense ones is
-/// a lid, also where it is flat and nothing is missing. Where the mesh is folded, no lids are told.
+/// around are taken for uneven sampling. A place without points in the middle of dense ones is a
+/// filled hole, also where it is flat and nothing is missing. Where the mesh is folded, no filled
+/// holes are reported.
 /// Where noise is as large as the spacing, cycles are not counted: SurfaceDiagnosis::genus is
 /// unset. One handle may be cut in several places.
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
