@@ -287,13 +287,12 @@ private:
       }
       const std::vector<Index> around =
           optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_);
-      const auto before = static_cast<double>(optimizer_.intersectionsAround(around));
+      const std::size_t before = optimizer_.intersectionsAround(around);
       tryPart(
           seeds, size,
           [&](double change) {
-            const auto after = static_cast<double>(optimizer_.intersectionsAround(around));
-            return after < before ? change < tuned::kMaxPriceOfIntersection * (before - after)
-                                  : after == before && MeshOptimizer::isGain(change);
+            const std::size_t after = optimizer_.intersectionsAround(around);
+            return after < before || (after == before && MeshOptimizer::isGain(change));
           },
           tally);
     }

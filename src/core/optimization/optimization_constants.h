@@ -52,6 +52,8 @@ constexpr double kMinUnfoldedCosine = -0.5;
 /// Neighbours in the graph up to this distance [mean length of a vertex's edges] should be near on
 /// the mesh.
 constexpr double kMaxNearNeighbor = 1.5;
+/// Without relocation true edges fall to 0.9359; with one round a random sample keeps 2
+/// intersections.
 constexpr int kMaxRelocateRounds = 4;
 
 // --- Noise ---------------------------------------------------------------------------------------
@@ -65,37 +67,41 @@ constexpr int kMaxRelocateRounds = 4;
 constexpr double kMaxRough = 0.5;
 constexpr int kNoiseSteps = 3;
 /// Untangling on the given points takes long, and is in vain, above this number of intersections
-/// for each triangle; numbers up to the other one are tried anyway.
+/// for each triangle; numbers up to the other one are tried anyway. Without either, 8 of 10 noisy
+/// clouds keep 9 to 122 intersections instead of 0; the first matters above 150,000 points only.
 constexpr double kMaxFewIntersectionsPerTriangle = 0.005;
 constexpr double kMaxFewIntersections = 1500.0;
 
 // --- Ruin and recreate ---------------------------------------------------------------------------
 
+/// With 2 rounds the cheburashka keeps 7 intersections; with none the energy of the models is 0.1 %
+/// higher, and two noisy clouds keep 5 and 19.
 constexpr int kMaxRecreateRounds = 5;
-/// Vertices of a part around a folded edge, from the first size to the last, doubled.
+/// Vertices of a part around a folded edge, from the first size to the last, doubled. From 8 on the
+/// cheburashka keeps 9 intersections, up to 16 the noisy sphere 9.
 constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
 /// Vertices that may be taken out in all: the sum of the first and of the second for each vertex,
-/// but at most the third for each vertex, so that small clouds do not take long either.
+/// but at most the third for each vertex, so that clouds of less than 256 points do not take long
+/// either. Without the first a star keeps 309 intersections instead of 221.
 constexpr std::size_t kMaxRuinedVertices = 50000;
 constexpr std::size_t kMaxRuinsOfVertex = 5;
 constexpr std::size_t kMaxRuinsOfSmallCloud = 200;
 
 // --- Untangling ----------------------------------------------------------------------------------
 
+/// With 8 rounds a noisy cloud keeps 3 intersections; without any, two models keep 28 and 26.
 constexpr int kMaxUntangleRounds = 16;
 /// Rounds of untangling in which the energy alone decides: it knows the way out better than the
-/// number of intersections does, but may be stuck with the last ones.
+/// number of intersections does, but may be stuck with the last ones. With the energy alone the
+/// cheburashka keeps 3, with the number alone a random sample 2.
 constexpr int kMaxRoundsByEnergy = 5;
 /// Vertices of a part around two triangles that intersect, from the first size to the last,
-/// doubled.
+/// doubled. From 12 on the noisy sphere keeps 122 intersections, up to 48 the cheburashka 3.
 constexpr std::size_t kMinUntangled = 6;
 constexpr std::size_t kMaxUntangled = 96;
 /// Intersections are counted among twice as many vertices as the part has, and these.
 constexpr std::size_t kWatchedVertices = 200;
-/// Rise of the energy that is accepted for each intersection less [mean length of the graph's
-/// edges].
-constexpr double kMaxPriceOfIntersection = 10.0;
 
 // --- Analysis of the sampling --------------------------------------------------------------------
 
