@@ -126,7 +126,9 @@ class Maps(unittest.TestCase):
                 self.assertEqual(atlas.triangles.shape, atlas.coordinate_triangles.shape)
                 np.testing.assert_array_equal(atlas.vertices[:1500], self.map.vertices)
                 self.assertAlmostEqual(
-                    shapes.volume(atlas.vertices, atlas.triangles), self.mesh.measures.volume, delta=1e-9
+                    shapes.volume(atlas.vertices, atlas.triangles),
+                    self.mesh.measures.volume,
+                    delta=1e-9,
                 )
                 # None turned over: the area in the square is that of charts one to one.
                 u = atlas.coordinates[atlas.coordinate_triangles]

@@ -265,7 +265,7 @@ def remesh(
     """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
 
     A mesh is closed, manifold, of genus 0, oriented outward. Where its triangles would intersect,
-    vertices slide along the surface, then edges are flipped; ``self_intersections`` holds what is left.
+    vertices slide along the surface, then edges are flipped; ``self_intersections`` holds the rest.
 
     Parameters
     ----------

@@ -277,7 +277,8 @@ class Result(MeshExport):
         crossings = len(self.self_intersections)
         return (
             f"<spherical_param.Result: {len(self.vertices)} vertices, "
-            f"{len(self.triangles)} triangles, volume {self.measures.volume:.6g}, area {self.measures.area:.6g}, "
+            f"{len(self.triangles)} triangles, "
+            f"volume {self.measures.volume:.6g}, area {self.measures.area:.6g}, "
             f"{crossings} self-intersection{'' if crossings == 1 else 's'}, "
             f"{self.diagnosis.kind}>"
         )
