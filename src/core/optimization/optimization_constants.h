@@ -7,7 +7,7 @@
 /// All tuned constants of the optimisation, each with the experiment that set it.
 ///
 /// "13 models" are the closed scans and designed models of the benchmark below 60,000 points, and
-/// "20 clouds" are generated ones: scans with noise of 0.25 to 1.5 spacings, random samples, merged
+/// "22 clouds" are generated ones: scans with noise of 0.25 to 1.5 spacings, random samples, merged
 /// depth images, thin and sharp bodies. "True edges" is the fraction of the edges of a model's own
 /// mesh that the result has: 0.9366 on average.
 namespace spherical_param::internal::optimization_constants {

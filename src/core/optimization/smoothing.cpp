@@ -2,6 +2,7 @@
 
 #include "option_checks.h"
 #include "parallel.h"
+#include "pi.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
@@ -18,11 +19,15 @@ namespace {
 /// adjacency A, exceeds 3/2: each edge is in two triangles, so that x' (D + A) x is half the sum
 /// over the triangles of (x_i + x_j)^2 + (x_j + x_k)^2 + (x_k + x_i)^2 >= x_i^2 + x_j^2 + x_k^2,
 /// and a vertex is in as many triangles as it has neighbours: x' (D + A) x >= x' D x / 2.
-constexpr double kHighestFrequency = 1.5;
+constexpr double kMaxFrequency = 1.5;
 
 /// To this, relative to the size of what is filtered, the filter of SmoothingMethod::Biharmonic is
 /// exact: far below any noise that is worth smoothing.
-constexpr double kFilterAccuracy = 1e-7;
+constexpr double kMaxFilterError = 1e-7;
+
+/// Newton's method for the volume ends at this relative error, or after this number of steps.
+constexpr double kMaxVolumeError = 1e-12;
+constexpr int kMaxVolumeIterations = 8;
 
 [[noreturn]] void fail(const std::string& what) {
   throw InvalidInput("smoothSurface: " + what);
@@ -168,20 +173,20 @@ private:
 
 /// The Chebyshev coefficients of 2^-(k / c)^2, c = 1 - 2^(-1 / steps), in x = 4/3 k - 1 of [-1, 1].
 std::vector<double> biharmonicSeries(int steps) {
-  const double pi = std::acos(-1.0);
   const double cutoff = -std::expm1(-std::log(2.0) / steps);
   // In the angle of the nodes the filter is as wide as sqrt(c): so many resolve it to 1e-9.
   const auto nodes = static_cast<std::size_t>(16.0 + 16.0 / std::sqrt(cutoff));
   std::vector<double> coefficients(nodes, 0.0);
   for (std::size_t q = 0; q < nodes; ++q) {
-    const double angle = pi * (static_cast<double>(q) + 0.5) / static_cast<double>(nodes);
-    const double k = kHighestFrequency / 2.0 * (1.0 + std::cos(angle));
+    const double angle =
+        internal::kPi * (static_cast<double>(q) + 0.5) / static_cast<double>(nodes);
+    const double k = kMaxFrequency / 2.0 * (1.0 + std::cos(angle));
     const double value = std::exp2(-(k / cutoff) * (k / cutoff)) / static_cast<double>(nodes);
     for (std::size_t i = 0; i < nodes; ++i)
       coefficients[i] += (i == 0 ? 1.0 : 2.0) * value * std::cos(static_cast<double>(i) * angle);
   }
   double omitted = 0.0;
-  while (coefficients.size() > 2 && omitted + std::abs(coefficients.back()) < kFilterAccuracy) {
+  while (coefficients.size() > 2 && omitted + std::abs(coefficients.back()) < kMaxFilterError) {
     omitted += std::abs(coefficients.back());
     coefficients.pop_back();
   }
@@ -197,7 +202,7 @@ std::vector<double> biharmonicSeries(int steps) {
 /// Laplacian: cheaper than solving with 1 + L^2 / c^2, and the same for any number of threads.
 void Filter::biharmonicFlow(Positions& points, int steps) const {
   const std::vector<double> coefficients = biharmonicSeries(steps);
-  const double half = kHighestFrequency / 2.0;
+  const double half = kMaxFrequency / 2.0;
   // x applied to the points is -4/3 of the Laplacian minus the points.
   Positions before = points;  // T_0
   Positions last = -points;   // T_1
@@ -215,10 +220,10 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
 /// Moves all points by one distance along their normals so that the volume becomes the given one:
 /// Newton's method, as long as it gets nearer.
 void Filter::restoreVolume(Positions& points, double volume) const {
-  constexpr int max_iterations = 8;
   double error = volume - this->volume(points);
   Positions moved(3, points.cols());
-  for (int i = 0; i < max_iterations && std::abs(error) > 1e-12 * std::abs(volume); ++i) {
+  for (int i = 0; i < kMaxVolumeIterations && std::abs(error) > kMaxVolumeError * std::abs(volume);
+       ++i) {
     const double slope = sum([&](Eigen::Index v) { return normal(points, v).norm(); }) / 6.0;
     const double distance = error / slope;
     if (!std::isfinite(distance))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pi.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>
@@ -54,7 +55,7 @@ inline double fastAcos(double x) {
                      y * (0.0308918810 +
                           y * (-0.0170881256 + y * (0.0066700901 - y * 0.0012624911))))));
   const double angle = std::sqrt(std::max(0.0, 1.0 - y)) * polynomial;
-  return x < 0.0 ? 3.14159265358979323846 - angle : angle;
+  return x < 0.0 ? kPi - angle : angle;
 }
 
 /// Energy of a triangle mesh on points: the sum over its edges of length * bend, and over its

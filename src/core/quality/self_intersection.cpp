@@ -36,8 +36,16 @@ using internal::orientation3d;
 using internal::Report;
 using Pairs = std::vector<std::array<Index, 2>>;
 
-/// Shares of the work that are done after its parts: the tree, the pairs among its triangles. Of
-/// the tree, the order of the triangles.
+// They influence the time only, not the pairs that are found.
+
+/// Triangles this number of times as large as the typical one are large.
+constexpr double kMinLarge = 8.0;
+/// Blocks of triangles are together up to this number of times the typical size of one; in the
+/// order of a space-filling curve, they are 20 to 40 times as large.
+constexpr double kMaxBlock = 64.0;
+/// Up to this number of large triangles, and one more for each kTypicalPerLarge, do no harm.
+constexpr std::size_t kMaxLarge = 16;
+constexpr std::size_t kTypicalPerLarge = 10000;
 
 /// A triangle with all that the tests need, in one place of the memory.
 struct Face {
@@ -459,8 +467,8 @@ private:
   const std::vector<std::uint8_t>& fans_;
 };
 
-constexpr unsigned kCurveBits = 10;          ///< an axis
-constexpr std::uint32_t kMostSizeClass = 3;  ///< what is left of the 32 bits of a key
+constexpr unsigned kCurveBits = 10;         ///< an axis
+constexpr std::uint32_t kMaxSizeClass = 3;  ///< what is left of the 32 bits of a key
 
 /// Sorts triangles with the same key along the curve in the bounding cube of their own centres, and
 /// so on: however unevenly the mesh is sampled, triangles that follow each other are near.
@@ -495,16 +503,7 @@ void refine(const Mesh& mesh, Place* begin, Place* end) {
   }
 }
 
-/// Triangles so many times as large as usual are large.
-constexpr double kLarge = 8.0;
-/// Blocks of triangles are together up to so many times the usual size of one; in the order of a
-/// space-filling curve, they are 20 to 40 times as large.
-constexpr double kLargeBlock = 64.0;
-/// Few large triangles do no harm anywhere.
-constexpr std::size_t kFewLarge = 16;
-constexpr std::size_t kOfWhichOneMayBeLarge = 10000;
-
-/// The median size of a sample of triangles tells what is usual.
+/// The typical size of a triangle: the median of a sample.
 double usualSize(const Mesh& mesh, const std::vector<Index>& subset) {
   constexpr std::size_t sample = 1000;
   std::vector<double> sizes;
@@ -529,8 +528,8 @@ std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subse
         for (std::size_t i = begin; i < end; ++i) {
           const Box box = mesh.box(subset[i]);
           std::uint32_t size_class = 0;
-          for (double size = box.size() / kLarge; size > usual && size_class < kMostSizeClass;
-               size /= kLarge)
+          for (double size = box.size() / kMinLarge; size > usual && size_class < kMaxSizeClass;
+               size /= kMinLarge)
             ++size_class;
           const Vector3d cell = (0.5 * (box.lower + box.upper) + Vector3d::Ones()) * scale;
           places[i] = {spread(static_cast<std::uint32_t>(cell.x())) |
@@ -653,7 +652,7 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
           all.upper = all.upper.cwiseMax(box.upper);
           const Eigen::Vector3f center = (0.5 * (box.lower + box.upper)).cast<float>();
           centers[i - begin] = {center.x(), center.y(), center.z()};
-          block.large += box.size() > kLarge * usual ? 1 : 0;
+          block.large += box.size() > kMinLarge * usual ? 1 : 0;
         }
         block.size = all.size();
         sortBlock(centers, subset.data() + begin, end - begin, order.data() + begin);
@@ -661,8 +660,8 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
       },
       report);
   const std::size_t count = (subset.size() + internal::kBlockSize - 1) / internal::kBlockSize;
-  if (blocks.size > kLargeBlock * usual * static_cast<double>(count) ||
-      blocks.large > kFewLarge + subset.size() / kOfWhichOneMayBeLarge)
+  if (blocks.size > kMaxBlock * usual * static_cast<double>(count) ||
+      blocks.large > kMaxLarge + subset.size() / kTypicalPerLarge)
     return orderedAnew(mesh, subset, usual, threads);
   return order;
 }
@@ -711,17 +710,15 @@ private:
   std::vector<std::vector<BoxGroup>> levels_;  ///< from the leaves to the root
 };
 
-Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
-           const Report& report)
+Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads, const Report& report)
     : mesh_(mesh), order_(ordered(mesh, subset, threads, report)) {
   levels_.emplace_back((order_.size() + kWidth - 1) / kWidth);
   static_assert(internal::kBlockSize % kWidth == 0, "a group is in one block");
-  internal::forEachBlock(order_.size(), threads, report,
-                         [&](std::size_t, std::size_t begin, std::size_t end) {
-                           for (std::size_t i = begin; i < end; ++i)
-                             levels_.front()[i / kWidth].set(i % kWidth,
-                                                             WideBox(mesh.box(order_[i])));
-                         });
+  internal::forEachBlock(
+      order_.size(), threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          levels_.front()[i / kWidth].set(i % kWidth, WideBox(mesh.box(order_[i])));
+      });
   do {
     const std::vector<BoxGroup>& below = levels_.back();
     std::vector<BoxGroup> level((below.size() + kWidth - 1) / kWidth);
@@ -890,9 +887,8 @@ Pairs pairsWithin(const Tree& tree, int threads, const Report& report) {
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {
-  return internal::findSelfIntersections(
-      points, triangles, {}, execution.threads,
-      internal::reportOf(execution, "intersections"));
+  return internal::findSelfIntersections(points, triangles, {}, execution.threads,
+                                         internal::reportOf(execution, "intersections"));
 }
 
 std::vector<std::array<Index, 2>>
@@ -937,15 +933,14 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   const Tree tree(mesh, subset, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);
   const Box bounds = tree.box();
-  const Pairs others =
-      collect(mesh.size(), threads, report, [&](std::size_t t, Pairs& found) {
-        if (in_set[t] != 0)
-          return;
-        const auto triangle = static_cast<Index>(t);
-        const Box box = mesh.box(triangle);
-        if (box.overlaps(bounds))
-          tree.findPairs(mesh.face(triangle, box.size()), box, found);
-      });
+  const Pairs others = collect(mesh.size(), threads, report, [&](std::size_t t, Pairs& found) {
+    if (in_set[t] != 0)
+      return;
+    const auto triangle = static_cast<Index>(t);
+    const Box box = mesh.box(triangle);
+    if (box.overlaps(bounds))
+      tree.findPairs(mesh.face(triangle, box.size()), box, found);
+  });
   pairs.insert(pairs.end(), others.begin(), others.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;

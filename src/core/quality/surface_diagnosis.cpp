@@ -35,9 +35,9 @@ using internal::kPi;
 // only, and a real open scan; on a bowl, a torus and a pair of bodies of 1,000 to 50,000 points.
 // Random points on the closed scans, with and without openings, confirmed them.
 
-/// The thresholds hold for graphs of up to this mean degree: local Delaunay neighbourhoods have 6
-/// to 7, the 8 nearest neighbours 9 to 10, and both classify models, cuts, holes, views and pairs
-/// alike. With the 25 nearest, the cut elephant had handles and holes of 8 spacings were missed:
+/// The thresholds hold for graphs of up to this mean degree: local Delaunay neighbourhoods have 5
+/// to 6, the 8 nearest neighbours 8 to 9, and both classify models, cuts, holes, views and pairs
+/// alike. With the 25 nearest, the closed elephant had a handle, and holes were missed:
 /// of graphs of a larger degree, the kThinnedDegree shortest edges of each point are looked at.
 constexpr std::size_t kMaxMeanDegree = 12;
 constexpr std::size_t kThinnedDegree = 8;
