@@ -57,7 +57,7 @@ const OptionRow& findOption(const std::string& name);
 /// \throw InvalidInput for a name that does not exist, or a value of another kind or out of range.
 void setOption(Options& options, const std::string& name, const OptionValue& value);
 
-/// The range of an option in words, such as "3 and up" or "knn or delaunay".
+/// The range of an option in words, such as "an integer from 3 up" or "delaunay or knn".
 ///
 /// \param row of the option.
 /// \return the words.

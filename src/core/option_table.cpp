@@ -56,8 +56,9 @@ template <typename Field>
 OptionRow number(const char* name, const char* path, const char* help, Audience audience,
                  double min, double max, Field field) {
   using Value = std::decay_t<decltype(field(std::declval<Options&>()))>;
-  OptionRow row{name, path, help, audience == Expert, IsOptional<Value>::value, {}, true, min, max,
-                false, {}, {}, {}};
+  OptionRow row{
+      name, path, help, audience == Expert, IsOptional<Value>::value, {}, true, min, max, false,
+      {},   {},   {}};
   row.is_integer = !std::is_same_v<Value, double> && !std::is_same_v<Value, std::optional<double>>;
   row.get = [field](const Options& options) {
     Options copy = options;
@@ -71,15 +72,14 @@ OptionRow number(const char* name, const char* path, const char* help, Audience 
 template <typename Enum, typename Field>
 OptionRow choice(const char* name, const char* path, const char* help, Audience audience,
                  const std::vector<std::pair<const char*, Enum>>& names, Field field) {
-  OptionRow row{name, path, help, audience == Expert, false, {}, false, 0.0, 0.0, false, {}, {},
-                {}};
+  OptionRow row{name, path, help, audience == Expert, false, {}, false, 0.0, 0.0, false,
+                {},   {},   {}};
   for (const auto& entry : names)
     row.choices.emplace_back(entry.first);
   row.get = [field, names](const Options& options) -> OptionValue {
     Options copy = options;
-    const auto found = std::find_if(names.begin(), names.end(), [&](const auto& entry) {
-      return entry.second == field(copy);
-    });
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [&](const auto& entry) { return entry.second == field(copy); });
     return found == names.end() ? OptionValue() : OptionValue(std::string(found->first));
   };
   row.set = [field, names](Options& options, const OptionValue& value) {
@@ -103,65 +103,82 @@ OptionRow usedWith(std::vector<std::pair<std::string, std::string>> conditions, 
 std::vector<OptionRow> makeTable() {
   return {
       choice<GraphMethod>(
-          "graph", "graph.method", "how points become neighbours; knn: the paper's", Everybody,
+          "graph", "graph.method", "how points become neighbours, in the paper knn", Everybody,
           {{"delaunay", GraphMethod::LocalDelaunay}, {"knn", GraphMethod::NearestNeighbors}},
-          [](Options& o) -> auto& { return o.graph.method; }),
-      number("k", "graph.k", "nearest neighbours of each point; unset: 25 for knn, else 12",
-             Everybody, 3, kMaxInt, [](Options& o) -> auto& { return o.graph.k; }),
+          [](Options & o) -> auto& { return o.graph.method; }),
+      number(
+          "k", "graph.k", "nearest neighbours of each point, unset: 25 for knn, 12 for delaunay",
+          Everybody, 3, kMaxInt, [](Options & o) -> auto& { return o.graph.k; }),
       choice<EmbeddingMethod>(
-          "embedding", "embedding.method", "how the graph is embedded; iterative: the paper's",
+          "embedding", "embedding.method", "how the graph is embedded, in the paper iterative",
           Everybody,
           {{"multilevel", EmbeddingMethod::Multilevel}, {"iterative", EmbeddingMethod::Iterative}},
-          [](Options& o) -> auto& { return o.embedding.method; }),
-      choice<EdgeWeights>("weights", "embedding.weights", "weights of the Laplacian", Everybody,
-                          {{"adaptive", EdgeWeights::Adaptive},
-                           {"inverse", EdgeWeights::InverseLength},
-                           {"uniform", EdgeWeights::Uniform}},
-                          [](Options& o) -> auto& { return o.embedding.weights; }),
+          [](Options & o) -> auto& { return o.embedding.method; }),
+      choice<EdgeWeights>(
+          "weights", "embedding.weights", "weights of the Laplacian", Everybody,
+          {{"adaptive", EdgeWeights::Adaptive},
+           {"inverse", EdgeWeights::InverseLength},
+           {"uniform", EdgeWeights::Uniform}},
+          [](Options & o) -> auto& { return o.embedding.weights; }),
       usedWith({{"embedding", "multilevel"}, {"weights", "adaptive"}},
-               aboveMin(number("exponent", "embedding.exponent", "p of adaptive weights", Expert, 2,
-                               16, [](Options& o) -> auto& { return o.embedding.exponent; }))),
-      aboveMin(number("damping", "embedding.damping", "of iterations and smoothing sweeps", Expert,
-                      0, 1, [](Options& o) -> auto& { return o.embedding.damping; })),
-      number("tolerance", "embedding.tolerance",
-             "mean tangential Laplacian at convergence; unset: 1e-8 for iterative, else none",
-             Everybody, 0, 1, [](Options& o) -> auto& { return o.embedding.tolerance; }),
+               aboveMin(number(
+                   "exponent", "embedding.exponent", "exponent p of adaptive weights", Expert, 2,
+                   16, [](Options & o) -> auto& { return o.embedding.exponent; }))),
+      aboveMin(number(
+          "damping", "embedding.damping", "damping of iterations and smoothing sweeps", Expert, 0,
+          1, [](Options & o) -> auto& { return o.embedding.damping; })),
+      number(
+          "tolerance", "embedding.tolerance",
+          "mean tangential Laplacian at convergence, unset: 1e-8 for iterative, else none",
+          Everybody, 0, 1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
       usedWith({{"embedding", "iterative"}},
-               number("max_iterations", "embedding.max_iterations", "iterations at most", Expert, 0,
-                      kMaxInt, [](Options& o) -> auto& { return o.embedding.max_iterations; })),
+               number(
+                   "max_iterations", "embedding.max_iterations", "maximum number of iterations",
+                   Expert, 0, kMaxInt,
+                   [](Options & o) -> auto& { return o.embedding.max_iterations; })),
       usedWith({{"embedding", "iterative"}},
-               number("stagnation_window", "embedding.stagnation_window",
-                      "iterations over which stagnation is judged; 0 or 1: never", Expert, 0, kMaxInt,
-                      [](Options& o) -> auto& { return o.embedding.stagnation_window; })),
+               number(
+                   "stagnation_window", "embedding.stagnation_window",
+                   "iterations over which stagnation is judged, 0 or 1: never", Expert, 0, kMaxInt,
+                   [](Options & o) -> auto& { return o.embedding.stagnation_window; })),
       usedWith({{"embedding", "multilevel"}},
-               number("starts", "embedding.starts", "starts of the coarsest level", Expert, 1, 100,
-                      [](Options& o) -> auto& { return o.embedding.starts; })),
-      number("history_vertices", "embedding.history.vertices",
-             "vertices whose path to the sphere is kept at most", Expert, 0, 1 << 24,
-             [](Options& o) -> auto& { return o.embedding.history.vertices; }),
-      number("history_frames", "embedding.history.frames", "states of these paths at most", Expert,
-             2, 10000, [](Options& o) -> auto& { return o.embedding.history.frames; }),
+               number(
+                   "starts", "embedding.starts", "starts of the embedding on the coarsest level",
+                   Expert, 1, 100, [](Options & o) -> auto& { return o.embedding.starts; })),
+      number(
+          "history_vertices", "embedding.history.vertices",
+          "maximum number of vertices whose path to the sphere is kept", Expert, 0, 1 << 24,
+          [](Options & o) -> auto& { return o.embedding.history.vertices; }),
+      number(
+          "history_frames", "embedding.history.frames", "maximum number of states of these paths",
+          Expert, 2, 10000, [](Options & o) -> auto& { return o.embedding.history.frames; }),
       choice<TriangulationMethod>(
           "triangulation", "triangulation.method",
-          "how the sphere is triangulated; qhull: the paper's", Everybody,
+          "how the sphere is triangulated, in the paper qhull", Everybody,
           {{"incremental", TriangulationMethod::Incremental},
            {"qhull", TriangulationMethod::Qhull}},
-          [](Options& o) -> auto& { return o.triangulation.method; }),
-      choice<OptimizationMethod>("optimization", "optimization.method",
-                                 "how far the mesh is optimised on the points", Everybody,
-                                 {{"full", OptimizationMethod::Full},
-                                  {"flips", OptimizationMethod::Flips},
-                                  {"none", OptimizationMethod::None}},
-                                 [](Options& o) -> auto& { return o.optimization.method; }),
-      number("smoothing", "smoothing.steps", "steps of smoothing of the points; 0: none", Everybody,
-             0, 10000, [](Options& o) -> auto& { return o.smoothing.steps; }),
+          [](Options & o) -> auto& { return o.triangulation.method; }),
+      choice<OptimizationMethod>(
+          "optimization", "optimization.method", "how far the mesh is optimised on the points",
+          Everybody,
+          {{"full", OptimizationMethod::Full},
+           {"flips", OptimizationMethod::Flips},
+           {"none", OptimizationMethod::None}},
+          [](Options & o) -> auto& { return o.optimization.method; }),
+      number(
+          "smoothing", "smoothing.steps", "steps of smoothing of the points, 0: none", Everybody, 0,
+          10000, [](Options & o) -> auto& { return o.smoothing.steps; }),
       usedWith({{"optimization", "full"}},
-               number("retries", "retries", "retries at most while the mesh intersects itself",
-                      Expert, 0, 99, [](Options& o) -> auto& { return o.retries; })),
-      number("seed", "seed", "of all random choices", Everybody, 0, kMaxSeed,
-             [](Options& o) -> auto& { return o.seed; }),
-      number("threads", "threads", "threads; 0: as many as there are processors", Everybody, 0,
-             1024, [](Options& o) -> auto& { return o.threads; }),
+               number(
+                   "retries", "retries",
+                   "maximum number of retries while the mesh intersects itself", Expert, 0, 99,
+                   [](Options & o) -> auto& { return o.retries; })),
+      number(
+          "seed", "seed", "seed of all random choices", Everybody, 0, kMaxSeed,
+          [](Options & o) -> auto& { return o.seed; }),
+      number(
+          "threads", "threads", "threads, 0: as many as there are processors", Everybody, 0, 1024,
+          [](Options & o) -> auto& { return o.threads; }),
   };
 }
 
@@ -227,8 +244,8 @@ std::string rangeOf(const OptionRow& row) {
   if (row.choices.empty()) {
     std::ostringstream text;
     text.precision(10);
-    text << (row.is_integer ? "an integer " : "a number ") << (row.min_excluded ? "above " : "from ")
-         << row.min;
+    text << (row.is_integer ? "an integer " : "a number ")
+         << (row.min_excluded ? "above " : "from ") << row.min;
     if (row.max < kMaxInt)
       text << (row.min_excluded ? " and up to " : " to ") << row.max;
     else if (!row.min_excluded)

@@ -96,7 +96,7 @@ std::vector<OptionInfo> reconstructionOptions() {
     const std::string argument = !row.choices.empty() ? "NAME" : row.is_integer ? "N" : "X";
     lines.push_back(
         {row.name, argument,
-         row.help + ": " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
+         row.help + "; " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
          row.expert});
   }
   lines.push_back(
