@@ -10,9 +10,10 @@
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "scan_shapes.h"
-#include "spherical_param/mesh_topology.h"
 #include "spherical_param/map/sphere_map.h"
+#include "spherical_param/mesh_topology.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
@@ -172,7 +173,7 @@ void writeScan(const std::string& path, Shape shape, std::size_t points, bool wi
   const Positions scan = generateScan(options).points;
   TriangleMesh mesh;
   for (Index i = 0; i < scan.cols(); ++i) {
-    mesh.vertices.addPoint({scan(0, i), scan(1, i), scan(2, i)});
+    mesh.vertices.points.push_back({scan(0, i), scan(1, i), scan(2, i)});
   }
   std::vector<Point>& all = mesh.vertices.points;
   if (with_extras) {
@@ -181,7 +182,7 @@ void writeScan(const std::string& path, Shape shape, std::size_t points, bool wi
     }
     for (std::size_t i = 0; i < 5; ++i) {
       all.insert(all.begin() + static_cast<std::ptrdiff_t>(100 * i),
-                 {3.0F, static_cast<float>(i), -2.0F});
+                 {3.0, static_cast<double>(i), -2.0});
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
       mesh.vertices.colors.push_back({static_cast<std::uint8_t>(i % 251),
@@ -190,14 +191,14 @@ void writeScan(const std::string& path, Shape shape, std::size_t points, bool wi
     }
   }
   OutputFile file(path);
-  writeMesh(file, mesh, FileFormat::Ply, Encoding::Binary);
+  writeMesh(file, mesh, formatOf("a.ply"), Encoding::Binary);
   file.commit();
 }
 
 ReconstructionSettings flipsAlone() {
   ReconstructionSettings settings;
-  settings.options.optimization = spherical_param::OptimizationMethod::Flips;
-  settings.options.attempts = 1;
+  settings.options.optimization.method = spherical_param::OptimizationMethod::Flips;
+  settings.options.retries = 0;
   settings.options.threads = 2;
   return settings;
 }
@@ -217,8 +218,8 @@ void expectShown(const Shown& run) {
   const Page& page = run.page;
   const ReportMesh& mesh = run.mesh;
   const auto v = static_cast<std::size_t>(mesh.positions.cols());
-  EXPECT_EQ(page.data["mesh"]["vertices"], run.cloud->result().vertexCount());
-  EXPECT_EQ(page.data["mesh"]["triangles"], run.cloud->result().triangles.cols());
+  EXPECT_EQ(page.data["mesh"]["vertices"], run.cloud->result.vertexCount());
+  EXPECT_EQ(page.data["mesh"]["triangles"], run.cloud->result.triangles.cols());
   EXPECT_EQ(page.data["mesh"]["shown_vertices"], v);
   EXPECT_EQ(page.data["mesh"]["shown_triangles"], mesh.triangles.cols());
   ASSERT_EQ(page["positions"].rows(), v);
@@ -234,7 +235,7 @@ void expectShown(const Shown& run) {
     const auto column = static_cast<Index>(row);
     const Index vertex = mesh.vertices[row];
     EXPECT_EQ(mesh.positions.col(column), vertices.col(vertex));
-    EXPECT_EQ(mesh.sphere.col(column), run.cloud->result().sphere.col(vertex));
+    EXPECT_EQ(mesh.sphere.col(column), run.cloud->result.sphere.col(vertex));
     const Eigen::Vector3d off = page["positions"].point(row) - mesh.positions.col(column);
     EXPECT_TRUE((off.cwiseAbs().array() <= 0.51 / 65535.0 * size.array()).all());
     EXPECT_LE((page["sphere"].point(row) - mesh.sphere.col(column)).cwiseAbs().maxCoeff(),
@@ -286,7 +287,7 @@ TEST(HtmlReport, HoldsTheMeshUpToRounding) {
   writeScan(directory.file("in.ply"), Shape::Bowl, 3000);
   const Shown run = runWith(directory, flipsAlone());
   expectShown(run);
-  const spherical_param::Result& result = run.cloud->result();
+  const spherical_param::Result& result = run.cloud->result;
   std::vector<Index> all(result.vertexCount());
   std::iota(all.begin(), all.end(), 0);
   const auto marked = markedTriangles(result.triangles, result.diagnosis.triangle_marks, all);
@@ -306,10 +307,10 @@ TEST(HtmlReport, HoldsTheMeshUpToRounding) {
 TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
   const TemporaryDirectory directory;
   writeScan(directory.file("in.ply"), Shape::Hand, 4000);
-  for (const auto solver : {spherical_param::EmbeddingMethod::Multilevel,
+  for (const auto method : {spherical_param::EmbeddingMethod::Multilevel,
                             spherical_param::EmbeddingMethod::Iterative}) {
     ReconstructionSettings settings = flipsAlone();
-    settings.options.solver = solver;
+    settings.options.embedding.method = method;
     const Shown run = runWith(directory, settings);
     expectShown(run);
     const Array& positions = run.page["history_positions"];
@@ -321,7 +322,7 @@ TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
       Index nearest = 0;
       (vertices.colwise() - positions.point(row)).colwise().squaredNorm().minCoeff(&nearest);
       const Eigen::Vector3d end = frames.point(last + row);
-      EXPECT_LE((end - run.cloud->result().sphere.col(nearest)).cwiseAbs().maxCoeff(),
+      EXPECT_LE((end - run.cloud->result.sphere.col(nearest)).cwiseAbs().maxCoeff(),
                 1.01 / 65535.0);
       moved = std::max(moved, (end - frames.point(row)).cwiseAbs().maxCoeff());
     }
@@ -333,7 +334,7 @@ TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   const TemporaryDirectory directory;
   writeScan(directory.file("in.ply"), Shape::Head, 3000, true, 0.5);
   ReconstructionSettings settings = flipsAlone();
-  settings.options.smoothing_steps = 5;
+  settings.options.smoothing.steps = 5;
   settings.outlier_sigma = 6.0;
   const Shown run = runWith(directory, settings);
   expectShown(run);
@@ -342,8 +343,7 @@ TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   ASSERT_EQ(page["cloud"].rows(), run.mesh.vertices.size());
   for (std::size_t row = 0; row < run.mesh.vertices.size(); ++row) {
     const auto index = static_cast<std::size_t>(
-        run.cloud->reconstruction
-            .getVertexIndices()[static_cast<std::size_t>(run.mesh.vertices[row])]);
+        run.cloud->point_of_vertex[static_cast<std::size_t>(run.mesh.vertices[row])]);
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_EQ(page["colors"].integers[3 * row + c], run.cloud->data.colors[index][c]);
       // The object has an extent of about 1.
@@ -352,14 +352,14 @@ TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   }
   // Those 3 units off come to the side of a box that is as much larger than the mesh as its
   // diagonal is long, in its middle.
-  EXPECT_EQ(page.data["outliers"], run.cloud->outliers->indices.size());
-  ASSERT_EQ(page["outliers"].rows(), run.cloud->outliers->indices.size());
+  EXPECT_EQ(page.data["outliers"], run.cloud->outliers->points.size());
+  ASSERT_EQ(page["outliers"].rows(), run.cloud->outliers->points.size());
   ASSERT_GE(page["outliers"].rows(), 5U);
   const Eigen::Vector3d high = run.mesh.positions.rowwise().maxCoeff();
   const double margin = (high - run.mesh.positions.rowwise().minCoeff()).norm() / 2.0;
   std::size_t beyond = 0;
   for (std::size_t row = 0; row < page["outliers"].rows(); ++row) {
-    const auto index = static_cast<std::size_t>(run.cloud->outliers->indices[row]);
+    const auto index = static_cast<std::size_t>(run.cloud->outliers->points[row]);
     const double x = std::min<double>(points[index][0], high.x() + margin);
     EXPECT_NEAR(page["outliers"].point(row).x(), x, 1e-4);
     beyond += x < points[index][0] ? 1 : 0;
@@ -374,7 +374,7 @@ TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 3}) {
     ReconstructionSettings settings = flipsAlone();
     settings.options.threads = threads;
-    settings.options.smoothing_steps = 2;
+    settings.options.smoothing.steps = 2;
     settings.outlier_sigma = 8.0;
     const Shown run = runWith(directory, settings, 3000);
     if (threads == 1) {
@@ -515,8 +515,8 @@ TEST_F(ReportTool, WritesThePageWithTheReportOfJson) {
   std::filesystem::create_directories(directory.file("b <"));
   writeScan(directory.file(input), Shape::Ellipsoid, 500);
   const RunResult result =
-      runTool(directory, {input, escaped, "-report", "page.HTML", "-json", "report.json", "-smooth",
-                          "2", "-quiet", "-lambda=0.25"});
+      runTool(directory, {input, escaped, "-report", "page.HTML", "-json", "report.json",
+                          "-smoothing", "2", "-quiet", "-damping=0.25"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   const std::string html = tool_test::readFile(directory.file("page.HTML"));
   const Page page = decoded(html);
@@ -559,8 +559,8 @@ TEST_F(ReportTool, WritesThePageWithTheReportOfJson) {
   EXPECT_EQ(page.data["tool"]["name"], "pcl_spherical_param_reconstruction");
   EXPECT_EQ(shellWords(directory, page.data["command"]),
             (std::vector<std::string>{"pcl_spherical_param_reconstruction", input, escaped,
-                                      "-lambda", "0.25", "-seed", "1", "-smooth", "2", "-report",
-                                      "page.HTML", "-json", "report.json", "-quiet"}));
+                                      "-damping", "0.25", "-smoothing", "2", "-seed", "1",
+                                      "-report", "page.HTML", "-json", "report.json", "-quiet"}));
 }
 
 TEST_F(ReportTool, ItsCommandRepeatsTheRun) {
@@ -568,8 +568,8 @@ TEST_F(ReportTool, ItsCommandRepeatsTheRun) {
   writeScan(directory.file("-it's in.ply"), Shape::Animal, 900);
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"-seed", "3", "-outliers", "9"},
-        std::vector<std::string>{"-solver", "iterative", "-optimize", "none", "-iterations",
-                                 "20"}}) {
+        std::vector<std::string>{"-embedding", "iterative", "-optimization", "none",
+                                 "-max_iterations", "20"}}) {
     std::vector<std::string> words = {"-report", "page.html", "-quiet"};
     words.insert(words.end(), options.begin(), options.end());
     words.insert(words.end(), {"--", "-it's in.ply", "out.ply"});

@@ -2,8 +2,8 @@
 
 #include "tool_runner.h"
 
-#include "spherical_param/mesh_topology.h"
 #include "spherical_param/map/spherical_harmonics.h"
+#include "spherical_param/mesh_topology.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -414,7 +414,7 @@ TEST_F(RemeshTool, ReportHasAllKeys) {
     stages.push_back(stage["name"]);
   }
   const std::vector<std::string> expected = {
-      "read", "neighbors", "graph",    "embedding", "triangulation", "optimization", "check",
+      "read", "neighbors", "graph",    "embedding", "triangulation", "optimization", "quality",
       "map",  "surface",   "resample", "untangle",  "verify",        "write"};
   EXPECT_EQ(stages, expected);
   EXPECT_EQ(report["options"]["points"], 1000);

@@ -1,21 +1,15 @@
-// Every generated shape, with every weight and by both methods, becomes a sphere through all of its
-// points, those that are no sphere included: the scans of the tools, the PCL class and the core
-// together.
+// Every generated shape, with every weight and by several methods, becomes a sphere through all of
+// its points, even where the shape is no sphere.
 
+#include "reference/mesh_topology.h"
 #include "scan_shapes.h"
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/reconstruct.h"
 
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-#include <pcl/surface/spherical_param_reconstruction.h>
-
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -37,30 +31,24 @@ std::string nameOfCase(const testing::TestParamInfo<Case>& info) {
          methods[static_cast<std::size_t>(std::get<2>(info.param))];
 }
 
-std::vector<pcl::Vertices> meshOf(const pcl::PointCloud<pcl::PointXYZ>::Ptr& cloud,
-                                  EdgeWeights weights, Method method) {
-  pcl::SphericalParamReconstruction<pcl::PointXYZ> reconstruction;
-  reconstruction.setWeights(weights);
+Options optionsOf(EdgeWeights weights, Method method) {
+  Options options;
+  options.embedding.weights = weights;
   if (method == Method::Converged) {
-    reconstruction.setTolerance(1e-8);
+    options.embedding.tolerance = 1e-8;
   }
-  // All of the optimisation once for each shape: it takes longest where it is in vain.
+  // The whole optimisation once for each shape: it takes longest where it is in vain.
   if (method != Method::Default || weights != EdgeWeights::Adaptive) {
-    reconstruction.setOptimization(OptimizationMethod::Flips);
+    options.optimization.method = OptimizationMethod::Flips;
   }
   if (method == Method::Paper) {
-    reconstruction.setGraphMethod(GraphMethod::NearestNeighbors);
-    reconstruction.setSolver(EmbeddingMethod::Iterative);
-    reconstruction.setTriangulationMethod(TriangulationMethod::Qhull);
-    reconstruction.setOptimization(OptimizationMethod::None);
-    reconstruction.setAttempts(1);
-    reconstruction.setMaximumIterations(100);
+    options.graph.method = GraphMethod::NearestNeighbors;
+    options.embedding.method = EmbeddingMethod::Iterative;
+    options.embedding.max_iterations = 100;
+    options.triangulation.method = TriangulationMethod::Qhull;
+    options.optimization.method = OptimizationMethod::None;
   }
-  reconstruction.setInputCloud(cloud);
-  std::vector<pcl::Vertices> polygons;
-  reconstruction.reconstruct(polygons);
-  EXPECT_EQ(reconstruction.getErrorMessage(), "");
-  return polygons;
+  return options;
 }
 
 TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
@@ -69,60 +57,17 @@ TEST_P(ShapesAreMeshed, AsAClosedOutwardSphereThroughAllPoints) {
   options.shape = shape.shape;
   options.points = point_count;
   const Scan scan = generateScan(options);
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
-    const Eigen::Vector3f p = scan.points.col(i).cast<float>();
-    cloud->emplace_back(p.x(), p.y(), p.z());
-  }
-  const std::vector<pcl::Vertices> polygons = meshOf(cloud, weights, method);
-
-  // Every directed edge once and its reverse once, every link one cycle, V - E + F = 2 over all
-  // points and positive volume: a closed outward sphere in one piece.
-  ASSERT_EQ(polygons.size(), 2 * point_count - 4);
-  std::map<std::pair<int, int>, int> third;
-  double volume = 0.0;
-  for (const pcl::Vertices& polygon : polygons) {
-    ASSERT_EQ(polygon.vertices.size(), 3U);
-    Eigen::Matrix3d corners;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = polygon.vertices[k];
-      const int b = polygon.vertices[(k + 1) % 3];
-      ASSERT_TRUE(third.insert({{a, b}, polygon.vertices[(k + 2) % 3]}).second);
-      corners.col(static_cast<Eigen::Index>(k)) = scan.points.col(a);
-    }
-    volume += corners.col(0).dot(corners.col(1).cross(corners.col(2))) / 6.0;
-  }
-  EXPECT_GT(volume, 0.0);
-  std::vector<int> degree(point_count, 0);
-  std::vector<int> neighbor(point_count, -1);
-  for (const auto& [edge, apex] : third) {
-    ASSERT_EQ(third.count({edge.second, edge.first}), 1U);
-    ++degree[static_cast<std::size_t>(edge.first)];
-    neighbor[static_cast<std::size_t>(edge.first)] = edge.second;
-  }
-  std::vector<bool> reached(point_count, false);
-  std::vector<int> pending = {0};
-  reached[0] = true;
-  std::size_t pieces_size = 0;
-  while (!pending.empty()) {
-    const int v = pending.back();
-    pending.pop_back();
-    ++pieces_size;
-    const int first = neighbor[static_cast<std::size_t>(v)];
-    ASSERT_GE(first, 0) << "point " << v << " is no vertex";
-    int steps = 0;
-    for (int w = first; steps == 0 || w != first; w = third.at({v, w})) {
-      ++steps;
-      ASSERT_LE(steps, degree[static_cast<std::size_t>(v)]);
-      if (!reached[static_cast<std::size_t>(w)]) {
-        reached[static_cast<std::size_t>(w)] = true;
-        pending.push_back(w);
-      }
-    }
-    EXPECT_EQ(steps, degree[static_cast<std::size_t>(v)]) << "around point " << v;
-  }
-  EXPECT_EQ(pieces_size, point_count);
-  EXPECT_EQ(point_count + polygons.size(), third.size() / 2 + 2);
+  const Result result = reconstruct(scan.points, optionsOf(weights, method));
+  EXPECT_EQ(result.vertexCount(), point_count);
+  const MeshTopology topology =
+      reference::topologyOf(result.triangles, static_cast<Index>(point_count));
+  const TopologyFaults& faults = topology.faults;
+  EXPECT_TRUE(faults.boundary_edges.empty() && faults.nonmanifold_edges.empty() &&
+              faults.misoriented_edges.empty() && faults.nonmanifold_vertices.empty() &&
+              faults.degenerate_triangles.empty() && faults.unused_vertices.empty());
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_EQ(topology.euler_characteristic, 2);
+  EXPECT_GT(measureMesh(scan.points, result.triangles).volume, 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(

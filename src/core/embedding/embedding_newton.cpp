@@ -88,7 +88,7 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
   Iterate current;
   current.residual = energy.gradient(directions, current.gradient);
   current.value = energy.value(directions);
-  current.directions = std::move(directions);
+  current.directions = directions;
   double reduction = 0.1;
   int refinements = 0;
   EmbeddingEnergy::Hessian hessian;
@@ -122,9 +122,9 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
         next->residual.relative > kMaxLag * ratio * residual.relative)
       refinements = kRefinements;
     current = std::move(*next);
+    directions = current.directions;  // for the observer of the progress
     ++report.iterations;
   }
-  directions = std::move(current.directions);
   return report;
 }
 
