@@ -63,6 +63,85 @@ private:
   std::size_t size_ = 0;
 };
 
+/// Numbers of the specification of glTF 2.0.
+namespace gltf {
+constexpr int kFloat = 5126;
+constexpr int kUnsigned = 5125;
+constexpr int kVertexData = 34962;
+constexpr int kIndexData = 34963;
+constexpr int kLinear = 9729;
+constexpr int kLinearMipmap = 9987;
+constexpr int kClamp = 33071;
+constexpr int kRepeat = 10497;
+}  // namespace gltf
+
+/// Where the parts of a mesh are in the buffer of a file.
+struct GlbViews {
+  std::size_t positions;
+  std::size_t normals;
+  std::size_t coordinates;
+  std::size_t indices;
+  std::size_t image;
+};
+
+/// The geometry in the JSON part: one primitive with its attributes.
+Json glbPrimitive(const TexturedMesh& mesh, const GlbViews& views, GlbBuffer& buffer) {
+  FloatTriple lowest = mesh.points.front();
+  FloatTriple highest = mesh.points.front();
+  for (const FloatTriple& point : mesh.points) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      lowest[d] = std::min(lowest[d], point[d]);
+      highest[d] = std::max(highest[d], point[d]);
+    }
+  }
+  const std::size_t count = mesh.coordinates.size();
+  Json attributes;
+  attributes["POSITION"] =
+      buffer.addAccessor(views.positions, gltf::kFloat, "VEC3", count, lowest, highest);
+  attributes["NORMAL"] =
+      buffer.addAccessor(views.normals, gltf::kFloat, "VEC3", count, nullptr, nullptr);
+  attributes["TEXCOORD_0"] =
+      buffer.addAccessor(views.coordinates, gltf::kFloat, "VEC2", count, nullptr, nullptr);
+  const std::size_t corners = buffer.addAccessor(views.indices, gltf::kUnsigned, "SCALAR",
+                                                 3 * mesh.triangles.size(), nullptr, nullptr);
+  return {{"attributes", attributes}, {"indices", corners}, {"material", 0}};
+}
+
+/// The JSON part of a file, of a length that is a multiple of 4, and the size of the buffer.
+std::pair<std::string, std::size_t> glbDescription(const TexturedMesh& mesh,
+                                                   std::size_t image_size) {
+  Json json;
+  json["asset"] = {{"version", "2.0"},
+                   {"generator", std::string("pcl_spherical_param ") + SPHERICAL_PARAM_VERSION}};
+  json["scene"] = 0;
+  json["scenes"] = {{{"nodes", {0}}}};
+  json["nodes"] = {{{"mesh", 0}}};
+  GlbBuffer buffer(json);
+  const std::size_t count = mesh.coordinates.size();
+  const std::size_t positions = buffer.addView(12 * count, gltf::kVertexData);
+  const std::size_t normals = buffer.addView(12 * count, gltf::kVertexData);
+  const std::size_t coordinates = buffer.addView(8 * count, gltf::kVertexData);
+  const std::size_t indices = buffer.addView(12 * mesh.triangles.size(), gltf::kIndexData);
+  const std::size_t image = buffer.addView(image_size, 0);
+  const Json primitive =
+      glbPrimitive(mesh, {positions, normals, coordinates, indices, image}, buffer);
+  json["meshes"] = {{{"primitives", {primitive}}}};
+  json["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
+       {"doubleSided", false}}};
+  json["textures"] = {{{"sampler", 0}, {"source", 0}}};
+  json["images"] = {{{"bufferView", image}, {"mimeType", "image/png"}}};
+  json["samplers"] = {{{"magFilter", gltf::kLinear},
+                       {"minFilter", gltf::kLinearMipmap},
+                       {"wrapS", mesh.repeats_u ? gltf::kRepeat : gltf::kClamp},
+                       {"wrapT", gltf::kClamp}}};
+  json["buffers"] = {{{"byteLength", buffer.size()}}};
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  return {text, buffer.size()};
+}
+
 }  // namespace
 
 TexturedMesh makeTexturedMesh(const TextureAtlas& atlas, const Positions& points,
@@ -117,64 +196,8 @@ std::string encodePng(const TextureImage& image) {
 }
 
 void writeGlb(OutputFile& file, const TexturedMesh& mesh, const std::string& png) {
-  // Numbers of the specification of glTF 2.0.
-  constexpr int float_component = 5126;
-  constexpr int unsigned_component = 5125;
-  constexpr int vertex_data = 34962;
-  constexpr int index_data = 34963;
-  constexpr int linear = 9729;
-  constexpr int linear_mipmap = 9987;
-  constexpr int clamp = 33071;
-  constexpr int repeat = 10497;
-
-  const std::size_t count = mesh.coordinates.size();
-  FloatTriple lowest = mesh.points.front();
-  FloatTriple highest = mesh.points.front();
-  for (const FloatTriple& point : mesh.points) {
-    for (std::size_t d = 0; d < 3; ++d) {
-      lowest[d] = std::min(lowest[d], point[d]);
-      highest[d] = std::max(highest[d], point[d]);
-    }
-  }
-
-  Json json;
-  json["asset"] = {{"version", "2.0"},
-                   {"generator", std::string("pcl_spherical_param ") + SPHERICAL_PARAM_VERSION}};
-  json["scene"] = 0;
-  json["scenes"] = {{{"nodes", {0}}}};
-  json["nodes"] = {{{"mesh", 0}}};
-  GlbBuffer buffer(json);
-  const std::size_t positions = buffer.addView(12 * count, vertex_data);
-  const std::size_t normals = buffer.addView(12 * count, vertex_data);
-  const std::size_t coordinates = buffer.addView(8 * count, vertex_data);
-  const std::size_t indices = buffer.addView(12 * mesh.triangles.size(), index_data);
-  const std::size_t image = buffer.addView(png.size(), 0);
-  Json attributes;
-  attributes["POSITION"] =
-      buffer.addAccessor(positions, float_component, "VEC3", count, lowest, highest);
-  attributes["NORMAL"] =
-      buffer.addAccessor(normals, float_component, "VEC3", count, nullptr, nullptr);
-  attributes["TEXCOORD_0"] =
-      buffer.addAccessor(coordinates, float_component, "VEC2", count, nullptr, nullptr);
-  const std::size_t corners = buffer.addAccessor(indices, unsigned_component, "SCALAR",
-                                                 3 * mesh.triangles.size(), nullptr, nullptr);
-  json["meshes"] = {
-      {{"primitives", {{{"attributes", attributes}, {"indices", corners}, {"material", 0}}}}}};
-  json["materials"] = {
-      {{"pbrMetallicRoughness",
-        {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
-       {"doubleSided", false}}};
-  json["textures"] = {{{"sampler", 0}, {"source", 0}}};
-  json["images"] = {{{"bufferView", image}, {"mimeType", "image/png"}}};
-  json["samplers"] = {{{"magFilter", linear},
-                       {"minFilter", linear_mipmap},
-                       {"wrapS", mesh.repeats_u ? repeat : clamp},
-                       {"wrapT", clamp}}};
-  json["buffers"] = {{{"byteLength", buffer.size()}}};
-
-  std::string text = json.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const std::size_t size = 12 + 8 + text.size() + 8 + buffer.size();
+  const auto [text, buffer_size] = glbDescription(mesh, png.size());
+  const std::size_t size = 12 + 8 + text.size() + 8 + buffer_size;
   if (size > std::numeric_limits<std::uint32_t>::max()) {
     throw Failure("the file would be larger than the 4 GB of binary glTF",
                   "write .ply or .obj, or give -size a smaller number");
@@ -190,7 +213,7 @@ void writeGlb(OutputFile& file, const TexturedMesh& mesh, const std::string& png
   word(text.size());
   writer.text("JSON");
   writer.text(text);
-  word(buffer.size());
+  word(buffer_size);
   writer.text(std::string_view("BIN\0", 4));
   for (const Index vertex : mesh.vertex_of_coordinate) {
     writer.words(mesh.points[static_cast<std::size_t>(vertex)], ByteOrder::Little);

@@ -4,7 +4,7 @@
 namespace spherical_param::tools {
 namespace {
 
-void writeHeader(RecordWriter& writer, const MeshView& mesh) {
+void writePcdHeader(RecordWriter& writer, const MeshView& mesh) {
   std::string fields = "x y z";
   std::string sizes = writer.inDouble() ? " 8 8 8" : " 4 4 4";
   std::string types = "F F F";
@@ -39,7 +39,7 @@ void writeHeader(RecordWriter& writer, const MeshView& mesh) {
 /// The header has the lines of PCL's own, in their order.
 void writePcd(RecordWriter& writer, const MeshView& mesh, Encoding /*binary only*/) {
   writer.expect(mesh.vertexCount());
-  writeHeader(writer, mesh);
+  writePcdHeader(writer, mesh);
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     writer.words(mesh.point(i), ByteOrder::Little);
     if (mesh.hasNormals()) {

@@ -8,7 +8,7 @@ std::size_t writtenChannels(const MeshView& mesh) {
   return mesh.hasColors() ? channelCount(mesh) : 0;
 }
 
-void writeHeader(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
+void writePlyHeader(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   writer.line("ply");
   writer.line(encoding == Encoding::Binary ? "format binary_little_endian 1.0"
                                            : "format ascii 1.0");
@@ -60,7 +60,7 @@ void writeTextVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i) 
 
 void writePly(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   writer.expect(mesh.vertexCount() + mesh.triangleCount());
-  writeHeader(writer, mesh, encoding);
+  writePlyHeader(writer, mesh, encoding);
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
     if (encoding == Encoding::Binary) {
       writeBinaryVertex(writer, mesh, i);

@@ -267,7 +267,7 @@ async function main() {
   showTables(data);
   showStages(data.report.stages ?? []);
   if ((data.report.residuals ?? []).length > 1) {
-    showCurve('residual', data.report.residuals, 'iteration of the solver', () => {});
+    showCurve('residual', data.report.residuals, 'iteration', () => {});
   }
   byId('content').hidden = false;
 

@@ -106,8 +106,8 @@ function showTables(data) {
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],
     ['Edges outside the graph', report.edges_outside_graph],
-    ['Volume', report.volume],
-    ['Area', report.area],
+    ['Volume', report.measures?.volume],
+    ['Area', report.measures?.area],
     ['Mean edge length', report.measures?.mean_edge_length],
     ['Size', box?.max?.map((x, c) => number(x - box.min[c])).join(' × ')],
     ['Energy of the sphere', embedding.energy],
@@ -121,9 +121,9 @@ function showTables(data) {
     Nodes: 'nodes', Edges: 'edges', Sweeps: 'sweeps', Newton: 'newton_iterations',
     CG: 'linear_iterations', Residual: 'residual',
   });
-  const attempts = report.attempts ?? [];
-  showGrid('attempts', attempts.length > 1 ? attempts : [], {
-    Retry: 'description', 'Self-intersections': 'self_intersections', Energy: 'energy',
+  const runs = report.runs ?? [];
+  showGrid('runs', runs.length > 1 ? runs : [], {
+    Run: 'description', 'Self-intersections': 'self_intersections', Energy: 'energy',
     Chosen: 'chosen',
   });
   byId('command').textContent = data.command;
