@@ -924,7 +924,7 @@ Mesh withOpenings(const Surface& surface, Mesh mesh) {
   return mesh;
 }
 
-/// Mesh of a surface by a lattice of a given step, relaxed by so many sweeps.
+/// Mesh of a surface by a lattice of a given step, relaxed by a given number of sweeps.
 Mesh meshSurface(const Surface& surface, double step, int sweeps) {
   Mesh mesh = SurfaceMesher(surface, std::min(step, surface.coarsest_step)).mesh();
   for (Vec& vertex : mesh.vertices)

@@ -210,7 +210,7 @@ std::optional<double> coarseningRatio(const std::vector<spherical_param::LevelRe
   return static_cast<double>(levels[level - 1].nodes) / static_cast<double>(levels[level].nodes);
 }
 
-/// Tells whether the solver held the centroid of the sphere, so that it did not collapse.
+/// Whether a barrier held the centroid of the sphere, so that the embedding did not collapse.
 bool hasBarrier(const Settings& settings, const spherical_param::EmbeddingReport& embedding) {
   return !embedding.levels.empty() &&
          (embedding.added_barrier ||
@@ -474,14 +474,15 @@ void printPhases(const std::vector<spherical_param::OptimizationPhase>& phases, 
   if (phases.empty()) {
     return;
   }
-  const std::string head = "phase          tried      moves       energy  self-int.  seconds";
+  const std::string head =
+      "phase                  tried      moves       energy  self-int.  seconds";
   console.heading("  " + head);
   console.heading("  " + std::string(head.size(), '-'));
   for (const spherical_param::OptimizationPhase& phase : phases) {
     const std::string self_intersections =
         phase.self_intersections ? std::to_string(*phase.self_intersections) : "";
     std::array<char, 128> line{};
-    std::snprintf(line.data(), line.size(), "  %-9s %10zu %10zu %12s %10s %8.3f",
+    std::snprintf(line.data(), line.size(), "  %-17s %10zu %10zu %12s %10s %8.3f",
                   phase.name.c_str(), phase.tried, phase.moves, formatted(phase.energy, 6).c_str(),
                   self_intersections.c_str(), phase.seconds);
     console.heading(line.data());
@@ -616,15 +617,16 @@ void run(const std::vector<std::string>& words) {
 
   console.begin("write");
   // The mesh, and the sphere if it is wanted, are halves of one stage.
-  const double share_of_file = settings.sphere.empty() ? 1.0 : 0.5;
+  const double fraction_of_file = settings.sphere.empty() ? 1.0 : 0.5;
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), meshOf(cloud), settings.output_format, settings.report.encoding,
-            [&](double share) { console.update(share_of_file * share); });
+            [&](double fraction) { console.update(fraction_of_file * fraction); });
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
     writeMesh(*files.back(), sphereOf(cloud, cloud.result.sphere), settings.sphere_format,
-              settings.report.encoding, [&](double share) { console.update(0.5 + 0.5 * share); });
+              settings.report.encoding,
+              [&](double fraction) { console.update(0.5 + 0.5 * fraction); });
   }
   for (const auto& file : files) {
     file->finish();

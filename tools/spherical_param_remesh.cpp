@@ -129,7 +129,7 @@ struct Settings {
   OutputSettings report;
 
   bool makesCloud() const { return !reads_image && sampling == Sampling::Even; }
-  /// Tells whether vertices are slid along the surface, so that triangles do not intersect.
+  /// Whether vertices are slid along the surface, so that triangles do not intersect.
   bool slides() const { return !reads_image && !series && sampling != Sampling::Even; }
   bool needsHarmonics() const { return series || !harmonics.empty(); }
   int threads() const { return product.map.threads; }
@@ -454,7 +454,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
 void makeFromImage(const Settings& settings, Output& output, Console& console) {
   console.begin("read");
   output.image =
-      readGeometryImage(settings.input, [&console](double share) { console.update(share); });
+      readGeometryImage(settings.input, [&console](double fraction) { console.update(fraction); });
   const std::string size = std::to_string(output.image.side);
   output.stages.push_back({"read", console.end(size + " x " + size + " pixels")});
   output.frequency = (output.image.side - 1) / 2;
@@ -623,8 +623,8 @@ PointData toVertices(const Output& output, const MappedCloud& mapped) {
 std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const MappedCloud& mapped,
                                                Output& output, Console& console) {
   console.begin("write");
-  const double share_of_file = settings.sphere.empty() ? 1.0 : 0.5;
-  const auto update = [&](double share) { console.update(share_of_file * share); };
+  const double fraction_of_file = settings.sphere.empty() ? 1.0 : 0.5;
+  const auto update = [&](double fraction) { console.update(fraction_of_file * fraction); };
   std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
   if (settings.writes_image) {
@@ -639,7 +639,7 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
       sphere.leaveOutNormals();
       sphere.moveTo(output.mesh.directions);
       writeMesh(*files.back(), sphere, settings.sphere_format, settings.report.encoding,
-                [&](double share) { console.update(0.5 + 0.5 * share); });
+                [&](double fraction) { console.update(0.5 + 0.5 * fraction); });
     }
   }
   if (!settings.harmonics.empty()) {

@@ -93,7 +93,7 @@ struct Settings {
   std::string input;
   std::string output;
   TextureFormat format = TextureFormat::Glb;
-  std::string material;  ///< empty: there is none
+  std::string material;  ///< empty: not wanted
   std::string image;     ///< empty: it is in the output
   TextureAtlasOptions atlas;
   BakeOptions bake;

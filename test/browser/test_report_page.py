@@ -136,6 +136,17 @@ class ReportPage(unittest.TestCase):
         self.assertIn("opening", self.text("warnings"))
         self.assertIn("outlier", self.text("cloud-note"))
 
+    def test_the_numbers_are_those_of_the_report(self):
+        self.open(SOUND)
+        report = json.loads(self.run_script(
+            "document.getElementById('json').open = true;"
+            "document.getElementById('json').dispatchEvent(new Event('toggle'));"
+            "return document.getElementById('json').lastChild.textContent;"))
+        numbers = self.text("numbers")
+        for row in ("Vertices", "Triangles", "Volume", "Area", "Mean edge length", "Residual"):
+            self.assertIn(row, numbers)
+        self.assertEqual(self.element("runs-card").is_displayed(), len(report["runs"]) > 1)
+
     def test_each_view_shows_its_object(self):
         for page, name in ((SOUND, "sound"), (OPEN, "open")):
             self.open(page)

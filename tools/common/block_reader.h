@@ -10,7 +10,7 @@
 
 namespace spherical_param::tools {
 
-/// Is told now and then which share of a file has been read or written, in [0, 1].
+/// Called now and then with the fraction of a file that has been read or written, in [0, 1].
 using FileProgress = std::function<void(double)>;
 
 /// Reads a file from its beginning to its end, a block at a time.
@@ -19,10 +19,10 @@ public:
   /// \param position bytes to leave out. \throw Failure.
   BlockReader(const std::string& path, std::uint64_t position, const FileProgress& progress);
 
-  /// The next bytes, until the next call of anything; null if there are not so many.
+  /// The next bytes, until the next call of anything; null if the file has fewer.
   /// \throw Failure, as everything below.
   const char* take(std::size_t count);
-  /// Leaves out bytes. \return false if there are not so many.
+  /// Leaves out bytes. \return false if the file has fewer.
   bool skip(std::uint64_t count);
   /// The next line without its end, until the next call of anything. \return false if there is
   /// none.

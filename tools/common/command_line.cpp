@@ -21,7 +21,7 @@ std::vector<OptionInfo> commonOptions() {
           {"version", "", "show the version", false}};
 }
 
-/// Tells whether a word is one of the options. Boost would take it for the value of the one before.
+/// Whether a word is one of the options. Boost would take it for the value of the one before.
 bool isKnown(const std::string& word, const std::vector<OptionInfo>& options) {
   return std::any_of(options.begin(), options.end(), [&word](const OptionInfo& option) {
     return word == "-" + option.name || word == "--" + option.name;
@@ -60,7 +60,7 @@ CommandLine::CommandLine(const std::vector<std::string>& words,
     }
   }
 
-  // No short options: "-k" is the long option k with one dash, as "-iterations" is.
+  // No short options: "-k" is the long option k with one dash, as "-graph" is.
   namespace style = po::command_line_style;
   const int accepted = style::allow_long | style::long_allow_adjacent | style::long_allow_next |
                        style::allow_long_disguise;

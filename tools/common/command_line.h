@@ -24,7 +24,7 @@ public:
   /// \throw UsageError for an unknown or repeated option, or a missing or superfluous value.
   CommandLine(const std::vector<std::string>& words, const std::vector<OptionInfo>& options);
 
-  /// Tells whether the option was given.
+  /// Whether the option was given.
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   /// The option's value, or the fallback if it was not given.
   std::string value(const std::string& option, const std::string& fallback) const;

@@ -12,7 +12,7 @@ namespace spherical_param::tools {
 /// What a tool returns to its caller.
 enum class ExitCode { Done = 0, Failed = 1, Usage = 2 };
 
-/// An end of the work that the user is told about: one line of cause, one of remedy.
+/// An error as the user sees it: one line of cause, one of remedy.
 class ToolError : public std::runtime_error {
 public:
   ToolError(ExitCode exit_code, const std::string& cause, std::string remedy)

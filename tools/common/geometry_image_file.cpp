@@ -103,7 +103,7 @@ private:
   std::uint32_t values_offset_;
 };
 
-/// The size of the directory does not depend on the offsets that it tells.
+/// The size of the directory does not depend on the offsets in it.
 Directory makeDirectory(std::uint32_t side, std::uint32_t rows_per_strip,
                         std::uint32_t first_strip) {
   constexpr std::uint32_t directory_offset = 8;

@@ -8,7 +8,7 @@
 
 namespace spherical_param::tools {
 
-/// Tells whether the extension is that of a geometry image: .tif or .tiff, in upper or lower case.
+/// Whether the extension is that of a geometry image: .tif or .tiff, in upper or lower case.
 bool isGeometryImageFile(const std::string& path);
 
 /// Writes a geometry image as TIFF 6.0: three samples of 32-bit IEEE float for each pixel, x, y and
@@ -19,14 +19,14 @@ bool isGeometryImageFile(const std::string& path);
 /// that its writer made.
 ///
 /// \param image at most 16385 pixels along a side, so that offsets have 32 bits.
-/// \param progress told of the share that is written; may be empty. \throw Failure.
+/// \param progress is called with the fraction that is written; may be empty. \throw Failure.
 void writeGeometryImage(OutputFile& file, const GeometryImage& image,
                         const FileProgress& progress = {});
 
-/// Reads a geometry image: the kind of TIFF that writeGeometryImage() writes, in either byte order,
-/// whoever wrote it. Nothing in the file is believed before it is checked.
+/// Reads a geometry image: the kind of TIFF that writeGeometryImage() writes, in either byte order.
+/// Everything in the file is checked.
 ///
-/// \param progress told of the share that is read; may be empty.
+/// \param progress is called with the fraction that is read; may be empty.
 /// \throw Failure for anything else than a square of an odd side with finite positions.
 GeometryImage readGeometryImage(const std::string& path, const FileProgress& progress = {});
 

@@ -124,9 +124,10 @@ public:
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double low = min[i % components];
       const double high = max[i % components];
-      const double share = high > low ? (std::clamp(values[i], low, high) - low) / (high - low) : 0;
+      const double fraction =
+          high > low ? (std::clamp(values[i], low, high) - low) / (high - low) : 0;
       steps.push_back(
-          static_cast<Integer>(std::lround(share * std::numeric_limits<Integer>::max())));
+          static_cast<Integer>(std::lround(fraction * std::numeric_limits<Integer>::max())));
     }
     add(name, components, steps);
     setRange(name, min, max);

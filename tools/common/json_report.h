@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 Json toJson(const Eigen::Vector3d& vector);
 Json toJson(const std::vector<StageTime>& stages);
 
-/// Largest memory of this program so far [bytes], null where the system does not tell.
+/// Largest memory of this program so far [bytes], null where the system does not report it.
 Json peakMemoryToJson();
 
 /// The text of a report, as it is written.

@@ -14,8 +14,8 @@ double squaredDistanceFromSegment(const Eigen::Vector3d& point, const Eigen::Vec
                                   const Eigen::Vector3d& b) {
   const Eigen::Vector3d edge = b - a;
   const double length = edge.squaredNorm();
-  const double share = length > 0.0 ? std::clamp((point - a).dot(edge) / length, 0.0, 1.0) : 0.0;
-  return (a + share * edge - point).squaredNorm();
+  const double fraction = length > 0.0 ? std::clamp((point - a).dot(edge) / length, 0.0, 1.0) : 0.0;
+  return (a + fraction * edge - point).squaredNorm();
 }
 
 double squaredDistance(const Eigen::Vector3d& point, const Eigen::Vector3d& a,

@@ -14,7 +14,7 @@ namespace spherical_param::tools {
 template <typename Value>
 using Names = std::vector<std::pair<std::string, Value>>;
 
-/// The value that an option names. \throw UsageError that tells all names.
+/// The value that an option names. \throw UsageError that lists all names.
 template <typename Value>
 Value parseName(const std::string& option, const std::string& text, const Names<Value>& names) {
   std::string known;

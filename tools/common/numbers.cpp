@@ -45,7 +45,7 @@ std::optional<double> toReal(std::string_view text) {
     return std::nullopt;
   }
   if (error == std::errc::result_out_of_range) {
-    // Too large and too small look the same: the exponent's sign tells which.
+    // Too large and too small look the same: the exponent's sign distinguishes them.
     // Without one, a digit before the point does.
     const std::size_t exponent = text.find_first_of("eE");
     const bool tiny =

@@ -11,7 +11,7 @@ namespace spherical_param::tools {
 /// no directory. \throw Failure.
 void checkOutputPath(const std::string& path);
 
-/// Tells whether two paths name one file, existing or not.
+/// Whether two paths name one file, existing or not.
 bool isSameFile(const std::string& first, const std::string& second);
 
 /// A file that appears under its name only when it is complete.

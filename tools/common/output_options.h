@@ -13,14 +13,14 @@
 
 namespace spherical_param::tools {
 
-/// What tools that make files are told about them, besides their names.
+/// Options on the files that a tool makes, besides their names.
 struct OutputSettings {
   std::string json;  ///< file of the report, empty: not wanted
   Encoding encoding = Encoding::Binary;
   bool quiet = false;
 
   bool jsonToStandardOutput() const { return json == "-"; }
-  /// Tells whether the console may be used.
+  /// Whether the console may be used.
   bool printsText() const { return !quiet && !jsonToStandardOutput(); }
 };
 

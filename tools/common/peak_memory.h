@@ -5,7 +5,8 @@
 
 namespace spherical_param::tools {
 
-/// Largest resident memory of this program so far [bytes]; nothing where the system does not tell.
+/// Largest resident memory of this program so far [bytes]; nothing where the system does not report
+/// it.
 ///
 /// Unlike ru_maxrss of getrusage(), it does not begin with the memory of the process that started
 /// this one.

@@ -43,18 +43,30 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
       // Reported below, in the words of the command line.
     }
   }
-  throw UsageError("option -" + row.name + ": " + inQuotes(text) + " is not " + rangeOf(row),
+  throw UsageError("option -" + row.name + " cannot be " + inQuotes(text),
                    "give -" + row.name + " " + rangeOf(row));
+}
+
+/// The rows of the table that tools have. Only the page of -report shows a history, and sets how
+/// much of it is kept.
+std::vector<OptionRow> toolRows() {
+  std::vector<OptionRow> rows = optionTable();
+  rows.erase(std::remove_if(rows.begin(), rows.end(),
+                            [](const OptionRow& row) {
+                              return row.field.rfind("embedding.history.", 0) == 0;
+                            }),
+             rows.end());
+  return rows;
 }
 
 Options parseOptions(const CommandLine& command_line) {
   Options options;
-  for (const OptionRow& row : optionTable()) {
+  for (const OptionRow& row : toolRows()) {
     if (command_line.has(row.name)) {
       setOption(options, row.name, parseValue(row, command_line.value(row.name, "")));
     }
   }
-  for (const OptionRow& row : optionTable()) {
+  for (const OptionRow& row : toolRows()) {
     const auto failed = failedCondition(row, options);
     if (failed && command_line.has(row.name)) {
       const auto& [other, needed] = *failed;
@@ -92,7 +104,7 @@ std::string optionText(const Options& options, const std::string& name) {
 std::vector<OptionInfo> reconstructionOptions() {
   std::vector<OptionInfo> lines;
   const Options defaults;
-  for (const OptionRow& row : optionTable()) {
+  for (const OptionRow& row : toolRows()) {
     const std::string argument = !row.choices.empty() ? "NAME" : row.is_integer ? "N" : "X";
     lines.push_back(
         {row.name, argument,
@@ -119,7 +131,7 @@ ReconstructionSettings parseReconstructionOptions(const CommandLine& command_lin
 }
 
 void printReconstructionOptions(const ReconstructionSettings& settings, Console& console) {
-  for (const OptionRow& row : optionTable()) {
+  for (const OptionRow& row : toolRows()) {
     const OptionValue value = row.get(settings.options);
     if (value.index() != 0 && !failedCondition(row, settings.options)) {
       console.entry(row.name, spherical_param::textOf(value));
@@ -135,7 +147,7 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
 
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   Json json;
-  for (const OptionRow& row : optionTable()) {
+  for (const OptionRow& row : toolRows()) {
     json[row.name] =
         failedCondition(row, settings.options) ? Json(nullptr) : jsonOf(row.get(settings.options));
   }

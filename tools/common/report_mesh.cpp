@@ -74,9 +74,9 @@ void measureDistortion(ReportMesh& mesh) {
   }
   constexpr double least = 1e-300;
   for (std::size_t v = 0; v < n; ++v) {
-    const double share = std::max(in_space[v] / std::max(all_space, least), least);
+    const double fraction = std::max(in_space[v] / std::max(all_space, least), least);
     const double image = std::max(on_sphere[v] / std::max(all_sphere, least), least);
-    mesh.area_distortion.push_back(std::log2(image) - std::log2(share));
+    mesh.area_distortion.push_back(std::log2(image) - std::log2(fraction));
     mesh.angle_distortion.push_back(in_space[v] > 0.0 ? std::max(1.0, weighted[v] / in_space[v])
                                                       : 1.0);
   }
@@ -204,8 +204,8 @@ std::vector<Index> orderOnSphere(const Positions& sphere) {
   for (Index v = 0; v < sphere.cols(); ++v) {
     std::uint64_t key = 0;
     for (Index c = 0; c < 3; ++c) {
-      const double share = std::clamp((sphere(c, v) + 1.0) / 2.0, 0.0, 1.0);
-      const auto place = static_cast<std::uint64_t>(share * ((1 << bits) - 1));
+      const double fraction = std::clamp((sphere(c, v) + 1.0) / 2.0, 0.0, 1.0);
+      const auto place = static_cast<std::uint64_t>(fraction * ((1 << bits) - 1));
       for (unsigned bit = 0; bit < bits; ++bit) {
         key |= (place >> bit & 1U) << (3 * bit + static_cast<unsigned>(c));
       }

@@ -15,7 +15,7 @@ struct ReportMesh {
   Positions positions;          ///< 3 x v [unit of the input]
   Positions sphere;             ///< 3 x v, unit vectors
   Triangles triangles;          ///< 3 x t
-  /// v entries each: log2 of the share of the sphere around a vertex over that of the surface;
+  /// v entries each: log2 of the fraction of the sphere around a vertex over that of the surface;
   /// sigma_1 / sigma_2 of the map, mean; log10 of the tangential Laplacian [radius], at least -17.
   std::vector<double> area_distortion;
   std::vector<double> angle_distortion;
@@ -31,7 +31,7 @@ Positions picked(const Positions& points, const std::vector<Index>& indices);
 /// are near each other in this order.
 std::vector<Index> orderOnSphere(const Positions& sphere);
 
-/// Shows a result that was made with Options::details by at most so many triangles: of a larger
+/// Shows a result that was made with Options::details by a limited number of triangles: of a larger
 /// mesh a part of the vertices, spread over the sphere and triangulated there.
 ReportMesh reportMesh(const CloudReconstruction& cloud, std::size_t max_triangles, int threads);
 

@@ -208,7 +208,7 @@ std::vector<Normal> objNormals(const ObjContent& content) {
   std::vector<Normal> normals;
   for (std::size_t i = 0; i < content.data.points.size(); ++i) {
     if (i >= content.normal_of_point.size() || !content.normal_of_point[i]) {
-      return {};  // a vertex without normal: there is none to keep for it
+      return {};  // a vertex has no normal: none are kept
     }
     normals.push_back(content.normals[*content.normal_of_point[i]]);
   }

@@ -45,7 +45,7 @@ void writeTexturedPly(OutputFile& file, const TexturedMesh& mesh, const std::str
 
 /// Writes OBJ, with indices of their own for coordinates: it is closed as it is. \throw Failure
 ///
-/// pcl::io::saveOBJFile() is not used for the reasons that writeMesh() tells.
+/// pcl::io::saveOBJFile() is not used for the reasons given at writeMesh().
 void writeTexturedObj(OutputFile& file, const TexturedMesh& mesh, const std::string& material_name);
 
 /// Writes the material of an OBJ file. \throw Failure
