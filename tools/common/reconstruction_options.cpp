@@ -43,7 +43,7 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
       // Reported below, in the words of the command line.
     }
   }
-  throw UsageError("option -" + row.name + " cannot be " + inQuotes(text),
+  throw UsageError("option -" + row.name + ": " + inQuotes(text) + " is not allowed",
                    "give -" + row.name + " " + rangeOf(row));
 }
 
