@@ -31,9 +31,9 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
   const auto value_of = [](const auto& parsed) {
     return parsed ? OptionValue(*parsed) : OptionValue();
   };
-  const OptionValue value = !row.choices.empty() ? OptionValue(text)
-                            : row.is_integer     ? value_of(toInteger(text))
-                                                 : value_of(toReal(text));
+  OptionValue value = !row.choices.empty() ? OptionValue(text)
+                      : row.is_integer     ? value_of(toInteger(text))
+                                           : value_of(toReal(text));
   if (value.index() != 0) {
     try {
       Options scratch;

@@ -19,6 +19,8 @@ namespace {
 
 /// Indices have 32 bits; a mesh has four times as many edge ends as points.
 constexpr Eigen::Index kMaxPoints = Eigen::Index{1} << 30;
+/// Largest exponent of the scaled coordinates: 2^1000 is finite.
+constexpr int kMaxExponent = 1000;
 /// Areas and volumes of larger clouds leave the range of double.
 constexpr double kMaxCoordinate = 1e100;
 
@@ -102,7 +104,6 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   const Eigen::Vector3d low = points.rowwise().minCoeff();
   const Eigen::Vector3d high = points.rowwise().maxCoeff();
   // An axis along which nothing differs may be so far away that it would not stay finite.
-  constexpr int kMaxExponent = 1000;
   int largest = 0;
   std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
   result.exponent = std::max(exponentOfExtent(low, high), largest - kMaxExponent);
