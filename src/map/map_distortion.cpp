@@ -22,8 +22,8 @@ using Eigen::Vector3d;
 
 /// Twice an area below this many times the longest side squared is rounding of the cross product.
 constexpr double kMinArea = 16.0 * std::numeric_limits<double>::epsilon();
-/// What is not finite counts as this, so that means are finite: a triangle that is collapsed on the
-/// sphere has no finite distortion.
+/// Values that are not finite count as this, so that means are finite: a triangle that is collapsed
+/// on the sphere has no finite distortion.
 constexpr double kUnbounded = 1e300;
 
 double bounded(double value) {
@@ -152,6 +152,104 @@ void checkPositions(const Positions& points, const Triangles& triangles, const P
     throw InvalidInput(caller + "a coordinate is not finite; remove such points first");
 }
 
+/// The triangles of a mesh, in space and on the sphere, and what sums over them have in common.
+struct Meshes {
+  const Positions& points;
+  const Positions& sphere;
+  const Triangles& triangles;
+  double scale;  ///< of the points: no square of a length leaves the range of double
+  int threads;
+
+  std::size_t count() const { return static_cast<std::size_t>(triangles.cols()); }
+  Sides solid(std::size_t t) const {
+    return Sides(points, triangles, static_cast<Eigen::Index>(t), scale);
+  }
+  Sides flat(std::size_t t) const {
+    return Sides(sphere, triangles, static_cast<Eigen::Index>(t), 1.0);
+  }
+  Vector3d direction(std::size_t t, int corner) const {
+    return sphere.col(triangles(corner, static_cast<Eigen::Index>(t)));
+  }
+  double areaOnSphere(std::size_t t, const Sides& flat) const {
+    return spherical_param::areaOnSphere(direction(t, 0), flat);
+  }
+};
+
+/// Sums over each block of triangles.
+std::vector<Sums> sumBlocks(const Meshes& meshes) {
+  std::vector<Sums> of_blocks((meshes.count() + internal::kBlockSize - 1) / internal::kBlockSize);
+  internal::forEachBlock(
+      meshes.count(), meshes.threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        Sums& sums = of_blocks[block];
+        for (std::size_t t = begin; t < end; ++t) {
+          const Sides solid = meshes.solid(t);
+          if (internal::orientation3d(Vector3d::Zero(), meshes.direction(t, 0),
+                                      meshes.direction(t, 1), meshes.direction(t, 2)) <= 0)
+            ++sums.flipped;
+          if (solid.isDegenerate()) {
+            ++sums.degenerate;
+            continue;
+          }
+          ++sums.counted;
+          sums.in_space += solid.twice_area;
+          const Sides flat = meshes.flat(t);
+          sums.on_sphere += flat.twice_area;
+          sums.covered += meshes.areaOnSphere(t, flat);
+        }
+      });
+  return of_blocks;
+}
+
+/// Distortions of all triangles that are not degenerate, and sums over them.
+struct Distortions {
+  std::vector<Weighted> angles;
+  std::vector<Weighted> areas;
+  double angle_difference = 0.0;  ///< sum over the corners [rad]
+  double squared_stretch = 0.0;   ///< mean
+};
+
+Distortions distortionsOf(const Meshes& meshes, const std::vector<Sums>& of_blocks,
+                          const Sums& sums) {
+  // Where the values of a block begin; the sums follow the order of the blocks.
+  std::vector<std::size_t> first(of_blocks.size(), 0);
+  for (std::size_t b = 1; b < of_blocks.size(); ++b)
+    first[b] = first[b - 1] + of_blocks[b - 1].counted;
+  Distortions result;
+  result.angles.resize(sums.counted);
+  result.areas.resize(sums.counted);
+  // Of the blocks: differences of angles, and the squares of stretch.
+  std::vector<std::pair<double, double>> of_block(of_blocks.size());
+  internal::forEachBlock(
+      meshes.count(), meshes.threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        std::size_t k = first[block];
+        for (std::size_t t = begin; t < end; ++t) {
+          const Sides solid = meshes.solid(t);
+          if (solid.isDegenerate())
+            continue;
+          const Sides flat = meshes.flat(t);
+          const LinearMap map(solid, flat);
+          const double weight = solid.twice_area / sums.in_space;
+          const double area = meshes.areaOnSphere(t, flat) / sums.covered / weight;
+          // Written so that 0 / 0, which is not a number, counts as unbounded.
+          result.angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
+          result.areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
+          ++k;
+          // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
+          const double sigma_2 = map.determinant / map.sigma_1;
+          const double stretch = 0.5 *
+                                 (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
+                                 (sums.on_sphere / sums.in_space);
+          of_block[block].second += weight * bounded(stretch);
+          of_block[block].first += (solid.angles() - flat.angles()).cwiseAbs().sum();
+        }
+      });
+  for (const auto& [angle, square] : of_block) {
+    result.angle_difference += angle;
+    result.squared_stretch += square;
+  }
+  return result;
+}
+
 }  // namespace
 
 MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,
@@ -159,90 +257,32 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
   checkPositions(points, triangles, sphere);
   MapDistortion distortion;
   const auto m = static_cast<std::size_t>(triangles.cols());
+  threads = internal::threadCount(threads, m, internal::kParallelThreshold);
   if (m == 0)
     return distortion;
-  const int most = internal::threadCount(threads, m, internal::kParallelThreshold);
-  // No square of a length leaves the range of double.
   const double extent = points.cwiseAbs().maxCoeff();
-  const double scale = extent > 0.0 ? 1.0 / extent : 1.0;
-
-  std::vector<Sums> of_blocks((m + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachBlock(m, most, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    Sums& sums = of_blocks[block];
-    const Vector3d center = Vector3d::Zero();
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto t = static_cast<Eigen::Index>(i);
-      const Sides solid(points, triangles, t, scale);
-      if (internal::orientation3d(center, sphere.col(triangles(0, t)), sphere.col(triangles(1, t)),
-                                  sphere.col(triangles(2, t))) <= 0)
-        ++sums.flipped;
-      if (solid.isDegenerate()) {
-        ++sums.degenerate;
-        continue;
-      }
-      ++sums.counted;
-      sums.in_space += solid.twice_area;
-      const Sides flat(sphere, triangles, t, 1.0);
-      sums.on_sphere += flat.twice_area;
-      sums.covered += areaOnSphere(sphere.col(triangles(0, t)), flat);
-    }
-  });
-  // Where the values of a block begin; the sums follow the order of the blocks.
-  std::vector<std::size_t> first(of_blocks.size());
+  const Meshes meshes{points, sphere, triangles, extent > 0.0 ? 1.0 / extent : 1.0, threads};
+  const std::vector<Sums> of_blocks = sumBlocks(meshes);
   Sums sums;
-  for (std::size_t b = 0; b < of_blocks.size(); ++b) {
-    first[b] = sums.counted;
-    sums += of_blocks[b];
-  }
+  for (const Sums& block : of_blocks)
+    sums += block;
   distortion.flipped_triangles = sums.flipped;
   distortion.degenerate_triangles = sums.degenerate;
   if (sums.counted == 0)
     return distortion;
 
-  std::vector<Weighted> angles(sums.counted);
-  std::vector<Weighted> areas(sums.counted);
-  // Of the blocks: differences of angles [rad], and the squares of stretch.
-  std::vector<std::pair<double, double>> of_block(of_blocks.size());
-  internal::forEachBlock(m, most, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    std::size_t k = first[block];
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto t = static_cast<Eigen::Index>(i);
-      const Sides solid(points, triangles, t, scale);
-      if (solid.isDegenerate())
-        continue;
-      const Sides flat(sphere, triangles, t, 1.0);
-      const LinearMap map(solid, flat);
-      const double weight = solid.twice_area / sums.in_space;
-      const double area = areaOnSphere(sphere.col(triangles(0, t)), flat) / sums.covered / weight;
-      // Written so that what is not a number, of 0 / 0, counts as unbounded.
-      angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
-      areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
-      ++k;
-      // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
-      const double sigma_2 = map.determinant / map.sigma_1;
-      const double stretch = 0.5 * (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
-                             (sums.on_sphere / sums.in_space);
-      of_block[block].second += weight * bounded(stretch);
-      of_block[block].first += (solid.angles() - flat.angles()).cwiseAbs().sum();
-    }
-  });
-  double difference = 0.0;
-  double stretch = 0.0;
-  for (const auto& [angle, square] : of_block) {
-    difference += angle;
-    stretch += square;
-  }
+  Distortions distortions = distortionsOf(meshes, of_blocks, sums);
   constexpr double degrees = 57.29577951308232;
   distortion.mean_angle_difference =
-      difference * degrees / (3.0 * static_cast<double>(sums.counted));
+      distortions.angle_difference * degrees / (3.0 * static_cast<double>(sums.counted));
   // Area(M) / (4 pi) / L2(M)^2 with Sander et al.'s L2(M), their equation 3, which weights with the
   // areas in space.
-  distortion.stretch_efficiency = std::min(1.0, 1.0 / stretch);
-  internal::forEachTask(2, std::min(most, 2), [&](std::size_t, std::size_t task) {
+  distortion.stretch_efficiency = std::min(1.0, 1.0 / distortions.squared_stretch);
+  internal::forEachTask(2, std::min(threads, 2), [&](std::size_t, std::size_t task) {
     if (task == 0)
-      distortion.angle = statisticsOf(angles);
+      distortion.angle = statisticsOf(distortions.angles);
     else
-      distortion.area = statisticsOf(areas);
+      distortion.area = statisticsOf(distortions.areas);
   });
   return distortion;
 }

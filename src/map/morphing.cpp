@@ -1,5 +1,6 @@
 #include "spherical_param/map/morphing.h"
 
+#include "corner_table.h"
 #include "exact_predicates.h"
 #include "option_checks.h"
 #include "parallel.h"
@@ -22,6 +23,8 @@
 
 namespace spherical_param {
 namespace {
+
+using internal::CornerTable;
 
 constexpr std::size_t kMinSamples = 12;
 constexpr std::size_t kMaxGridSamples = std::size_t{1} << 24U;
@@ -94,35 +97,34 @@ PairChoice choosePairs(const SphereSurface& first, const SphereSurface& second,
 }
 
 double shortestEdgeAt(const Positions& sphere, const Triangles& triangles,
-                      const std::vector<std::vector<Index>>& triangles_at, Index v) {
+                      const CornerTable& corners, Index v) {
   double shortest = std::numeric_limits<double>::infinity();
-  for (const Index t : triangles_at[static_cast<std::size_t>(v)])
+  corners.forEachCorner(v, [&](Index t, Index) {
     for (int k = 0; k < 3; ++k)
       if (triangles(k, t) != v)
         shortest = std::min(shortest, (sphere.col(triangles(k, t)) - sphere.col(v)).squaredNorm());
+  });
   return std::sqrt(shortest);
 }
 
-std::vector<std::vector<Index>> trianglesAt(const Triangles& triangles, Eigen::Index n) {
-  std::vector<std::vector<Index>> at(static_cast<std::size_t>(n));
-  for (Index t = 0; t < static_cast<Index>(triangles.cols()); ++t)
-    for (int k = 0; k < 3; ++k)
-      at[static_cast<std::size_t>(triangles(k, t))].push_back(t);
-  return at;
+CornerTable cornersOf(const Triangles& triangles, Eigen::Index vertices) {
+  return {triangles, static_cast<std::size_t>(vertices), 1};
 }
 
 /// Moves a vertex on the sphere, unless that would flip one of its triangles.
-bool moveVertex(Positions& sphere, const Triangles& triangles, const std::vector<Index>& around,
-                Index v, const Eigen::Vector3d& place) {
+bool moveVertex(Positions& sphere, const Triangles& triangles, const CornerTable& corners, Index v,
+                const Eigen::Vector3d& place) {
   const Eigen::Vector3d old = sphere.col(v);
   sphere.col(v) = place;
-  for (const Index t : around)
-    if (internal::orientation3d(Eigen::Vector3d::Zero(), sphere.col(triangles(0, t)),
-                                sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0) {
-      sphere.col(v) = old;
-      return false;
-    }
-  return true;
+  bool flips = false;
+  corners.forEachCorner(v, [&](Index t, Index) {
+    flips = flips ||
+            internal::orientation3d(Eigen::Vector3d::Zero(), sphere.col(triangles(0, t)),
+                                    sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0;
+  });
+  if (flips)
+    sphere.col(v) = old;
+  return !flips;
 }
 
 /// Puts vertices of the second mesh that are next to one of the first at its place.
@@ -142,8 +144,8 @@ void joinVertices(const SphereSurface& first, const Triangles& triangles, Positi
       queries.push_back(static_cast<Index>(a) + i);
   const std::vector<SphereLocation> places =
       internal::locateAll(points, first.triangles(), queries);
-  const auto at_first = trianglesAt(first.triangles(), a);
-  const auto at_second = trianglesAt(triangles, b);
+  const CornerTable at_first = cornersOf(first.triangles(), a);
+  const CornerTable at_second = cornersOf(triangles, b);
   for (std::size_t q = 0; q < places.size(); ++q) {
     const Index v = queries[q] - static_cast<Index>(a);
     Eigen::Index corner = 0;
@@ -156,7 +158,7 @@ void joinVertices(const SphereSurface& first, const Triangles& triangles, Positi
                 std::min(shortestEdgeAt(first.sphere(), first.triangles(), at_first, other),
                          shortestEdgeAt(sphere, triangles, at_second, v)))
       continue;
-    if (moveVertex(sphere, triangles, at_second[static_cast<std::size_t>(v)], v, place)) {
+    if (moveVertex(sphere, triangles, at_second, v, place)) {
       partner[static_cast<std::size_t>(v)] = other;
       is_taken[static_cast<std::size_t>(other)] = 1;
     }
@@ -223,15 +225,15 @@ GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Eigen::V
                                    gridFrequency(SphereGrid::Icosahedral, options.samples));
   if (places.empty())
     return grid;
-  const auto around = trianglesAt(grid.triangles, grid.directions.cols());
-  std::vector<char> is_taken(around.size(), 0);
+  const CornerTable corners = cornersOf(grid.triangles, grid.directions.cols());
+  std::vector<char> is_taken(corners.vertexCount(), 0);
   const Positions regular = grid.directions;
   for (const Eigen::Vector3d& place : places) {
     Eigen::Index nearest = 0;
     (regular.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
     const auto v = static_cast<std::size_t>(nearest);
     if (is_taken[v] == 0 &&
-        moveVertex(grid.directions, grid.triangles, around[v], static_cast<Index>(nearest), place))
+        moveVertex(grid.directions, grid.triangles, corners, static_cast<Index>(nearest), place))
       is_taken[v] = 1;
   }
   return grid;

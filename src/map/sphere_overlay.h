@@ -19,7 +19,8 @@ int orientationOf(const Positions& points, Index i, Index j, Index k);
 
 /// A triangulation of the sphere, some of whose vertices are columns of a list of directions: a
 /// closed genus-0 mesh, of which every triangle is counter-clockwise on the sphere and shorter than
-/// a half circle. All decisions are exact.
+/// a half circle. All decisions are exact. Its edges have numbers, in the order of their ends,
+/// which the overlay is made of; neither CornerTable nor SphereMesh has edges.
 class ArcMesh {
 public:
   /// \param points must outlive this. \param triangles 3 x m, columns of `points`.

@@ -6,10 +6,10 @@
 #include "parallel.h"
 #include "pi.h"
 #include "sphere_locator.h"
-#include "vertex_normals.h"
-#include "vertex_quadrics.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
+#include "vertex_normals.h"
+#include "vertex_quadrics.h"
 
 #include <Eigen/Geometry>
 

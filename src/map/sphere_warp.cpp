@@ -1,5 +1,6 @@
 #include "sphere_warp.h"
 
+#include "corner_table.h"
 #include "exact_predicates.h"
 #include "parallel.h"
 #include "pi.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -22,22 +24,28 @@ namespace {
 /// |Ds|^2 < 1, as I + (s, Ds) then has an inverse; and a map of the sphere that is so everywhere is
 /// one to one. The field is examined at some places: the bound leaves room for those between.
 constexpr double kMaxSlope = 0.4;
-/// Landmarks collide if they come nearer to each other than this share of the least of their
+/// Landmarks collide if they come nearer to each other than this fraction of the least of their
 /// distances at the beginning and the end.
 constexpr double kMinApproach = 0.25;
 /// Places on their ways where their distances are examined.
 constexpr std::size_t kPathSamples = 48;
-/// Detours that are tried [rad at the middle, as a share of the way and 0.1].
+/// Detours that are tried [rad at the middle, as a fraction of the way and 0.1].
 constexpr double kDetours[] = {0.0, 0.2, -0.2, 0.45, -0.45, 0.9, -0.9};
 constexpr int kDetourRounds = 6;
-/// Shortest step, as a share of the way.
+/// Steps along the paths [fraction of the path]: the first, the shortest, and how they grow.
+constexpr double kFirstStep = 0.25;
 constexpr double kMinStep = 1e-3;
+constexpr double kStepGrowth = 1.5;
+/// No landmark goes farther in a step [chord].
+constexpr double kMaxStep = 0.25;
 /// A field's support, in distances [chord]: of landmarks, and ways that they go.
 constexpr double kSupportOfDistance = 3.0;
 constexpr double kSupportOfWay = 4.0;
 /// Rounds over flipped triangles after each step, and at the end.
 constexpr int kStepRounds = 4;
 constexpr int kEndRounds = 30;
+/// Steps towards the middle of the kernel of a vertex's ring.
+constexpr int kKernelSteps = 40;
 /// Places besides the landmarks where a field is examined.
 constexpr int kSpread = 512;
 
@@ -116,8 +124,8 @@ std::ptrdiff_t planPaths(std::vector<Path>& paths, const std::vector<std::size_t
         continue;
       Path& path = paths[active[i]];
       double best = path.detour;
-      for (const double share : kDetours) {
-        path.bend(share * (path.angle + 0.1));
+      for (const double fraction : kDetours) {
+        path.bend(fraction * (path.angle + 0.1));
         const double conflict = conflict_of(i);
         if (conflict < least) {
           least = conflict;
@@ -225,16 +233,8 @@ bool isFlipped(const Positions& sphere, Index a, Index b, Index c) {
 class Untangler {
 public:
   Untangler(const Triangles& triangles, Eigen::Index n, const std::vector<char>& is_fixed)
-      : triangles_(triangles), is_fixed_(is_fixed), offsets_(static_cast<std::size_t>(n) + 1, 0),
-        corners_(static_cast<std::size_t>(triangles.size())) {
-    for (Eigen::Index i = 0; i < triangles.size(); ++i)
-      ++offsets_[static_cast<std::size_t>(triangles.data()[i]) + 1];
-    for (std::size_t v = 0; v + 1 < offsets_.size(); ++v)
-      offsets_[v + 1] += offsets_[v];
-    std::vector<std::size_t> end(offsets_.begin(), offsets_.end() - 1);
-    for (Index i = 0; i < static_cast<Index>(triangles.size()); ++i)
-      corners_[end[static_cast<std::size_t>(triangles.data()[i])]++] = i;
-  }
+      : triangles_(triangles), is_fixed_(is_fixed),
+        corners_(triangles, static_cast<std::size_t>(n), 1) {}
 
   /// Flipped triangles, ascending.
   std::vector<Index> flipped(const Positions& sphere, int threads) const {
@@ -278,14 +278,12 @@ public:
   }
 
 private:
+  /// Calls visit(a, b) for the sides opposite to v of the triangles around it.
   template <typename Visit>
   void forEachSide(Index v, const Visit& visit) const {
-    for (std::size_t i = offsets_[static_cast<std::size_t>(v)];
-         i < offsets_[static_cast<std::size_t>(v) + 1]; ++i) {
-      const Index t = corners_[i] / 3;
-      const Index k = corners_[i] % 3;
+    corners_.forEachCorner(v, [&](Index t, Index k) {
       visit(triangles_((k + 1) % 3, t), triangles_((k + 2) % 3, t));
-    }
+    });
   }
 
   int flippedAround(const Positions& sphere, Index v) const {
@@ -304,8 +302,8 @@ private:
     const int before = flippedAround(sphere, v);
     Eigen::Vector3d best = old;
     int least = before;
-    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-      sphere.col(v) = ((1.0 - share) * old + share * mean).normalized();
+    for (const double fraction : {0.25, 0.5, 0.75, 1.0}) {
+      sphere.col(v) = ((1.0 - fraction) * old + fraction * mean).normalized();
       const int count = flippedAround(sphere, v);
       if (count < least) {
         least = count;
@@ -316,7 +314,7 @@ private:
       // The middle of the kernel of the polygon of neighbours, by steps off the nearest of its
       // sides.
       Eigen::Vector3d place = mean;
-      for (int step = 0; step < 40 && least > 0; ++step) {
+      for (int step = 0; step < kKernelSteps && least > 0; ++step) {
         double nearest = std::numeric_limits<double>::infinity();
         Eigen::Vector3d inward = Eigen::Vector3d::Zero();
         double size = 0.0;
@@ -346,8 +344,7 @@ private:
 
   const Triangles& triangles_;
   const std::vector<char>& is_fixed_;
-  std::vector<std::size_t> offsets_;
-  std::vector<Index> corners_;
+  CornerTable corners_;
 };
 
 /// Directions that are spread evenly.
@@ -408,6 +405,189 @@ std::pair<double, std::size_t> steepestOf(const Field& field, const Positions& p
   return {*steepest, s < near_count ? s / (2 * around + 1) : static_cast<std::size_t>(n)};
 }
 
+/// The motion of all landmarks, and of the sphere with them. It begins again without a landmark
+/// that cannot come to its place.
+class LandmarkMotion {
+public:
+  LandmarkMotion(const Positions& sphere, const Triangles& triangles,
+                 const std::vector<Landmark>& landmarks, int threads, const Report& report)
+      : sphere_(sphere), triangles_(triangles), landmarks_(landmarks), threads_(threads),
+        report_(report), spread_(spreadDirections(kSpread)),
+        is_fixed_(static_cast<std::size_t>(sphere.cols()), 0),
+        untangler_(triangles, sphere.cols(), is_fixed_) {}
+
+  SphereWarp run() {
+    warp_.reasons.resize(landmarks_.size());
+    for (;;) {
+      planAll();
+      begin();
+      std::optional<std::size_t> stuck = followPaths();
+      if (!stuck && !active_.empty())
+        stuck = arrive();
+      if (!stuck)
+        break;
+      giveUp(*stuck, "no motion of the sphere was found that takes it to its place without a fold");
+    }
+    tell(report_, 1.0);
+    return std::move(warp_);
+  }
+
+private:
+  void giveUp(std::size_t landmark, const char* reason) {
+    warp_.reasons[landmark] = reason;
+    is_fixed_[static_cast<std::size_t>(landmarks_[landmark].vertex)] = 0;
+  }
+
+  const Path& pathOf(Eigen::Index i) const { return paths_[active_[static_cast<std::size_t>(i)]]; }
+  Index vertexOf(Eigen::Index i) const {
+    return landmarks_[active_[static_cast<std::size_t>(i)]].vertex;
+  }
+  Eigen::Index count() const { return static_cast<Eigen::Index>(active_.size()); }
+
+  /// Finds paths that keep the landmarks apart, and gives up those that have none.
+  void planAll() {
+    active_.clear();
+    paths_.clear();
+    for (std::size_t i = 0; i < landmarks_.size(); ++i) {
+      paths_.emplace_back(sphere_.col(landmarks_[i].vertex), landmarks_[i].target);
+      if (warp_.reasons[i].empty()) {
+        active_.push_back(i);
+        is_fixed_[static_cast<std::size_t>(landmarks_[i].vertex)] = 1;
+      }
+    }
+    while (!active_.empty()) {
+      const std::ptrdiff_t worst = planPaths(paths_, active_, threads_);
+      if (worst < 0)
+        break;
+      giveUp(static_cast<std::size_t>(worst),
+             "no way was found to its place that keeps it apart from the other pairs");
+      active_.erase(std::find(active_.begin(), active_.end(), static_cast<std::size_t>(worst)));
+    }
+  }
+
+  /// Puts everything back to the beginning, and chooses the support of the fields.
+  void begin() {
+    warp_.sphere = sphere_;
+    warp_.steps = 0;
+    warp_.worst = 0.0;
+    warp_.untangled = 0;
+    places_.resize(3, count());
+    ends_.resize(3, count());
+    double longest = 0.0;
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      places_.col(i) = pathOf(i).from;
+      ends_.col(i) = pathOf(i).to;
+      longest = std::max(longest, pathOf(i).angle + 2.0 * std::abs(pathOf(i).detour));
+    }
+    support_ = 0.0;
+    for (const Positions& where : {places_, ends_})
+      for (const double distance : nearestDistances(where))
+        support_ = std::max(support_, kSupportOfDistance * distance);
+    // Wider than what is moved, so that it is not squeezed; more than the diameter is no use.
+    support_ = std::min(2.0, std::max(support_, kSupportOfWay * longest));
+    mend(kEndRounds);
+  }
+
+  /// Triangles that are still flipped after so many rounds.
+  std::vector<Index> mend(int rounds) {
+    return untangler_.mend(warp_.sphere, rounds, threads_, warp_.untangled);
+  }
+
+  /// Moves the sphere in steps until all landmarks are at the ends of their paths. \return the
+  /// landmark that no short step takes further, if there is one
+  std::optional<std::size_t> followPaths() {
+    double t = 0.0;
+    double step = kFirstStep;
+    // The last step goes nowhere but to the targets, from where rounding has left the landmarks.
+    for (bool is_last = active_.empty(); !is_last;) {
+      is_last = t >= 1.0;
+      const double goal = is_last ? 1.0 : std::min(1.0, t + step);
+      const auto [values, farthest] = motionTo(goal);
+      if (is_last && farthest == 0.0)
+        break;
+      const Field field(places_, values, support_);
+      const auto [slope, where] = steepestOf(field, places_, spread_, threads_);
+      if (farthest > kMaxStep || !field.isFinite() || !(slope <= kMaxSlope * kMaxSlope)) {
+        step = 0.5 * (goal - t);
+        if (is_last || step < kMinStep)
+          return active_[std::min(where, active_.size() - 1)];
+        continue;
+      }
+      carry(field);
+      t = goal;
+      step *= kStepGrowth;
+      // A motion that begins again does not report less than before.
+      reported_ = std::max(reported_, 0.99 * t);
+      tell(report_, reported_);
+    }
+    return std::nullopt;
+  }
+
+  /// The tangential vectors that take the landmarks to a time on their paths, and the length of the
+  /// longest [chord].
+  std::pair<Positions, double> motionTo(double time) const {
+    Positions values(3, count());
+    double farthest = 0.0;
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      const Eigen::Vector3d place = places_.col(i);
+      const Eigen::Vector3d next = pathOf(i).at(time);
+      values.col(i) = next / std::max(0.5, next.dot(place)) - place;
+      values.col(i) -= place.dot(values.col(i)) * place;
+      farthest = std::max(farthest, (next - place).norm());
+    }
+    return {values, farthest};
+  }
+
+  /// One step of all vertices.
+  void carry(const Field& field) {
+    const auto vertices = static_cast<std::size_t>(warp_.sphere.cols());
+    forEachItem(vertices, threadCount(threads_, vertices * active_.size(), kShortPassThreshold),
+                [&](std::size_t, std::size_t v) {
+                  const auto i = static_cast<Eigen::Index>(v);
+                  const Eigen::Vector3d x = warp_.sphere.col(i);
+                  warp_.sphere.col(i) = (x + field.at(x)).normalized();
+                });
+    for (Eigen::Index i = 0; i < count(); ++i)
+      places_.col(i) = warp_.sphere.col(vertexOf(i));
+    mend(kStepRounds);
+    ++warp_.steps;
+  }
+
+  /// Puts the landmarks exactly on their targets. \return the landmark that is nearest to a
+  /// triangle that stays flipped, if there is one: it is in the way
+  std::optional<std::size_t> arrive() {
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      warp_.worst = std::max(warp_.worst, (places_.col(i) - ends_.col(i)).norm());
+      warp_.sphere.col(vertexOf(i)) = ends_.col(i);
+    }
+    const std::vector<Index> bad = mend(kEndRounds);
+    if (bad.empty())
+      return std::nullopt;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k)
+      middle += warp_.sphere.col(triangles_(k, bad[0]));
+    Eigen::Index nearest = 0;
+    (ends_.colwise() - middle.normalized()).colwise().squaredNorm().minCoeff(&nearest);
+    return active_[static_cast<std::size_t>(nearest)];
+  }
+
+  const Positions& sphere_;
+  const Triangles& triangles_;
+  const std::vector<Landmark>& landmarks_;
+  int threads_;
+  const Report& report_;
+  Positions spread_;
+  std::vector<char> is_fixed_;
+  Untangler untangler_;
+  SphereWarp warp_;
+  std::vector<std::size_t> active_;  ///< landmarks that are not given up
+  std::vector<Path> paths_;          ///< of all landmarks
+  Positions places_;                 ///< of the active landmarks, now
+  Positions ends_;                   ///< their targets
+  double support_ = 0.0;             ///< of the fields [chord]
+  double reported_ = 0.0;
+};
+
 }  // namespace
 
 Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads) {
@@ -426,125 +606,7 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
                          const std::vector<Landmark>& landmarks, int threads,
                          const Report& report) {
-  SphereWarp warp;
-  warp.reasons.resize(landmarks.size());
-  double told = 0.0;  // what is done again must not fall back
-  const Positions spread = spreadDirections(kSpread);
-  std::vector<char> is_fixed(static_cast<std::size_t>(sphere.cols()), 0);
-  const Untangler untangler(triangles, sphere.cols(), is_fixed);
-  const auto give_up = [&](std::size_t i, const char* reason) {
-    warp.reasons[i] = reason;
-    is_fixed[static_cast<std::size_t>(landmarks[i].vertex)] = 0;
-  };
-
-  for (;;) {
-    std::vector<std::size_t> active;
-    std::vector<Path> paths;
-    for (std::size_t i = 0; i < landmarks.size(); ++i) {
-      paths.emplace_back(sphere.col(landmarks[i].vertex), landmarks[i].target);
-      if (warp.reasons[i].empty()) {
-        active.push_back(i);
-        is_fixed[static_cast<std::size_t>(landmarks[i].vertex)] = 1;
-      }
-    }
-    for (std::ptrdiff_t worst = 0; !active.empty() && worst >= 0;) {
-      worst = planPaths(paths, active, threads);
-      if (worst < 0)
-        break;
-      give_up(static_cast<std::size_t>(worst),
-              "no way was found to its place that keeps it apart from the other pairs");
-      active.erase(std::find(active.begin(), active.end(), static_cast<std::size_t>(worst)));
-    }
-
-    warp.sphere = sphere;
-    warp.steps = 0;
-    warp.worst = 0.0;
-    warp.untangled = 0;
-    const auto n = static_cast<Eigen::Index>(active.size());
-    Positions places(3, n);
-    Positions ends(3, n);
-    double longest = 0.0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Path& path = paths[active[static_cast<std::size_t>(i)]];
-      places.col(i) = path.from;
-      ends.col(i) = path.to;
-      longest = std::max(longest, path.angle + 2.0 * std::abs(path.detour));
-    }
-    double support = 0.0;
-    for (const Positions& where : {places, ends})
-      for (const double distance : nearestDistances(where))
-        support = std::max(support, kSupportOfDistance * distance);
-    // Wider than what is moved, so that it is not squeezed; more than the diameter is no use.
-    support = std::min(2.0, std::max(support, kSupportOfWay * longest));
-
-    std::ptrdiff_t stuck = -1;
-    double t = 0.0;
-    double step = 0.25;
-    std::vector<Index> bad = untangler.mend(warp.sphere, kEndRounds, threads, warp.untangled);
-    // The last step goes nowhere but to the targets, from where rounding has left the landmarks.
-    for (bool is_last = n == 0; !is_last;) {
-      is_last = t >= 1.0;
-      const double goal = is_last ? 1.0 : std::min(1.0, t + step);
-      Positions values(3, n);
-      double farthest = 0.0;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Vector3d place = places.col(i);
-        const Eigen::Vector3d next = paths[active[static_cast<std::size_t>(i)]].at(goal);
-        values.col(i) = next / std::max(0.5, next.dot(place)) - place;
-        values.col(i) -= place.dot(values.col(i)) * place;
-        farthest = std::max(farthest, (next - place).norm());
-      }
-      if (is_last && farthest == 0.0)
-        break;
-      const Field field(places, values, support);
-      const auto [slope, where] = steepestOf(field, places, spread, threads);
-      if (farthest > 0.25 || !field.isFinite() || !(slope <= kMaxSlope * kMaxSlope)) {
-        step = 0.5 * (goal - t);
-        if (is_last || step < kMinStep) {
-          stuck = static_cast<std::ptrdiff_t>(active[std::min(where, active.size() - 1)]);
-          break;
-        }
-        continue;
-      }
-      const auto count = static_cast<std::size_t>(warp.sphere.cols());
-      forEachItem(count, threadCount(threads, count * active.size(), kShortPassThreshold),
-                  [&](std::size_t, std::size_t v) {
-                    const auto i = static_cast<Eigen::Index>(v);
-                    const Eigen::Vector3d x = warp.sphere.col(i);
-                    warp.sphere.col(i) = (x + field.at(x)).normalized();
-                  });
-      for (Eigen::Index i = 0; i < n; ++i)
-        places.col(i) = warp.sphere.col(landmarks[active[static_cast<std::size_t>(i)]].vertex);
-      bad = untangler.mend(warp.sphere, kStepRounds, threads, warp.untangled);
-      ++warp.steps;
-      t = goal;
-      step *= 1.5;
-      told = std::max(told, 0.99 * t);
-      tell(report, told);
-    }
-    if (stuck < 0 && n > 0) {
-      for (Eigen::Index i = 0; i < n; ++i) {
-        warp.worst = std::max(warp.worst, (places.col(i) - ends.col(i)).norm());
-        warp.sphere.col(landmarks[active[static_cast<std::size_t>(i)]].vertex) = ends.col(i);
-      }
-      bad = untangler.mend(warp.sphere, kEndRounds, threads, warp.untangled);
-      if (!bad.empty()) {
-        // The landmark that is nearest to a triangle that cannot be mended is in the way.
-        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-        for (int k = 0; k < 3; ++k)
-          middle += warp.sphere.col(triangles(k, bad[0]));
-        Eigen::Index nearest = 0;
-        (ends.colwise() - middle.normalized()).colwise().squaredNorm().minCoeff(&nearest);
-        stuck = static_cast<std::ptrdiff_t>(active[static_cast<std::size_t>(nearest)]);
-      }
-    }
-    if (stuck < 0)
-      break;
-    give_up(static_cast<std::size_t>(stuck),
-            "no motion of the sphere was found that takes it to its place without a fold");
-  }
-  tell(report, 1.0);
-  return warp;
+  return LandmarkMotion(sphere, triangles, landmarks, threads, report).run();
 }
 
 }  // namespace spherical_param::internal

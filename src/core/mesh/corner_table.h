@@ -29,8 +29,8 @@ inline void checkTriangles(const char* caller, const Triangles& triangles, Eigen
                      std::to_string(n) + "; indices start at 0");
 }
 
-/// The corners of a triangle behind and before corner k. Looked up, as to compute them takes a
-/// remainder, or a branch that no processor can guess.
+/// The corners of a triangle after and before corner k. A table is faster than a remainder, or a
+/// branch that the processor cannot predict.
 inline Index nextCorner(Index k) {
   constexpr Index next[] = {1, 2, 0};
   return next[k];
@@ -40,8 +40,8 @@ inline Index previousCorner(Index k) {
   return previous[k];
 }
 
-/// The corners of the triangles, those of each vertex together: 24 bytes for each vertex of a
-/// closed mesh, and 4 more.
+/// Adjacency of arbitrary triangles, which SphereMesh is not for: the corners of the triangles,
+/// those of each vertex together; 24 bytes for each vertex of a closed mesh, and 4 more.
 class CornerTable {
 public:
   /// \param triangles indices in [0, vertex_count), see checkTriangles().

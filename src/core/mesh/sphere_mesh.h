@@ -10,10 +10,10 @@
 
 namespace spherical_param::internal {
 
-/// A closed genus-0 triangle mesh with neighbours, changed only by moves that keep it one: a
+/// A closed genus-0 triangle mesh with its adjacency, changed only by moves that keep it one: a
 /// triangle is split in three by a new vertex, three triangles around a vertex are merged to one,
-/// or an edge is flipped whose opposite vertices are not yet joined. Moves can be taken back, to
-/// the last index.
+/// or an edge is flipped whose opposite vertices are not yet joined. Moves can be rolled back
+/// exactly.
 class SphereMesh {
 public:
   /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices,
