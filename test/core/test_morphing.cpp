@@ -553,14 +553,14 @@ TEST(Morphing, ProgressNeverFallsAndMayCancel) {
   MorphOptions options;
   options.pairs = {{1, 2}, {200, 300}};
   const std::vector<double> shares = test::fractionsOf([&](const auto& progress) {
-    options.progress = progress;
+    options.progress = test::reportingTo(progress).progress;
     morphSurfaces(first.surface(), second.surface(), options);
   });
   EXPECT_TRUE(test::areFractions(shares));
   EXPECT_EQ(shares.back(), 1.0);
   for (const std::size_t calls : {std::size_t{1}, shares.size() / 2}) {
     std::size_t count = 0;
-    options.progress = [&](double) { return ++count < calls; };
+    options.progress = [&](const Progress&) { return ++count < calls; };
     EXPECT_THROW(morphSurfaces(first.surface(), second.surface(), options), Cancelled);
   }
 }

@@ -456,7 +456,7 @@ TEST(ProgressCallback, EndsMapsAndMorphsAtEveryCall) {
   expectEndsAtEveryCall([&](const Callback& callback) {
     SphereMapOptions options;
     options.sweeps = 3;
-    options.progress = callback;
+    options.progress = reportingTo(callback).progress;
     return Outcome(Triangles(3, 0),
                    computeSphereMap(points, mapped.triangles, mapped.sphere, options).sphere);
   });
@@ -471,7 +471,7 @@ TEST(ProgressCallback, EndsMapsAndMorphsAtEveryCall) {
           options.samples = 100;
           options.align = connectivity == MorphConnectivity::AllVertices;
           options.pairs = {{0, 0}, {7, 20}};
-          options.progress = callback;
+          options.progress = reportingTo(callback).progress;
           const MorphResult result = morphSurfaces(from, to, options);
           return Outcome(result.triangles, result.second);
         },

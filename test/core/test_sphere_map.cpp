@@ -514,7 +514,7 @@ TEST(SphereMap, TellsHowFarItIs) {
   const Mesh sphere = octasphere(3);
   const auto run = [&](const std::function<bool(double)>& progress) {
     SphereMapOptions options;
-    options.progress = progress;
+    options.progress = test::reportingTo(progress).progress;
     computeSphereMap(sphere.points, sphere.triangles, sphere.points, options);
   };
   const std::vector<double> shares = test::fractionsOf(run);
