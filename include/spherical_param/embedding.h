@@ -81,12 +81,12 @@ struct EmbeddingOptions {
   /// (0, 1].
   double damping = 0.5;
   /// Mean length of the tangential Laplacian at which the embedding counts as converged [radius of
-  /// the sphere]; >= 0. Unset: 1e-8 for the iteration; Multilevel then ends with its sweeps.
+  /// the sphere]; [0, 1]. Unset: 1e-8 for the iteration; Multilevel then ends with its sweeps.
   std::optional<double> tolerance;
   /// Steps of the iteration at most, as in Table 1 of the paper; >= 0. With 0 the embedding is the
   /// projection of the points from their centroid.
   int max_iterations = 1600;
-  /// Iterations over which stagnation is judged; 0: never; or >= 2.
+  /// Iterations over which stagnation is judged; 0 or 1: never; >= 0.
   int stagnation_window = 100;
   /// Starts of Multilevel on the coarsest level, of which the one of least energy is kept; 1 to 100.
   int starts = 2;

@@ -273,7 +273,9 @@ std::string textOf(const OptionValue& value) {
 
 void checkOptions(const Options& options) {
   checkStage(options, "");
+  internal::checkOptions(options.graph);
   internal::checkOptions(options.embedding);
+  internal::checkOptions(options.smoothing);
 }
 
 namespace internal {

@@ -254,6 +254,7 @@ Distortions distortionsOf(const Meshes& meshes, const std::vector<Sums>& of_bloc
 
 MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,
                                    const Positions& sphere, int threads) {
+  internal::checkThreads(threads);
   checkPositions(points, triangles, sphere);
   MapDistortion distortion;
   const auto m = static_cast<std::size_t>(triangles.cols());

@@ -257,16 +257,5 @@ TEST(EmbeddingRecorder, KeepsItsBoundsWhateverIsShown) {
   EXPECT_TRUE(recorder.take().frames.empty());
 }
 
-TEST(EmbeddingRecorder, RefusesLimitsOutOfRange) {
-  const auto make = [](Index vertices, int frames) {
-    EmbeddingRecorder(10, HistoryLimits{vertices, frames});
-  };
-  EXPECT_THROW(make(-1, 10), InvalidInput);
-  EXPECT_THROW(make((Index{1} << 24) + 1, 10), InvalidInput);
-  EXPECT_THROW(make(10, 1), InvalidInput);
-  EXPECT_THROW(make(10, 10001), InvalidInput);
-  EXPECT_NO_THROW(make(0, 2));
-}
-
 }  // namespace
 }  // namespace spherical_param

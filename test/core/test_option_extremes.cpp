@@ -159,7 +159,7 @@ TEST(OptionExtremes, StagesAnswerOrNameTheOption) {
   }
 }
 
-TEST(OptionExtremes, ThreadsOutOfRangeAreRefusedByEveryStage) {
+TEST(OptionExtremes, ThreadsOutOfRangeAreRefusedByEveryStageWhateverItsInput) {
   const Positions points = randomSphere(200, 7);
   const NeighborLists lists = bruteForceNeighbors(points, 12);
   const Graph graph = graphOf(points);
@@ -173,21 +173,40 @@ TEST(OptionExtremes, ThreadsOutOfRangeAreRefusedByEveryStage) {
          options.threads = e.threads;
          reconstruct(points, options);
        }},
+      {"findNearestNeighbors without points",
+       [&](const Execution& e) { findNearestNeighbors(Positions(3, 0), 12, e); }},
+      {"makeNeighborSearch", [&](const Execution& e) { makeNeighborSearch(points, e); }},
       {"findNearestNeighbors", [&](const Execution& e) { findNearestNeighbors(points, 12, e); }},
       {"buildNeighborGraph",
        [&](const Execution& e) { buildNeighborGraph(points, lists, {}, {}, e); }},
+      {"buildNeighborGraph of nearest neighbours",
+       [&](const Execution& e) { buildNeighborGraph(points, lists, nearest(), {}, e); }},
       {"embed", [&](const Execution& e) { embed(graph, points, {}, 1, e); }},
+      {"embed without nodes",
+       [&](const Execution& e) { embed(Graph(), Positions(3, 0), {}, 1, e); }},
+      {"triangulateSphere", [&](const Execution& e) { triangulateSphere(mapped.sphere, {}, e); }},
       {"optimizeMesh",
        [&](const Execution& e) { optimizeMesh(points, triangles, graph, {}, 1, e); }},
       {"findSelfIntersections",
        [&](const Execution& e) { findSelfIntersections(points, triangles, e); }},
+      {"findSelfIntersections without triangles",
+       [&](const Execution& e) { findSelfIntersections(points, Triangles(3, 0), e); }},
+      {"findSelfIntersectionsOf nothing",
+       [&](const Execution& e) { findSelfIntersectionsOf(points, triangles, {}, e); }},
       {"findOutliers", [&](const Execution& e) { findOutliers(points, lists, {}, e); }},
+      {"findOutliers without points",
+       [&](const Execution& e) { findOutliers(Positions(3, 0), {}, e); }},
       {"smoothSurface",
        [&](const Execution& e) { smoothSurface(points, triangles, {}, e.threads); }},
+      {"smoothSurface without triangles",
+       [&](const Execution& e) { smoothSurface(points, Triangles(3, 0), {}, e.threads); }},
       {"checkTopology", [&](const Execution& e) { checkTopology(triangles, n, e.threads); }},
       {"measureMesh", [&](const Execution& e) { measureMesh(points, triangles, e.threads); }},
       {"diagnoseSurface",
-       [&](const Execution& e) { diagnoseSurface(points, triangles, graph, {}, {}, e.threads); }}};
+       [&](const Execution& e) { diagnoseSurface(points, triangles, graph, {}, {}, e.threads); }},
+      {"measureMapDistortion without triangles", [&](const Execution& e) {
+         measureMapDistortion(points, Triangles(3, 0), mapped.sphere, e.threads);
+       }}};
   for (const auto& [name, run] : stages) {
     for (const int threads : kThreads)
       EXPECT_EQ(refusalOf([&, &call = run] { call(onThreads(threads)); }), "") << name;
@@ -283,13 +302,18 @@ TEST(BrokenData, GraphsThatDoNotFitAreInvalidInput) {
   const Positions points = randomSphere(30, 2);
   const Mapped mapped(points);
   const Graph good = graphOf(points);
-  std::vector<Graph> broken(6, good);
+  std::vector<Graph> broken(10, good);
   broken[0].offsets.clear();
   broken[1].lengths.pop_back();
   broken[2].neighbors[5] = 30;
   broken[3].neighbors[5] = -1;
   std::swap(broken[4].offsets[3], broken[4].offsets[4]);
   broken[5].offsets[0] = 1;
+  // Paths over negative lengths would get shorter forever.
+  broken[6].lengths[7] = -1.0;
+  broken[7].lengths[7] = -std::numeric_limits<double>::min();
+  broken[8].lengths[7] = kInfinity;
+  broken[9].lengths[7] = kNan;
   for (std::size_t i = 0; i < broken.size(); ++i) {
     const Graph& graph = broken[i];
     EXPECT_THROW(embed(graph, points), InvalidInput) << i;

@@ -117,7 +117,7 @@ TEST(OptionTable, NestedOptionsAreCheckedWithoutRunningAStage) {
     Options options;
     change(options);
     expectRefusal([&] { checkOptions(options); }, name);
-    // The same before any point is looked at.
+    // reconstruct() checks them before the points.
     expectRefusal([&] { reconstruct(Positions(3, 0), options); }, name);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -261,14 +261,18 @@ TEST(SphereEmbedding, BadInputIsInvalidInput) {
     };
     for (const double damping : {0.0, -0.1, 1.01, nan})
       refuses([&](EmbeddingOptions& o) { o.damping = damping; });
-    for (const double tolerance : {-1e-9, nan})
+    for (const double tolerance : {-1e-9, 1.01, nan})
       refuses([&](EmbeddingOptions& o) { o.tolerance = tolerance; });
     for (const double exponent : {2.0, 16.5, nan})
       refuses([&](EmbeddingOptions& o) { o.exponent = exponent; });
     for (const int starts : {0, 101})
       refuses([&](EmbeddingOptions& o) { o.starts = starts; });
     refuses([](EmbeddingOptions& o) { o.max_iterations = -1; });
-    refuses([](EmbeddingOptions& o) { o.stagnation_window = 1; });
+    refuses([](EmbeddingOptions& o) { o.stagnation_window = -1; });
+    for (const Index vertices : {-1, (1 << 24) + 1})
+      refuses([&](EmbeddingOptions& o) { o.history.vertices = vertices; });
+    for (const int frames : {1, 10001})
+      refuses([&](EmbeddingOptions& o) { o.history.frames = frames; });
   }
   EXPECT_THROW(meanTangentialLaplacian(graph, randomSphere(3, 1), EdgeWeights::Uniform),
                InvalidInput);

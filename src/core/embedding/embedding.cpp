@@ -8,6 +8,7 @@
 #include "iterative_embedding.h"
 #include "multilevel_embedding.h"
 #include "option_checks.h"
+#include "parallel.h"
 #include "spherical_param/errors.h"
 
 #include <cmath>
@@ -46,6 +47,7 @@ void fallBack(const Graph& graph, const Positions& points, const EmbeddingOption
 Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOptions& options,
                 std::uint32_t seed, const Execution& execution) {
   checkInput(graph, points, options);
+  internal::checkThreads(execution.threads);
   Embedding embedding;
   if (graph.size() == 0) {
     embedding.directions = points;

@@ -4,6 +4,8 @@
 #include "nearest_neighbor_graph.h"
 #include "neighbor_lists.h"
 #include "option_checks.h"
+#include "parallel.h"
+#include "progress.h"
 
 namespace spherical_param {
 namespace {
@@ -24,8 +26,10 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
                                  const GraphOptions& options, const NeighborSearch& search,
                                  const Execution& execution) {
   internal::checkOptions(options);
+  internal::checkThreads(execution.threads);
   internal::checkNeighborLists("buildNeighborGraph", lists,
                                static_cast<std::size_t>(points.cols()));
+  internal::tell(internal::reportOf(execution, "graph"), 0.0);
   NeighborGraph result =
       options.method == GraphMethod::NearestNeighbors
           ? internal::buildNearestNeighborGraph(points, lists, neighborsToSearch(options))

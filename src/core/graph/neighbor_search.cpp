@@ -101,6 +101,7 @@ NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int c
 }  // namespace
 
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution) {
+  internal::checkThreads(execution.threads);
   return [tree = std::make_shared<const KdTree>(points),
           execution](const std::vector<Index>& queries, int count) {
     return search(*tree, queries, count, execution);
@@ -108,6 +109,7 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
 }
 
 NeighborLists findNearestNeighbors(const Positions& points, int count, const Execution& execution) {
+  internal::checkThreads(execution.threads);
   std::vector<Index> all(static_cast<std::size_t>(points.cols()));
   std::iota(all.begin(), all.end(), Index{0});
   return all.empty() ? NeighborLists() : makeNeighborSearch(points, execution)(all, count);

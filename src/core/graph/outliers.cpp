@@ -228,6 +228,7 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
 Outliers findOutliers(const Positions& points, const OutlierOptions& options,
                       const Execution& execution) {
   checkOptions(options);
+  internal::checkThreads(execution.threads);
   checkFinite(points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
   const auto n = static_cast<std::size_t>(points.cols());

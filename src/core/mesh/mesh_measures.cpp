@@ -84,6 +84,7 @@ SurfaceSums sumOverSurface(const Positions& points, const Triangles& triangles,
 
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
                          int requested_threads) {
+  internal::checkThreads(requested_threads);
   internal::checkTriangles("measureMesh", triangles, points.cols());
   MeshMeasures measures;
   if (triangles.cols() == 0)

@@ -34,6 +34,13 @@ inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
 /// And reports of a loop at most, about.
 inline constexpr std::size_t kMostReports = 32;
 
+/// \throw InvalidInput if a number of threads is out of range.
+inline void checkThreads(int requested) {
+  if (requested < 0 || requested > kMaxThreads)
+    throw InvalidInput("threads = " + std::to_string(requested) +
+                       " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
+}
+
 /// The threads that are worth having for so many items.
 ///
 /// \param requested 0: as many as OpenMP would use.
@@ -41,9 +48,7 @@ inline constexpr std::size_t kMostReports = 32;
 /// \throw InvalidInput if `requested` is out of range.
 inline int threadCount(int requested, [[maybe_unused]] std::size_t items,
                        [[maybe_unused]] std::size_t threshold) {
-  if (requested < 0 || requested > kMaxThreads)
-    throw InvalidInput("threads = " + std::to_string(requested) +
-                       " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
+  checkThreads(requested);
 #ifdef _OPENMP
   if (items >= threshold)
     // OpenMP ends the process if it cannot start a thread; more than this gain nothing anyway.

@@ -248,6 +248,7 @@ void Filter::restoreVolume(Positions& points, double volume) const {
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
                         const SmoothingOptions& options, int threads) {
   internal::checkOptions(options);
+  internal::checkThreads(threads);
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (!points.col(i).allFinite())
       fail("point " + std::to_string(i) + " is not finite; remove such points first");

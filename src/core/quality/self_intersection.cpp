@@ -895,6 +895,7 @@ std::vector<std::array<Index, 2>>
 internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
                                 const std::vector<std::uint8_t>& fans, int requested_threads,
                                 const Report& report) {
+  checkThreads(requested_threads);
   const Mesh mesh(points, triangles, checkedScale(points, triangles), fans);
   std::vector<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
@@ -912,6 +913,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const Triangles& triangles,
                                                           const std::vector<Index>& of,
                                                           const Execution& execution) {
+  internal::checkThreads(execution.threads);
   const std::vector<std::uint8_t> no_fans;
   const Mesh mesh(points, triangles, checkedScale(points, triangles), no_fans);
   std::vector<char> in_set(mesh.size(), 0);

@@ -2,6 +2,7 @@
 
 #include "incremental_delaunay.h"
 #include "option_checks.h"
+#include "parallel.h"
 #include "progress.h"
 #include "space_filling_curve.h"
 #include "sphere_mesh.h"
@@ -363,6 +364,7 @@ SphereTriangulation triangulateSphere(const Positions& directions,
                                       const TriangulationOptions& options,
                                       const Execution& execution) {
   internal::checkOptions(options);
+  internal::checkThreads(execution.threads);
   checkInput(directions);
   const internal::Report report = internal::reportOf(execution, "triangulation");
   return options.method == TriangulationMethod::Qhull
