@@ -164,6 +164,8 @@ private:
     optimizer_.setPoints(*points_);
     if (!options_.finish_on_points)
       return;
+    // The work on the smoothed points may have spent it: a few points then stayed tangled.
+    budget_ = budgetOf(static_cast<std::size_t>(points_->cols()));
     result_.report.smoothed_self_intersections = result_.self_intersections.size();
     result_.self_intersections = optimizer_.intersections(report_);
     const auto count = static_cast<double>(result_.self_intersections.size());
