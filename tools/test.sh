@@ -77,7 +77,7 @@ if [ "$quick" = no ]; then
   programs=(test_core test_spherical_param_reconstruction test_ros_seam test_cloud_reader test_faults)
   if check "clang, ASan and UBSan: build" configure_and_build asan "${programs[@]}"; then
     # Not what runs long on large clouds: the same code runs on smaller ones in other tests.
-    slow='*AttemptsAreABudget*:MultilevelEmbedding.SameBits*:MultilevelEmbedding.StepsDoNotGrow*'
+    slow='*RetriesAreMade*:MultilevelEmbedding.SameBits*:MultilevelEmbedding.StepsDoNotGrow*'
     for program in "${programs[@]}"; do
       check "clang, ASan and UBSan: $program" sanitized "build/asan/bin/$program" "-$slow" || true
     done

@@ -215,7 +215,9 @@ inline Execution onThreads(int threads) {
 inline Execution reportingTo(const std::function<bool(double)>& callback) {
   Execution execution;
   if (callback)
-    execution.progress = [callback](const Progress& progress) { return callback(progress.fraction); };
+    execution.progress = [callback](const Progress& progress) {
+      return callback(progress.fraction);
+    };
   return execution;
 }
 
@@ -336,8 +338,8 @@ inline Tube bentTube(double length, double turn, int ring) {
   return tube;
 }
 
-/// Share of the edges of triangles that join nodes more than two steps apart in a graph.
-inline double shareBeyondTwoSteps(const Graph& graph, const Triangles& triangles) {
+/// Fraction of the edges of triangles that join nodes more than two steps apart in a graph.
+inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triangles) {
   const auto row = [&](Index i) {
     const auto begin = graph.neighbors.begin() +
                        static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i)]);

@@ -70,7 +70,7 @@ TEST(BlockCholesky, SolutionIsThatOfADenseSolver) {
       const TangentVector b = TangentVector::LinSpaced(2 * n, -1.0, 2.0);
       TangentVector x;
       cholesky.solve(b, x);
-      // The diagonal is raised by a share of 1e-11, and the condition is below 10.
+      // The diagonal is raised by a fraction of 1e-11, and the condition is below 10.
       EXPECT_LE((x - dense.ldlt().solve(b)).norm(), 1e-9 * b.norm()) << n;
     }
   }
@@ -105,7 +105,7 @@ TEST(BlockCholesky, SingularDirectionsStayFinite) {
   TangentVector x;
   cholesky.solve(b, x);
   ASSERT_TRUE(x.allFinite());
-  // The raised diagonal takes a share of 1e-11, and what is singular magnifies rounding by 1e11.
+  // The raised diagonal takes a fraction of 1e-11, and what is singular magnifies rounding by 1e11.
   EXPECT_LE((dense * x - b).norm(), 1e-4);
 }
 

@@ -3,9 +3,9 @@
 
 #include "helpers.h"
 
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/reconstruct.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>

@@ -85,7 +85,8 @@ TEST(EmbeddingObserver, SeesEveryLevelFromTheStartToTheEndAndChangesNothing) {
       EXPECT_EQ(alone.directions, seen.directions);
       EXPECT_EQ(alone.report.residual, seen.report.residual);
       EXPECT_EQ(alone.report.starts, seen.report.starts);
-      EXPECT_EQ(alone.report.levels.back().newton_iterations, seen.report.levels.back().newton_iterations);
+      EXPECT_EQ(alone.report.levels.back().newton_iterations,
+                seen.report.levels.back().newton_iterations);
 
       ASSERT_FALSE(states.empty());
       EXPECT_EQ(states.front().level, hierarchy.levels.size());
@@ -126,7 +127,7 @@ TEST(EmbeddingObserver, SeesEveryIterationOfThePapersSolver) {
     EXPECT_EQ(state.step, EmbeddingStep::Iteration);
     EXPECT_EQ(state.iteration, i);
     EXPECT_EQ(state.residual, seen.report.residuals[static_cast<std::size_t>(i)]);
-    // The residual that is told is that of the state.
+    // The residual reported is that of the state.
     EXPECT_NEAR(meanTangentialLaplacian(graph, state.directions, options.weights), *state.residual,
                 1e-9 * *state.residual);
   }
@@ -134,7 +135,7 @@ TEST(EmbeddingObserver, SeesEveryIterationOfThePapersSolver) {
   EXPECT_EQ(states.back().directions, seen.directions);
 }
 
-TEST(EmbeddingObserver, WhatItThrowsIsPassedOn) {
+TEST(EmbeddingObserver, ExceptionsOfTheObserverArePassedOn) {
   const Graph graph = dentedGraph(3000);
   const auto fail = [](const EmbeddingState& state) {
     if (state.step == EmbeddingStep::End || state.iteration == 2)
@@ -149,7 +150,7 @@ TEST(EmbeddingObserver, WhatItThrowsIsPassedOn) {
                std::runtime_error);
 }
 
-TEST(EmbeddingRecorder, KeepsAtMostWhatIsAskedForAndAlwaysBothEnds) {
+TEST(EmbeddingRecorder, KeepsAtMostTheLimitAndAlwaysBothEnds) {
   const Graph graph = dentedGraph(6000);
   const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   std::vector<Seen> states;
@@ -242,7 +243,7 @@ TEST(EmbeddingRecorder, TakesFewOfManyIterationsMostOfThemEarly) {
   EXPECT_EQ(first, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16}));
 }
 
-TEST(EmbeddingRecorder, KeepsItsBoundsWhateverIsShown) {
+TEST(EmbeddingRecorder, StaysWithinItsLimits) {
   EmbeddingRecorder recorder(10, HistoryLimits{10, 5});
   Positions u = spiralSphere(10);
   for (int i = 0; i < 1000; ++i)

@@ -302,17 +302,17 @@ TEST(GraphHierarchy, NeverFewerThanFourNodes) {
   EXPECT_TRUE(buildGraphHierarchy(graph, 1, 4).levels.empty());
 }
 
-TEST(GraphHierarchy, ProgressRisesAndCancels) {
+TEST(GraphHierarchy, ProgressIsReportedAndCancels) {
   const Graph graph = sphereGraph(test::spiralSphere(5000));
   const auto run = [&](const std::function<bool(double)>& progress) {
     return buildGraphHierarchy(graph, 1, 1000, test::reportingTo(progress));
   };
-  const std::vector<double> shares = test::fractionsOf(run);
-  EXPECT_TRUE(test::areFractions(shares));
-  EXPECT_EQ(shares.back(), 1.0);
-  EXPECT_GE(shares.size(), 10U);
+  const std::vector<double> fractions = test::fractionsOf(run);
+  EXPECT_TRUE(test::areFractions(fractions));
+  EXPECT_EQ(fractions.back(), 1.0);
+  EXPECT_GE(fractions.size(), 10U);
   EXPECT_EQ(run({}).levels.back().seeds, run([](double) { return true; }).levels.back().seeds);
-  for (int last = 1; last <= static_cast<int>(shares.size()); ++last) {
+  for (int last = 1; last <= static_cast<int>(fractions.size()); ++last) {
     int count = 0;
     EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
     EXPECT_EQ(count, last);

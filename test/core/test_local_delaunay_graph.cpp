@@ -207,7 +207,7 @@ TEST(LocalDelaunayGraph, JoinsThePairsWhoseStarsAmongAllPointsAgree) {
   EXPECT_EQ(edgesOf(result.graph), expected);
 }
 
-TEST(LocalDelaunayGraph, OneStarIsEnoughWhereThatIsAskedFor) {
+TEST(LocalDelaunayGraph, OneStarIsEnoughIfAskedFor) {
   const Positions points = randomSphere(150, 1);
   std::vector<Index> others;
   Edges either;

@@ -244,7 +244,8 @@ TEST(MeshMeasures, NothingHasNoMeasures) {
 
 TEST(MeshMeasures, SameForAnyNumberOfThreadsAndAsTheFunctionsForOneMeasure) {
   const Positions points = test::spiralSphere(30000);  // enough triangles for several threads
-  const Triangles triangles = triangulateSphere(points, {TriangulationMethod::Incremental}).triangles;
+  const Triangles triangles =
+      triangulateSphere(points, {TriangulationMethod::Incremental}).triangles;
   const MeshMeasures one = measureMesh(points, triangles, {1});
   EXPECT_EQ(one.volume, signedVolume(points, triangles));
   EXPECT_EQ(one.area, surfaceArea(points, triangles));

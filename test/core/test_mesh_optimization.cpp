@@ -1,15 +1,15 @@
 #include "spherical_param/mesh_optimization.h"
 
-#include "mesh_optimizer.h"
-#include "sampling_analysis.h"
 #include "embedding_starts.h"
 #include "helpers.h"
+#include "mesh_optimizer.h"
+#include "sampling_analysis.h"
+#include "spherical_param/embedding.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/neighbor_graph.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/smoothing.h"
-#include "spherical_param/embedding.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <Eigen/Geometry>
@@ -70,7 +70,8 @@ Graph localGraph(const Positions& points) {
 
 /// Seen from the centroid: right for a star-shaped cloud, folded for others.
 Case radialStart(const Positions& points) {
-  return {points, triangulateSphere(internal::projectFromCentroid(points)).triangles, localGraph(points)};
+  return {points, triangulateSphere(internal::projectFromCentroid(points)).triangles,
+          localGraph(points)};
 }
 
 /// An affine image of an even sphere, with its convex hull, which is the best mesh there is.
@@ -208,11 +209,11 @@ std::vector<Case> roughCases() {
   return cases;
 }
 
-/// Ends work that is told of more often.
+/// Ends work that reports more often.
 internal::Report reportUpTo(int most) {
-  return [most, told = 0](double) mutable {
-    if (++told > most)
-      throw std::runtime_error("told of too often: it may go on for ever");
+  return [most, calls = 0](double) mutable {
+    if (++calls > most)
+      throw std::runtime_error("too many reports: it may go on forever");
   };
 }
 
@@ -283,23 +284,23 @@ TEST(MeshOptimizer, RunningEnergyIsThatOfTheMeshAfterAllMoves) {
   EXPECT_GT(recreated, 20);
 }
 
-TEST(MeshOptimizer, MovesThatAreKeptWhateverTheyCostAreCounted) {
+TEST(MeshOptimizer, MovesCommittedAtAnyCostAreCounted) {
   forEachEnergy([](MeshOptimizer& optimizer, const auto& defined, const Case& of) {
     std::uint64_t random = 5;
     for (Index v = 0; v < of.points.cols(); v += 3) {
       const double before = optimizer.energy();
-      double told = 0.0;
+      double reported = 0.0;
       optimizer.recreate(
           optimizer.spread({v}, 8, random),
           [&](double change) {
-            told = change;
+            reported = change;
             return true;
           },
           random);
       const double mean_length =
           std::accumulate(of.graph.lengths.begin(), of.graph.lengths.end(), 0.0) /
           static_cast<double>(of.graph.lengths.size());
-      EXPECT_NEAR(told * mean_length, optimizer.energy() - before, 1e-12 * before);
+      EXPECT_NEAR(reported * mean_length, optimizer.energy() - before, 1e-12 * before);
     }
     expectEnergy(optimizer, defined());
     EXPECT_TRUE(
@@ -511,7 +512,7 @@ TEST(MeshOptimizer, AFanThatGoesAroundTwiceIsNotPlain) {
   EXPECT_GT(optimizer.intersections().size(), 0U);
 }
 
-TEST(MeshOptimizer, ASecondPassComesToWhatAFirstOneWould) {
+TEST(MeshOptimizer, ASecondPassGivesTheResultOfAFirstOne) {
   constexpr double factor = 3.0;
   constexpr double least = 0.2;
   std::vector<Case> cases = roughCases();
@@ -666,7 +667,8 @@ TEST(MeshOptimization, AScrambledSphereFindsBackToItsHull) {
     const double volume = test::volumeOf(of.points, true_mesh.triangles);
     // Some diagonals of nearly square cells may be the other ones.
     EXPECT_NEAR(test::volumeOf(of.points, result.triangles), volume, 1e-3 * volume);
-    EXPECT_LE(result.report.energy, 1.01 * energyOf(of.points, true_mesh.triangles, Bend::Angle, 0.3));
+    EXPECT_LE(result.report.energy,
+              1.01 * energyOf(of.points, true_mesh.triangles, Bend::Angle, 0.3));
   }
 }
 
@@ -721,23 +723,24 @@ TEST(MeshOptimization, AFoldedStartIsUnfolded) {
   EXPECT_LT(10 * full.self_intersections.size(), before);
   EXPECT_LT(full.self_intersections.size(), flips.self_intersections.size());
   EXPECT_LT(full.report.energy, flips.report.energy);
-  EXPECT_LT(test::shareBeyondTwoSteps(of.graph, full.triangles),
-            0.2 * test::shareBeyondTwoSteps(of.graph, of.triangles));
+  EXPECT_LT(test::fractionBeyondTwoSteps(of.graph, full.triangles),
+            0.2 * test::fractionBeyondTwoSteps(of.graph, of.triangles));
 }
 
 TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
-  // Seen from its centroid, the tube hides most of itself; nothing intersects, but much is spiky.
-  const test::Tube tube = test::bentTube(14.0, 2.5, 12);
+  // Seen from its centroid, the tube hides much of itself; nothing intersects, but much is spiky.
+  const test::Tube tube = test::bentTube(10.0, 2.0, 12);
   const Case of = radialStart(withNoise(tube.points, 0.01, 4));
   const MeshOptimization result = optimize(of);
   expectGuarantees(of, result);
+  ASSERT_EQ(result.report.noise_steps, 0);
   const auto energy = [&](const Triangles& triangles) {
     return energyOf(of.points, triangles, Bend::Angle, 0.3);
   };
-  EXPECT_GT(energy(of.triangles), 2.0 * energy(tube.triangles));
+  EXPECT_GT(energy(of.triangles), 4.0 * energy(tube.triangles));
   EXPECT_LT(energy(result.triangles), 1.1 * energy(tube.triangles));
-  EXPECT_LT(test::shareBeyondTwoSteps(of.graph, result.triangles),
-            0.2 * test::shareBeyondTwoSteps(of.graph, of.triangles));
+  EXPECT_LT(test::fractionBeyondTwoSteps(of.graph, result.triangles),
+            0.2 * test::fractionBeyondTwoSteps(of.graph, of.triangles));
 }
 
 // --- Any input
@@ -841,7 +844,8 @@ TEST(MeshOptimization, SameBitsForAnyNumberOfThreads) {
         EXPECT_EQ(one.report.phases[i].moves, other.report.phases[i].moves);
         EXPECT_EQ(one.report.phases[i].energy_before, other.report.phases[i].energy_before);
         EXPECT_EQ(one.report.phases[i].energy, other.report.phases[i].energy);
-        EXPECT_EQ(one.report.phases[i].self_intersections, other.report.phases[i].self_intersections);
+        EXPECT_EQ(one.report.phases[i].self_intersections,
+                  other.report.phases[i].self_intersections);
       }
     }
   }
@@ -937,7 +941,42 @@ TEST(MeshOptimization, BadInputIsInvalidInput) {
   });
 }
 
-TEST(MeshOptimization, EveryMethodTellsOfLongWork) {
+TEST(MeshOptimization, ProgressMayEndTheWork) {
+  const Case of = noisySphere(200, 0.6, 23);
+  for (const int last : {1, 2, 5}) {
+    int calls = 0;
+    EXPECT_THROW(optimize(of, {}, 1, test::reportingTo([&](double) { return ++calls < last; })),
+                 Cancelled);
+    EXPECT_EQ(calls, last);
+  }
+}
+
+TEST(MeshOptimization, ProgressChangesNothing) {
+  // In a plane, triangles overlap whatever is done: all rounds of untangling are made.
+  Case flat = ellipsoid(6, 1.0, 0.8, 1.0);
+  flat.points = randomSphere(6, 22);
+  flat.points.row(2).setZero();
+  for (const Case& of : {noisySphere(60, 1.0, 22), flat}) {
+    MeshOptimization watched;
+    const std::vector<double> fractions = test::fractionsOf(
+        [&](const auto& report) { watched = optimize(of, {}, 1, test::reportingTo(report)); });
+    EXPECT_TRUE(test::areFractions(fractions));
+    EXPECT_GT(fractions.size(), 5U);
+    EXPECT_EQ(watched.triangles, optimize(of).triangles);
+  }
+}
+
+TEST(MeshOptimization, FlipsReportWhileTheyWork) {
+  const Case of = scrambledEllipsoid(100000, 0.6, 200000, 6);
+  MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
+  optimizer.setEnergy(SurfaceEnergy());
+  const std::vector<double> fractions =
+      test::fractionsOf([&](const auto& report) { optimizer.flipAll(report); });
+  EXPECT_TRUE(test::areFractions(fractions));
+  EXPECT_GE(fractions.size(), 4U);  // two of the first candidates, then of the queue
+}
+
+TEST(MeshOptimization, EveryMethodReportsDuringLongWork) {
   const Case of = scrambledEllipsoid(150000, 0.6, 100000, 5);
   for (const OptimizationMethod method :
        {OptimizationMethod::None, OptimizationMethod::Flips, OptimizationMethod::Full}) {
@@ -994,7 +1033,7 @@ Sampling samplingOfCylinder(int ring, int rings, double step) {
   return analyzeSampling(points, localGraph(points), 1);
 }
 
-TEST(SamplingAnalysis, AlignmentTellsWhetherPointsAreFartherApartWhereTheSurfaceBendsLess) {
+TEST(SamplingAnalysis, AlignmentShowsWhetherPointsAreFartherApartWhereTheSurfaceBendsLess) {
   const int ring = 40;
   const double even = 2.0 * test::kPi / ring;
   EXPECT_GT(samplingOfCylinder(ring, 25, 2.0 * even).alignment, 0.9);
@@ -1028,7 +1067,7 @@ TEST(SamplingAnalysis, SpheresAreNotTakenForSamplingsThatFollowTheCurvature) {
   EXPECT_LT(analyzeSampling(random, localGraph(random), 1).alignment, 0.15);
 }
 
-TEST(SamplingAnalysis, UnevennessTellsRandomFromRegularSamplings) {
+TEST(SamplingAnalysis, UnevennessDistinguishesRandomFromRegularSamplings) {
   const auto unevenness = [](const Positions& points) {
     return analyzeSampling(points, localGraph(points), 1).unevenness;
   };

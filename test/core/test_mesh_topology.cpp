@@ -158,7 +158,7 @@ void expectSameTopology(const MeshTopology& topology, const MeshTopology& expect
   EXPECT_EQ(topology.faults.degenerate_triangles, expected.faults.degenerate_triangles);
 }
 
-TEST(MeshTopology, FindsWhatItsDefinitionsSayInTrianglesAtRandom) {
+TEST(MeshTopology, AgreesWithItsDefinitionOnRandomTriangles) {
   std::mt19937 random(5);
   for (int run = 0; run < 2000; ++run) {
     // From a few triangles apart to many more than fit around so few vertices.
@@ -172,7 +172,7 @@ TEST(MeshTopology, FindsWhatItsDefinitionsSayInTrianglesAtRandom) {
   }
 }
 
-TEST(MeshTopology, FindsWhatItsDefinitionsSayInSpoiledSurfaces) {
+TEST(MeshTopology, AgreesWithItsDefinitionOnDamagedSurfaces) {
   std::mt19937 random(6);
   for (int run = 0; run < 300; ++run) {
     Triangles triangles = joined(torus(4), joined(tetrahedron(16), tetrahedron(20)));

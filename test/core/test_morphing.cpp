@@ -452,7 +452,7 @@ TEST(Morphing, PairsThatCannotBeAreSaidToBe) {
   expectSound(morph);
 }
 
-TEST(Morphing, WhatCannotBeHonouredLeavesTheOthers) {
+TEST(Morphing, PairsThatCannotBeMetDoNotAffectTheOthers) {
   // All of a crowd to places that are mixed at random: some are in the way of others.
   const Mapped first = meshOf(firstBlob(), test::spiralSphere(400));
   const Mapped second = meshOf(secondBlob(), test::spiralSphere(400));
@@ -552,13 +552,13 @@ TEST(Morphing, ProgressNeverFallsAndMayCancel) {
   const Mapped second = meshOf(secondBlob(), test::spiralSphere(400));
   MorphOptions options;
   options.pairs = {{1, 2}, {200, 300}};
-  const std::vector<double> shares = test::fractionsOf([&](const auto& progress) {
+  const std::vector<double> fractions = test::fractionsOf([&](const auto& progress) {
     options.progress = test::reportingTo(progress).progress;
     morphSurfaces(first.surface(), second.surface(), options);
   });
-  EXPECT_TRUE(test::areFractions(shares));
-  EXPECT_EQ(shares.back(), 1.0);
-  for (const std::size_t calls : {std::size_t{1}, shares.size() / 2}) {
+  EXPECT_TRUE(test::areFractions(fractions));
+  EXPECT_EQ(fractions.back(), 1.0);
+  for (const std::size_t calls : {std::size_t{1}, fractions.size() / 2}) {
     std::size_t count = 0;
     options.progress = [&](const Progress&) { return ++count < calls; };
     EXPECT_THROW(morphSurfaces(first.surface(), second.surface(), options), Cancelled);

@@ -3,11 +3,11 @@
 #include "embedding_energy.h"
 #include "embedding_newton.h"
 #include "graph_hierarchy.h"
+#include "helpers.h"
 #include "iterative_embedding.h"
 #include "multigrid.h"
 #include "multilevel_embedding.h"
 #include "planar_start.h"
-#include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/sphere_triangulation.h"
 
@@ -31,9 +31,9 @@ using internal::HierarchyLevel;
 using internal::TangentBasis;
 using internal::TangentVector;
 using test::bentTube;
+using test::fractionBeyondTwoSteps;
 using test::graphOfMesh;
 using test::randomSphere;
-using test::shareBeyondTwoSteps;
 using test::spiralSphere;
 using test::Tube;
 
@@ -82,10 +82,10 @@ Setting converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive
 
 /// Moves unit vectors along tangent vectors.
 Positions moved(const Positions& u, const std::vector<TangentBasis>& bases,
-                const TangentVector& step, double share) {
+                const TangentVector& step, double fraction) {
   Positions result = u;
   for (Eigen::Index i = 0; i < u.cols(); ++i)
-    result.col(i) += bases[static_cast<std::size_t>(i)] * (share * step.segment<2>(2 * i));
+    result.col(i) += bases[static_cast<std::size_t>(i)] * (fraction * step.segment<2>(2 * i));
   result.colwise().normalize();
   return result;
 }
@@ -151,7 +151,8 @@ INSTANTIATE_TEST_SUITE_P(Energies, EnergyDerivatives,
                          testing::Values(EnergyCase{EdgeWeights::Adaptive, 3.0, false},
                                          EnergyCase{EdgeWeights::Adaptive, 4.5, false},
                                          EnergyCase{EdgeWeights::Uniform, 3.0, false},
-                                         EnergyCase{EdgeWeights::InverseLength, 3.0, false}, EnergyCase{EdgeWeights::Uniform, 3.0, true},
+                                         EnergyCase{EdgeWeights::InverseLength, 3.0, false},
+                                         EnergyCase{EdgeWeights::Uniform, 3.0, true},
                                          EnergyCase{EdgeWeights::Adaptive, 3.0, true}));
 
 TEST(EmbeddingEnergy, GradientIsTheTangentialLaplacianTimesTheWeights) {
@@ -353,7 +354,7 @@ TEST(MultilevelEmbedding, OtherExponentsConverge) {
     EXPECT_LT(
         meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive, exponent),
         1e-11);
-    EXPECT_LT(shareBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
+    EXPECT_LT(fractionBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
               1e-3);
   }
 }
@@ -377,7 +378,7 @@ TEST(MultilevelEmbedding, UnfoldsABentTubeThatTheIterationFolds) {
   const Tube tube = bentTube(25.0, 4.0, 16);
   const Graph graph = graphOfMesh(tube.points, tube.triangles);
   const auto folded = [&](const Positions& directions) {
-    return shareBeyondTwoSteps(graph, triangulateSphere(directions).triangles);
+    return fractionBeyondTwoSteps(graph, triangulateSphere(directions).triangles);
   };
   EXPECT_GT(folded(internal::embedIteratively(graph, tube.points, {}, {}, {}).directions), 0.01);
   EXPECT_LT(folded(solve(graph).directions), 0.001);
@@ -394,7 +395,7 @@ TEST(MultilevelEmbedding, LongTubesDoNotUnderflow) {
     ASSERT_NE(result.report.stop_reason, StopReason::Collapsed);
     const SphereTriangulation sphere = triangulateSphere(result.directions);
     EXPECT_EQ(sphere.report.coincident, 0);
-    EXPECT_LT(shareBeyondTwoSteps(graph, sphere.triangles), 0.01);
+    EXPECT_LT(fractionBeyondTwoSteps(graph, sphere.triangles), 0.01);
   }
 }
 
@@ -414,9 +415,9 @@ TEST(MultilevelEmbedding, AllWeightsUnfoldWithoutCollapse) {
         EXPECT_EQ(result.report.converged(), result.report.residual <= 1e-10);
       }
       EXPECT_LT(result.report.centroid_norm, 0.3);
-      EXPECT_NEAR(result.report.residual, meanTangentialLaplacian(cloud.graph, result.directions, weights),
-                  1e-12);
-      EXPECT_LT(shareBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
+      EXPECT_NEAR(result.report.residual,
+                  meanTangentialLaplacian(cloud.graph, result.directions, weights), 1e-12);
+      EXPECT_LT(fractionBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions).triangles),
                 1e-3);
     }
 }
@@ -480,7 +481,7 @@ TEST(MultilevelEmbedding, GraphsOfAllSizes) {
 }
 
 TEST(MultilevelEmbedding, CollapsedStartsAreRejectedAndABarrierIsAdded) {
-  // A path: nothing keeps its ends apart.
+  // A path: nothing holds its ends apart.
   Graph path;
   constexpr Index n = 30;
   for (Index i = 0; i < n; ++i) {
@@ -518,7 +519,7 @@ TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {
     const Embedding result = solve(open, options);
     ASSERT_EQ(result.directions.cols(), kept);
     EXPECT_LT(result.report.centroid_norm, 0.95);
-    EXPECT_LT(shareBeyondTwoSteps(open, triangulateSphere(result.directions).triangles), 0.1);
+    EXPECT_LT(fractionBeyondTwoSteps(open, triangulateSphere(result.directions).triangles), 0.1);
   }
 }
 
@@ -542,7 +543,7 @@ TEST(MultilevelEmbedding, ProgressIsReportedAndCancels) {
   }
 }
 
-TEST(MultilevelEmbedding, StartsOfSeveralThreadsTellTheCallingOneAlone) {
+TEST(MultilevelEmbedding, OnlyTheCallingThreadReportsStarts) {
   const Cloud cloud = dentedCloud(1200);
   Setting options;
   options.starts = 5;
@@ -559,7 +560,8 @@ TEST(MultilevelEmbedding, StartsOfSeveralThreadsTellTheCallingOneAlone) {
   const Embedding several = solve(cloud.graph, options, 1000, 1);
   EXPECT_EQ(several.report.starts, 5);
   EXPECT_EQ(several.directions, one.directions);
-  EXPECT_EQ(several.report.levels.back().newton_iterations, one.report.levels.back().newton_iterations);
+  EXPECT_EQ(several.report.levels.back().newton_iterations,
+            one.report.levels.back().newton_iterations);
   for (int last = 0; last < calls; last += 3) {
     int left = last;
     options.progress = [&](const Progress&) { return left-- > 0; };

@@ -85,7 +85,8 @@ TEST(NeighborGraph, HoldsExactlyTheNearestNeighboursOfEitherEnd) {
 
 TEST(NeighborGraph, LengthsAreDistancesAndRowsAreSorted) {
   const Positions points = randomSphere(200, 2);
-  const Graph graph = buildNeighborGraph(points, bruteForceNeighbors(points, 6), test::nearest(6)).graph;
+  const Graph graph =
+      buildNeighborGraph(points, bruteForceNeighbors(points, 6), test::nearest(6)).graph;
   ASSERT_EQ(graph.lengths.size(), graph.neighbors.size());
   for (std::size_t i = 0; i < graph.size(); ++i)
     for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
@@ -113,8 +114,9 @@ TEST(NeighborGraph, ListsMayBeUnsortedLongerAndHoldThePointItself) {
                  random);
     messy.offsets.push_back(messy.indices.size());
   }
-  EXPECT_EQ(edgesOf(buildNeighborGraph(points, messy, test::nearest(5)).graph),
-            edgesOf(buildNeighborGraph(points, bruteForceNeighbors(points, 5), test::nearest(5)).graph));
+  EXPECT_EQ(
+      edgesOf(buildNeighborGraph(points, messy, test::nearest(5)).graph),
+      edgesOf(buildNeighborGraph(points, bruteForceNeighbors(points, 5), test::nearest(5)).graph));
 }
 
 TEST(NeighborGraph, PiecesAreJoinedByTheirMinimumSpanningTree) {
@@ -129,7 +131,8 @@ TEST(NeighborGraph, PiecesAreJoinedByTheirMinimumSpanningTree) {
     points = horizontally(points, part);
     component.insert(component.end(), 20, piece);
   }
-  const NeighborGraph result = buildNeighborGraph(points, bruteForceNeighbors(points, 6), test::nearest(6));
+  const NeighborGraph result =
+      buildNeighborGraph(points, bruteForceNeighbors(points, 6), test::nearest(6));
   ASSERT_EQ(result.report.components, pieces);
   ASSERT_EQ(result.report.bridges.size(), static_cast<std::size_t>(pieces) - 1);
   double total = 0.0;

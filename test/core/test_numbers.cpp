@@ -1,4 +1,4 @@
-// The limits that doc/numbers.md tells: what is right within them, and what is said beyond.
+// The limits in doc/numbers.md: results are right within them, and warnings appear beyond.
 
 #include "spherical_param/reconstruct.h"
 
@@ -47,7 +47,7 @@ Positions sphereWithDisc(double radius, const Eigen::Vector3d& offset = Eigen::V
   return result;
 }
 
-TEST(Numbers, PointsThatTheCoordinatesCannotTellApartAreDuplicates) {
+TEST(Numbers, PointsOfEqualCoordinatesAreDuplicates) {
   const Positions points = sphereWithDisc(1e-12, Eigen::Vector3d(0.0, 0.0, 1e7));
   const Result result = meshOf(points);
   // x and y are near 0, and as fine as ever; z is a multiple of 2^-29.

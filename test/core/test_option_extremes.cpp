@@ -2,13 +2,13 @@
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/morphing.h"
-#include "spherical_param/outliers.h"
-#include "spherical_param/reconstruct.h"
 #include "spherical_param/map/resampling.h"
-#include "spherical_param/self_intersection.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/map/texture_atlas.h"
+#include "spherical_param/outliers.h"
+#include "spherical_param/reconstruct.h"
+#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
@@ -239,7 +239,12 @@ TEST(OptionExtremes, MapsAnswerOrNameTheOption) {
         };
     EXPECT_VALUES(SphereSurfaceOptions(), fit, 2, make);
     EXPECT_RANGE(SphereSurfaceOptions(), threads, make, kThreads, kNoThreads);
+  }
+}
 
+TEST(OptionExtremes, MorphsAnswerOrNameTheOption) {
+  for (const Positions& points : clouds()) {
+    const Mapped mapped(points);
     const SphereSurface surface(points, mapped.triangles, mapped.sphere);
     const std::function<void(const MorphOptions&)> morph = [&](const MorphOptions& o) {
       const MorphResult result = morphSurfaces(surface, surface, o);
@@ -257,7 +262,12 @@ TEST(OptionExtremes, MapsAnswerOrNameTheOption) {
     EXPECT_NE(refusalOf([&] { morph(plain); }).find("pairs"), std::string::npos);
     plain.pairs = {{kLeastInt, 0}, {0, kMostInt}, {-1, -1}, {0, 0}};
     EXPECT_EQ(morphSurfaces(surface, surface, plain).impossible.size(), 3U);
+  }
+}
 
+TEST(OptionExtremes, AtlasesAnswerOrNameTheOption) {
+  for (const Positions& points : clouds()) {
+    const Mapped mapped(points);
     const std::function<void(const TextureAtlasOptions&)> lay_out =
         [&](const TextureAtlasOptions& o) {
           bakeCheckerboard(makeTextureAtlas(mapped.triangles, mapped.sphere, o), mapped.sphere, 8,
@@ -279,7 +289,13 @@ TEST(OptionExtremes, MapsAnswerOrNameTheOption) {
     EXPECT_RANGE(small, height, bake, Ints{16, 17}, Ints{15, 16385, kLeastInt, kMostInt});
     EXPECT_RANGE(small, gutter, bake, Ints{0, 256}, Ints{-1, 257, kLeastInt, kMostInt});
     EXPECT_RANGE(small, threads, bake, kThreads, kNoThreads);
+  }
+}
 
+TEST(OptionExtremes, SeriesAndResamplingRefuseSizesOutOfRange) {
+  for (const Positions& points : clouds()) {
+    const Mapped mapped(points);
+    const SphereSurface surface(points, mapped.triangles, mapped.sphere);
     for (const int degree : {-1, 513, kLeastInt, kMostInt}) {
       EXPECT_THROW(computeSphericalHarmonics(surface, degree), InvalidInput) << degree;
       EXPECT_THROW(sphericalHarmonicsAt(Eigen::Vector3d::UnitX(), degree), InvalidInput) << degree;
@@ -461,13 +477,11 @@ TEST(ProgressCallback, EndsStagesAtEveryCall) {
       OptimizationOptions options;
       options.method = method;
       const Execution execution = reportingTo(callback);
-      return Outcome(
-          optimizeMesh(points, mapped.triangles, graph, options, 1, execution).triangles,
-          Positions(3, 0));
+      return Outcome(optimizeMesh(points, mapped.triangles, graph, options, 1, execution).triangles,
+                     Positions(3, 0));
     });
   expectEndsAtEveryCall([&](const Callback& callback) {
-    return number(
-        findSelfIntersections(points, mapped.triangles, reportingTo(callback)).size());
+    return number(findSelfIntersections(points, mapped.triangles, reportingTo(callback)).size());
   });
   expectEndsAtEveryCall([&](const Callback& callback) {
     return number(findOutliers(points, {}, reportingTo(callback)).indices.size());

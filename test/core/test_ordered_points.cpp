@@ -1,9 +1,9 @@
 #include "ordered_points.h"
 
-#include "radix_sort.h"
-#include "space_filling_curve.h"
 #include "helpers.h"
+#include "radix_sort.h"
 #include "reference/distinct_points.h"
+#include "space_filling_curve.h"
 
 #include <gtest/gtest.h>
 

@@ -306,7 +306,8 @@ TEST(Outliers, OptionsOutOfRangeAreInvalidInput) {
     EXPECT_THROW(findOutliers(points, {}, test::onThreads(threads)), InvalidInput);
 }
 
-// --- Of a cloud: neighbours are found, and repeated points may occur -------------------------------
+// --- Of a cloud: neighbours are found, and repeated points may occur
+// -------------------------------
 
 TEST(OutliersOfACloud, AreThoseWithTheNeighboursOfTheCaller) {
   const Positions points = horizontally(test::randomSphere(1500, 14), shell(1.5, 6));
@@ -342,7 +343,8 @@ TEST(OutliersOfACloud, FewerThanFourPositionsHaveNone) {
 
 TEST(OutliersOfACloud, CanBeCancelled) {
   const Positions points = test::spiralSphere(2000);
-  EXPECT_THROW(findOutliers(points, {}, test::reportingTo([](double) { return false; })), Cancelled);
+  EXPECT_THROW(findOutliers(points, {}, test::reportingTo([](double) { return false; })),
+               Cancelled);
 }
 
 }  // namespace

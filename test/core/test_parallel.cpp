@@ -41,23 +41,23 @@ TEST(Parallel, ReportsAreFewAndRiseToOne) {
   const std::thread::id caller = std::this_thread::get_id();
   for (const std::size_t chunks : {std::size_t{1}, std::size_t{3}, std::size_t{30}, std::size_t{31},
                                    std::size_t{100}, std::size_t{1000}}) {
-    std::vector<double> shares{0.0};
-    blocksOf(chunks * kReportedItems, 3, [&](double share) {
+    std::vector<double> fractions{0.0};
+    blocksOf(chunks * kReportedItems, 3, [&](double fraction) {
       EXPECT_EQ(std::this_thread::get_id(), caller);
-      EXPECT_GT(share, shares.back());
-      shares.push_back(share);
+      EXPECT_GT(fraction, fractions.back());
+      fractions.push_back(fraction);
     });
-    EXPECT_EQ(shares.back(), 1.0);
-    const std::size_t reports = shares.size() - 1;
+    EXPECT_EQ(fractions.back(), 1.0);
+    const std::size_t reports = fractions.size() - 1;
     EXPECT_GE(reports, std::min<std::size_t>(chunks, 30));
     EXPECT_LE(reports, std::min<std::size_t>(chunks, kMostReports));
   }
 }
 
-TEST(Parallel, WhatAReportThrowsEndsTheWork) {
+TEST(Parallel, AnExceptionOfAReportEndsTheWork) {
   std::vector<char> done(5 * kReportedItems, 0);
-  const auto report = [](double share) {
-    if (share > 0.3)
+  const auto report = [](double fraction) {
+    if (fraction > 0.3)
       throw std::runtime_error("enough");
   };
   EXPECT_THROW(
@@ -67,7 +67,7 @@ TEST(Parallel, WhatAReportThrowsEndsTheWork) {
             static_cast<std::ptrdiff_t>(2 * kReportedItems));
 }
 
-TEST(Parallel, WhatTheWorkThrowsIsPassedOn) {
+TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
   for (const int threads : {1, 3}) {
     EXPECT_THROW(forEachItem(100 * kBlockSize, threads,
                              [](std::size_t, std::size_t i) {

@@ -127,7 +127,7 @@ TEST(PointSet, CoplanarityAndOrderOfNonFinitePointsAreInvalidInput) {
   }
 }
 
-// Products of three coordinates underflow here; the plane is that of the doubles all the same.
+// Products of three coordinates underflow here; the plane is still that of the doubles.
 TEST(PointSet, PlanesOfTinyDifferencesAreFoundExactly) {
   for (const double tiny : {0x1p-300, 0x1p-365, 0x1p-660, 0x1p-1000, 0x1p-1074}) {
     Positions points(3, 5);

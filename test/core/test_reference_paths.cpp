@@ -1,11 +1,11 @@
 // The fast paths against the plain ones of test/reference, where no other test compares them.
 
-#include "mesh_optimizer.h"
+#include "graph_hierarchy.h"
 #include "helpers.h"
+#include "mesh_optimizer.h"
 #include "reference/edge_flips.h"
 #include "reference/graph_coarsening.h"
 #include "reference/self_intersection.h"
-#include "graph_hierarchy.h"
 #include "spherical_param/neighbor_graph.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"

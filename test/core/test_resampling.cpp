@@ -381,7 +381,7 @@ TEST(Untangle, ChangesNothingWhereNothingIntersects) {
   EXPECT_EQ(mesh.directions, before.directions);
 }
 
-TEST(Untangle, RefusesWhatIsNoMeshOfTheSphere) {
+TEST(Untangle, RefusesMeshesThatAreNoSphere) {
   const SphereSurface surface = bumpySurface(20);
   const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
   ResampledMesh mesh = good;

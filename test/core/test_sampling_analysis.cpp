@@ -46,7 +46,7 @@ Sampled cylinderGrid(int around, int along, double spacing_along) {
   return sampled;
 }
 
-TEST(SamplingAnalysis, AlignmentTellsWhetherPointsFollowTheCurvature) {
+TEST(SamplingAnalysis, AlignmentShowsWhetherPointsFollowTheCurvature) {
   constexpr int around = 60;
   constexpr double spacing = 2.0 * test::kPi / around;
   // A cylinder bends around its axis only. Long spacings along it follow the curvature.

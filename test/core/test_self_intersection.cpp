@@ -130,7 +130,7 @@ TEST(SelfIntersection, NeighboursIntersectOnlyIfFoldedFlat) {
 
 // A corner on a grid of neighbouring doubles around the plane z = x + y, tilted so that no product
 // is exact: plain evaluation mistakes most of the grid.
-TEST(SelfIntersection, NeighbouringDoublesAreToldApart) {
+TEST(SelfIntersection, NeighbouringDoublesAreDistinguished) {
   const double step = std::ldexp(1.0, -52);
   for (int i = 0; i < 16; ++i)
     for (int j = 0; j < 16; ++j)
@@ -364,7 +364,7 @@ WholeMesh unevenSoup(std::uint64_t seed, int small, int crowded, int large) {
     add({77 + within(0, 200), 99 + within(0, 200), within(0, 200)}, 40);
   for (int i = 0; i < large; ++i)
     add({0, 0, 0}, extent);
-  // The order tells the tree nothing.
+  // The tree gains nothing from the order.
   std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
   return mesh;
 }
@@ -480,11 +480,9 @@ TEST(SelfIntersection, ThreadsDoNotMatterForASet) {
   std::vector<Index> of;
   for (Index t = 0; t < mesh.triangles.cols(); t += 3)
     of.push_back(t);
-  const Pairs pairs =
-      findSelfIntersectionsOf(mesh.points, mesh.triangles, of, test::onThreads(1));
+  const Pairs pairs = findSelfIntersectionsOf(mesh.points, mesh.triangles, of, test::onThreads(1));
   EXPECT_FALSE(pairs.empty());
-  EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of, test::onThreads(3)),
-            pairs);
+  EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of, test::onThreads(3)), pairs);
 }
 
 TEST(SelfIntersection, BadInputIsInvalidInput) {
@@ -508,7 +506,7 @@ TEST(SelfIntersection, BadInputIsInvalidInput) {
   }
 }
 
-TEST(SelfIntersection, ProgressRisesAndCancels) {
+TEST(SelfIntersection, ProgressIsReportedAndCancels) {
   // Two spheres through each other, each of more triangles than there are between reports.
   Positions points = test::spiralSphere(140000);
   const Triangles sphere = triangulateSphere(points).triangles;

@@ -141,7 +141,7 @@ TEST(Smoothing, NoisySphereBecomesSmoother) {
   }
 }
 
-TEST(Smoothing, VolumeIsThatOfTheInputUnlessToldOtherwise) {
+TEST(Smoothing, VolumeIsRestoredUnlessThatIsSwitchedOff) {
   const Mesh sphere = octasphere(3);
   const test::Tube tube = test::bentTube(12.0, 2.0, 12);
   for (const auto& [points, triangles] :
@@ -168,7 +168,7 @@ TEST(Smoothing, OnlyTheUmbrellaShrinksByItself) {
   };
   // The coordinates of a sphere have k = h^2 / 2 with edges of h^2 = 4 pi / 1026 * 2 / sqrt(3), so
   // k = 0.0071: five steps of the umbrella take 3 * 5 k = 11 % of the volume, the flow takes
-  // 3 ln(2) (k / 0.129)^2 = 0.6 %, and the noise and uneven triangles have their share.
+  // 3 ln(2) (k / 0.129)^2 = 0.6 %, and the noise and uneven triangles add to it.
   EXPECT_LT(change(SmoothingMethod::Umbrella), -0.08);
   EXPECT_LT(std::abs(change(SmoothingMethod::Biharmonic)), 0.012);
 }
@@ -178,8 +178,7 @@ TEST(Smoothing, OneStepOfTheUmbrellaMovesByTheLaplacian) {
   const Positions noisy = withNoise(sphere.points, 0.2, 5);
   SmoothingOptions options = optionsOf(SmoothingMethod::Umbrella, 1, false);
   const Smoothing smooth = smoothSurface(noisy, sphere.triangles, options);
-  EXPECT_LT(largestDifference(smooth.points, noisy + laplacianOf(noisy, sphere.triangles)),
-            1e-14);
+  EXPECT_LT(largestDifference(smooth.points, noisy + laplacianOf(noisy, sphere.triangles)), 1e-14);
 }
 
 TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
@@ -342,7 +341,8 @@ TEST(Smoothing, SurfaceTurnedInsideOutIsSmoothedAlike) {
   const Positions noisy = withNoise(sphere.points, 0.1, 10);
   Triangles turned = sphere.triangles;
   turned.row(1).swap(turned.row(2));
-  const Smoothing smooth = smoothSurface(noisy, sphere.triangles, optionsOf(SmoothingMethod::Biharmonic));
+  const Smoothing smooth =
+      smoothSurface(noisy, sphere.triangles, optionsOf(SmoothingMethod::Biharmonic));
   const Smoothing other = smoothSurface(noisy, turned, optionsOf(SmoothingMethod::Biharmonic));
   EXPECT_LT(largestDifference(smooth.points, other.points), 1e-12);
   EXPECT_NEAR(other.report.volume_after, -smooth.report.volume_after, 1e-12);
@@ -428,9 +428,12 @@ TEST(Smoothing, MeshWithoutVolumeIsSmoothedAllTheSame) {
 }
 
 TEST(Smoothing, EmptyMeshIsSmoothedToItself) {
-  EXPECT_EQ(smoothSurface(Positions(3, 0), Triangles(3, 0), optionsOf(SmoothingMethod::Biharmonic)).points.cols(), 0);
+  EXPECT_EQ(smoothSurface(Positions(3, 0), Triangles(3, 0), optionsOf(SmoothingMethod::Biharmonic))
+                .points.cols(),
+            0);
   const Positions points = Positions::Ones(3, 2);
-  EXPECT_EQ(smoothSurface(points, Triangles(3, 0), optionsOf(SmoothingMethod::Biharmonic)).points, points);
+  EXPECT_EQ(smoothSurface(points, Triangles(3, 0), optionsOf(SmoothingMethod::Biharmonic)).points,
+            points);
 }
 
 TEST(Smoothing, UnsoundMeshIsInvalidInput) {
@@ -476,7 +479,8 @@ TEST(Smoothing, CoordinatesThatAreNotFiniteAreInvalidInput) {
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Positions points = sphere.points;
     points(1, 4) = value;
-    EXPECT_THROW(smoothSurface(points, sphere.triangles, optionsOf(SmoothingMethod::Biharmonic)), InvalidInput);
+    EXPECT_THROW(smoothSurface(points, sphere.triangles, optionsOf(SmoothingMethod::Biharmonic)),
+                 InvalidInput);
   }
 }
 

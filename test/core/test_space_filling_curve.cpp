@@ -1,7 +1,7 @@
 #include "space_filling_curve.h"
 
-#include "ordered_points.h"
 #include "helpers.h"
+#include "ordered_points.h"
 
 #include <gtest/gtest.h>
 

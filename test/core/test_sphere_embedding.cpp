@@ -94,8 +94,8 @@ TEST(SphereEmbedding, IsTheIterationOfFigure3) {
         EXPECT_NEAR(result.report.residuals[step], expected[step].second, 1e-13);
       EXPECT_LT((result.directions - expected.back().first).cwiseAbs().maxCoeff(), 1e-12);
       EXPECT_EQ(result.report.residual, result.report.residuals.back());
-      EXPECT_NEAR(result.report.residual, meanTangentialLaplacian(graph, result.directions, weights),
-                  1e-14);
+      EXPECT_NEAR(result.report.residual,
+                  meanTangentialLaplacian(graph, result.directions, weights), 1e-14);
     }
 }
 
@@ -137,7 +137,7 @@ TEST(SphereEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
   EXPECT_LT(result.report.iterations, 20000);
 }
 
-TEST(SphereEmbedding, StagnationIsTold) {
+TEST(SphereEmbedding, StagnationIsReported) {
   const Positions points = bumpyCloud(200);
   EmbeddingOptions options;
   options.tolerance = 0.0;
@@ -188,7 +188,7 @@ Positions sphereWithOutlier(Index n) {
   return test::horizontally(spiralSphere(n), Eigen::Vector3d(1e6, 0.0, 0.0));
 }
 
-TEST(SphereEmbedding, CollapseIsToldNotConvergence) {
+TEST(SphereEmbedding, CollapseIsReportedInsteadOfConvergence) {
   const Positions points = sphereWithOutlier(400);
   for (const EdgeWeights weights : kAllWeights) {
     EmbeddingOptions options;

@@ -108,58 +108,73 @@ TEST(MapDistortion, SphereToItselfHasNone) {
   EXPECT_NEAR(distortion.stretch_efficiency, 1.0, 1e-10);
 }
 
+/// One triangle of a map, from the singular value decomposition of its linear map.
+struct MappedTriangle {
+  double weight;      ///< area in space
+  double image;       ///< area on the sphere
+  double angle;       ///< ratio of the singular values
+  double stretch;     ///< mean of the inverse squares of the singular values
+  double difference;  ///< sum over the corners of the differences of angles [rad]
+  double flat_image;  ///< area of the flat image
+};
+
+MappedTriangle mappedTriangle(const std::array<std::array<Vector3d, 3>, 2>& corners) {
+  std::array<Eigen::Matrix2d, 2> sides;
+  std::array<double, 2> area{};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Vector3d u = corners[s][1] - corners[s][0];
+    const Vector3d v = corners[s][2] - corners[s][0];
+    const Vector3d x = u.normalized();
+    const Vector3d y = u.cross(v).cross(u).normalized();
+    sides[s] << x.dot(u), x.dot(v), y.dot(u), y.dot(v);
+    area[s] = 0.5 * u.cross(v).norm();
+  }
+  const Eigen::Vector2d sigma =
+      Eigen::JacobiSVD<Eigen::Matrix2d>(sides[1] * sides[0].inverse()).singularValues();
+  double difference = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<double, 2> angle{};
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Vector3d u = (corners[s][(k + 1) % 3] - corners[s][k]).normalized();
+      const Vector3d v = (corners[s][(k + 2) % 3] - corners[s][k]).normalized();
+      angle[s] = std::acos(u.dot(v));
+    }
+    difference += std::abs(angle[0] - angle[1]);
+  }
+  return {area[0],
+          sphericalArea(corners[1]),
+          sigma[0] / sigma[1],
+          0.5 * (std::pow(sigma[0], -2) + std::pow(sigma[1], -2)),
+          difference,
+          area[1]};
+}
+
 TEST(MapDistortion, IsThatOfSingularValueDecompositions) {
   const Mesh sphere = octasphere(3);
   const Positions points = randomPositions(sphere.points.cols(), 1);
   const MapDistortion distortion = measureMapDistortion(points, sphere.triangles, sphere.points);
-
-  struct Triangle {
-    double weight, image, angle, ratio, stretch, difference;
-  };
-  std::vector<Triangle> triangles;
+  std::vector<MappedTriangle> triangles;
   double in_space = 0.0;
   double on_sphere = 0.0;
   for (Eigen::Index t = 0; t < sphere.triangles.cols(); ++t) {
     std::array<std::array<Vector3d, 3>, 2> corners;
-    std::array<Eigen::Matrix2d, 2> sides;
-    std::array<double, 2> area{};
-    for (std::size_t s = 0; s < 2; ++s) {
-      for (std::size_t k = 0; k < 3; ++k)
-        corners[s][k] = (s == 0 ? points : sphere.points)
-                            .col(sphere.triangles(static_cast<Eigen::Index>(k), t));
-      const Vector3d u = corners[s][1] - corners[s][0];
-      const Vector3d v = corners[s][2] - corners[s][0];
-      const Vector3d x = u.normalized();
-      const Vector3d y = u.cross(v).cross(u).normalized();
-      sides[s] << x.dot(u), x.dot(v), y.dot(u), y.dot(v);
-      area[s] = 0.5 * u.cross(v).norm();
-    }
-    const Eigen::Vector2d sigma =
-        Eigen::JacobiSVD<Eigen::Matrix2d>(sides[1] * sides[0].inverse()).singularValues();
-    double difference = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      std::array<double, 2> angle{};
-      for (std::size_t s = 0; s < 2; ++s) {
-        const Vector3d u = (corners[s][(k + 1) % 3] - corners[s][k]).normalized();
-        const Vector3d v = (corners[s][(k + 2) % 3] - corners[s][k]).normalized();
-        angle[s] = std::acos(u.dot(v));
-      }
-      difference += std::abs(angle[0] - angle[1]);
+      const Index vertex = sphere.triangles(static_cast<Eigen::Index>(k), t);
+      corners[0][k] = points.col(vertex);
+      corners[1][k] = sphere.points.col(vertex);
     }
-    triangles.push_back({area[0], sphericalArea(corners[1]), sigma[0] / sigma[1], 0.0,
-                         0.5 * (std::pow(sigma[0], -2) + std::pow(sigma[1], -2)), difference});
-    in_space += area[0];
-    on_sphere += area[1];
+    triangles.push_back(mappedTriangle(corners));
+    in_space += triangles.back().weight;
+    on_sphere += triangles.back().flat_image;
   }
   double angle = 0.0;
   double area = 0.0;
   double stretch = 0.0;
   double difference = 0.0;
-  for (Triangle& t : triangles) {
+  for (const MappedTriangle& t : triangles) {
     const double ratio = t.image / (4.0 * test::kPi) / (t.weight / in_space);
-    t.ratio = std::max(ratio, 1.0 / ratio);
     angle += t.weight / in_space * t.angle;
-    area += t.weight / in_space * t.ratio;
+    area += t.weight / in_space * std::max(ratio, 1.0 / ratio);
     stretch += t.weight / in_space * t.stretch * on_sphere / in_space;
     difference += t.difference / (3.0 * static_cast<double>(triangles.size())) * 180.0 / test::kPi;
   }
@@ -171,7 +186,7 @@ TEST(MapDistortion, IsThatOfSingularValueDecompositions) {
   double above = 0.0;
   double at_least = 0.0;
   double max = 0.0;
-  for (const Triangle& t : triangles) {
+  for (const MappedTriangle& t : triangles) {
     above += t.angle > distortion.angle.p95 * (1.0 + 1e-9) ? t.weight / in_space : 0.0;
     at_least += t.angle > distortion.angle.p95 * (1.0 - 1e-9) ? t.weight / in_space : 0.0;
     max = std::max(max, t.angle);
@@ -267,7 +282,7 @@ TEST(MapDistortion, IsTheSameForAnyNumberOfThreads) {
         areEqual(measureMapDistortion(points, sphere.triangles, sphere.points, threads), expected));
 }
 
-TEST(MapDistortion, RefusesWhatDoesNotFit) {
+TEST(MapDistortion, RefusesInputThatDoesNotFit) {
   const Mesh sphere = octasphere(1);
   Triangles triangles = sphere.triangles;
   EXPECT_THROW(measureMapDistortion(sphere.points, triangles, sphere.points.leftCols(5)),
@@ -510,17 +525,17 @@ TEST(SphereMap, LevelsEndAtATetrahedron) {
   }
 }
 
-TEST(SphereMap, TellsHowFarItIs) {
+TEST(SphereMap, ProgressIsReportedAndCancels) {
   const Mesh sphere = octasphere(3);
   const auto run = [&](const std::function<bool(double)>& progress) {
     SphereMapOptions options;
     options.progress = test::reportingTo(progress).progress;
     computeSphereMap(sphere.points, sphere.triangles, sphere.points, options);
   };
-  const std::vector<double> shares = test::fractionsOf(run);
-  EXPECT_TRUE(test::areFractions(shares));
-  EXPECT_EQ(shares.back(), 1.0);
-  EXPECT_THROW(run([](double share) { return share < 0.5; }), Cancelled);
+  const std::vector<double> fractions = test::fractionsOf(run);
+  EXPECT_TRUE(test::areFractions(fractions));
+  EXPECT_EQ(fractions.back(), 1.0);
+  EXPECT_THROW(run([](double fraction) { return fraction < 0.5; }), Cancelled);
 }
 
 TEST(SphereMap, RefusesBadInput) {

@@ -93,7 +93,7 @@ void expectSound(const SphereMesh& mesh, Index vertex_count) {
   }
 }
 
-/// All that a mesh tells, free places included.
+/// Everything that can be read from a mesh, free places included.
 struct State {
   std::vector<Index> vertices;
   std::vector<Index> neighbors;
@@ -248,7 +248,7 @@ TEST(SphereMesh, NeighborsAreTrueForAnyOrderAndNumberOfThreads) {
   }
 }
 
-TEST(SphereMesh, WhatIsNoSphereIsToldSo) {
+TEST(SphereMesh, OtherSurfacesAreNoSphere) {
   const auto is_sphere = [](const Triangles& triangles, std::size_t vertex_count) {
     return SphereMesh(triangles, vertex_count).isSphere();
   };
@@ -369,7 +369,7 @@ TEST(SphereMesh, AFlipWhoseEndsAreJoinedIsRefused) {
   expectSound(mesh, n);
 }
 
-TEST(SphereMesh, HubsOfManyTrianglesAreTakenDownAndPutBack) {
+TEST(SphereMesh, HubsOfManyTrianglesAreRemovedAndRestored) {
   const Index ring = 2000;
   const Index n = ring + 2;
   SphereMesh mesh(bipyramid(ring), static_cast<std::size_t>(n));
@@ -398,7 +398,7 @@ TEST(SphereMesh, HubsOfManyTrianglesAreTakenDownAndPutBack) {
   expectSound(mesh, n);
 }
 
-TEST(SphereMesh, TakeBackRestoresEverythingToTheLastIndex) {
+TEST(SphereMesh, RollBackRestoresEverythingToTheLastIndex) {
   const Index n = 80;
   SphereMesh mesh(triangulateSphere(test::randomSphere(n, 4)).triangles,
                   static_cast<std::size_t>(n));
@@ -429,7 +429,7 @@ TEST(SphereMesh, TakeBackRestoresEverythingToTheLastIndex) {
   EXPECT_LE(mesh.size(), 2 * n - 4);
 }
 
-TEST(SphereMesh, MovesAfterTakeBackAreThoseOfAMeshThatNeverMoved) {
+TEST(SphereMesh, MovesAfterARollBackAreThoseOfAMeshThatNeverMoved) {
   const Index n = 40;
   const Triangles triangles = triangulateSphere(test::randomSphere(n, 7)).triangles;
   SphereMesh mesh(triangles, static_cast<std::size_t>(n));

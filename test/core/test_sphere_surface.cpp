@@ -240,7 +240,7 @@ TEST(SphereSurface, NormalsAreUnitVectorsOutward) {
   }
 }
 
-TEST(SphereSurface, OneDirectionIsWhatManyAre) {
+TEST(SphereSurface, OneDirectionGivesTheSameAsMany) {
   const Map map = triangulated(test::randomSphere(300, 1));
   const SphereSurface surface = surfaceOf(map, SurfaceFit::Smooth);
   const Positions directions = test::randomSphere(50, 2);
@@ -399,7 +399,7 @@ std::string messageOf(const Call& call) {
   return "";
 }
 
-TEST(SphereSurface, RefusesAFlippedTriangleAndSaysWhatHelps) {
+TEST(SphereSurface, RefusesAFlippedTriangleAndNamesTheRemedy) {
   Map map = triangulated(test::randomSphere(100, 1));
   const Index v = map.triangles(0, 17);
   map.sphere.col(v) = -map.sphere.col(v);

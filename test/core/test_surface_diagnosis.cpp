@@ -42,8 +42,8 @@ Scene starShaped(const Positions& directions, const Positions& points) {
 
 SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {},
                           int threads = 0) {
-  return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph, scene.graph.report.bridges,
-                         options, threads);
+  return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph,
+                         scene.graph.report.bridges, options, threads);
 }
 
 /// Distance of neighbours among so many even points on the unit sphere: a hexagonal grid has
@@ -176,7 +176,7 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
   }
 }
 
-TEST(SurfaceDiagnosis, LidAroundAnIslandHasTwoLoops) {
+TEST(SurfaceDiagnosis, FilledHoleAroundAnIslandHasTwoLoops) {
   // A wide ring without points around a cap: the mesh bridges it all around.
   const Positions open = filtered(
       spiralSphere(3000), [](const Eigen::Vector3d& p) { return p.x() < 0.75 || p.x() > 0.97; });
@@ -351,7 +351,7 @@ TEST(SurfaceDiagnosis, CyclesOfEdgesInOneDirectionAreNotCounted) {
     EXPECT_FALSE(internal::countCycles(graph, reach));
 }
 
-TEST(SurfaceDiagnosis, HandlesAreToldUnderAFoldedMeshUnlessThereIsAnOpening) {
+TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
   const auto folded = [](const Scene& scene) {
     Scene result = scene;
     std::mt19937 random(3);
@@ -501,7 +501,7 @@ TEST(SurfaceDiagnosis, FoldedMeshIsUnclear) {
   const SurfaceDiagnosis diagnosis = diagnose(scene);
   EXPECT_EQ(diagnosis.kind, SurfaceKind::Unclear) << diagnosis.summary;
   EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,
-                   test::shareBeyondTwoSteps(scene.graph.graph, scene.triangles));
+                   test::fractionBeyondTwoSteps(scene.graph.graph, scene.triangles));
   EXPECT_GT(diagnosis.edges_outside_graph, 0.5);
 }
 

@@ -551,7 +551,7 @@ TEST(CubeMap, FacesKeepTheirMargins) {
       EXPECT_LE(part, 0.9 + 1e-14);
     }
   }
-  // The layout that the header tells of: +x, -x, +y above -y, +z, -z.
+  // The layout in the header: +x, -x, +y above -y, +z, -z.
   const std::array<Eigen::Vector3d, 6> axes = {Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitX(),
                                                Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitY(),
                                                Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitZ()};
@@ -579,7 +579,7 @@ TEST(ChartCoordinates, AreThoseOfTheHeader) {
   EXPECT_EQ((corner.array() - 0.5).abs().minCoeff(), 0.5);
 }
 
-TEST(TextureAtlas, RefusesWhatIsNoMapThatIsOneToOne) {
+TEST(TextureAtlas, RefusesMapsThatAreNotOneToOne) {
   const Mesh mesh = delaunay("random", randomSphere(50, 3));
   Triangles open = mesh.triangles.leftCols(mesh.triangles.cols() - 1);
   EXPECT_THROW(makeTextureAtlas(open, mesh.sphere), InvalidInput);
