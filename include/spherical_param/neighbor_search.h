@@ -23,8 +23,7 @@ using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& poi
 ///               underflow: bring the points to an extent of about 1.
 /// \param execution threads, progress; its progress callback must outlive the search.
 /// \return a search among these points; copies of it share the tree. It throws InvalidInput for
-/// lists
-///         of more than 2^31 entries in all; Cancelled.
+///         lists of more than 2^31 entries in all; Cancelled.
 /// \throw std::bad_alloc. Cost: O(n log n), and O(log n) for each query, typically.
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution = {});
 

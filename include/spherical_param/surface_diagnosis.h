@@ -111,10 +111,10 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// \param points    3 x n, finite; extent about 1, or at least such that areas are numbers.
 /// \param triangles 3 x m, a closed manifold over the points.
 /// \param graph     n nodes, lengths in the unit of the points. The thresholds were measured on
-/// local
-///                  Delaunay neighbourhoods and hold for the 8 nearest neighbours as well; of a
-///                  graph with a mean degree above 12, the 8 shortest edges of each point are used.
-/// \param bridges   edges of the graph that join parts (NeighborGraph::bridges).
+///                  local Delaunay neighbourhoods and hold for the 8 nearest neighbours as well; of
+///                  a graph with a mean degree above 12, the 8 shortest edges of each point are
+///                  used.
+/// \param bridges   edges of the graph that join parts (GraphReport::bridges).
 /// \param options what is listed
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return what was found, the same for any number of threads.

@@ -7,8 +7,8 @@
 
 namespace spherical_param::internal {
 
-/// The distinct ones of some points, called nodes, along a space-filling curve: whoever visits them
-/// in their order walks memory forward, and finds the neighbours of each near by.
+/// The distinct points of a cloud, called nodes, in the order of a space-filling curve, so that
+/// neighbours are close in memory.
 struct OrderedPoints {
   /// 3 x v, column i = node i, scaled by 2^-exponent to an extent of about 1: exact, so distinct
   /// points stay distinct, and no product in later stages overflows.
