@@ -13,10 +13,9 @@ namespace spherical_param::internal {
 /// more.
 ///
 /// \param reach at least 1.
-/// \return none if there may be more than 64, as for some 32 handles and more; if the power has
-/// more
-///         than 64 neighbours a node, on average, so that the graph is not that of a surface; or if
-///         an edge is stored at one of its ends only.
+/// \return none if there may be more than 64, as for some 32 handles and more; if the power's
+///         nodes have more than 64 neighbours, on average, so that the graph is not that of a
+///         surface; or if an edge is stored at one of its ends only.
 /// Cost: O(n) for a surface, below 1.2 KB of memory a node.
 std::optional<int> countCycles(const Graph& graph, int reach);
 
