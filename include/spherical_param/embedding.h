@@ -88,7 +88,8 @@ struct EmbeddingOptions {
   int max_iterations = 1600;
   /// Iterations over which stagnation is judged; 0 or 1: never; >= 0.
   int stagnation_window = 100;
-  /// Starts of Multilevel on the coarsest level, of which the one of least energy is kept; 1 to 100.
+  /// Starts of Multilevel on the coarsest level, of which the one of least energy is kept; 1 to
+  /// 100.
   int starts = 2;
   /// What is kept of how the embedding unfolds; nothing by default. It costs about the memory of
   /// its frames and, with Multilevel, the time of the coarsest level.
@@ -110,8 +111,8 @@ struct EmbeddingReport {
   /// Of Multilevel: Unfinished without a tolerance; Stagnated also where a barrier keeps the
   /// residual above the tolerance.
   StopReason stop_reason = StopReason::Unfinished;
-  int iterations = 0;      ///< steps of the iteration, or of Newton's method
-  double residual = 0.0;   ///< mean length of the tangential Laplacian at the embedding [radius]
+  int iterations = 0;     ///< steps of the iteration, or of Newton's method
+  double residual = 0.0;  ///< mean length of the tangential Laplacian at the embedding [radius]
   /// The same before each step on the graph itself, and at the end (Figures 6 and 7 of the paper);
   /// empty for Multilevel without a tolerance.
   std::vector<double> residuals;

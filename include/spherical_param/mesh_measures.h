@@ -36,8 +36,7 @@ struct MeshMeasures {
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return all zero for a mesh without triangles; the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for an index or threads out of range. Cost: O(m).
-MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
-                         int threads = 0);
+MeshMeasures measureMesh(const Positions& points, const Triangles& triangles, int threads = 0);
 
 /// Normals of the vertices of a mesh, those of its triangles weighted by their areas.
 ///

@@ -77,7 +77,8 @@ struct MeshOptimization {
 ///           polish, but mu = 0.3 where that has 0.8.
 /// Relocate: vertices at sharp edges, or far on the mesh from their neighbours in the graph, are
 ///           taken out and put back where they cost least.
-/// Ruin and recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put back in
+/// Ruin and recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put
+/// back in
 ///           random order.
 /// Untangle: the same with up to 96 vertices around triangles that intersect, until none do.
 /// Polish:   flips (and relocation) again, in terms that suit the cloud. Where the sampling follows

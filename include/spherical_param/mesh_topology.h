@@ -56,8 +56,7 @@ struct MeshTopology {
 /// \return the same for any number of threads.
 /// \throw InvalidInput for an index out of range, more triangles than that, or threads out of
 /// range. Cost: O(m + n), and memory of 12 m + 8 n bytes.
-MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
-                           int threads = 0);
+MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count, int threads = 0);
 
 /// Signed volume enclosed by a closed mesh [cubed unit of the input], by the divergence theorem;
 /// positive if the triangles are oriented outward. Meaningless for an open mesh.

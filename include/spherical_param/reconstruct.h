@@ -22,9 +22,10 @@ namespace spherical_param {
 /// \addtogroup pipeline
 /// @{
 
-/// Parameters of reconstruct(), nested by stage. The defaults need no tuning. The paper's own method
-/// is GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and TriangulationMethod::Qhull, with
-/// OptimizationMethod::None. optionTable() lists them with their ranges.
+/// Parameters of reconstruct(), nested by stage. The defaults need no tuning. The paper's own
+/// method is GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and
+/// TriangulationMethod::Qhull, with OptimizationMethod::None. optionTable() lists them with their
+/// ranges.
 struct Options : Execution {
   GraphOptions graph;                  ///< how points become neighbours
   EmbeddingOptions embedding;          ///< how the graph is embedded

@@ -30,9 +30,9 @@ namespace spherical_param {
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw InvalidInput for an index out of range, a coordinate that is not finite, threads outside
 /// [0, 1024]; Cancelled. Cost: O(m log m) and the pairs whose bounding boxes overlap.
-std::vector<std::array<Index, 2>>
-findSelfIntersections(const Positions& points, const Triangles& triangles,
-                      const Execution& execution = {});
+std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
+                                                        const Triangles& triangles,
+                                                        const Execution& execution = {});
 
 /// The pairs of which at least one triangle is in a set: what has to be asked again after that set
 /// has changed.
@@ -44,9 +44,10 @@ findSelfIntersections(const Positions& points, const Triangles& triangles,
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw as findSelfIntersections().
 /// Cost: O(m) and that of the set.
-std::vector<std::array<Index, 2>>
-findSelfIntersectionsOf(const Positions& points, const Triangles& triangles,
-                        const std::vector<Index>& of, const Execution& execution = {});
+std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
+                                                          const Triangles& triangles,
+                                                          const std::vector<Index>& of,
+                                                          const Execution& execution = {});
 
 /// @}
 

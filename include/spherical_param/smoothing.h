@@ -58,8 +58,8 @@ struct Smoothing {
 /// \return the points, the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for coordinates that are not finite, an index or option out of range, or a
 ///        mesh that is not as said.
-/// Cost: O(n) per step of Umbrella; Biharmonic O(n sqrt(steps)), five steps as much as some thirty of
-/// Umbrella.
+/// Cost: O(n) per step of Umbrella; Biharmonic O(n sqrt(steps)), five steps as much as some thirty
+/// of Umbrella.
 ///
 /// No guarantees: corners and edges are rounded, and points drift within the surface until they are
 /// spread evenly among their neighbours. The volume cannot be restored where there is none to speak

@@ -18,6 +18,9 @@ constexpr double kMaxIntersections = 0.001;
 
 Plan planOf(int run, const Options& options) {
   Plan plan{"as asked", options};
+  // The smoothed points get an optimisation of their own.
+  if (options.smoothing.steps > 0)
+    plan.options.optimization.finish_on_points = false;
   if (run == 0)
     return plan;
   if (options.graph.method == GraphMethod::LocalDelaunay) {

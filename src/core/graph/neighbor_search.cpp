@@ -21,7 +21,7 @@ namespace {
 /// Squared distance in space. FLANN's own distances would make the tree one of those in PCL's
 /// libraries, which open a parallel region for each query and would take the place of this one.
 struct SquaredDistance {
-  using is_kdtree_distance = bool;
+  using is_kdtree_distance = bool;  // NOLINT(readability-identifier-naming): FLANN's name
   using ElementType = double;
   using ResultType = double;
 
@@ -32,6 +32,7 @@ struct SquaredDistance {
     const double z = a[2] - b[2];
     return x * x + y * y + z * z;
   }
+  // NOLINTNEXTLINE(readability-identifier-naming): FLANN's name
   double accum_dist(double a, double b, int /*axis*/) const { return (a - b) * (a - b); }
 };
 
