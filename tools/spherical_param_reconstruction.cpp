@@ -327,17 +327,17 @@ Json diagnosisToJson(const CloudReconstruction& cloud) {
   json["looks_closed_genus0"] = diagnosis.looksClosedGenus0();
   json["summary"] = diagnosis.summary;
   json["genus"] = diagnosis.genus ? Json(*diagnosis.genus) : Json(nullptr);
-  json["lids"] = Json::array();
-  for (const spherical_param::Lid& lid : diagnosis.lids) {
-    json["lids"].push_back({{"cause", nameOf(lid.cause, surface_names)},
-                            {"location", toJson(lid.center)},
-                            {"size", lid.diameter},
-                            {"spacing", lid.spacing},
-                            {"triangles", lid.triangles},
-                            {"area", lid.area},
-                            {"boundary_length", lid.boundary_length},
-                            {"vertices", inputIndices(cloud, lid.vertices)},
-                            {"loops", loopsToJson(cloud, lid.loops)}});
+  json["filled_holes"] = Json::array();
+  for (const spherical_param::FilledHole& hole : diagnosis.filled_holes) {
+    json["filled_holes"].push_back({{"cause", nameOf(hole.cause, surface_names)},
+                                    {"location", toJson(hole.center)},
+                                    {"size", hole.diameter},
+                                    {"spacing", hole.spacing},
+                                    {"triangles", hole.triangles},
+                                    {"area", hole.area},
+                                    {"boundary_length", hole.boundary_length},
+                                    {"vertices", inputIndices(cloud, hole.vertices)},
+                                    {"loops", loopsToJson(cloud, hole.loops)}});
   }
   json["handles"] = Json::array();
   for (const spherical_param::CollapsedHandle& handle : diagnosis.handles) {

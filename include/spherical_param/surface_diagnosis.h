@@ -17,7 +17,7 @@ namespace spherical_param {
 /// What a cloud shows, judged by its mesh and its neighbour graph.
 enum class SurfaceKind {
   ClosedGenus0,  ///< nothing speaks against a closed surface without handles, in one piece
-  Open,          ///< the surface has openings, which the mesh closes by lids
+  Open,          ///< the surface has openings, which the mesh fills
   Handles,       ///< the surface has handles, which the mesh cuts
   SeveralParts,  ///< there are several surfaces, which the mesh joins
   Unclear,       ///< the mesh leaves the graph in too many places: noise, or the mesh is folded
@@ -26,7 +26,7 @@ enum class SurfaceKind {
 /// Bits of SurfaceDiagnosis::triangle_marks.
 struct TriangleMarks {
   static constexpr std::uint8_t self_intersection = 1;  ///< intersects another: of a Result alone
-  static constexpr std::uint8_t lid = 2;                ///< part of a lid
+  static constexpr std::uint8_t filled_hole = 2;        ///< part of a filled hole
   static constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
   static constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
   static constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
@@ -34,14 +34,14 @@ struct TriangleMarks {
 
 /// Parameters of diagnoseSurface().
 struct DiagnosisOptions {
-  /// At most so many vertices are listed of each finding; Lid::loops are complete even so.
+  /// At most so many vertices are listed of each finding; FilledHole::loops are complete even so.
   std::size_t max_vertices = 64;
   bool mark_triangles = false;  ///< fill SurfaceDiagnosis::triangle_marks
 };
 
 /// Connected triangles over a place without points that is wide against the distance of the points
 /// around it: an opening of the surface, or a cut through a handle or between parts.
-struct Lid {
+struct FilledHole {
   SurfaceKind cause = SurfaceKind::Open;  ///< or Handles, SeveralParts, of which it is a trace
   std::size_t triangles = 0;              ///< of the mesh, over the place
   double area = 0.0;                      ///< [squared unit of the input]
@@ -51,8 +51,9 @@ struct Lid {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centroid of its triangles
   std::vector<Index> vertices;                       ///< of its rim, ascending
   /// Its boundary: closed loops of vertices that are joined by edges of the mesh, the last to the
-  /// first, with the lid on the left seen from outside. Complete whatever max_vertices is; the
-  /// longest first, each from its lowest vertex. Several where the lid has more than one rim.
+  /// first, with the filled hole on the left seen from outside. Complete whatever max_vertices is;
+  /// the longest first, each from its lowest vertex. Several where the filled hole has more than
+  /// one rim.
   std::vector<std::vector<Index>> loops;
 };
 
@@ -77,7 +78,7 @@ struct PartBridge {
 /// What speaks against a closed genus-0 surface, and where.
 struct SurfaceDiagnosis {
   SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest of what was found
-  std::vector<Lid> lids;                         ///< by falling area
+  std::vector<FilledHole> filled_holes;          ///< by falling area
   std::vector<CollapsedHandle> handles;          ///< by falling number of edges
   std::vector<PartBridge> bridges;               ///< by falling number of points
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph, in [0,
@@ -93,7 +94,7 @@ struct SurfaceDiagnosis {
 
   /// Whether nothing speaks against a closed genus-0 surface. \return true if nothing does
   bool looksClosedGenus0() const { return kind == SurfaceKind::ClosedGenus0; }
-  /// Lids that are a trace of nothing else. \return their number
+  /// Filled holes that are a trace of nothing else. \return their number
   std::size_t openings() const;
 };
 

@@ -41,12 +41,12 @@ void scaleBack(int exponent, Result& result) {
   }
   for (Bridge& bridge : result.graph.bridges)
     scale(bridge.length);
-  for (Lid& lid : result.diagnosis.lids) {
-    scale(lid.area, 2);
-    scale(lid.boundary_length);
-    scale(lid.diameter);
-    scale(lid.spacing);
-    scale_all(lid.center);
+  for (FilledHole& hole : result.diagnosis.filled_holes) {
+    scale(hole.area, 2);
+    scale(hole.boundary_length);
+    scale(hole.diameter);
+    scale(hole.spacing);
+    scale_all(hole.center);
   }
   for (CollapsedHandle& handle : result.diagnosis.handles) {
     scale(handle.size);
@@ -87,9 +87,9 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
     bridge.to = vertex(bridge.to);
   }
   renumber_all(result.graph.without_tangent_plane);
-  for (Lid& lid : result.diagnosis.lids) {
-    renumber_all(lid.vertices);
-    for (std::vector<Index>& loop : lid.loops) {
+  for (FilledHole& hole : result.diagnosis.filled_holes) {
+    renumber_all(hole.vertices);
+    for (std::vector<Index>& loop : hole.loops) {
       std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
       std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     }

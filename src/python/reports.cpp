@@ -64,13 +64,13 @@ py::dict toDict(const Bridge& bridge) {
 }
 
 py::dict toDict(const SurfaceDiagnosis& diagnosis) {
-  const py::list lids = listOf(diagnosis.lids, [](const Lid& lid) {
-    return py::dict("cause"_a = nameOf(lid.cause), "triangles"_a = lid.triangles,
-                    "area"_a = lid.area, "boundary_length"_a = lid.boundary_length,
-                    "diameter"_a = lid.diameter, "spacing"_a = lid.spacing,
-                    "center"_a = toArray(lid.center), "vertices"_a = toArray(lid.vertices),
+  const py::list filled_holes = listOf(diagnosis.filled_holes, [](const FilledHole& hole) {
+    return py::dict("cause"_a = nameOf(hole.cause), "triangles"_a = hole.triangles,
+                    "area"_a = hole.area, "boundary_length"_a = hole.boundary_length,
+                    "diameter"_a = hole.diameter, "spacing"_a = hole.spacing,
+                    "center"_a = toArray(hole.center), "vertices"_a = toArray(hole.vertices),
                     "loops"_a = listOf(
-                        lid.loops, [](const std::vector<Index>& loop) { return toArray(loop); }));
+                        hole.loops, [](const std::vector<Index>& loop) { return toArray(loop); }));
   });
   const py::list handles = listOf(diagnosis.handles, [](const CollapsedHandle& handle) {
     return py::dict("edges"_a = handle.edges, "size"_a = handle.size,
@@ -84,8 +84,9 @@ py::dict toDict(const SurfaceDiagnosis& diagnosis) {
   return py::dict("kind"_a = nameOf(diagnosis.kind), "summary"_a = diagnosis.summary,
                   "genus"_a = diagnosis.genus ? py::cast(*diagnosis.genus) : py::none(),
                   "looks_closed_genus0"_a = diagnosis.looksClosedGenus0(),
-                  "openings"_a = diagnosis.openings(), "lids"_a = lids, "handles"_a = handles,
-                  "bridges"_a = bridges, "edges_outside_graph"_a = diagnosis.edges_outside_graph,
+                  "openings"_a = diagnosis.openings(), "filled_holes"_a = filled_holes,
+                  "handles"_a = handles, "bridges"_a = bridges,
+                  "edges_outside_graph"_a = diagnosis.edges_outside_graph,
                   "triangle_marks"_a = orNone(diagnosis.triangle_marks));
 }
 

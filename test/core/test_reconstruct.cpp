@@ -97,8 +97,8 @@ void expectGuarantees(const Positions& points, const Result& result) {
     return std::is_sorted(indices.begin(), indices.end()) &&
            (indices.empty() || (indices.front() >= 0 && indices.back() < v));
   };
-  for (const Lid& lid : result.diagnosis.lids)
-    EXPECT_TRUE(are_vertices(lid.vertices));
+  for (const FilledHole& hole : result.diagnosis.filled_holes)
+    EXPECT_TRUE(are_vertices(hole.vertices));
   for (const CollapsedHandle& handle : result.diagnosis.handles)
     EXPECT_TRUE(are_vertices(handle.vertices));
   for (const PartBridge& bridge : result.diagnosis.bridges)
@@ -806,12 +806,12 @@ std::vector<std::pair<double, int>> quantitiesOf(const Result& result) {
     all.emplace_back(phase.energy_before, 1);
     all.emplace_back(phase.energy, 1);
   }
-  for (const Lid& lid : result.diagnosis.lids) {
-    all.emplace_back(lid.area, 2);
-    all.emplace_back(lid.boundary_length, 1);
-    all.emplace_back(lid.diameter, 1);
-    all.emplace_back(lid.spacing, 1);
-    all.emplace_back(lid.center.norm(), 1);
+  for (const FilledHole& hole : result.diagnosis.filled_holes) {
+    all.emplace_back(hole.area, 2);
+    all.emplace_back(hole.boundary_length, 1);
+    all.emplace_back(hole.diameter, 1);
+    all.emplace_back(hole.spacing, 1);
+    all.emplace_back(hole.center.norm(), 1);
   }
   for (int axis = 0; axis < 3; ++axis) {
     all.emplace_back(result.measures.box_min[axis], 1);
@@ -842,7 +842,7 @@ TEST(Reconstruct, QuantitiesWithAUnitScaleWithIt) {
   Options options;
   options.smoothing.steps = 2;
   const Result result = mesh(points, options);
-  ASSERT_FALSE(result.diagnosis.lids.empty());
+  ASSERT_FALSE(result.diagnosis.filled_holes.empty());
   const Result twice = mesh(4.0 * points, options);
   EXPECT_EQ(twice.triangles, result.triangles);
   EXPECT_EQ(twice.smoothed, 4.0 * result.smoothed);
@@ -1007,12 +1007,12 @@ TEST(Reconstruct, MarksShowIntersectionsAndFilledHoles) {
   const Result result = mesh(bowl, watched(quick()));
   const std::vector<std::uint8_t>& marks = result.diagnosis.triangle_marks;
   ASSERT_EQ(marks.size(), static_cast<std::size_t>(result.triangles.cols()));
-  ASSERT_EQ(result.diagnosis.lids.size(), 1U);
+  ASSERT_EQ(result.diagnosis.filled_holes.size(), 1U);
   const auto count = [&](std::uint8_t bit) {
     return static_cast<std::size_t>(std::count_if(
         marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
   };
-  EXPECT_EQ(count(TriangleMarks::lid), result.diagnosis.lids.front().triangles);
+  EXPECT_EQ(count(TriangleMarks::filled_hole), result.diagnosis.filled_holes.front().triangles);
   std::set<Index> intersecting;
   for (const auto& pair : result.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
@@ -1022,7 +1022,7 @@ TEST(Reconstruct, MarksShowIntersectionsAndFilledHoles) {
   EXPECT_GE(count(TriangleMarks::outside_graph), 1U);
   const Positions vertices = verticesOf(bowl, result);
   for (Index t = 0; t < result.triangles.cols(); ++t)
-    if ((marks[static_cast<std::size_t>(t)] & TriangleMarks::lid) != 0) {
+    if ((marks[static_cast<std::size_t>(t)] & TriangleMarks::filled_hole) != 0) {
       // All corners are at the rim, about 0.87 up; the surface has no triangle of this size.
       for (Index k = 0; k < 3; ++k)
         EXPECT_GT(vertices(2, result.triangles(k, t)), 0.6);

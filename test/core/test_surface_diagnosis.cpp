@@ -67,7 +67,8 @@ void expectClosed(const Scene& scene) {
   const SurfaceDiagnosis diagnosis = diagnose(scene);
   EXPECT_EQ(diagnosis.kind, SurfaceKind::ClosedGenus0) << diagnosis.summary;
   EXPECT_TRUE(diagnosis.looksClosedGenus0());
-  EXPECT_TRUE(diagnosis.lids.empty() && diagnosis.handles.empty() && diagnosis.bridges.empty());
+  EXPECT_TRUE(diagnosis.filled_holes.empty() && diagnosis.handles.empty() &&
+              diagnosis.bridges.empty());
   EXPECT_EQ(diagnosis.summary, "Looks like a closed genus-0 surface.");
 }
 
@@ -98,9 +99,9 @@ TEST(SurfaceDiagnosis, UnevenSamplingRaisesNoAlarm) {
   expectClosed(starShaped(even, Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal() * even));
 }
 
-/// Whether the loops of a lid are closed paths along edges of the mesh, each from its lowest
-/// vertex, that have together the lid's boundary length and its rim.
-void expectLoopsOfBoundary(const Scene& scene, const Lid& lid) {
+/// Whether the loops of a filled hole are closed paths along edges of the mesh, each from its
+/// lowest vertex, that have together the filled hole's boundary length and its rim.
+void expectLoopsOfBoundary(const Scene& scene, const FilledHole& hole) {
   std::set<std::array<Index, 2>> edges;
   for (Eigen::Index t = 0; t < scene.triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k)
@@ -108,7 +109,7 @@ void expectLoopsOfBoundary(const Scene& scene, const Lid& lid) {
   double total = 0.0;
   double last = std::numeric_limits<double>::infinity();
   std::set<Index> rim;
-  for (const std::vector<Index>& loop : lid.loops) {
+  for (const std::vector<Index>& loop : hole.loops) {
     ASSERT_GE(loop.size(), 3U);
     EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
     double length = 0.0;
@@ -122,8 +123,8 @@ void expectLoopsOfBoundary(const Scene& scene, const Lid& lid) {
     EXPECT_LE(length, last * (1.0 + 1e-12));
     total += last = length;
   }
-  EXPECT_NEAR(total, lid.boundary_length, 1e-12 * total);
-  EXPECT_EQ(std::vector<Index>(rim.begin(), rim.end()), lid.vertices);
+  EXPECT_NEAR(total, hole.boundary_length, 1e-12 * total);
+  EXPECT_EQ(std::vector<Index>(rim.begin(), rim.end()), hole.vertices);
 }
 
 /// Sum of the cross products along a loop: twice the area that it goes around, along the normal.
@@ -146,28 +147,28 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
       const Scene scene = starShaped(open, open);
       const SurfaceDiagnosis diagnosis = diagnose(scene);
       EXPECT_EQ(diagnosis.kind, SurfaceKind::Open) << n << " " << across;
-      ASSERT_EQ(diagnosis.lids.size(), 1U) << n << " " << across;
+      ASSERT_EQ(diagnosis.filled_holes.size(), 1U) << n << " " << across;
       EXPECT_EQ(diagnosis.openings(), 1U);
       EXPECT_TRUE(diagnosis.handles.empty() && diagnosis.bridges.empty());
-      const Lid& lid = diagnosis.lids.front();
-      EXPECT_EQ(lid.cause, SurfaceKind::Open);
+      const FilledHole& hole = diagnosis.filled_holes.front();
+      EXPECT_EQ(hole.cause, SurfaceKind::Open);
       // The rim is ragged by up to one spacing outward, and its flat triangles may stay out.
-      EXPECT_NEAR(lid.diameter, 2.0 * radius, 1.5 * spacing);
-      EXPECT_NEAR(std::sqrt(4.0 * lid.area / kPi), 2.0 * radius, 2.0 * spacing);
-      EXPECT_NEAR(lid.spacing, spacing, 0.3 * spacing);
-      EXPECT_LT((lid.center - height * Eigen::Vector3d::UnitX()).norm(), spacing);
-      EXPECT_GE(lid.triangles, lid.vertices.size() - 2);
-      expectLoopsOfBoundary(scene, lid);
-      ASSERT_EQ(lid.loops.size(), 1U);
+      EXPECT_NEAR(hole.diameter, 2.0 * radius, 1.5 * spacing);
+      EXPECT_NEAR(std::sqrt(4.0 * hole.area / kPi), 2.0 * radius, 2.0 * spacing);
+      EXPECT_NEAR(hole.spacing, spacing, 0.3 * spacing);
+      EXPECT_LT((hole.center - height * Eigen::Vector3d::UnitX()).norm(), spacing);
+      EXPECT_GE(hole.triangles, hole.vertices.size() - 2);
+      expectLoopsOfBoundary(scene, hole);
+      ASSERT_EQ(hole.loops.size(), 1U);
       EXPECT_NE(
-          diagnosis.summary.find("rim of " + std::to_string(lid.loops.front().size()) + " points"),
+          diagnosis.summary.find("rim of " + std::to_string(hole.loops.front().size()) + " points"),
           std::string::npos)
           << diagnosis.summary;
       // Seen from outside, the loop goes around counter-clockwise.
-      const Eigen::Vector3d doubled = doubledArea(open, lid.loops.front());
+      const Eigen::Vector3d doubled = doubledArea(open, hole.loops.front());
       EXPECT_GT(doubled.x(), 0.0);
-      EXPECT_NEAR(doubled.norm() / 2.0, lid.area, 0.1 * lid.area);
-      for (const Index v : lid.vertices) {
+      EXPECT_NEAR(doubled.norm() / 2.0, hole.area, 0.1 * hole.area);
+      for (const Index v : hole.vertices) {
         const Eigen::Vector3d p = open.col(v);
         EXPECT_LT(p.x(), height);
         EXPECT_LT(p.tail<2>().norm(), radius + 1.5 * spacing);
@@ -186,12 +187,12 @@ TEST(SurfaceDiagnosis, FilledHoleAroundAnIslandHasTwoLoops) {
   DiagnosisOptions options;
   options.max_vertices = 100000;
   const SurfaceDiagnosis diagnosis = diagnose(scene, options);
-  ASSERT_EQ(diagnosis.lids.size(), 1U) << diagnosis.summary;
-  const Lid& lid = diagnosis.lids.front();
-  expectLoopsOfBoundary(scene, lid);
-  ASSERT_EQ(lid.loops.size(), 2U);
-  EXPECT_GT(doubledArea(open, lid.loops[0]).x(), 0.0);
-  EXPECT_LT(doubledArea(open, lid.loops[1]).x(), 0.0);
+  ASSERT_EQ(diagnosis.filled_holes.size(), 1U) << diagnosis.summary;
+  const FilledHole& hole = diagnosis.filled_holes.front();
+  expectLoopsOfBoundary(scene, hole);
+  ASSERT_EQ(hole.loops.size(), 2U);
+  EXPECT_GT(doubledArea(open, hole.loops[0]).x(), 0.0);
+  EXPECT_LT(doubledArea(open, hole.loops[1]).x(), 0.0);
 }
 
 TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
@@ -202,17 +203,17 @@ TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
   EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
   ASSERT_EQ(diagnosis.openings(), 3U) << diagnosis.summary;
   // By falling area.
-  EXPECT_LT(diagnosis.lids[0].center.z(), -0.75);
-  EXPECT_LT(diagnosis.lids[1].center.y(), -0.8);
-  EXPECT_GT(diagnosis.lids[2].center.x(), 0.85);
+  EXPECT_LT(diagnosis.filled_holes[0].center.z(), -0.75);
+  EXPECT_LT(diagnosis.filled_holes[1].center.y(), -0.8);
+  EXPECT_GT(diagnosis.filled_holes[2].center.x(), 0.85);
   EXPECT_NE(diagnosis.summary.find("3 openings"), std::string::npos) << diagnosis.summary;
-  for (const Lid& lid : diagnosis.lids)
-    EXPECT_EQ(lid.loops.size(), 1U);
+  for (const FilledHole& hole : diagnosis.filled_holes)
+    EXPECT_EQ(hole.loops.size(), 1U);
   EXPECT_EQ(diagnosis.summary, summaryOf(diagnosis));
 }
 
-/// A torus whose mesh is cut through the tube and closed by two flat lids there: a sphere. The
-/// graph is that of the whole torus.
+/// A torus whose mesh is cut through the tube and closed by two flat discs there: a sphere.
+/// The graph is that of the whole torus.
 struct CutTorus {
   Scene scene;
   std::size_t torn = 0;    ///< edges of the graph across the cut
@@ -275,10 +276,10 @@ TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
     EXPECT_EQ(diagnosis.openings(), 0U);
     EXPECT_TRUE(diagnosis.bridges.empty());
     // Those of the finer torus are wide enough to be seen.
-    EXPECT_EQ(diagnosis.lids.size(), ring == 24 ? 2U : 0U);
-    for (const Lid& lid : diagnosis.lids) {
-      EXPECT_EQ(lid.cause, SurfaceKind::Handles);
-      EXPECT_NEAR(lid.area, kPi * tube_radius * tube_radius, 0.1);
+    EXPECT_EQ(diagnosis.filled_holes.size(), ring == 24 ? 2U : 0U);
+    for (const FilledHole& hole : diagnosis.filled_holes) {
+      EXPECT_EQ(hole.cause, SurfaceKind::Handles);
+      EXPECT_NEAR(hole.area, kPi * tube_radius * tube_radius, 0.1);
     }
   }
 }
@@ -367,7 +368,7 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
   EXPECT_EQ(torus.kind, SurfaceKind::Handles) << torus.summary;
   ASSERT_TRUE(torus.genus);
   EXPECT_EQ(*torus.genus, 1);
-  EXPECT_TRUE(torus.lids.empty() && torus.handles.empty());
+  EXPECT_TRUE(torus.filled_holes.empty() && torus.handles.empty());
   const Positions ball = spiralSphere(1000);
   const SurfaceDiagnosis sphere = folded(starShaped(ball, ball));
   EXPECT_EQ(sphere.kind, SurfaceKind::Unclear) << sphere.summary;
@@ -510,7 +511,7 @@ TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
       filtered(spiralSphere(1000), [&](const Eigen::Vector3d& p) { return p.x() < 0.9; });
   const Scene scene = starShaped(open, open);
   const SurfaceDiagnosis still = diagnose(scene);
-  ASSERT_EQ(still.lids.size(), 1U);
+  ASSERT_EQ(still.filled_holes.size(), 1U);
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   const Eigen::Vector3d shift(5.0, 6.0, -7.0);
@@ -520,10 +521,10 @@ TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
   for (double& length : moved.graph.graph.lengths)
     length *= scale;
   const SurfaceDiagnosis diagnosis = diagnose(moved);
-  ASSERT_EQ(diagnosis.lids.size(), 1U);
+  ASSERT_EQ(diagnosis.filled_holes.size(), 1U);
   EXPECT_EQ(diagnosis.kind, still.kind);
-  const Lid& a = still.lids.front();
-  const Lid& b = diagnosis.lids.front();
+  const FilledHole& a = still.filled_holes.front();
+  const FilledHole& b = diagnosis.filled_holes.front();
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.loops, b.loops);
@@ -540,15 +541,16 @@ TEST(SurfaceDiagnosis, OptionsDecideHowMuchIsListed) {
   DiagnosisOptions options;
   options.max_vertices = 7;
   const SurfaceDiagnosis few = diagnose(scene, options);
-  ASSERT_EQ(few.lids.size(), 1U);
-  EXPECT_EQ(few.lids.front().vertices.size(), 7U);
-  EXPECT_TRUE(std::is_sorted(few.lids.front().vertices.begin(), few.lids.front().vertices.end()));
-  ASSERT_EQ(few.lids.front().loops.size(), 1U);
-  EXPECT_GT(few.lids.front().loops.front().size(), 7U);
+  ASSERT_EQ(few.filled_holes.size(), 1U);
+  EXPECT_EQ(few.filled_holes.front().vertices.size(), 7U);
+  EXPECT_TRUE(std::is_sorted(few.filled_holes.front().vertices.begin(),
+                             few.filled_holes.front().vertices.end()));
+  ASSERT_EQ(few.filled_holes.front().loops.size(), 1U);
+  EXPECT_GT(few.filled_holes.front().loops.front().size(), 7U);
 }
 
 TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
-  // Enough points for several threads, a lid, and vertices that changed places with others.
+  // Enough points for several threads, a hole, and vertices that changed places with others.
   const Positions points =
       filtered(spiralSphere(60000), [](const Eigen::Vector3d& p) { return p.x() < 0.99; });
   Triangles triangles = triangulateSphere(points, {TriangulationMethod::Incremental}).triangles;
@@ -572,7 +574,7 @@ TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
     return diagnoseSurface(points, triangles, graph, {}, {}, threads);
   };
   const SurfaceDiagnosis one = run(1);
-  EXPECT_FALSE(one.lids.empty());
+  EXPECT_FALSE(one.filled_holes.empty());
   // Neighbours are torn apart, but the graph has no cycle that a handle would have.
   EXPECT_EQ(one.genus.value_or(-1), 0);
   EXPECT_TRUE(one.handles.empty());
@@ -590,11 +592,11 @@ TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
     const SurfaceDiagnosis several = run(threads);
     EXPECT_EQ(several.summary, one.summary);
     EXPECT_EQ(several.edges_outside_graph, one.edges_outside_graph);
-    ASSERT_EQ(several.lids.size(), one.lids.size());
-    for (std::size_t i = 0; i < one.lids.size(); ++i) {
-      EXPECT_EQ(several.lids[i].area, one.lids[i].area);
-      EXPECT_EQ(several.lids[i].vertices, one.lids[i].vertices);
-      EXPECT_EQ(several.lids[i].loops, one.lids[i].loops);
+    ASSERT_EQ(several.filled_holes.size(), one.filled_holes.size());
+    for (std::size_t i = 0; i < one.filled_holes.size(); ++i) {
+      EXPECT_EQ(several.filled_holes[i].area, one.filled_holes[i].area);
+      EXPECT_EQ(several.filled_holes[i].vertices, one.filled_holes[i].vertices);
+      EXPECT_EQ(several.filled_holes[i].loops, one.filled_holes[i].loops);
     }
     EXPECT_TRUE(several.handles.empty());
   }

@@ -1252,11 +1252,11 @@ TEST_F(SphericalParamReconstruction, VertexIndicesMapFindingsToTheCloud) {
   EXPECT_FALSE(reconstructPolygons(reconstruction).empty());
   const spherical_param::SurfaceDiagnosis& diagnosis = reconstruction.getDiagnosis();
   EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
-  ASSERT_EQ(diagnosis.lids.size(), 1U);
+  ASSERT_EQ(diagnosis.filled_holes.size(), 1U);
   // Neighbours are some 0.07 apart.
-  EXPECT_NEAR(diagnosis.lids[0].center.z(), 0.3, 0.1);
-  EXPECT_FALSE(diagnosis.lids[0].vertices.empty());
-  for (const spherical_param::Index vertex : diagnosis.lids[0].vertices) {
+  EXPECT_NEAR(diagnosis.filled_holes[0].center.z(), 0.3, 0.1);
+  EXPECT_FALSE(diagnosis.filled_holes[0].vertices.empty());
+  for (const spherical_param::Index vertex : diagnosis.filled_holes[0].vertices) {
     const pcl::index_t point = reconstruction.getVertexIndices()[static_cast<std::size_t>(vertex)];
     EXPECT_NEAR((*cloud)[static_cast<std::size_t>(point)].z, 0.3F, 0.1F);
   }

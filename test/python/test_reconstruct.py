@@ -154,9 +154,9 @@ class Mesh(unittest.TestCase):
         self.assertEqual(mesh.diagnosis.kind, "open")
         self.assertFalse(mesh.diagnosis.looks_closed_genus0)
         self.assertEqual(mesh.diagnosis.openings, 1)
-        self.assertEqual(mesh.diagnosis.lids[0].cause, "open")
+        self.assertEqual(mesh.diagnosis.filled_holes[0].cause, "open")
         # The opening is a circle at z = 0.3 around the axis.
-        np.testing.assert_allclose(mesh.diagnosis.lids[0].center, [0, 0, 0.3], atol=0.1)
+        np.testing.assert_allclose(mesh.diagnosis.filled_holes[0].center, [0, 0, 0.3], atol=0.1)
 
     def test_results_can_be_pickled_and_shown(self):
         mesh = sp.reconstruct(shapes.ellipsoid(300))
@@ -256,9 +256,9 @@ class Options(unittest.TestCase):
         self.assertEqual((marks.shape, marks.dtype), ((len(mesh.triangles),), np.dtype(np.uint8)))
         points = shapes.directions(4000)
         bowl = sp.reconstruct(points[points[:, 2] < 0.3], details=True)
-        lids = sum(lid.triangles for lid in bowl.diagnosis.lids)
-        self.assertGreater(lids, 0)
-        self.assertEqual(np.count_nonzero(bowl.diagnosis.triangle_marks & 2), lids)
+        filled_holes = sum(hole.triangles for hole in bowl.diagnosis.filled_holes)
+        self.assertGreater(filled_holes, 0)
+        self.assertEqual(np.count_nonzero(bowl.diagnosis.triangle_marks & 2), filled_holes)
 
     def test_threads_do_not_change_a_byte(self):
         points = shapes.bumpy(20000)

@@ -498,9 +498,10 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
        "/triangulation/method /optimization/method /optimization/phases/0/name "
        "/runs/0/description /diagnosis/kind /diagnosis/summary /options/graph /options/embedding "
        "/options/weights /options/triangulation /options/optimization"},
-      {"array", "/residuals /stages /warnings /self_intersecting_pairs /graph/bridges "
-                "/graph/without_tangent_plane /embedding/levels /diagnosis/lids /diagnosis/handles "
-                "/diagnosis/bridges"},
+      {"array",
+       "/residuals /stages /warnings /self_intersecting_pairs /graph/bridges "
+       "/graph/without_tangent_plane /embedding/levels /diagnosis/filled_holes /diagnosis/handles "
+       "/diagnosis/bridges"},
       {"null", "/outliers /smoothing /options/tolerance /options/max_iterations "
                "/options/stagnation_window /options/outliers /options/sphere"}};
   const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {
@@ -1083,13 +1084,13 @@ TEST_F(QualityOfTheMesh, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
   const json shifted = reportOf({"shifted.xyz", "out.ply", "-outliers", "6"});
   EXPECT_TRUE(plain["outliers"]["indices"].empty());
   EXPECT_EQ(shifted["outliers"]["indices"], json({1, 2}));
-  ASSERT_EQ(plain["diagnosis"]["lids"].size(), 1U);
-  ASSERT_EQ(shifted["diagnosis"]["lids"].size(), 1U);
-  auto vertices = plain["diagnosis"]["lids"][0]["vertices"].get<std::vector<int>>();
+  ASSERT_EQ(plain["diagnosis"]["filled_holes"].size(), 1U);
+  ASSERT_EQ(shifted["diagnosis"]["filled_holes"].size(), 1U);
+  auto vertices = plain["diagnosis"]["filled_holes"][0]["vertices"].get<std::vector<int>>();
   for (int& vertex : vertices) {
     vertex += 3;
   }
-  EXPECT_EQ(shifted["diagnosis"]["lids"][0]["vertices"], json(vertices));
+  EXPECT_EQ(shifted["diagnosis"]["filled_holes"][0]["vertices"], json(vertices));
 }
 
 TEST_F(QualityOfTheMesh, SameBytesForAnyNumberOfThreadsWithAllThatIsOptional) {

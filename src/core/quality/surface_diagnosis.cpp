@@ -834,8 +834,9 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
 }  // namespace
 
 std::size_t SurfaceDiagnosis::openings() const {
-  return static_cast<std::size_t>(std::count_if(
-      lids.begin(), lids.end(), [](const Lid& lid) { return lid.cause == SurfaceKind::Open; }));
+  return static_cast<std::size_t>(
+      std::count_if(filled_holes.begin(), filled_holes.end(),
+                    [](const FilledHole& hole) { return hole.cause == SurfaceKind::Open; }));
 }
 
 std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
@@ -868,15 +869,17 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
   }
   const std::size_t openings = diagnosis.openings();
   if (openings > 0) {
-    const auto lid = std::find_if(diagnosis.lids.begin(), diagnosis.lids.end(),
-                                  [](const Lid& each) { return each.cause == SurfaceKind::Open; });
+    const auto hole =
+        std::find_if(diagnosis.filled_holes.begin(), diagnosis.filled_holes.end(),
+                     [](const FilledHole& each) { return each.cause == SurfaceKind::Open; });
     add("a surface with " + counted(openings, "opening") +
-        (openings == 1 ? ": lid of " : ": largest lid of ") + counted(lid->triangles, "triangle") +
-        ", area " + number(lid->area) + ", about " + number(lid->diameter) + " across, " +
-        (lid->loops.empty() ? std::string()
-                            : "rim of " + counted(lid->loops.front().size(), "point") + ", " +
-                                  number(lid->boundary_length) + " long, ") +
-        place(lid->center));
+        (openings == 1 ? ": filled hole of " : ": largest filled hole of ") +
+        counted(hole->triangles, "triangle") + ", area " + number(hole->area) + ", about " +
+        number(hole->diameter) + " across, " +
+        (hole->loops.empty() ? std::string()
+                             : "rim of " + counted(hole->loops.front().size(), "point") + ", " +
+                                   number(hole->boundary_length) + " long, ") +
+        place(hole->center));
   }
   return text.empty() ? "Looks like a closed genus-0 surface." : text + ".";
 }
@@ -1002,18 +1005,19 @@ private:
           causeOf(region, parts_ ? &*parts_ : nullptr, result_.bridges, result_.handles);
       if (!cause)
         continue;
-      result_.lids.push_back({*cause, region.triangles.size(), region.area, region.boundary_length,
-                              region.diameter, region.spacing, region.center,
-                              someOf(region.rim, options_.max_vertices), search_.loopsOf(region)});
+      result_.filled_holes.push_back({*cause, region.triangles.size(), region.area,
+                                      region.boundary_length, region.diameter, region.spacing,
+                                      region.center, someOf(region.rim, options_.max_vertices),
+                                      search_.loopsOf(region)});
       filled_.insert(filled_.end(), region.triangles.begin(), region.triangles.end());
     }
-    std::stable_sort(result_.lids.begin(), result_.lids.end(),
-                     [](const Lid& a, const Lid& b) { return a.area > b.area; });
+    std::stable_sort(result_.filled_holes.begin(), result_.filled_holes.end(),
+                     [](const FilledHole& a, const FilledHole& b) { return a.area > b.area; });
   }
 
   void markTriangles() {
     TriangleMarker marker(surface_, triangle_count_);
-    marker.mark(filled_, TriangleMarks::lid);
+    marker.mark(filled_, TriangleMarks::filled_hole);
     for (const CollapsedHandle& handle : result_.handles)
       marker.markAround(handle.vertices, TriangleMarks::handle);
     for (const PartBridge& bridge : result_.bridges)

@@ -41,7 +41,7 @@ class Measures:
 
 
 @dataclass(frozen=True, eq=False)
-class Lid:
+class FilledHole:
     """Triangles over a place that is wide, and without points: probably an opening."""
 
     cause: str  #: "open", "handles" or "several_parts": what it is a trace of
@@ -53,8 +53,8 @@ class Lid:
     center: FloatArray  #: (3,)
     vertices: IndexArray  #: (r,) of its rim, ascending, at most 64
     loops: tuple[IndexArray, ...]
-    """(l,) each: its boundary as closed loops of vertices that the mesh's edges join, with the lid
-    on the left seen from outside; all of it, the longest first, each from its lowest vertex"""
+    """(l,) each: its boundary as closed loops of vertices that the mesh's edges join, with the filled
+    hole on the left seen from outside; all of it, the longest first, each from its lowest vertex"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,8 +86,8 @@ class Diagnosis:
     kind: str  #: "closed_genus0", "open", "handles", "several_parts" or "unclear"
     summary: str  #: one sentence
     looks_closed_genus0: bool
-    openings: int  #: lids that are a trace of nothing else
-    lids: tuple[Lid, ...]  #: by falling area
+    openings: int  #: filled holes that are a trace of nothing else
+    filled_holes: tuple[FilledHole, ...]  #: by falling area
     handles: tuple[Handle, ...]  #: by falling number of edges
     bridges: tuple[PartBridge, ...]  #: by falling number of points
     edges_outside_graph: float  #: share of edges between points that are no near neighbours
@@ -95,7 +95,7 @@ class Diagnosis:
     """Handles of the surface, counted by the cycles of the neighbour graph; None where that was not
     needed, or cannot be told"""
     triangle_marks: Optional[NDArray[np.uint8]]
-    """(m,) with ``details``, for each triangle the sum of 1: intersects another, 2: part of a lid,
+    """(m,) with ``details``, for each triangle the sum of 1: intersects another, 2: part of a hole,
     4: at the torn edges of a handle, 8: at a bridge between parts, 16: at an edge outside the
     graph's 2-ring; else None"""
 
@@ -286,7 +286,7 @@ class Result(MeshExport):
 
 def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
     diagnosis = fields["diagnosis"]
-    diagnosis["lids"] = tuple(Lid(**lid) for lid in diagnosis["lids"])
+    diagnosis["filled_holes"] = tuple(FilledHole(**hole) for hole in diagnosis["filled_holes"])
     diagnosis["handles"] = tuple(Handle(**handle) for handle in diagnosis["handles"])
     diagnosis["bridges"] = tuple(PartBridge(**bridge) for bridge in diagnosis["bridges"])
     graph = fields["graph"]

@@ -126,14 +126,14 @@ void checkMesh(const std::string& text, const Positions& points, Complaints& com
 }
 
 /// The openings that were found against those there are.
-void checkOpenings(const json& lids, const Truth& truth, const Positions& points, double spacing,
-                   Complaints& complaints) {
+void checkOpenings(const json& filled_holes, const Truth& truth, const Positions& points,
+                   double spacing, Complaints& complaints) {
   std::vector<int> hits(truth.openings.size(), 0);
-  for (const json& lid : lids) {
-    if (lid.at("cause") != "open")
+  for (const json& hole : filled_holes) {
+    if (hole.at("cause") != "open")
       continue;
     std::vector<Vector3d> loop;
-    for (const json& index : lid.at("loops").at(0))
+    for (const json& index : hole.at("loops").at(0))
       loop.emplace_back(points.col(index.get<Eigen::Index>()));
     const Opening found = measured(loop);
     bool is_one = false;
@@ -144,9 +144,9 @@ void checkOpenings(const json& lids, const Truth& truth, const Positions& points
       is_one = true;
       ++hits[i];
       // The points at the rim are up to a spacing off it.
-      if (std::abs(std::sqrt(4.0 * lid.at("area").get<double>() / test::kPi) - opening.diameter()) >
-          2.0 * spacing + 0.02 * opening.diameter())
-        complaints.push_back("an area of " + lid.at("area").dump() + " instead of " +
+      if (std::abs(std::sqrt(4.0 * hole.at("area").get<double>() / test::kPi) -
+                   opening.diameter()) > 2.0 * spacing + 0.02 * opening.diameter())
+        complaints.push_back("an area of " + hole.at("area").dump() + " instead of " +
                              std::to_string(opening.area));
     }
     if (!is_one)
@@ -174,7 +174,7 @@ void checkReport(const json& report, const Truth& truth, const Positions& points
     complaints.push_back("genus " + genus.dump() + " instead of " + std::to_string(truth.handles));
   if (diagnosis.at("bridges").size() + 1 != truth.parts)
     complaints.push_back(std::to_string(diagnosis.at("bridges").size()) + " bridges");
-  checkOpenings(diagnosis.at("lids"), truth, points, spacing, complaints);
+  checkOpenings(diagnosis.at("filled_holes"), truth, points, spacing, complaints);
   const bool warns = !report.at("warnings").empty();
   const bool is_closed = truth.kind == "closed genus 0";
   if (!is_closed && is_wide && !warns)
