@@ -9,7 +9,7 @@ from .programs import ITERATIVE, PAPER, Failure, in_turn, median_seconds, stage_
 from .report import Figure, Section, Table
 
 WEIGHTS = ("uniform", "inverse", "adaptive")
-RAW = ("-optimization", "none", "-retries", "0")
+RAW = ("-optimization", "none")
 CONVERGED = ("-tolerance", "1e-12", *RAW)
 PAPER_SECONDS = {"tweety": 125, "max": 424, "igea": 843}
 

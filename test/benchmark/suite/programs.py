@@ -9,7 +9,7 @@ import subprocess
 import time
 
 # The paper's own method, with all of its iterations.
-ITERATIVE = ("-graph", "knn", "-embedding", "iterative", "-optimization", "none", "-retries", "0",
+ITERATIVE = ("-graph", "knn", "-embedding", "iterative", "-optimization", "none",
              "-stagnation_window", "0", "-tolerance", "0")  # fmt: skip
 PAPER = (*ITERATIVE, "-triangulation", "qhull")
 
