@@ -35,7 +35,10 @@ struct GraphOptions {
   StarAgreement agreement = StarAgreement::Both;  ///< of LocalDelaunay: of the stars of two points
 };
 
-/// The nearest neighbours to search for at first: GraphOptions::k or its default. \return 3 and up
+/// The nearest neighbours to search for at first.
+///
+/// \param options of the graph.
+/// \return GraphOptions::k or its default; 3 and up.
 int neighborsToSearch(const GraphOptions& options);
 
 /// An edge that joins two parts of a graph that was in pieces.

@@ -33,13 +33,15 @@ struct OptionRow {
   /// Options and the values that they must have for this one to have an effect.
   std::vector<std::pair<std::string, std::string>> used_with;
 
-  std::function<OptionValue(const Options&)> get;  ///< the value; unset or one of its kind
-  /// Sets a value that is in range. An integer will do for a number.
+  std::function<OptionValue(const Options&)> get;  ///< the value
+  /// Sets a value that is in range; an integer is a number, too.
   std::function<void(Options&, const OptionValue&)> set;
 };
 
 /// All options that have a name, in the order of the stages: what tools, the Python module, the ROS
 /// nodes and the reference page list. A new option is one more row.
+///
+/// \return the rows; the same object in each call.
 const std::vector<OptionRow>& optionTable();
 
 /// The row of an option.

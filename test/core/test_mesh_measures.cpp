@@ -246,11 +246,11 @@ TEST(MeshMeasures, SameForAnyNumberOfThreadsAndAsTheFunctionsForOneMeasure) {
   const Positions points = test::spiralSphere(30000);  // enough triangles for several threads
   const Triangles triangles =
       triangulateSphere(points, {TriangulationMethod::Incremental}).triangles;
-  const MeshMeasures one = measureMesh(points, triangles, {1});
+  const MeshMeasures one = measureMesh(points, triangles, 1);
   EXPECT_EQ(one.volume, signedVolume(points, triangles));
   EXPECT_EQ(one.area, surfaceArea(points, triangles));
   for (const int threads : {2, 3}) {
-    const MeshMeasures several = measureMesh(points, triangles, {threads});
+    const MeshMeasures several = measureMesh(points, triangles, threads);
     EXPECT_EQ(several.volume, one.volume);
     EXPECT_EQ(several.area, one.area);
     EXPECT_EQ(several.mean_edge_length, one.mean_edge_length);
@@ -260,8 +260,8 @@ TEST(MeshMeasures, SameForAnyNumberOfThreadsAndAsTheFunctionsForOneMeasure) {
 }
 
 TEST(MeshMeasures, ThreadsOutOfRangeAreRefused) {
-  EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), {-1}), InvalidInput);
-  EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), {1025}), InvalidInput);
+  EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), -1), InvalidInput);
+  EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), 1025), InvalidInput);
 }
 
 TEST(MeshMeasures, IndexOutOfRangeIsRefused) {

@@ -140,8 +140,8 @@ TEST(MeshTopology, IndexOutOfRangeIsInvalidInput) {
 }
 
 TEST(MeshTopology, ThreadsOutOfRangeAreInvalidInput) {
-  EXPECT_THROW(checkTopology(tetrahedron(), 4, {-1}), InvalidInput);
-  EXPECT_THROW(checkTopology(tetrahedron(), 4, {1025}), InvalidInput);
+  EXPECT_THROW(checkTopology(tetrahedron(), 4, -1), InvalidInput);
+  EXPECT_THROW(checkTopology(tetrahedron(), 4, 1025), InvalidInput);
 }
 
 void expectSameTopology(const MeshTopology& topology, const MeshTopology& expected) {
@@ -206,15 +206,15 @@ TEST(MeshTopology, SameForAnyNumberOfThreads) {
   std::iota(order.begin(), order.end(), Index{0});
   std::shuffle(order.begin(), order.end(), random);
   triangles = triangles.unaryExpr([&](Index v) { return order[static_cast<std::size_t>(v)]; });
-  const MeshTopology sound = checkTopology(triangles, order.size(), {3});
+  const MeshTopology sound = checkTopology(triangles, order.size(), 3);
   EXPECT_EQ(sound.genus, 1);
   for (int change = 0; change < 2000; ++change)
     triangles.data()[random() % static_cast<unsigned>(triangles.size())] =
         static_cast<Index>(random() % order.size());
-  const MeshTopology one = checkTopology(triangles, order.size(), {1});
+  const MeshTopology one = checkTopology(triangles, order.size(), 1);
   EXPECT_GT(one.faults.boundary_edges.size(), 1000U);
   for (const int threads : {2, 3, 8})
-    expectSameTopology(checkTopology(triangles, order.size(), {threads}), one);
+    expectSameTopology(checkTopology(triangles, order.size(), threads), one);
 }
 
 TEST(MeshTopology, NoTrianglesMayBeTurned) {
