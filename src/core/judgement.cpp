@@ -17,16 +17,16 @@ SurfaceDiagnosis diagnose(const Positions& points, const Candidate& mesh,
 }
 
 Result judge(const Positions& points, BestOfRuns best, const Options& options) {
-  const Report report = reportOf(options, "quality");
+  const FractionReport report = reportOf(options, "quality");
   Candidate& mesh = best.mesh;
   Result result;
   result.diagnosis = diagnose(points, mesh, best.graph(), options);
-  tell(report, 0.5);
+  reportFraction(report, 0.5);
   result.measures = measureMesh(points, mesh.triangles(), options.threads);
-  tell(report, 0.6);
+  reportFraction(report, 0.6);
   result.topology =
       checkTopology(mesh.triangles(), static_cast<std::size_t>(points.cols()), options.threads);
-  tell(report, 0.8);
+  reportFraction(report, 0.8);
   result.self_intersections = mesh.isSmoothed()
                                   ? findSelfIntersections(points, mesh.triangles(), options)
                                   : std::move(mesh.optimization.self_intersections);

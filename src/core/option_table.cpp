@@ -100,7 +100,7 @@ OptionRow usedWith(std::vector<std::pair<std::string, std::string>> conditions, 
   return row;
 }
 
-std::vector<OptionRow> makeTable() {
+std::vector<OptionRow> graphRows() {
   return {
       choice<GraphMethod>(
           "graph", "graph.method", "how points become neighbours, in the paper knn", Everybody,
@@ -109,6 +109,11 @@ std::vector<OptionRow> makeTable() {
       number(
           "k", "graph.k", "nearest neighbours of each point, unset: 25 for knn, 12 for delaunay",
           Everybody, 3, kMaxInt, [](Options & o) -> auto& { return o.graph.k; }),
+  };
+}
+
+std::vector<OptionRow> embeddingRows() {
+  return {
       choice<EmbeddingMethod>(
           "embedding", "embedding.method", "how the graph is embedded, in the paper iterative",
           Everybody,
@@ -152,6 +157,11 @@ std::vector<OptionRow> makeTable() {
       number(
           "history_frames", "embedding.history.frames", "maximum number of states of these paths",
           Expert, 2, 10000, [](Options & o) -> auto& { return o.embedding.history.frames; }),
+  };
+}
+
+std::vector<OptionRow> meshRows() {
+  return {
       choice<TriangulationMethod>(
           "triangulation", "triangulation.method",
           "how the sphere is triangulated, in the paper qhull", Everybody,
@@ -168,6 +178,11 @@ std::vector<OptionRow> makeTable() {
       number(
           "smoothing", "smoothing.steps", "steps of smoothing of the points, 0: none", Everybody, 0,
           10000, [](Options & o) -> auto& { return o.smoothing.steps; }),
+  };
+}
+
+std::vector<OptionRow> runRows() {
+  return {
       usedWith({{"optimization", "full"}},
                number(
                    "retries", "retries",
@@ -180,6 +195,13 @@ std::vector<OptionRow> makeTable() {
           "threads", "threads", "threads, 0: as many as there are processors", Everybody, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),
   };
+}
+
+std::vector<OptionRow> makeTable() {
+  std::vector<OptionRow> table;
+  for (const auto& rows : {graphRows(), embeddingRows(), meshRows(), runRows()})
+    table.insert(table.end(), rows.begin(), rows.end());
+  return table;
 }
 
 [[noreturn]] void refuse(const OptionRow& row, const std::string& what) {

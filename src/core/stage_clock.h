@@ -33,12 +33,12 @@ public:
   template <typename Work>
   auto time(const char* stage, const Work& work) {
     stage_ = stage;
-    tell(reportOf(options_, stage), 0.0);
+    reportFraction(reportOf(options_, stage), 0.0);
     const auto begin = std::chrono::steady_clock::now();
     auto outcome = work();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     add(stage, seconds.count());
-    tell(reportOf(options_, stage), 1.0);
+    reportFraction(reportOf(options_, stage), 1.0);
     return outcome;
   }
 

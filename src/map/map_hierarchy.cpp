@@ -293,7 +293,7 @@ public:
     keepMesh();
   }
 
-  MapHierarchy run(const Report& report) {
+  MapHierarchy run(const FractionReport& report) {
     const auto n = static_cast<double>(alive_.size());
     Index most_neighbors = kMaxCoarseNeighbors;
     while (alive_.size() > 4) {
@@ -309,7 +309,7 @@ public:
       const double ratio = kept > 1000.0 ? 0.5 : 0.8;
       if (static_cast<double>(alive_.size()) <= ratio * kept || alive_.size() == 4)
         keepMesh();
-      tell(report, 1.0 - static_cast<double>(alive_.size()) / n);
+      reportFraction(report, 1.0 - static_cast<double>(alive_.size()) / n);
     }
     number();
     return std::move(hierarchy_);
@@ -496,7 +496,7 @@ private:
 }  // namespace
 
 MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
-                               const Report& report) {
+                               const FractionReport& report) {
   const auto n = static_cast<std::size_t>(points.cols());
   const int most = threadCount(threads, n, kParallelThreshold);
   // Squares of lengths are in the range of double, whatever the unit.

@@ -43,6 +43,6 @@ struct MapHierarchy {
 ///
 /// \param triangles a closed, manifold, consistently oriented mesh of genus 0 in one piece.
 MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
-                               const Report& report = {});
+                               const FractionReport& report = {});
 
 }  // namespace spherical_param::internal

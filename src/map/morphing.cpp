@@ -290,8 +290,8 @@ std::vector<Eigen::Vector3d> honouredPairs(const PairChoice& choice,
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
                           const MorphOptions& options) {
   checkOptions(options);
-  const internal::Report report = internal::reportOf(options, "morph");
-  internal::tell(report, 0.0);
+  const internal::FractionReport report = internal::reportOf(options, "morph");
+  internal::reportFraction(report, 0.0);
   MorphResult morph;
   const PairChoice choice = choosePairs(first, second, options.pairs, morph.impossible);
 
@@ -324,12 +324,12 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
 
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);
-    internal::tell(report, 0.0);
+    internal::reportFraction(report, 0.0);
     internal::SphereOverlay overlay = internal::overlaySpheres(
         first.sphere(), first.triangles(), sphere, second.triangles(), partner,
         internal::threadCount(options.threads, static_cast<std::size_t>(sphere.cols()),
                               internal::kParallelThreshold));
-    internal::tell(report, 0.0);
+    internal::reportFraction(report, 0.0);
     morph.first_places = std::move(overlay.first);
     morph.second_places = std::move(overlay.second);
     morph.first = positionsAt(first, morph.first_places, options.threads);
@@ -341,11 +341,11 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     morph.triangles = std::move(grid.triangles);
     morph.sphere = std::move(grid.directions);
     sampleBoth(first, second, sphere, morph);
-    internal::tell(report, 0.0);
+    internal::reportFraction(report, 0.0);
     morph.first = positionsAt(first, morph.first_places, options.threads);
     morph.second = positionsAt(second, morph.second_places, options.threads);
   }
-  internal::tell(report, 1.0);
+  internal::reportFraction(report, 1.0);
   return morph;
 }
 

@@ -384,13 +384,14 @@ double alignmentError(const SphereSurface& first, const SphereSurface& second,
 }
 
 Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& second,
-                               const DirectionPairs& pairs, int threads, const Report& report) {
+                               const DirectionPairs& pairs, int threads,
+                               const FractionReport& report) {
   const UnitSurface unit_first(first);
   const UnitSurface unit_second(second);
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   const std::vector<RankedRotation> candidates =
       rankRotations(unit_first, unit_second, pairs, threads);
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
 
   const std::vector<Eigen::Matrix3d> starts = chooseStarts(candidates);
   std::vector<std::pair<double, Eigen::Matrix3d>> ends(starts.size());
@@ -400,7 +401,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
     forEachTask(starts.size(), used,
                 [&](std::size_t, std::size_t i) { ends[i] = medium.descend(starts[i], pairs, 1); });
   }
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   std::stable_sort(ends.begin(), ends.end(),
                    [](const auto& one, const auto& other) { return one.first < other.first; });
 
@@ -415,11 +416,11 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
     const auto improved = fine.descend(end.second, pairs, threads);
     if (tried.size() == 1 || improved.first < best.first)
       best = improved;
-    tell(report, static_cast<double>(tried.size()) / kFinalists);
+    reportFraction(report, static_cast<double>(tried.size()) / kFinalists);
     if (tried.size() == kFinalists)
       break;
   }
-  tell(report, 1.0);
+  reportFraction(report, 1.0);
   return best.second;
 }
 

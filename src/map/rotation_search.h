@@ -25,6 +25,6 @@ double alignmentError(const SphereSurface& first, const SphereSurface& second,
 Eigen::Matrix3d
 searchRotation(const SphereSurface& first, const SphereSurface& second,
                const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& pairs, int threads,
-               const Report& report);
+               const FractionReport& report);
 
 }  // namespace spherical_param::internal

@@ -220,7 +220,7 @@ public:
     mild_ = {1.0 - mild_area, 0.0, mild_area, area_of_mass};
   }
 
-  Positions run(std::vector<SphereMapLevel>& levels, const internal::Report& report) {
+  Positions run(std::vector<SphereMapLevel>& levels, const internal::FractionReport& report) {
     placeTetrahedron(hierarchy_.meshes.back(), sphere_);
     std::size_t batch = 0;
     for (std::size_t l = hierarchy_.meshes.size(); l-- > 0;) {
@@ -264,19 +264,19 @@ private:
                          " vertices; remesh the surface, its triangles are too thin");
   }
 
-  SphereMapLevel relax(const MapMesh& mesh, const internal::Report& report) {
+  SphereMapLevel relax(const MapMesh& mesh, const internal::FractionReport& report) {
     const MapRows rows = internal::makeMapRows(hierarchy_.points, mesh.triangles, mesh.masses,
                                                mesh.vertex_count, options_.threads);
     SphereMapLevel level;
     level.vertices = static_cast<std::size_t>(mesh.vertex_count);
     for (; level.sweeps < std::min(kMildSweeps, options_.sweeps); ++level.sweeps) {
-      internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      internal::reportFraction(report, static_cast<double>(level.sweeps) / options_.sweeps);
       internal::sweepMap(sphere_, rows, mild_, options_.threads);
     }
     double value = internal::mapEnergy(sphere_, rows, final_, options_.threads);
     bool goes_on = true;
     for (; goes_on && level.sweeps < options_.sweeps; ++level.sweeps) {
-      internal::tell(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      internal::reportFraction(report, static_cast<double>(level.sweeps) / options_.sweeps);
       const double gain = internal::sweepMap(sphere_, rows, final_, options_.threads);
       value -= gain;
       goes_on = gain > kMinGain * value;
@@ -302,8 +302,8 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
                            const Positions& start, const SphereMapOptions& options) {
   checkOptions(options);
   checkMesh(points, triangles, start, options.threads);
-  const internal::Report report = internal::reportOf(options, "map");
-  internal::tell(report, 0.0);
+  const internal::FractionReport report = internal::reportOf(options, "map");
+  internal::reportFraction(report, 0.0);
   const MapHierarchy hierarchy =
       internal::buildMapHierarchy(points, triangles, options.threads, report);
   SphereMap map;
@@ -313,7 +313,7 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
     sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));
   const Positions unit_start = start.colwise().normalized();
   map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
-  internal::tell(report, 0.0);
+  internal::reportFraction(report, 0.0);
   const Eigen::Matrix3d rotation = rotationTo(unit_start, sphere, points, triangles);
   map.sphere = (rotation * sphere).colwise().normalized();
   map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);
@@ -322,7 +322,7 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
     map.sphere = sphere;
     map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);
   }
-  internal::tell(report, 1.0);
+  internal::reportFraction(report, 1.0);
   return map;
 }
 

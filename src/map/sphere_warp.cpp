@@ -410,7 +410,7 @@ std::pair<double, std::size_t> steepestOf(const Field& field, const Positions& p
 class LandmarkMotion {
 public:
   LandmarkMotion(const Positions& sphere, const Triangles& triangles,
-                 const std::vector<Landmark>& landmarks, int threads, const Report& report)
+                 const std::vector<Landmark>& landmarks, int threads, const FractionReport& report)
       : sphere_(sphere), triangles_(triangles), landmarks_(landmarks), threads_(threads),
         report_(report), spread_(spreadDirections(kSpread)),
         is_fixed_(static_cast<std::size_t>(sphere.cols()), 0),
@@ -428,7 +428,7 @@ public:
         break;
       giveUp(*stuck, "no motion of the sphere was found that takes it to its place without a fold");
     }
-    tell(report_, 1.0);
+    reportFraction(report_, 1.0);
     return std::move(warp_);
   }
 
@@ -518,7 +518,7 @@ private:
       step *= kStepGrowth;
       // A motion that begins again does not report less than before.
       reported_ = std::max(reported_, 0.99 * t);
-      tell(report_, reported_);
+      reportFraction(report_, reported_);
     }
     return std::nullopt;
   }
@@ -575,7 +575,7 @@ private:
   const Triangles& triangles_;
   const std::vector<Landmark>& landmarks_;
   int threads_;
-  const Report& report_;
+  const FractionReport& report_;
   Positions spread_;
   std::vector<char> is_fixed_;
   Untangler untangler_;
@@ -605,7 +605,7 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
                          const std::vector<Landmark>& landmarks, int threads,
-                         const Report& report) {
+                         const FractionReport& report) {
   return LandmarkMotion(sphere, triangles, landmarks, threads, report).run();
 }
 

@@ -41,6 +41,7 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 /// \param landmarks different vertices, different targets.
 /// The same, bit by bit, for any number of threads.
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,
-                         const std::vector<Landmark>& landmarks, int threads, const Report& report);
+                         const std::vector<Landmark>& landmarks, int threads,
+                         const FractionReport& report);
 
 }  // namespace spherical_param::internal

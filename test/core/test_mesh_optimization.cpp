@@ -210,7 +210,7 @@ std::vector<Case> roughCases() {
 }
 
 /// Ends work that reports more often.
-internal::Report reportUpTo(int most) {
+internal::FractionReport reportUpTo(int most) {
   return [most, calls = 0](double) mutable {
     if (++calls > most)
       throw std::runtime_error("too many reports: it may go on forever");

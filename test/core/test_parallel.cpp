@@ -16,7 +16,7 @@ namespace {
 using Block = std::array<std::size_t, 3>;  ///< number, begin, end
 
 /// The blocks that the work is called for, by their numbers.
-std::vector<Block> blocksOf(std::size_t count, int threads, const Report& report) {
+std::vector<Block> blocksOf(std::size_t count, int threads, const FractionReport& report) {
   std::vector<Block> blocks((count + kBlockSize - 1) / kBlockSize);
   forEachBlock(count, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     blocks[block] = {block, begin, end};

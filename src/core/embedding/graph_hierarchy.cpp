@@ -56,10 +56,10 @@ std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int th
 /// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
 /// the same set whatever the order and the threads.
 std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
-                                  const Report& report) {
+                                  const FractionReport& report) {
   const std::size_t n = graph.size();
   const std::vector<double> keys = scrambledKeys(graph, seed, threads);
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   enum State : unsigned char { Open, Out, Taken };
   std::vector<std::atomic<unsigned char>> states(n);
   const auto judge = [&](std::size_t i) {
@@ -98,7 +98,7 @@ std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int th
                   nodes.end());
       waits = waits || !nodes.empty();
     }
-    tell(report, 0.0);
+    reportFraction(report, 0.0);
   }
   std::vector<Index> taken;
   for (std::size_t i = 0; i < n; ++i)
@@ -116,7 +116,7 @@ struct Aggregates {
 /// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
 /// and then all nodes have been looked at, only few change, and those next to them.
 Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads,
-                         const Report& report) {
+                         const FractionReport& report) {
   const std::size_t n = graph.size();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Aggregates near{std::vector<Index>(n, -1), std::vector<double>(n, infinity)};
@@ -133,7 +133,7 @@ Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, in
       }
     }
   }
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   const auto is_nearer = [](double distance, Index seed, double than, Index other) {
     return distance < than || (distance == than && seed < other);
   };
@@ -192,9 +192,9 @@ std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
 
 /// The graph of the aggregates that touch.
 Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
-                  const Report& report) {
+                  const FractionReport& report) {
   const Members members(cells.of_node, count);
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Scratch {
     std::vector<double> shortest;
@@ -260,7 +260,7 @@ void addPath(std::vector<std::pair<Index, double>>& row, Index seed, double leng
 Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& graph,
                                                                   const Aggregates& cells,
                                                                   std::size_t count, int threads,
-                                                                  const Report& report) {
+                                                                  const FractionReport& report) {
   const std::size_t n = graph.size();
   std::vector<EntryBlock> blocks((n + kBlockSize - 1) / kBlockSize);
   forEachBlock(n, threads, report, [&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -307,7 +307,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
 }
 
 HierarchyLevel coarsened(const Graph& graph, std::uint32_t seed, int requested_threads,
-                         const Report& report) {
+                         const FractionReport& report) {
   const int threads = threadCount(requested_threads, graph.size(), kShortPassThreshold);
   HierarchyLevel level;
   level.seeds = independentSet(graph, seed, threads, report);
@@ -327,7 +327,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
   const auto is_dense = [](const Graph& level) {
     return level.neighbors.size() > static_cast<std::size_t>(kPlanarDegree) * level.size();
   };
-  const Report report = reportOf(execution, "embedding");
+  const FractionReport report = reportOf(execution, "embedding");
   while (finest->size() > static_cast<std::size_t>(coarsest_size) || is_dense(*finest)) {
     HierarchyLevel level = coarsened(*finest, seed, execution.threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere.

@@ -121,10 +121,10 @@ Embedding embedIteratively(const Graph& graph, const Positions& start,
   const EdgeWeightLaw weights(options.weights, options.exponent);
   Iteration iteration(graph, projectFromCentroid(start), options, weights, execution.threads);
   report.residuals.reserve(static_cast<std::size_t>(std::min(options.max_iterations, 100000)) + 1);
-  const Report report_progress = reportOf(execution, "embedding");
+  const FractionReport report_progress = reportOf(execution, "embedding");
   for (;;) {
     report.residual = iteration.evaluate();
-    tell(report_progress, report.iterations / (options.max_iterations + 1.0));
+    reportFraction(report_progress, report.iterations / (options.max_iterations + 1.0));
     report.residuals.push_back(report.residual);
     if (observer)
       observer({0, graph.size(), EmbeddingStep::Iteration, report.iterations, report.residual,

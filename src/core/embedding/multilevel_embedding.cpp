@@ -130,7 +130,7 @@ private:
     Start start;
     MultigridPreconditioner preconditioner = preconditionerOf(l);
     const auto progress = [&](int iteration, double residual) {
-      tell(report_, 0.0);
+      reportFraction(report_, 0.0);
       observe(l, EmbeddingStep::Newton, iteration, residual, start.u);
     };
     solveStart(l, best_center_, preconditioner, progress, start);
@@ -203,12 +203,12 @@ private:
       std::vector<Start> starts(std::min(threads, count - first));
       for (Start& start : starts)
         start.report = levels()[l];
-      tell(report_, static_cast<double>(first) / static_cast<double>(count));
+      reportFraction(report_, static_cast<double>(first) / static_cast<double>(count));
       std::atomic<bool> has_failed{false};
       forEachTask(starts.size(), static_cast<int>(threads), [&](std::size_t thread, std::size_t i) {
         const auto progress = [&](int, double) {
           if (thread == 0)
-            tell(report_, static_cast<double>(first) / static_cast<double>(count));
+            reportFraction(report_, static_cast<double>(first) / static_cast<double>(count));
           else if (has_failed.load(std::memory_order_relaxed))
             throw Cancelled("embed: another start failed");
         };
@@ -261,7 +261,7 @@ private:
 
   /// Damped Jacobi sweeps: `damping` times the tangential Laplacian, all nodes at once.
   ///
-  void smooth(std::size_t l, const EdgeWeightLaw& weights, int sweeps, const Report& swept,
+  void smooth(std::size_t l, const EdgeWeightLaw& weights, int sweeps, const FractionReport& swept,
               Positions& u) const {
     const Graph& graph = graphOf(l);
     const Rows rows =
@@ -272,7 +272,7 @@ private:
     PaddedPositions next(4, u.cols());
     next.row(3).setZero();
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-      tell(swept, static_cast<double>(sweep) / sweeps);
+      reportFraction(swept, static_cast<double>(sweep) / sweeps);
       visitRule(rows, [&](auto rule) { sweepOnce<decltype(rule)::value>(rows, current, next); });
       std::swap(current, next);
     }
@@ -324,7 +324,7 @@ private:
   NewtonReport solve(std::size_t l, const EmbeddingEnergy& energy, std::optional<double> tolerance,
                      Positions& u) {
     const auto progress = [&](int iteration, double residual) {
-      tell(report_, 0.0);
+      reportFraction(report_, 0.0);
       observe(l, EmbeddingStep::Newton, iteration, residual, u);
     };
     MultigridPreconditioner preconditioner = preconditionerOf(l);
@@ -373,7 +373,7 @@ private:
   int threads_;
   EdgeWeightLaw weights_;
   EdgeWeightLaw adaptive_weights_;  ///< of the starts, whatever was chosen
-  Report report_;
+  FractionReport report_;
   Embedding result_;
   Index best_center_ = 0;  ///< of the start that solveStarts() kept last
 };

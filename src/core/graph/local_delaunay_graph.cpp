@@ -324,7 +324,7 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, 
 /// are no longer than the one before change nothing.
 void findStars(const Positions& points, const std::vector<Index>& subset,
                const NeighborLists& lists, int threads, std::vector<Scratch>& scratch,
-               const internal::Report& report, Stars& stars) {
+               const internal::FractionReport& report, Stars& stars) {
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
   std::size_t longest = 0;
@@ -335,7 +335,7 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
     memory.cell.reserve(longest);
   }
   const std::size_t others = stars.size() - 1;
-  internal::tell(report, 0.0);
+  internal::reportFraction(report, 0.0);
   internal::forEachItem(lists.size(), threads, report, [&](std::size_t thread, std::size_t q) {
     const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
     const auto i = static_cast<std::size_t>(node);
@@ -354,7 +354,8 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
 
 /// Asks for more neighbours of the points that want them. Returns how many points these were.
 Index searchForMore(const Positions& points, const NeighborSearch& search, int threads,
-                    std::vector<Scratch>& scratch, const internal::Report& report, Stars& stars) {
+                    std::vector<Scratch>& scratch, const internal::FractionReport& report,
+                    Stars& stars) {
   const int most =
       static_cast<int>(std::min(static_cast<std::size_t>(kMaxCandidates), stars.size() - 1));
   int count = 0;
@@ -376,14 +377,14 @@ Index searchForMore(const Positions& points, const NeighborSearch& search, int t
     internal::checkIndices("buildNeighborGraph: the answer of the search", lists, open.size(),
                            stars.size());
     findStars(points, open, lists, threads, scratch, {}, stars);
-    internal::tell(report, static_cast<double>(count) / most);
+    internal::reportFraction(report, static_cast<double>(count) / most);
   }
   return searched;
 }
 
 /// The graph of the pairs whose stars agree.
 Graph agreedEdges(const Positions& points, const Stars& stars, int threads,
-                  const internal::Report& report) {
+                  const internal::FractionReport& report) {
   const std::size_t n = stars.size();
   Graph graph;
   graph.offsets.assign(n + 1, 0);
@@ -514,12 +515,12 @@ std::vector<Bridge> joinParts(const Positions& points, const Stars& stars,
 }
 
 /// Joins components, and ties biconnected components together.
-void connect(const Positions& points, const Stars& stars, const internal::Report& report,
+void connect(const Positions& points, const Stars& stars, const internal::FractionReport& report,
              NeighborGraph& result) {
   internal::UnionFind parts = internal::connectedComponents(result.graph);
   const std::vector<Index> part = internal::representatives(parts, stars.size());
   result.report.components = internal::countSets(part);
-  internal::tell(report, 0.0);
+  internal::reportFraction(report, 0.0);
   if (result.report.components > 1) {
     result.report.bridges = joinParts(points, stars, part, parts);
     result.graph = internal::withEdges(result.graph, result.report.bridges);
@@ -527,7 +528,7 @@ void connect(const Positions& points, const Stars& stars, const internal::Report
   for (int round = 0; round < kDanglingRounds; ++round) {
     const std::vector<Bridge> bridges =
         internal::danglingBridges(points, result.graph, kBridgesPerJoint - 1);
-    internal::tell(report, static_cast<double>(round) / kDanglingRounds);
+    internal::reportFraction(report, static_cast<double>(round) / kDanglingRounds);
     if (bridges.empty())
       break;
     result.graph = internal::withEdges(result.graph, bridges);
@@ -548,7 +549,7 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   if (n == 0)
     return result;
 
-  const Report report = reportOf(execution, "graph");
+  const FractionReport report = reportOf(execution, "graph");
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
   Stars stars(n);
   findStars(points, {}, lists, threads, scratch, report, stars);

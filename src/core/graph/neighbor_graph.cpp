@@ -29,7 +29,7 @@ NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& l
   internal::checkThreads(execution.threads);
   internal::checkNeighborLists("buildNeighborGraph", lists,
                                static_cast<std::size_t>(points.cols()));
-  internal::tell(internal::reportOf(execution, "graph"), 0.0);
+  internal::reportFraction(internal::reportOf(execution, "graph"), 0.0);
   NeighborGraph result =
       options.method == GraphMethod::NearestNeighbors
           ? internal::buildNearestNeighborGraph(points, lists, neighborsToSearch(options))

@@ -184,10 +184,10 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   Scoring scoring(points, lists, options, execution);
   std::vector<char> is_outlier(n, 0);
   std::size_t left = n;
-  const internal::Report report = internal::reportOf(execution, "outliers");
+  const internal::FractionReport report = internal::reportOf(execution, "outliers");
   bool found = left > 0;
   while (found) {
-    internal::tell(report, 0.0);
+    internal::reportFraction(report, 0.0);
     scoring.compute(is_outlier);
     ++result.rounds;
     const std::vector<double>& scores = scoring.scores();
@@ -217,7 +217,7 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
     // With sigma and least_score near 0 there is no end to it before all points are outliers.
     found = found && left > kMinNeighbors;
   }
-  internal::tell(report, 1.0);
+  internal::reportFraction(report, 1.0);
   result.scores = scoring.scores();
   for (std::size_t i = 0; i < n; ++i)
     if (is_outlier[i] != 0)

@@ -106,7 +106,7 @@ void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& w
 /// The same in a few dozen parallel regions, if there is a report to make
 /// after each: the blocks and their numbers are those of one region.
 template <typename Work>
-void forEachBlock(std::size_t count, int threads, const Report& report, const Work& work) {
+void forEachBlock(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   const std::size_t blocks = count / kMostReports / kBlockSize + 1;
   const std::size_t most = report ? std::max(kReportedItems, blocks * kBlockSize) : count;
   for (std::size_t first = 0; first < count; first += most) {
@@ -114,7 +114,7 @@ void forEachBlock(std::size_t count, int threads, const Report& report, const Wo
     forEachBlock(size, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
       work(first / kBlockSize + block, first + begin, first + end);
     });
-    tell(report, static_cast<double>(first + size) / static_cast<double>(count));
+    reportFraction(report, static_cast<double>(first + size) / static_cast<double>(count));
   }
 }
 
@@ -122,7 +122,7 @@ void forEachBlock(std::size_t count, int threads, const Report& report, const Wo
 ///
 /// \param report told of the fraction that is done, as by forEachBlock().
 template <typename Work>
-void forEachItem(std::size_t count, int threads, const Report& report, const Work& work) {
+void forEachItem(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
 #ifdef _OPENMP
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
@@ -162,7 +162,7 @@ void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& wo
 /// The sum of term(begin, end) over the blocks of [0, count), in their order.
 template <typename Value, typename Term>
 Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term& term,
-                  const Report& report = {}) {
+                  const FractionReport& report = {}) {
   std::vector<Value> sums((count + kBlockSize - 1) / kBlockSize, zero);
   forEachBlock(count, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     sums[block] = term(begin, end);

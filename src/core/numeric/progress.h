@@ -10,13 +10,13 @@ namespace spherical_param::internal {
 
 /// Receives the fraction of a loop that is done, in [0, 1], from the calling thread and outside of
 /// parallel regions. It may throw to end the work. May be empty.
-using Report = std::function<void(double)>;
+using FractionReport = std::function<void(double)>;
 
 /// The report of a stage: it passes the fraction to the progress callback and throws Cancelled if
 /// that returns false.
 ///
 /// \param execution must outlive the report.
-inline Report reportOf(const Execution& execution, const char* stage) {
+inline FractionReport reportOf(const Execution& execution, const char* stage) {
   if (!execution.progress)
     return {};
   return [&execution, stage](double fraction) {
@@ -25,7 +25,7 @@ inline Report reportOf(const Execution& execution, const char* stage) {
   };
 }
 
-inline void tell(const Report& report, double fraction) {
+inline void reportFraction(const FractionReport& report, double fraction) {
   if (report)
     report(fraction);
 }

@@ -53,9 +53,10 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
 
 /// The optimiser of a mesh, after checks of the input.
 MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangles,
-                               const Graph& graph, int threads, const internal::Report& report) {
+                               const Graph& graph, int threads,
+                               const internal::FractionReport& report) {
   checkInput(points, triangles, graph);
-  internal::tell(report, 0.0);
+  internal::reportFraction(report, 0.0);
   MeshOptimizer optimizer(points, triangles, graph, threads, report);
   if (!optimizer.mesh().isSphere(threads))
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
@@ -177,7 +178,7 @@ private:
   /// Reports the fraction of a round's items that are done.
   void reportItem(std::size_t item, std::size_t items, std::size_t between_reports) {
     if (item % between_reports == 0)
-      internal::tell(report_, static_cast<double>(item) / static_cast<double>(items));
+      internal::reportFraction(report_, static_cast<double>(item) / static_cast<double>(items));
   }
 
   void relocate(std::vector<Index> rough) {
@@ -349,7 +350,7 @@ private:
   const Graph& graph_;
   const OptimizationOptions& options_;
   int threads_;
-  internal::Report report_;
+  internal::FractionReport report_;
   const Positions* given_;
   const Positions* points_;  ///< given, or smoothed_
   Positions smoothed_;

@@ -33,7 +33,7 @@ double medianOf(std::vector<double>& values) {
 }  // namespace
 
 MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
-                             const Graph& graph, int threads, const Report& report)
+                             const Graph& graph, int threads, const FractionReport& report)
     : points_(&points), graph_(graph),
       threads_(
           threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
@@ -41,7 +41,7 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
       facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
       stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
       seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   double lengths = 0.0;
   for (const double length : graph_.lengths)
     lengths += length;
@@ -50,7 +50,7 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
   recomputeFacets(report);
 }
 
-void MeshOptimizer::recomputeFacets(const Report& report) {
+void MeshOptimizer::recomputeFacets(const FractionReport& report) {
   are_flips_settled_ = false;
   has_usual_angles_ = false;
   forEachBlock(facets_.size(), threads_, report,
@@ -175,7 +175,7 @@ bool MeshOptimizer::flip(Index t, int k, double gain) {
   return true;
 }
 
-std::size_t MeshOptimizer::flipQueued(const Report& report) {
+std::size_t MeshOptimizer::flipQueued(const FractionReport& report) {
   refused_.clear();
   std::size_t flips = 0;
   double share = 0.0;
@@ -240,7 +240,7 @@ void MeshOptimizer::unmark(std::uint8_t change) {
     marks &= static_cast<std::uint8_t>(~change);
 }
 
-std::size_t MeshOptimizer::flipAll(const Report& report) {
+std::size_t MeshOptimizer::flipAll(const FractionReport& report) {
   // The gain of a side depends on its two triangles and their neighbours alone.
   const bool are_most_settled = are_flips_settled_ && settled_terms_ == terms_;
   const auto is_due = [&](Index t) {
@@ -495,7 +495,7 @@ std::vector<Index> MeshOptimizer::spread(const std::vector<Index>& seeds, std::s
 
 template <typename Condition>
 std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& meets,
-                                         const Report& report) const {
+                                         const FractionReport& report) const {
   std::vector<std::vector<Index>> found((count + kBlockSize - 1) / kBlockSize);
   forEachBlock(count, threads_, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -569,7 +569,7 @@ bool MeshOptimizer::isRough(Index v, double cosine) const {
   return false;
 }
 
-std::vector<Index> MeshOptimizer::roughVertices(double cosine, const Report& report) const {
+std::vector<Index> MeshOptimizer::roughVertices(double cosine, const FractionReport& report) const {
   return filter(
       seen_vertices_.size(), [&](Index v) { return isRough(v, cosine); }, report);
 }
@@ -692,7 +692,7 @@ bool MeshOptimizer::isPlainFan(Index v) const {
   return (left_turns == sides || right_turns == sides) && passes == 2;
 }
 
-std::vector<std::uint8_t> MeshOptimizer::plainFans(const Report& report) const {
+std::vector<std::uint8_t> MeshOptimizer::plainFans(const FractionReport& report) const {
   std::vector<std::uint8_t> fans(seen_vertices_.size());
   forEachBlock(fans.size(), threads_, report, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
@@ -701,7 +701,7 @@ std::vector<std::uint8_t> MeshOptimizer::plainFans(const Report& report) const {
   return fans;
 }
 
-std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const Report& report) const {
+std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const FractionReport& report) const {
   const std::vector<std::uint8_t> fans = plainFans(report);
   return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_, report);
 }

@@ -21,7 +21,7 @@ public:
   /// All but the triangles and the report, which is told of the share of this that is done, must
   /// outlive this. Has no energy before it is told which.
   MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
-                int threads, const Report& report = {});
+                int threads, const FractionReport& report = {});
 
   const SphereMesh& mesh() const { return mesh_; }
 
@@ -47,7 +47,7 @@ public:
   ///
   /// \param report told of the share that is done: an estimate, for a flip may make others gain.
   /// What it throws leaves a sound mesh of which the energy is as it should be.
-  std::size_t flipAll(const Report& report = {});
+  std::size_t flipAll(const FractionReport& report = {});
 
   /// Takes a vertex out and puts it back where it costs least, among the triangles around its
   /// neighbours in mesh and graph; keeps that if the energy falls: returns whether it did.
@@ -73,16 +73,16 @@ public:
   /// is more than two edges away from a near neighbour in the graph.
   bool isRough(Index v, double cosine) const;
   /// All such vertices, ascending.
-  std::vector<Index> roughVertices(double cosine, const Report& report = {}) const;
+  std::vector<Index> roughVertices(double cosine, const FractionReport& report = {}) const;
 
   /// n entries: the median of the angles at a vertex's edges and those opposite to it [rad].
   std::vector<double> medianAngles() const;
 
   /// All pairs of triangles that intersect, by their places in the mesh; none may be free.
-  std::vector<std::array<Index, 2>> intersections(const Report& report = {}) const;
+  std::vector<std::array<Index, 2>> intersections(const FractionReport& report = {}) const;
   /// For each vertex, 1 if the triangles around it are evidently such that no two of them
   /// intersect: seen along an axis, they go around it once.
-  std::vector<std::uint8_t> plainFans(const Report& report = {}) const;
+  std::vector<std::uint8_t> plainFans(const FractionReport& report = {}) const;
   /// Pairs that intersect among the triangles around some vertices.
   std::size_t intersectionsAround(const std::vector<Index>& vertices);
 
@@ -115,11 +115,11 @@ private:
   /// Of the angles of medianAngles().
   void gatherCosines(Index v, std::vector<double>& cosines) const;
   void updateUsualAngles(double factor, double least);
-  void recomputeFacets(const Report& report = {});
+  void recomputeFacets(const FractionReport& report = {});
   /// The items of [0, count) that meet a condition, ascending.
   template <typename Condition>
   std::vector<Index> filter(std::size_t count, const Condition& meets,
-                            const Report& report = {}) const;
+                            const FractionReport& report = {}) const;
   double edge(Index v, Index w, const Facet& f, const Facet& g) const {
     return terms_.edge(v, w, points_->col(v), points_->col(w), f.normal, g.normal);
   }
@@ -132,7 +132,7 @@ private:
   void queueFlip(Index t, int k);
   /// Flips around some triangles until none gains.
   void flipAround(const std::vector<Index>& triangles);
-  std::size_t flipQueued(const Report& report = {});
+  std::size_t flipQueued(const FractionReport& report = {});
 
   /// What the energy rises by if a triangle is split, or no less than `ceiling` if that is so.
   double splitCost(Index t, Index v, double ceiling) const;

@@ -30,10 +30,10 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using internal::FractionReport;
 using internal::kUnitRoundoff;
 using internal::orientation2d;
 using internal::orientation3d;
-using internal::Report;
 using Pairs = std::vector<std::array<Index, 2>>;
 
 // They influence the time only, not the pairs that are found.
@@ -626,7 +626,7 @@ void sortBlock(const BlockCenters& centers, const Index* block, std::size_t coun
 ///
 /// \param subset triangles, ascending; at least one.
 std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads,
-                           const Report& report) {
+                           const FractionReport& report) {
   const double usual = usualSize(mesh, subset);
   // Most meshes come in blocks that are small, and of triangles of about one size: then it is
   // enough to sort within these.
@@ -672,7 +672,8 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
 class Tree {
 public:
   /// \param subset triangles, ascending; at least one. The mesh must outlive this.
-  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads, const Report& report);
+  Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
+       const FractionReport& report);
 
   /// Triangles of a bunch: those of a group of leaves.
   static constexpr std::size_t kBunch = kWidth * kWidth;
@@ -710,7 +711,8 @@ private:
   std::vector<std::vector<BoxGroup>> levels_;  ///< from the leaves to the root
 };
 
-Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads, const Report& report)
+Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
+           const FractionReport& report)
     : mesh_(mesh), order_(ordered(mesh, subset, threads, report)) {
   levels_.emplace_back((order_.size() + kWidth - 1) / kWidth);
   static_assert(internal::kBlockSize % kWidth == 0, "a group is in one block");
@@ -862,7 +864,7 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
 
 /// Runs find(i, pairs) for i in [0, count) and joins what it appends.
 template <typename Find>
-Pairs collect(std::size_t count, int threads, const Report& report, const Find& find) {
+Pairs collect(std::size_t count, int threads, const FractionReport& report, const Find& find) {
   std::vector<Pairs> parts((count + internal::kBlockSize - 1) / internal::kBlockSize);
   internal::forEachBlock(count, threads, report,
                          [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -875,7 +877,7 @@ Pairs collect(std::size_t count, int threads, const Report& report, const Find& 
   return pairs;
 }
 
-Pairs pairsWithin(const Tree& tree, int threads, const Report& report) {
+Pairs pairsWithin(const Tree& tree, int threads, const FractionReport& report) {
   return collect(tree.size(), threads, report, [&](std::size_t i, Pairs& pairs) {
     if (i % Tree::kBunch == 0)
       tree.findPairs(i / Tree::kBunch, pairs);
@@ -894,7 +896,7 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
 std::vector<std::array<Index, 2>>
 internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
                                 const std::vector<std::uint8_t>& fans, int requested_threads,
-                                const Report& report) {
+                                const FractionReport& report) {
   checkThreads(requested_threads);
   const Mesh mesh(points, triangles, checkedScale(points, triangles), fans);
   std::vector<Index> all(mesh.size());
@@ -931,7 +933,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
     return {};
   const int threads =
       internal::threadCount(execution.threads, mesh.size(), internal::kShortPassThreshold);
-  const Report report = internal::reportOf(execution, "intersections");
+  const FractionReport report = internal::reportOf(execution, "intersections");
   const Tree tree(mesh, subset, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);
   const Box bounds = tree.box();

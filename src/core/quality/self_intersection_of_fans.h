@@ -19,6 +19,7 @@ namespace spherical_param::internal {
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const std::vector<std::uint8_t>& fans,
-                                                        int threads, const Report& report = {});
+                                                        int threads,
+                                                        const FractionReport& report = {});
 
 }  // namespace spherical_param::internal

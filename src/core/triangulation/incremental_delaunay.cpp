@@ -356,7 +356,7 @@ struct Vertices {
   }
 };
 
-Vertices projectInOrder(const Positions& directions, const Report& report) {
+Vertices projectInOrder(const Positions& directions, const FractionReport& report) {
   const auto n = static_cast<Index>(directions.cols());
   // Any point would do as pole. The highest one, nearest to the axis, makes the axes of the plane
   // nearly those of space, and does not depend on the order of the points.
@@ -375,9 +375,9 @@ Vertices projectInOrder(const Positions& directions, const Report& report) {
   vertices.places.resize(static_cast<std::size_t>(n));
   std::vector<Index> at_pole;
   const StereographicProjection projection(directions.col(pole));
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   const std::vector<Index> order = insertionOrder(directions);
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   for (const Index i : order) {
     if (i == pole)
       continue;
@@ -435,9 +435,9 @@ std::vector<Index> ringThroughPole(const Vertices& vertices,
 
 }  // namespace
 
-SphereDelaunay incrementalDelaunay(const Positions& directions, const Report& report) {
+SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report) {
   Vertices vertices = projectInOrder(directions, report);
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   const auto n = static_cast<Index>(vertices.input.size());
   std::vector<Coincidence> coincidences;
   for (Index p = vertices.in_plane; p < n; ++p)
@@ -449,7 +449,7 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const Report& re
     triangulation.begin({{1, 2, 3}, {kPole, 3, 2}, {kPole, 1, 3}, {kPole, 2, 1}});
     for (Index p = 4; p < vertices.in_plane; ++p) {
       if (p % kReportedPoints == 0)
-        tell(report, static_cast<double>(p) / vertices.in_plane);
+        reportFraction(report, static_cast<double>(p) / vertices.in_plane);
       const Index v = triangulation.insert(p);
       if (v != p)
         coincidences.push_back({v, p});
@@ -465,7 +465,7 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const Report& re
     }
     triangulation.begin(twoSidedPolygon(ring));
   }
-  tell(report, 0.0);
+  reportFraction(report, 0.0);
   putBeside(std::move(coincidences), n, triangulation);
 
   result.triangles.resize(3, triangulation.size());

@@ -30,6 +30,6 @@ constexpr Index kMaxDelaunayPoints = Index{1} << 29;
 /// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= kMaxDelaunayPoints.
 /// \param report     told of the share that is done.
 /// Cost: O(n log n) expected, about 100 bytes a point.
-SphereDelaunay incrementalDelaunay(const Positions& directions, const Report& report = {});
+SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report = {});
 
 }  // namespace spherical_param::internal

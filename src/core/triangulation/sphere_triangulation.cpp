@@ -162,10 +162,11 @@ public:
     interior_ /= 3.0 * mesh_.size();
   }
 
-  void insert(const std::vector<Index>& points, const internal::Report& report) {
+  void insert(const std::vector<Index>& points, const internal::FractionReport& report) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (i % kReportedPoints == 0)
-        internal::tell(report, static_cast<double>(i) / static_cast<double>(points.size()));
+        internal::reportFraction(report,
+                                 static_cast<double>(i) / static_cast<double>(points.size()));
       const Index p = points[i];
       const auto parts = mesh_.split(locate(p), p);
       last_ = parts[0];
@@ -288,17 +289,17 @@ void checkInput(const Positions& directions) {
 }
 
 SphereTriangulation triangulateByQhull(const Positions& directions,
-                                       const internal::Report& report) {
+                                       const internal::FractionReport& report) {
   SphereTriangulation result;
   const auto n = static_cast<std::size_t>(directions.cols());
   const DistinctPoints distinct = findDistinctPoints(directions);
-  internal::tell(report, 0.0);
+  internal::reportFraction(report, 0.0);
   result.report.coincident = static_cast<Index>(n - distinct.input_of_vertex.size());
 
   std::optional<Triangles> hull;
   if (distinct.input_of_vertex.size() >= 4)
     hull = convexHull(directions);
-  internal::tell(report, 0.0);
+  internal::reportFraction(report, 0.0);
   result.report.hull_rejected = !hull.has_value();
   const Triangles start = hull ? std::move(*hull) : firstTetrahedron(directions);
 
@@ -344,7 +345,7 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
 }
 
 SphereTriangulation triangulateIncrementally(const Positions& directions,
-                                             const internal::Report& report) {
+                                             const internal::FractionReport& report) {
   if (directions.cols() > internal::kMaxDelaunayPoints)
     throw InvalidInput("triangulateSphere: " + std::to_string(directions.cols()) +
                        " points; TriangulationMethod::Incremental takes at most " +
@@ -366,7 +367,7 @@ SphereTriangulation triangulateSphere(const Positions& directions,
   internal::checkOptions(options);
   internal::checkThreads(execution.threads);
   checkInput(directions);
-  const internal::Report report = internal::reportOf(execution, "triangulation");
+  const internal::FractionReport report = internal::reportOf(execution, "triangulation");
   return options.method == TriangulationMethod::Qhull
              ? triangulateByQhull(directions, report)
              : triangulateIncrementally(directions, report);
