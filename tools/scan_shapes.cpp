@@ -839,7 +839,7 @@ struct Above {
   double height = 0.0;
 
   bool has(const Vec& p) const { return p.z >= height; }
-  /// Where the border lies between two points, as a share of their distance.
+  /// Where the border lies between two points, as a fraction of their distance.
   double crossing(const Vec& a, const Vec& b) const { return (height - a.z) / (b.z - a.z); }
   /// Moves a point near the border onto it.
   void put(Vec& p) const { p.z = height; }
@@ -937,7 +937,7 @@ Mesh meshSurface(const Surface& surface, double step, int sweeps) {
 // ---------------------------------------------------------------------------------------------
 // Sampling
 
-/// Points in the cells of a hashed grid. Cells that share a slot of the table are told apart by
+/// Points in the cells of a hashed grid. Cells that share a slot of the table are distinguished by
 /// the positions of their points.
 class PointGrid {
 public:

@@ -434,7 +434,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   if (settings.slides()) {
     console.begin("untangle");
     output.untangling = spherical_param::untangle(surface, output.mesh, settings.threads());
-    // What sliding leaves, other edges may mend; those of an image are given.
+    // Flips may remove what sliding leaves; the edges of an image are given.
     if (output.untangling->after > 0 && !settings.writes_image) {
       output.flipped_edges =
           spherical_param::removeIntersections(output.mesh, settings.threads()).flips;
@@ -472,12 +472,11 @@ std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud&
     warnings = warningsOf(mapped.cloud);
   }
   if (!output.self_intersections.empty()) {
-    warnings.push_back(
-        "The output intersects itself at " + counted(output.self_intersections.size(), "pair") +
-        " of triangles" +
-        (settings.reads_image || settings.series
-             ? "."
-             : ": more points (-points), or a smaller -area-weight, may mend that."));
+    warnings.push_back("The output intersects itself at " +
+                       counted(output.self_intersections.size(), "pair") + " of triangles" +
+                       (settings.reads_image || settings.series
+                            ? "."
+                            : ": more points (-points), or a smaller -area-weight, may help."));
   }
   return warnings;
 }

@@ -12,12 +12,12 @@ namespace spherical_param {
 
 /// Parameters of findOutliers().
 struct OutlierOptions {
-  /// Outliers are further off than the mean by so many standard deviations; [0, 1000].
+  /// Outliers are farther off than the mean by this number of standard deviations; [0, 1000].
   double sigma = 4.0;
   /// Nearest neighbours used of each list; lists that hold fewer are used whole. Range: 3 and up.
   int k = 16;
-  /// Nothing nearer to the surface of its neighbours than this is an outlier [share of their mean
-  /// distances]; >= 0. Points of a surface, even those at sharp corners, hardly reach 1.
+  /// Nothing nearer to the surface of its neighbours than this is an outlier [fraction of their
+  /// mean distances]; >= 0. Points of a surface, even those at sharp corners, hardly reach 1.
   double least_score = 1.0;
 };
 
@@ -54,7 +54,7 @@ struct Outliers {
 ///
 /// Why not plainly |p_i - c_i|: on a surface that is sampled unevenly, a point at the rim of a
 /// dense part is far from the centroid, but along the surface; and far or near depends on the
-/// sampling around. The neighbours' distances are what tells that, not those of the point itself,
+/// sampling around. The neighbours' distances show that, not those of the point itself,
 /// which are long at an outlier.
 ///
 /// \param points 3 x n, finite, distinct.

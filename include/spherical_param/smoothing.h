@@ -14,11 +14,12 @@ namespace spherical_param {
 /// of the surface of frequency k is multiplied by a gain.
 enum class SmoothingMethod {
   /// Laplacian smoothing (Zwicker and Gotsman 2004, section 4.2): a step moves each point by a
-  /// share lambda towards the mean of its neighbours. Gain (1 - lambda k)^steps. Shrinks.
+  /// fraction lambda towards the mean of its neighbours. Gain (1 - lambda k)^steps. Shrinks.
   Umbrella,
   /// The biharmonic flow dx/dt = -L^2 x (the higher order of Desbrun et al. 1999, "Implicit fairing
   /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2;
-  /// its frequency of gain one half, c, is that of so many steps of Umbrella with lambda = 1. As
+  /// its frequency of gain one half, c, is that of this number of steps of Umbrella with lambda
+  /// = 1. As
   /// strong as those on noise, and hardly shrinks.
   Biharmonic,
 };
@@ -63,7 +64,7 @@ struct Smoothing {
 ///
 /// No guarantees: corners and edges are rounded, and points drift within the surface until they are
 /// spread evenly among their neighbours. The volume cannot be restored where there is none to speak
-/// of (volume_after tells).
+/// of (see volume_after).
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
                         const SmoothingOptions& options, int threads = 0);
 

@@ -34,7 +34,7 @@ struct TriangleMarks {
 
 /// Parameters of diagnoseSurface().
 struct DiagnosisOptions {
-  /// At most so many vertices are listed of each finding; FilledHole::loops are complete even so.
+  /// Maximum number of vertices listed with each finding; FilledHole::loops are complete even so.
   std::size_t max_vertices = 64;
   bool mark_triangles = false;  ///< fill SurfaceDiagnosis::triangle_marks
 };
@@ -85,7 +85,7 @@ struct SurfaceDiagnosis {
   /// 1].
   double edges_outside_graph = 0.0;
   /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
-  /// none where that was not needed, as neighbours are nowhere torn apart, or cannot be told.
+  /// none where that was not needed, as neighbours are nowhere torn apart, or unknown.
   std::optional<int> genus;
   std::string summary;  ///< one sentence
   /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless

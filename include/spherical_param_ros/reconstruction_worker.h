@@ -36,7 +36,7 @@ struct Statistics {
 /// Meshes clouds one after the other in a thread of its own.
 ///
 /// Clouds of a stream (submit()) wait in a queue of Settings::queue_depth, which pushes out its
-/// oldest and never grows: whoever submits never waits, and the newest is never lost. With
+/// oldest and never grows: submitting never waits, and the newest is never lost. With
 /// Settings::cancel_running a newer cloud cancels the one that is worked on, but no more than
 /// Settings::max_cancellations times in a row: a stream that is faster than the work still gets
 /// every (max_cancellations + 1)th mesh at least. The last cloud of a stream is always answered.

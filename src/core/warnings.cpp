@@ -15,9 +15,9 @@ constexpr double kMaxEdgesOutside = 0.001;
 /// A fraction of the points that deserves a warning.
 constexpr double kManyPoints = 0.01;
 
-std::string percent(double share) {
+std::string percent(double fraction) {
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f %%", 100.0 * share);
+  std::snprintf(text.data(), text.size(), "%.2f %%", 100.0 * fraction);
   return text.data();
 }
 
@@ -55,7 +55,7 @@ std::vector<std::string> warningsOf(const Options& options, const Result& result
     warn("The embedding has not converged: its residual no longer changes.");
   if (static_cast<double>(result.triangulation.coincident) > kManyPoints * vertices)
     warn(std::to_string(result.triangulation.coincident) +
-         " points cannot be told from others on the sphere: long thin parts shrink below the "
+         " points coincide with others on the sphere: long thin parts shrink below the "
          "rounding of numbers there, and their mesh is arbitrary.");
   if (!result.diagnosis.looksClosedGenus0())
     warn(result.diagnosis.summary + " The mesh is a closed surface without handles even so.");

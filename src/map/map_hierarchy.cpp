@@ -17,12 +17,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Triangles stand for this share of the mean at least: the image of a cluster of points, however
-/// small it is in space, is one that coordinates of double tell apart.
+/// Triangles stand for this fraction of the mean at least: the image of a cluster of points,
+/// however small it is in space, is still larger than the rounding of doubles.
 constexpr double kMinMass = 1e-6;
 /// A vertex of more neighbours is only taken out if there are too few others.
 constexpr Index kMaxCoarseNeighbors = 8;
-/// This share of the candidates, the cheapest, is considered for a batch.
+/// This fraction of the candidates, the cheapest, is considered for a batch.
 constexpr double kShareOfCandidates = 0.7;
 /// With fewer vertices than this they are taken out one at a time.
 constexpr Index kFewVertices = 64;
@@ -123,9 +123,10 @@ public:
       corner_of_[static_cast<std::size_t>(ring_[i + 1])] = before(corner);
       // A part is shared evenly, so that a triangle without area has some of it.
       constexpr double even = 0.1;
-      const double share = areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
+      const double fraction =
+          areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
       masses_[static_cast<std::size_t>(corner / 3)] =
-          mass * (area > 0.0 ? even / count + (1.0 - even) * share / area : 1.0 / count);
+          mass * (area > 0.0 ? even / count + (1.0 - even) * fraction / area : 1.0 / count);
     }
   }
 

@@ -30,8 +30,9 @@ constexpr std::size_t kMinSamples = 12;
 constexpr std::size_t kMaxGridSamples = std::size_t{1} << 24U;
 /// The motion solves dense systems of twice the size.
 constexpr std::size_t kMaxPairs = 4096;
-/// Vertices of both meshes become one if they are nearer than this share of the shortest of their
-/// edges: it moves the map by less than a mesh can show, and both shapes keep all their vertices.
+/// Vertices of both meshes become one if they are nearer than this fraction of the shortest of
+/// their edges: it moves the map by less than a mesh can show, and both shapes keep all their
+/// vertices.
 constexpr double kSameVertex = 0.1;
 
 [[noreturn]] void fail(const std::string& what) {

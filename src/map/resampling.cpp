@@ -293,8 +293,8 @@ SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std:
                           SphereLocation location;
                           location.triangle = static_cast<Index>(next - sums.begin() - 1);
                           const double root = std::sqrt(random.at(3 * i + 1));
-                          const double share = random.at(3 * i + 2);
-                          location.weights << 1.0 - root, root * (1.0 - share), root * share;
+                          const double fraction = random.at(3 * i + 2);
+                          location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
                           const SurfaceSample sample = surface.evaluate(location);
                           result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
                           result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
@@ -334,7 +334,7 @@ public:
   bool isSphere(int threads) const { return mesh_.isSphere(threads); }
   Triangles triangles() const { return mesh_.triangles(); }
 
-  /// The triangles that have a corner in common with some, so many times over; ascending.
+  /// The triangles within this number of rings around some triangles; ascending.
   std::vector<Index> around(std::vector<Index> triangles, int rings) const {
     for (int ring = 0; ring < rings; ++ring) {
       std::vector<Index> wider;

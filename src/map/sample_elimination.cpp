@@ -160,7 +160,7 @@ private:
 std::vector<Index> eliminateSamples(const Positions& points, const Positions& normals,
                                     std::size_t count, double area, int threads) {
   const auto n = static_cast<std::size_t>(points.cols());
-  // The largest radius of disks of which so many fit on the area, and the least that counts.
+  // The largest radius of disks of which this number fits on the area, and the least that counts.
   const double most = std::sqrt(area / (2.0 * std::sqrt(3.0) * static_cast<double>(count)));
   const double least =
       most * kBeta * (1.0 - std::pow(static_cast<double>(count) / static_cast<double>(n), kGamma));
@@ -181,8 +181,8 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
         const double square = (sorted_points.col(column) - point).squaredNorm();
         if (square >= 4.0 * most * most || j == i || sorted_normals.col(column).dot(normal) < 0.0)
           continue;
-        const double share = 1.0 - std::max(std::sqrt(square), 2.0 * least) / (2.0 * most);
-        const double second = share * share;
+        const double fraction = 1.0 - std::max(std::sqrt(square), 2.0 * least) / (2.0 * most);
+        const double second = fraction * fraction;
         const double fourth = second * second;
         visit(j, fourth * fourth);
       }

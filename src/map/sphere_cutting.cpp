@@ -282,9 +282,9 @@ private:
     const Eigen::Vector3d b = sphere_.col(corner.b);
     const double from_a = std::abs(normalOf(corner.plane).dot(a));
     const double from_b = std::abs(normalOf(corner.plane).dot(b));
-    const double share = from_a / (from_a + from_b);
-    result_.vertices.push_back({{corner.a, corner.b, corner.b}, {1.0 - share, share, 0.0}});
-    result_.points.push_back(onPlanes((1.0 - share) * a + share * b, corner.signs, planes_));
+    const double fraction = from_a / (from_a + from_b);
+    result_.vertices.push_back({{corner.a, corner.b, corner.b}, {1.0 - fraction, fraction, 0.0}});
+    result_.points.push_back(onPlanes((1.0 - fraction) * a + fraction * b, corner.signs, planes_));
   }
 
   void addInside(const Corner& corner) {

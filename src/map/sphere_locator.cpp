@@ -146,9 +146,9 @@ SphereLocator::Box SphereLocator::boxOf(Index triangle) const {
   // image on the sphere is as far away as its length is less than 1.
   const double longest =
       std::max({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()});
-  const double share = std::min(1.0, longest / 3.0);
-  // 1 - sqrt(1 - share), without cancellation.
-  const double margin = share / (1.0 + std::sqrt(1.0 - share)) + kRounding;
+  const double fraction = std::min(1.0, longest / 3.0);
+  // 1 - sqrt(1 - fraction), without cancellation.
+  const double margin = fraction / (1.0 + std::sqrt(1.0 - fraction)) + kRounding;
   const Vector3d lower = a.cwiseMin(b).cwiseMin(c);
   const Vector3d upper = a.cwiseMax(b).cwiseMax(c);
   Box box{};

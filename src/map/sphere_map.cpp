@@ -181,7 +181,7 @@ void placeTetrahedron(const MapMesh& mesh, Positions& sphere) {
 }
 
 /// The rotation that brings the map as near to the start as can be, each vertex weighted by its
-/// share of the area (W. Kabsch, 1976); the identity if no rotation is better than others.
+/// fraction of the area (W. Kabsch, 1976); the identity if no rotation is better than others.
 Eigen::Matrix3d rotationTo(const Positions& start, const Positions& sphere, const Positions& points,
                            const Triangles& triangles) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

@@ -71,13 +71,13 @@ SphereLocation placeIn(const Positions& points, const Triangles& triangles, Inde
   return location;
 }
 
-/// Place on an edge, as a share of the way to its second end.
-SphereLocation placeOn(const ArcMesh& mesh, Index edge, double share) {
+/// Place on an edge, as a fraction of the way to its second end.
+SphereLocation placeOn(const ArcMesh& mesh, Index edge, double fraction) {
   const Index corner = mesh.cornerOppositeTo(edge);
   SphereLocation location;
   location.triangle = corner / 3;
-  location.weights[(corner % 3 + 1) % 3] = 1.0 - share;
-  location.weights[(corner % 3 + 2) % 3] = share;
+  location.weights[(corner % 3 + 1) % 3] = 1.0 - fraction;
+  location.weights[(corner % 3 + 2) % 3] = fraction;
   return location;
 }
 
@@ -88,17 +88,18 @@ SphereLocation placeAtCorner(Index triangle, int corner) {
   return location;
 }
 
-/// Both shares at which two arcs cross that are known to do so.
+/// Both fractions at which two arcs cross that are known to do so.
 std::array<double, 2> crossingOf(const Positions& points, const std::array<Index, 2>& a,
                                  const std::array<Index, 2>& b) {
-  const auto share = [&points](const std::array<Index, 2>& of, const std::array<Index, 2>& other) {
+  const auto fraction = [&points](const std::array<Index, 2>& of,
+                                  const std::array<Index, 2>& other) {
     const double from = std::abs(determinantOf(points, other[0], other[1], of[0]));
     const double to = std::abs(determinantOf(points, other[0], other[1], of[1]));
     return from + to > 0.0 ? from / (from + to) : -1.0;
   };
-  std::array<double, 2> shares{share(a, b), share(b, a)};
-  if (shares[0] >= 0.0 && shares[1] >= 0.0)
-    return shares;
+  std::array<double, 2> fractions{fraction(a, b), fraction(b, a)};
+  if (fractions[0] >= 0.0 && fractions[1] >= 0.0)
+    return fractions;
   // On one great circle: the middle of what they have in common.
   const auto along = [&points](const std::array<Index, 2>& of, const Eigen::Vector3d& place) {
     const Eigen::Vector3d step = points.col(of[1]) - points.col(of[0]);
@@ -151,8 +152,8 @@ Crossings crossingsOf(const ArcMesh& mesh, const ArcMesh& through,
 }
 
 /// Rounding may swap crossings that are near each other: their order is known.
-void ascend(double& share, double& least) {
-  share = least = std::max(share, least);
+void ascend(double& fraction, double& least) {
+  fraction = least = std::max(fraction, least);
 }
 
 }  // namespace
@@ -407,8 +408,8 @@ private:
   }
 
   void placeCrossings() {
-    std::vector<double> share_of_a(crossing_count_);
-    std::vector<double> share_of_b(crossing_count_);
+    std::vector<double> fraction_of_a(crossing_count_);
+    std::vector<double> fraction_of_b(crossing_count_);
     from_left_.resize(crossing_count_);
     for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
       const std::array<Index, 2> ends = mesh_a_.ends(e);
@@ -417,12 +418,12 @@ private:
         const auto node = static_cast<std::size_t>(nodes_of_a_[c]);
         const std::size_t x = node - vertex_count_;
         const std::array<Index, 2> other = mesh_b_.ends(of_a_.edges[c]);
-        const std::array<double, 2> shares = crossingOf(points_, ends, other);
-        share_of_a[x] = shares[0];
-        share_of_b[x] = shares[1];
-        ascend(share_of_a[x], least);
+        const std::array<double, 2> fractions = crossingOf(points_, ends, other);
+        fraction_of_a[x] = fractions[0];
+        fraction_of_b[x] = fractions[1];
+        ascend(fraction_of_a[x], least);
         from_left_[x] = orientationOf(points_, ends[0], ends[1], other[0]) > 0 ? 1 : 0;
-        overlay_.first[node] = placeOn(mesh_a_, e, share_of_a[x]);
+        overlay_.first[node] = placeOn(mesh_a_, e, fraction_of_a[x]);
       }
     }
     overlay_.directions.resize(3, static_cast<Eigen::Index>(node_count_));
@@ -430,11 +431,12 @@ private:
     for (Index e = 0; e < mesh_b_.edgeCount(); ++e) {
       double least = 0.0;
       for (std::size_t x = of_b_.begin(e); x < of_b_.end(e); ++x) {
-        ascend(share_of_b[x], least);
-        overlay_.second[vertex_count_ + x] = placeOn(mesh_b_, e, share_of_b[x]);
+        ascend(fraction_of_b[x], least);
+        overlay_.second[vertex_count_ + x] = placeOn(mesh_b_, e, fraction_of_b[x]);
         const std::array<Index, 2> ends = mesh_a_.ends(of_b_.edges[x]);
         overlay_.directions.col(static_cast<Eigen::Index>(vertex_count_ + x)) =
-            ((1.0 - share_of_a[x]) * points_.col(ends[0]) + share_of_a[x] * points_.col(ends[1]))
+            ((1.0 - fraction_of_a[x]) * points_.col(ends[0]) +
+             fraction_of_a[x] * points_.col(ends[1]))
                 .normalized();
       }
     }

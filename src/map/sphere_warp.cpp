@@ -255,7 +255,7 @@ public:
   }
 
   /// Mends what it can. \return the triangles that are still flipped
-  std::vector<Index> mend(Positions& sphere, int rounds, int threads, Index& moved) const {
+  std::vector<Index> untangle(Positions& sphere, int rounds, int threads, Index& moved) const {
     std::vector<Index> bad = flipped(sphere, threads);
     for (int round = 0; round < rounds && !bad.empty(); ++round) {
       std::vector<Index> vertices;
@@ -485,12 +485,12 @@ private:
         support_ = std::max(support_, kSupportOfDistance * distance);
     // Wider than what is moved, so that it is not squeezed; more than the diameter is no use.
     support_ = std::min(2.0, std::max(support_, kSupportOfWay * longest));
-    mend(kEndRounds);
+    untangle(kEndRounds);
   }
 
-  /// Triangles that are still flipped after so many rounds.
-  std::vector<Index> mend(int rounds) {
-    return untangler_.mend(warp_.sphere, rounds, threads_, warp_.untangled);
+  /// Triangles that are still flipped after this number of rounds.
+  std::vector<Index> untangle(int rounds) {
+    return untangler_.untangle(warp_.sphere, rounds, threads_, warp_.untangled);
   }
 
   /// Moves the sphere in steps until all landmarks are at the ends of their paths. \return the
@@ -549,7 +549,7 @@ private:
                 });
     for (Eigen::Index i = 0; i < count(); ++i)
       places_.col(i) = warp_.sphere.col(vertexOf(i));
-    mend(kStepRounds);
+    untangle(kStepRounds);
     ++warp_.steps;
   }
 
@@ -560,7 +560,7 @@ private:
       warp_.worst = std::max(warp_.worst, (places_.col(i) - ends_.col(i)).norm());
       warp_.sphere.col(vertexOf(i)) = ends_.col(i);
     }
-    const std::vector<Index> bad = mend(kEndRounds);
+    const std::vector<Index> bad = untangle(kEndRounds);
     if (bad.empty())
       return std::nullopt;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();

@@ -184,8 +184,8 @@ public:
       return;
     for (std::size_t t = 0; t < sphere_.triangles.size(); ++t)
       addSides(t);
-    // Each split shortens edges, whose images then are straighter. What is left after so many is
-    // as small as rounding.
+    // Each split shortens edges, whose images then are straighter. What is left after this number
+    // is as small as rounding.
     std::size_t budget = 64 * sphere_.triangles.size() + 4096;
     while (!turned.empty() && budget > 0) {
       const std::size_t t = turned.back();
@@ -205,7 +205,7 @@ private:
     const Eigen::Vector2d b = p[1] - p[0];
     const Eigen::Vector2d c = p[2] - p[0];
     const double doubled_area = b.x() * c.y() - b.y() * c.x();
-    // Places are rounded: below this nothing can be said, nor mended.
+    // Places are rounded: below this nothing is certain.
     const double rounding =
         4.0 * internal::kUnitRoundoff * std::sqrt(std::max(b.squaredNorm(), c.squaredNorm()));
     return doubled_area < -rounding;
@@ -242,8 +242,8 @@ private:
     if (across == left_of_.end())
       return {};
     const std::size_t other = across->second;
-    const double share = shareBeside(pointOf(a), pointOf(b), pointOf(c));
-    const Index middle = addVertex(a, b, share);
+    const double fraction = fractionBeside(pointOf(a), pointOf(b), pointOf(c));
+    const Index middle = addVertex(a, b, fraction);
     if (middle < 0)
       return {};
     const std::size_t new_part = replace(t, a, b, middle);
@@ -252,25 +252,25 @@ private:
   }
 
   /// How far along from a to b the point is that is closest to c.
-  static double shareBeside(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                            const Eigen::Vector3d& c) {
+  static double fractionBeside(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                               const Eigen::Vector3d& c) {
     const Eigen::Vector3d normal = a.cross(b);
     const double of_a = c.cross(b).dot(normal);
     const double of_b = a.cross(c).dot(normal);
-    const double share = of_b / (of_a + of_b);
+    const double fraction = of_b / (of_a + of_b);
     // NaN where the edge has no length.
-    return share > 0.02 && share < 0.98 ? share : 0.5;
+    return fraction > 0.02 && fraction < 0.98 ? fraction : 0.5;
   }
 
   /// A new vertex on an edge, -1 if there is no room for one.
-  Index addVertex(Index a, Index b, double share) {
-    const Eigen::Vector3d point = (1.0 - share) * pointOf(a) + share * pointOf(b);
+  Index addVertex(Index a, Index b, double fraction) {
+    const Eigen::Vector3d point = (1.0 - fraction) * pointOf(a) + fraction * pointOf(b);
     if (point == pointOf(a) || point == pointOf(b))
       return -1;
     // Both ends are in one triangle of the mesh.
     std::array<std::pair<Index, double>, 3> parts;
     std::size_t count = 0;
-    for (const auto& [end, weight] : {std::pair(a, 1.0 - share), std::pair(b, share)}) {
+    for (const auto& [end, weight] : {std::pair(a, 1.0 - fraction), std::pair(b, fraction)}) {
       const CutVertex& vertex = sphere_.vertices[static_cast<std::size_t>(end)];
       for (Eigen::Index k = 0; k < 3; ++k) {
         const Index v = vertex.vertices[static_cast<std::size_t>(k)];
@@ -318,7 +318,7 @@ void checkOptions(const TextureAtlasOptions& options, const std::string& functio
   internal::checkEnum((function + ": chart").c_str(), options.chart, SphereChart::CubeMap);
   if (!(options.margin >= 0.0 && options.margin < 0.25))
     throw InvalidInput(function + ": margin is " + std::to_string(options.margin) +
-                       "; give a share of the side of a face in [0, 0.25)");
+                       "; give a fraction of the side of a face in [0, 0.25)");
 }
 
 void checkMesh(const Triangles& triangles, const Positions& sphere) {

@@ -16,7 +16,7 @@
 namespace spherical_param {
 namespace {
 
-/// Images are worked on in bands of so many rows or columns, each by one thread.
+/// Images are worked on in bands of this number of rows or columns, each by one thread.
 constexpr int band_height = 32;
 
 int widthOf(SphereChart chart, int height) {

@@ -22,11 +22,11 @@ using Vector5d = Eigen::Matrix<double, 5, 1>;
 constexpr std::size_t kMaxAround = 32;
 /// Heights of neighbours that leave something to be seen of how well five coefficients fit.
 constexpr std::size_t kMinNeighbors = 7;
-/// Root mean square of the residual in shares of that of the heights: a quadric is sure below the
-/// first, and means nothing above the second. A fold of a plane has 0.2 to 0.4.
+/// Root mean square of the residual in fractions of that of the heights: a quadric is sure below
+/// the first, and means nothing above the second. A fold of a plane has 0.2 to 0.4.
 constexpr double kSureResidual = 0.08;
 constexpr double kWrongResidual = 0.25;
-/// Residuals below this share of the length of the edges are no reason to be unsure.
+/// Residuals below this fraction of the length of the edges are no reason to be unsure.
 constexpr double kSmallResidual = 1e-3;
 /// Cosines between the normals of a vertex and of its triangles: likewise.
 constexpr double kSureCosine = 0.9;
@@ -34,7 +34,7 @@ constexpr double kWrongCosine = 0.65;
 /// Ratio of the pivots of the equations: likewise.
 constexpr double kSurePivots = 1e-2;
 constexpr double kWrongPivots = 1e-3;
-/// The surface leaves the triangles by no more than this share of the length of the edges: the
+/// The surface leaves the triangles by no more than this fraction of the length of the edges: the
 /// height of an arc over its chord, for an arc of 90 degrees.
 constexpr double kMaxDisplacement = 0.2;
 
@@ -153,7 +153,7 @@ VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights
     normal += (1.0 - quadric.reliability) * weights[k] * vertex_normal;
     if (quadric.reliability == 0.0 || weights[k] == 0.0)
       continue;
-    const double share = quadric.reliability * weights[k] * weights[k] / weights.squaredNorm();
+    const double fraction = quadric.reliability * weights[k] * weights[k] / weights.squaredNorm();
     const TangentBasis basis = tangentBasis(vertex_normal);
     const Vector3d p = (linear - points_.col(v)) / quadric.size;
     const double x = basis.col(0).dot(p);
@@ -162,10 +162,10 @@ VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights
     const double height = c[0] * x + c[1] * y + c[2] * x * x + c[3] * x * y + c[4] * y * y;
     const double displacement =
         std::clamp(height - vertex_normal.dot(p), -kMaxDisplacement, kMaxDisplacement);
-    moved += share * quadric.size * displacement * vertex_normal;
-    normal += share * (vertex_normal - (c[0] + 2.0 * c[2] * x + c[3] * y) * basis.col(0) -
-                       (c[1] + c[3] * x + 2.0 * c[4] * y) * basis.col(1))
-                          .normalized();
+    moved += fraction * quadric.size * displacement * vertex_normal;
+    normal += fraction * (vertex_normal - (c[0] + 2.0 * c[2] * x + c[3] * y) * basis.col(0) -
+                          (c[1] + c[3] * x + 2.0 * c[4] * y) * basis.col(1))
+                             .normalized();
   }
   return {linear + moved, normal};
 }

@@ -208,7 +208,7 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
   listener.step("resample", 1.0);
   listener.step("untangle", 0.0);
   result.untangling = untangle(surface, result.mesh, threads);
-  // Other edges may mend what sliding leaves.
+  // Flips may remove what sliding leaves.
   if (result.untangling.after > 0) {
     listener.step("untangle", 0.8);
     result.flipped_edges = removeIntersections(result.mesh, threads).flips;

@@ -50,7 +50,7 @@ TEST(Parallel, ReportsAreFewAndRiseToOne) {
     EXPECT_EQ(fractions.back(), 1.0);
     const std::size_t reports = fractions.size() - 1;
     EXPECT_GE(reports, std::min<std::size_t>(chunks, 30));
-    EXPECT_LE(reports, std::min<std::size_t>(chunks, kMostReports));
+    EXPECT_LE(reports, std::min<std::size_t>(chunks, kMaxReports));
   }
 }
 

@@ -20,8 +20,8 @@ struct DistortionStatistics {
 
 /// How far a map from a mesh to the unit sphere is from an isometry. For the angles, triangles are
 /// compared with the flat ones between their corners on the sphere: sigma_1 >= sigma_2 are the
-/// singular values of that linear map. For the areas, r is the share of the sphere that a spherical
-/// triangle covers, over the share of the surface in space that the triangle has.
+/// singular values of that linear map. For the areas, r is the fraction of the sphere that a
+/// spherical triangle covers, over the fraction of the surface in space that the triangle has.
 struct MapDistortion {
   /// Triangles whose corners are not counter-clockwise seen from outside the sphere: det(a, b, c)
   /// <= 0, by an exact predicate. 0: the map is one to one.

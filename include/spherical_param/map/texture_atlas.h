@@ -44,7 +44,7 @@ struct TextureAtlas {
 /// Parameters of makeTextureAtlas().
 struct TextureAtlasOptions {
   SphereChart chart = SphereChart::Octahedral;  ///< the layout
-  /// Free space around each face of a cube map, as a share of its side; [0, 0.25).
+  /// Free space around each face of a cube map, as a fraction of its side; [0, 0.25).
   double margin = 1.0 / 64;
 };
 

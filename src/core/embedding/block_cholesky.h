@@ -12,8 +12,8 @@ namespace spherical_param::internal {
 /// Sparse Cholesky factorisation L D L^T of a symmetric block matrix, up-looking (T. A. Davis,
 /// "Algorithm 849: A concise sparse Cholesky factorization package", 2005), in blocks: one index
 /// for four entries, and an order by minimum degree of the nodes instead of twice as many unknowns.
-/// The diagonal is raised by a share beyond rounding, since the matrix is singular, or nearly so,
-/// for rotations.
+/// The diagonal is raised by a fraction beyond rounding, since the matrix is singular, or nearly
+/// so, for rotations.
 class BlockCholesky {
 public:
   /// \param matrix symmetric, with all diagonal blocks. The order and the pattern of L are found

@@ -43,7 +43,7 @@ public:
   struct Residual {
     /// Length of the tangential Laplacian, with the barrier's share, if any [radius].
     double absolute = 0.0;
-    /// The same in units of the node's mean edge on the sphere, in [0, 1]: tells of the smallest
+    /// The same in units of the node's mean edge on the sphere, in [0, 1]: shows the smallest
     /// parts of the embedding as well as of the largest.
     double relative = 0.0;
 

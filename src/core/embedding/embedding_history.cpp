@@ -5,7 +5,7 @@
 namespace spherical_param::internal {
 namespace {
 
-/// While states come in, so many times the limit are kept: which of them are in even distances is
+/// This number of times the limit is kept while states arrive: which of them are evenly spaced is
 /// known at the end only.
 constexpr std::size_t kSpare = 3;
 

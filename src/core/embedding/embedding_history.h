@@ -26,7 +26,7 @@ struct EmbeddingState {
 };
 
 /// Shown the states of an embedding one after the other, from the calling thread only. What it
-/// throws is passed on. The result is the same, bit by bit, whether somebody looks or not.
+/// throws is passed on. The result is the same, bit by bit, with an observer or without.
 using EmbeddingObserver = std::function<void(const EmbeddingState&)>;
 
 /// An EmbeddingObserver that keeps a history of bounded size: of some nodes, which are spread over
@@ -64,7 +64,7 @@ private:
 
   void keepNodes(std::size_t nodes, const GraphHierarchy& hierarchy);
   Positions carried(const Positions& directions, std::size_t level) const;
-  /// Leaves out states evenly until so many are left.
+  /// Leaves out states evenly until this number is left.
   void thinTo(std::size_t count);
 
   HistoryLimits limits_;

@@ -37,7 +37,7 @@ struct GraphHierarchy {
 ///
 /// \param graph connected, with positive edge lengths; checked by checkGraph().
 /// \param seed  of the order in which nodes are taken.
-/// \param coarsest_size levels are added until one has at most so many nodes; >= 4.
+/// \param coarsest_size levels are added until one has at most this number of nodes; >= 4.
 /// \param execution threads, progress
 /// \return the levels, each of some 4 to 5 times fewer nodes than the one before; none for a graph
 ///         of at most `coarsest_size` nodes. The same for the same seed on every platform and for

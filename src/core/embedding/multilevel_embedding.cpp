@@ -29,7 +29,7 @@ constexpr int kSweeps = 10;
 /// Levels of at most this number of nodes are solved fully, not only smoothed.
 constexpr std::size_t kMaxSolvedSize = 10000;
 /// Relative residual to which a level is solved fully: limbs shrink exponentially along the sphere,
-/// so that no absolute tolerance would tell whether their tips are solved.
+/// so that no absolute tolerance would show whether their tips are solved.
 constexpr double kSolvedTolerance = 1e-4;
 /// Linear systems of at most this number of nodes are solved directly.
 constexpr std::size_t kMaxDirectSize = 2000;
@@ -188,7 +188,7 @@ private:
   }
 
   /// The best of several starts on a level, solved fully; without columns if all collapse. Each
-  /// thread has starts of its own: only the calling one tells of its progress.
+  /// thread has starts of its own: only the calling one reports progress.
   Positions solveStarts(std::size_t l) {
     const std::vector<Index> centers = centralNodes(graphOf(l));
     const std::size_t count = std::min(centers.size(), static_cast<std::size_t>(options_.starts));

@@ -28,8 +28,8 @@ Index countSets(const std::vector<Index>& representative);
 ///
 /// \param points            3 x n.
 /// \param parts             the components of n nodes; one set afterwards.
-/// \param bridges_per_joint each two components that are joined get up to so many bridges; 1 and
-/// up.
+/// \param bridges_per_joint each two components that are joined get up to this number of bridges; 1
+/// and up.
 std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
                                     int bridges_per_joint);
 

@@ -73,7 +73,7 @@ std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
 
 /// Values of the edges that sum up to zero around every triangle: a cocycle. The edges of a
 /// spanning forest have zero, others follow from the triangles; where nothing follows, an edge gets
-/// a symbol of its own, and triangles that do not sum up to zero then tell which symbols are not
+/// a symbol of its own, and triangles that do not sum up to zero then show which symbols are not
 /// independent. What is left of them is the number of cycles.
 class Cocycles {
 public:

@@ -109,8 +109,8 @@ public:
       const double outer = inside ? sides_[next] : sides_[k];
       const Corner& from = inside ? corners_[k] : corners_[next];
       const Corner& to = inside ? corners_[next] : corners_[k];
-      const double share = inner < 0.0 ? inner / (inner - outer) : 0.0;
-      cut_.push_back({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
+      const double fraction = inner < 0.0 ? inner / (inner - outer) : 0.0;
+      cut_.push_back({from.x + fraction * (to.x - from.x), from.y + fraction * (to.y - from.y),
                       inside ? site : corners_[k].site});
     }
     corners_.swap(cut_);
@@ -264,16 +264,16 @@ bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen:
   // A cell that is larger ends there: sites beyond would be neighbours across a gap.
   cell.reset(std::sqrt(squared_reach));
   // In terms of the cosine; of what is as steep as round-off the direction means nothing.
-  const double least_share = std::max(1.0 - max_slope * max_slope, 1e-20);
+  const double least_fraction = std::max(1.0 - max_slope * max_slope, 1e-20);
   for (const Candidate& candidate : candidates) {
     if (candidate.squared_distance > 4.0 * cell.squaredRadius())
       break;
     const double x = axes.col(1).dot(candidate.offset);
     const double y = axes.col(2).dot(candidate.offset);
-    const double share = (x * x + y * y) / candidate.squared_distance;
-    if (!(share >= least_share))
+    const double fraction = (x * x + y * y) / candidate.squared_distance;
+    if (!(fraction >= least_fraction))
       continue;
-    const double stretch = 1.0 / std::sqrt(share);
+    const double stretch = 1.0 / std::sqrt(fraction);
     cell.cut(stretch * x, stretch * y, candidate.node);
   }
   cell.forEachSite([&](Index site) {

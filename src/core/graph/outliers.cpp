@@ -22,9 +22,9 @@ namespace {
 constexpr std::size_t kMinNeighbors = 3;
 /// Fewer positions cannot be meshed.
 constexpr std::size_t kMinPositions = 4;
-/// Neighbours with mean distances longer than so many times their median may be outliers.
+/// Neighbours with mean distances longer than this number of times their median may be outliers.
 constexpr double kMaxDistanceRatio = 2.0;
-/// Neighbours whose spread across is less than this share of that along are on a line.
+/// Neighbours whose spread across is less than this fraction of that along are on a line.
 constexpr double kMinSpreadRatio = 1e-6;
 
 [[noreturn]] void fail(const std::string& what) {

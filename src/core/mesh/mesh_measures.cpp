@@ -13,7 +13,7 @@
 namespace spherical_param {
 namespace {
 
-/// Volumes below this share of the box's diagonal cubed are rounding: a centroid would be the
+/// Volumes below this fraction of the box's diagonal cubed are rounding: a centroid would be the
 /// quotient of two errors.
 constexpr double kMinVolume = 1e-12;
 

@@ -19,7 +19,7 @@ namespace spherical_param::internal {
 
 /// More would exhaust the system before they could work.
 inline constexpr int kMaxThreads = 1024;
-/// Work is handed out, and sums are formed, in blocks of so many items: the same bits for any
+/// Items of a block. Work is handed out, and sums are formed, block by block: the same bits for any
 /// number of threads.
 inline constexpr std::size_t kBlockSize = 512;
 /// Below this many items a parallel region for much work costs more than it gains.
@@ -28,11 +28,11 @@ inline constexpr std::size_t kParallelThreshold = 4096;
 /// thread that does not run, which takes as long as many such passes.
 inline constexpr std::size_t kShortPassThreshold = 50000;
 
-/// Between reports there are so many items at least: regions that follow each other wait for their
+/// Least number of items between reports: regions that follow each other wait for their
 /// slowest thread once more each.
 inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
-/// And reports of a loop at most, about.
-inline constexpr std::size_t kMostReports = 32;
+/// Approximate maximum of reports of a loop.
+inline constexpr std::size_t kMaxReports = 32;
 
 /// \throw InvalidInput if a number of threads is out of range.
 inline void checkThreads(int requested) {
@@ -41,7 +41,7 @@ inline void checkThreads(int requested) {
                        " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
 }
 
-/// The threads that are worth having for so many items.
+/// The threads that are worth having for this number of items.
 ///
 /// \param requested 0: as many as OpenMP would use.
 /// \param threshold the least number of items for several threads.
@@ -107,7 +107,7 @@ void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& w
 /// after each: the blocks and their numbers are those of one region.
 template <typename Work>
 void forEachBlock(std::size_t count, int threads, const FractionReport& report, const Work& work) {
-  const std::size_t blocks = count / kMostReports / kBlockSize + 1;
+  const std::size_t blocks = count / kMaxReports / kBlockSize + 1;
   const std::size_t most = report ? std::max(kReportedItems, blocks * kBlockSize) : count;
   for (std::size_t first = 0; first < count; first += most) {
     const std::size_t size = std::min(most, count - first);
@@ -120,7 +120,7 @@ void forEachBlock(std::size_t count, int threads, const FractionReport& report, 
 
 /// Calls work(thread, i) for each i in [0, count), where thread < threads.
 ///
-/// \param report told of the fraction that is done, as by forEachBlock().
+/// \param report called with the fraction that is done, as by forEachBlock().
 template <typename Work>
 void forEachItem(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {

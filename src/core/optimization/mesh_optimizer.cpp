@@ -178,13 +178,13 @@ bool MeshOptimizer::flip(Index t, int k, double gain) {
 std::size_t MeshOptimizer::flipQueued(const FractionReport& report) {
   refused_.clear();
   std::size_t flips = 0;
-  double share = 0.0;
+  double fraction = 0.0;
   for (std::size_t taken = 1; !queue_.empty(); ++taken) {
     if (report && taken % kReportedCandidates == 0) {
       // What is in the queue by now puts in less than it takes out.
-      share =
-          std::max(share, static_cast<double>(taken) / static_cast<double>(taken + queue_.size()));
-      report(share);
+      fraction = std::max(fraction,
+                          static_cast<double>(taken) / static_cast<double>(taken + queue_.size()));
+      report(fraction);
     }
     const Candidate best = queue_.front();
     std::pop_heap(queue_.begin(), queue_.end());
@@ -399,7 +399,7 @@ void MeshOptimizer::keep() {
   old_facets_.clear();
 }
 
-void MeshOptimizer::takeBack() {
+void MeshOptimizer::rollBack() {
   mesh_.rollBack();
   for (auto old = old_facets_.rbegin(); old != old_facets_.rend(); ++old)
     facets_[at(old->first)] = old->second;
@@ -420,7 +420,7 @@ bool MeshOptimizer::relocate(Index v) {
     keep();
     return true;
   }
-  takeBack();
+  rollBack();
   return false;
 }
 
@@ -452,7 +452,7 @@ bool MeshOptimizer::recreate(const std::vector<Index>& vertices,
     keep();
     return true;
   }
-  takeBack();
+  rollBack();
   return false;
 }
 

@@ -14,12 +14,12 @@
 
 namespace spherical_param::internal {
 
-/// Moves that lower the energy of a closed genus-0 mesh on fixed points. What does not lower it is
-/// taken back, to the last index and bit. The running total of the energy is kept.
+/// Moves that lower the energy of a closed genus-0 mesh on fixed points. Other moves are
+/// rolled back, to the last index and bit. The running total of the energy is kept.
 class MeshOptimizer {
 public:
-  /// All but the triangles and the report, which is told of the share of this that is done, must
-  /// outlive this. Has no energy before it is told which.
+  /// All but the triangles and the report, which is called with the fraction that is done, must
+  /// outlive this. setEnergy() must come first.
   MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
                 int threads, const FractionReport& report = {});
 
@@ -45,8 +45,8 @@ public:
   /// Flips edges, the one that gains most first, until none gains. Returns the number of flips.
   /// Asked again with the same energy, it looks only at what has changed.
   ///
-  /// \param report told of the share that is done: an estimate, for a flip may make others gain.
-  /// What it throws leaves a sound mesh of which the energy is as it should be.
+  /// \param report called with the fraction that is done: an estimate, for a flip may make others
+  /// gain. What it throws leaves a sound mesh of which the energy is as it should be.
   std::size_t flipAll(const FractionReport& report = {});
 
   /// Takes a vertex out and puts it back where it costs least, among the triangles around its
@@ -142,7 +142,7 @@ private:
 
   void begin();
   void keep();
-  void takeBack();
+  void rollBack();
   /// Change of the energy since begin() [mean length of the graph's edges].
   double change() const { return (energy_ - energy_before_) / unit_; }
 

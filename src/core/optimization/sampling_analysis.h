@@ -4,7 +4,7 @@
 
 namespace spherical_param::internal {
 
-/// What the neighbours' places tell of how a surface was sampled.
+/// How a surface was sampled, as seen from the neighbours of its points.
 struct Sampling {
   /// How far the sampling follows the surface's curvature, in [-1, 1].
   ///

@@ -98,7 +98,7 @@ void checkFans(const Fans& fans) {
     if (!sound || length != end - begin)
       fail("the triangles around vertex " + std::to_string(v) +
            " are not one closed fan; the mesh must be closed, manifold and consistently oriented "
-           "(checkTopology() tells where it is not)");
+           "(checkTopology() lists where it is not)");
   }
 }
 
@@ -109,10 +109,10 @@ public:
       : fans_(fans), threads_(internal::threadCount(requested_threads, fans.size(),
                                                     internal::kShortPassThreshold)) {}
 
-  /// Moves each point by a share of its Laplacian, all at once; `scratch` is overwritten.
-  void step(Positions& points, double share, Positions& scratch) const {
+  /// Moves each point by a fraction of its Laplacian, all at once; `scratch` is overwritten.
+  void step(Positions& points, double fraction, Positions& scratch) const {
     forEachPoint(
-        [&](Eigen::Index i) { scratch.col(i) = points.col(i) + share * laplacian(points, i); });
+        [&](Eigen::Index i) { scratch.col(i) = points.col(i) + fraction * laplacian(points, i); });
     points.swap(scratch);
   }
 
@@ -174,7 +174,8 @@ private:
 /// The Chebyshev coefficients of 2^-(k / c)^2, c = 1 - 2^(-1 / steps), in x = 4/3 k - 1 of [-1, 1].
 std::vector<double> biharmonicSeries(int steps) {
   const double cutoff = -std::expm1(-std::log(2.0) / steps);
-  // In the angle of the nodes the filter is as wide as sqrt(c): so many resolve it to 1e-9.
+  // In the angle of the nodes the filter is as wide as sqrt(c): this number of them resolves it to
+  // 1e-9.
   const auto nodes = static_cast<std::size_t>(16.0 + 16.0 / std::sqrt(cutoff));
   std::vector<double> coefficients(nodes, 0.0);
   for (std::size_t q = 0; q < nodes; ++q) {

@@ -15,7 +15,7 @@ namespace spherical_param::internal {
 /// \param fans for each point, 1 if no two triangles around it intersect, 0 if that is not known;
 /// empty: nothing is known.
 /// \param threads as there.
-/// \param report told of the share that is done.
+/// \param report called with the fraction that is done.
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const std::vector<std::uint8_t>& fans,

@@ -5,7 +5,8 @@
 
 namespace spherical_param::internal {
 
-/// The Delaunay triangulation of points on the sphere, and the points that it could not tell apart.
+/// The Delaunay triangulation of points on the sphere, and the points that it could not
+/// distinguish.
 struct SphereDelaunay {
   Triangles triangles;  ///< 3 x (2n - 4), outward on the sphere: closed, manifold, genus 0
   /// Points at the place of another one, beside which they were put.
@@ -28,7 +29,7 @@ constexpr Index kMaxDelaunayPoints = Index{1} << 29;
 /// their own.
 ///
 /// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= kMaxDelaunayPoints.
-/// \param report     told of the share that is done.
+/// \param report     called with the fraction that is done.
 /// Cost: O(n log n) expected, about 100 bytes a point.
 SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report = {});
 

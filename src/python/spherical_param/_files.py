@@ -81,7 +81,7 @@ class MeshExport:
         name = os.fspath(path)
         folder, base = os.path.split(os.path.abspath(name))
         extension = os.path.splitext(base)[1].lower()
-        # Of the same extension: that tells other libraries the format.
+        # Of the same extension: other libraries take the format from it.
         with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as scratch:
             part = os.path.join(scratch, "mesh" + extension)
             if extension == ".ply":

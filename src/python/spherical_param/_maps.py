@@ -36,7 +36,7 @@ class Distortion:
     flipped_triangles: int  #: 0: the map is one to one (an exact test)
     degenerate_triangles: int  #: without an area in space, no part of the statistics
     angle: Statistics  #: ratio of singular values, 1: conformal
-    area: Statistics  #: ratio of the shares of area, or its inverse, >= 1; 1: equal areas
+    area: Statistics  #: ratio of the fractions of area, or its inverse, >= 1; 1: equal areas
     mean_angle_difference: float  #: of the corners [degree]
     stretch_efficiency: float  #: of Praun and Hoppe (2003), in (0, 1]; 1: no stretch
 
@@ -362,7 +362,7 @@ def texture_coordinates(
     chart : {"octahedral", "equirectangular", "cube"}
         Layout, for images of 1:1, 2:1 and 3:2.
     margin : float, [0, 0.25)
-        Free space around each face of a cube map, as a share of its side.
+        Free space around each face of a cube map, as a fraction of its side.
 
     Raises
     ------

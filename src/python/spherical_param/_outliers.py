@@ -54,7 +54,7 @@ def find_outliers(
     points : array-like, (n, 3)
         As for ``reconstruct``.
     sigma : float, 0 to 1000
-        Outliers are further off than the mean by so many standard deviations.
+        Outliers are farther off than the mean by this number of standard deviations.
     k : int, 3 and up
         Neighbours of each point that make its surface.
     threads : int, 0 (all) to 1024

@@ -90,10 +90,10 @@ class Diagnosis:
     filled_holes: tuple[FilledHole, ...]  #: by falling area
     handles: tuple[Handle, ...]  #: by falling number of edges
     bridges: tuple[PartBridge, ...]  #: by falling number of points
-    edges_outside_graph: float  #: share of edges between points that are no near neighbours
+    edges_outside_graph: float  #: fraction of edges between points that are no near neighbours
     genus: Optional[int]
     """Handles of the surface, counted by the cycles of the neighbour graph; None where that was not
-    needed, or cannot be told"""
+    needed or unknown"""
     triangle_marks: Optional[NDArray[np.uint8]]
     """(m,) with ``details``, for each triangle the sum of 1: intersects another, 2: part of a hole,
     4: at the torn edges of a handle, 8: at a bridge between parts, 16: at an edge outside the
@@ -185,7 +185,7 @@ class Optimization:
 
     phases: tuple[OptimizationPhase, ...]
     energy: float  #: total absolute curvature and a penalty on needles [unit of the input]
-    rough: float  #: share of rough vertices after the first flips, in [0, 1]
+    rough: float  #: fraction of rough vertices after the first flips, in [0, 1]
     noise_steps: int  #: of smoothing that it took because the cloud is noisy; 0: it is not
     smoothed_self_intersections: int  #: with ``noise_steps``: on the smoothed points
     alignment: float  #: how far the sampling follows the curvature, in [-1, 1]

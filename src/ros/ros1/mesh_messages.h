@@ -13,7 +13,7 @@ namespace spherical_param_ros {
 
 pcl_msgs::PolygonMesh polygonMeshOf(const Mesh& mesh, const std_msgs::Header& header);
 
-/// Has neither header nor colours: whoever takes it knows the frame.
+/// Has neither header nor colours: its receiver must know the frame.
 shape_msgs::Mesh shapeOf(const Mesh& mesh);
 
 /// A TRIANGLE_LIST with a colour for each corner where the mesh has colours.

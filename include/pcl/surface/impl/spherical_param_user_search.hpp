@@ -37,7 +37,7 @@ struct UserSearch {
  * has both, e.g. KdTree the one and FlannSearch the other. */
 enum class SearchIndexSpace { Cloud, Subset };
 
-/** \brief Finds out which numbers `search` returns for a subset. Points are told apart by asking
+/** \brief Finds out which numbers `search` returns for a subset. Points are distinguished by asking
  * for the one neighbour of a point of the subset, which is the point itself. */
 template <typename PointInT>
 SearchIndexSpace findSearchIndexSpace(const pcl::search::Search<PointInT>& search,
