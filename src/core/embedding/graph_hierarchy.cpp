@@ -17,7 +17,8 @@
 namespace spherical_param::internal {
 namespace {
 
-/// A level that keeps more than this fraction of the nodes is left out.
+/// A level that keeps more than this fraction of the nodes is left out, and is the last: levels of
+/// a hub with n neighbours could be as many as these. No cloud has any: 0.6 and 1 change nothing.
 constexpr double kMaxKeptFraction = 0.9;
 
 /// A graph of more neighbours a node is far from planar, as one of k nearest neighbours is, and no

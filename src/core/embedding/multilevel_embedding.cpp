@@ -24,27 +24,35 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Smoothing sweeps on each level.
+// The experiments are on 13 models and 13 shapes of up to 60,000 points, each with the default
+// options and with nearest neighbours: 8 of these 52 meshes intersect themselves. With uniform
+// weights and with a tolerance there are 104 meshes, of which 13 intersect themselves.
+
+/// Smoothing sweeps on each level. With 0 or 3, 15 of the 104 intersect themselves, with 20, 14.
 constexpr int kSweeps = 10;
-/// Levels of at most this number of nodes are solved fully, not only smoothed.
+/// Levels of at most this number of nodes are solved fully, not only smoothed. With none, 20 of the
+/// 104 intersect themselves, with those up to 3,000, 16, with all, 13.
 constexpr std::size_t kMaxSolvedSize = 10000;
 /// Relative residual to which a level is solved fully: limbs shrink exponentially along the sphere,
-/// so that no absolute tolerance would show whether their tips are solved.
+/// so that no absolute tolerance would show whether their tips are solved. With 1e-2, 10 of the 52
+/// intersect themselves, with 1, 26.
 constexpr double kSolvedTolerance = 1e-4;
-/// Linear systems of at most this number of nodes are solved directly.
+/// Linear systems of at most this number of nodes are solved directly. With all, the time is 1.5
+/// times as long.
 constexpr std::size_t kMaxDirectSize = 2000;
-/// Smoothing sweeps on a planar start, whose edges are far from their lengths.
+/// Smoothing sweeps on a planar start, whose edges are far from their lengths. With 0, 9 of the 52
+/// intersect themselves.
 constexpr int kStartSweeps = 3;
 /// Beyond this mean it collapses further, by the same factor in each step, unless there is a
-/// barrier.
+/// barrier. Without a bound the meshes are the same, but take a fifth longer.
 constexpr double kMaxStartCentroid = 0.99;
 /// Finer levels than the coarsest are tried up to this size, where all starts collapse: the fewer
 /// nodes are around a limb, the weaker is the barrier that keeps the sphere from slipping off it.
+/// With the coarsest alone, 441,107 pairs of triangles of a tube between two balls intersect
+/// instead of 1,734; the bound limits the time.
 constexpr std::size_t kMaxStartSize = 100000;
 /// A start is solved in about as much work as this number of passes over the nodes.
 constexpr int kMaxStartPasses = 200;
-/// Beyond this mean the embedding has slipped along a tube towards one of its ends.
-constexpr double kSlippedCentroid = 0.5;
 /// The work on all levels; level 0 is the graph itself.
 class Solver {
 public:
@@ -136,22 +144,16 @@ private:
     solveStart(l, best_center_, preconditioner, progress, start);
   }
 
-  /// The start on the coarsest level that has a good one, or else the last one found. If none
-  /// is, as on graphs of a few nodes or with wide gaps, that on the coarsest level with a barrier.
+  /// The start on the coarsest level on which one does not collapse. If all do, as on graphs of a
+  /// few nodes or with wide gaps, that on the coarsest level with a barrier.
   Positions solveCoarsest(std::size_t& level) {
     Positions best;
     level = hierarchy_.levels.size();
-    for (std::size_t l = level + 1; l-- > 0;) {
+    for (std::size_t l = level + 1; l-- > 0 && best.cols() == 0;) {
       if (l < hierarchy_.levels.size() && graphOf(l).size() > kMaxStartSize)
         break;
-      Positions u = solveStarts(l);
-      if (u.cols() == 0)
-        continue;
-      best = std::move(u);
+      best = solveStarts(l);
       level = l;
-      // With too few nodes around a limb it may have slipped along it: try more.
-      if (best.rowwise().mean().norm() < kSlippedCentroid)
-        break;
     }
     if (best.cols() == 0) {
       result_.report.added_barrier = true;
