@@ -37,6 +37,7 @@ class CMakeBuild(build_ext):
             "BUILD_SHARED_LIBS": "OFF",
             "SPHERICAL_PARAM_BUILD_PYTHON": "ON",
             "SPHERICAL_PARAM_BUILD_PCL": "OFF",
+            "SPHERICAL_PARAM_BUILD_TOOLS": "OFF",
             "SPHERICAL_PARAM_PYTHON_INSTALL_DIR": ".",
             "Python3_EXECUTABLE": sys.executable,
         }

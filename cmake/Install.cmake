@@ -1,6 +1,6 @@
 # Installation: libraries, headers, CMake package with the components core and pcl, pkg-config
-# files, package.xml. The map belongs to the component core. Nothing that is installed holds a path of the build machine, except those
-# that PCL's own package puts into its targets.
+# files, package.xml. The map belongs to the component core. Nothing that is installed holds a path
+# of the build machine, except those that PCL's own package puts into its targets.
 #
 # The components of the installation: core and pcl are what programs need to run, core_dev and
 # pcl_dev what is needed to build them. cmake/Packaging.cmake makes packages of them.

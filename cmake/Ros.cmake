@@ -58,7 +58,7 @@ endif()
 
 if(SPHERICAL_PARAM_ROS_VERSION AND NOT SPHERICAL_PARAM_BUILD_PCL)
   if(NOT SPHERICAL_PARAM_BUILD_ROS STREQUAL "AUTO")
-    message(FATAL_ERROR "The nodes of ROS need the PCL class: set SPHERICAL_PARAM_BUILD_PCL to ON, "
+    message(FATAL_ERROR "The nodes of ROS need PCL: set SPHERICAL_PARAM_BUILD_PCL to ON, "
       "or SPHERICAL_PARAM_BUILD_ROS to OFF")
   endif()
   message(STATUS "The nodes of ROS are not built: they need SPHERICAL_PARAM_BUILD_PCL")

@@ -95,7 +95,8 @@ from setuptools import build_meta
 print(build_meta.build_sdist(sys.argv[1]))' "$work/sdist" &&
     tar -C "$work" -xzf "$work"/sdist/spherical-param-*.tar.gz &&
     cmake -S "$(echo "$work"/spherical-param-*/)" -B "$work/build" -G Ninja \
-      -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_PYTHON=ON &&
+      -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_TOOLS=OFF \
+      -DSPHERICAL_PARAM_BUILD_PYTHON=ON &&
     # All sources are there: what the builds before compiled shows that they do.
     cmake --build "$work/build" --target spherical_param_python -- -n | grep . >/dev/null
 }

@@ -114,7 +114,7 @@ no_nodes() { # as configured
 rejected_without_pcl() {
   local out
   ! out="$(configured "$work/rejected" "$tree" -DSPHERICAL_PARAM_BUILD_ROS=ON \
-    -DSPHERICAL_PARAM_BUILD_PCL=OFF 2>&1)" && grep -q 'need the PCL class' <<<"$out"
+    -DSPHERICAL_PARAM_BUILD_PCL=OFF 2>&1)" && grep -q 'need PCL' <<<"$out"
 }
 
 nodes_in_workspace() {
@@ -228,8 +228,8 @@ if check "cmake: build" built_by_cmake "$plain_folder"; then
   check "cmake: nothing of ROS" not_installed "$plain_folder/install" "${of_ros1[@]}" \
     .catkin || true
 fi
-check "cmake with ROS 1, without the PCL class: rejected" rejected_without_pcl || true
-check "catkin, without the PCL class: no nodes" no_nodes "$work/without-pcl" "$tree" \
+check "cmake with ROS 1, without PCL: rejected" rejected_without_pcl || true
+check "catkin, without PCL: no nodes" no_nodes "$work/without-pcl" "$tree" \
   "${in_catkin[@]}" -DSPHERICAL_PARAM_BUILD_PCL=OFF || true
 check "catkin_make: nodes in the one project of the workspace" nodes_in_workspace || true
 check "catkin: no nodes inside another package" no_nodes_inside_another || true
