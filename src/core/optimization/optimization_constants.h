@@ -31,26 +31,32 @@ constexpr double kEvenPolishMu = 4.0;
 constexpr double kMaxUnalignedSampling = 0.16;
 constexpr double kMaxEvenSampling = 0.3;
 /// Of an even sampling, angles up to this factor times the median around a vertex are typical, and
-/// those up to the least one [rad], 10 degrees.
+/// those up to the least one [rad], 10 degrees. With a factor of 3 or 8 the elephant as a raw scan
+/// has 3 % more self-intersections; 0 and 20 degrees change 2 and 3 models, without
+/// self-intersections before and after.
 constexpr double kTypicalAngleFactor = 5.0;
 constexpr double kMinTypicalAngle = 0.17453292519943295;
 
 // --- Gains ---------------------------------------------------------------------------------------
 
-/// Changes of the energy below this are rounding [mean length of the graph's edges].
+/// Changes of the energy below this are rounding [mean length of the graph's edges]. With 0, half
+/// of the models change, for the better as often as for the worse.
 constexpr double kMinGain = 1e-9;
 /// Changes of the energy of a few triangles below this fraction of it are rounding: less than 16
 /// terms, none negative, are added. A flip that gains no more could be made and undone forever.
+/// It matters where the terms exceed some 300,000 mean lengths: of no cloud here.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 // --- Rough vertices ------------------------------------------------------------------------------
 
 /// Edges with a smaller cosine between their triangles' normals (37 degrees) are sharp, those below
-/// the other one (120 degrees) folded.
+/// the other one (120 degrees) folded. With 0.9 the noisy penguin has 3,221 self-intersections
+/// instead of 17, with 0.6, 81; with 0 for folded, 207, with -0.8 the cheburashka 5 instead of 0.
 constexpr double kMinSmoothCosine = 0.8;
 constexpr double kMinUnfoldedCosine = -0.5;
 /// Neighbours in the graph up to this distance [mean length of a vertex's edges] should be near on
-/// the mesh.
+/// the mesh. With 1 the noisy penguin has 174 self-intersections instead of 17, with 2.5 the noisy
+/// homer 436 instead of 237.
 constexpr double kMaxNearNeighbor = 1.5;
 /// Without relocation true edges fall to 0.9359; with one round a random sample keeps 2
 /// intersections.
@@ -83,7 +89,9 @@ constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
 /// Vertices that may be taken out in all: the sum of the first and of the second for each vertex,
 /// but at most the third for each vertex, so that clouds of less than 256 points do not take long
-/// either. Without the first a star keeps 309 intersections instead of 221.
+/// either. Without the first a star keeps 309 intersections instead of 221. With 1 for the second
+/// the noisy penguin keeps 141 instead of 17, with 20 the clouds take 1.3 times as long; with 5 for
+/// the third the noisy homer keeps 627 instead of 237.
 constexpr std::size_t kMaxRuinedVertices = 50000;
 constexpr std::size_t kMaxRuinsOfVertex = 5;
 constexpr std::size_t kMaxRuinsOfSmallCloud = 200;
@@ -100,19 +108,17 @@ constexpr int kMaxRoundsByEnergy = 5;
 /// doubled. From 12 on the noisy sphere keeps 122 intersections, up to 48 the cheburashka 3.
 constexpr std::size_t kMinUntangled = 6;
 constexpr std::size_t kMaxUntangled = 96;
-/// Intersections are counted among twice as many vertices as the part has, and these.
+/// Intersections are counted among twice as many vertices as the part has, and these. With none of
+/// these the springer keeps 32 intersections; with 1000 noisy clouds take 1.7 times as long.
 constexpr std::size_t kWatchedVertices = 200;
 
 // --- Analysis of the sampling --------------------------------------------------------------------
 
 /// Number of points that are looked at, about: the standard error of the mean is then below 0.02.
+/// With 500 one model of 26 clouds changes.
 constexpr std::size_t kTypicalSamples = 2500;
-/// With fewer points a quadric is not determined well enough.
+/// With fewer points a quadric, of six coefficients, is not determined well enough. 5 changes one
+/// cloud of few points.
 constexpr std::size_t kMinQuadricPoints = 8;
-
-// --- Smoothed meshes -----------------------------------------------------------------------------
-
-/// Rounds of smoothing and optimising on the smoothed points.
-constexpr int kMaxSmoothingRounds = 3;
 
 }  // namespace spherical_param::internal::optimization_constants
