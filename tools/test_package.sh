@@ -48,8 +48,10 @@ no_path_of_the_build() {
   ! grep -r --text -l -F -e "$PWD" "$work/unpacked"
 }
 
+# Packages hold no run paths: the system's folders are searched without. Here they are elsewhere.
 foreign_projects() {
-  cmake -DSOURCE_DIR="$PWD" -DBUILD_DIR="$PWD/build/package" -DWORK_DIR="$work/consumers" \
+  LD_LIBRARY_PATH="$work/unpacked/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" \
+    cmake -DSOURCE_DIR="$PWD" -DBUILD_DIR="$PWD/build/package" -DWORK_DIR="$work/consumers" \
     -DPREFIX="$work/unpacked/usr" "-DCOMPONENTS=core;pcl" -DGENERATOR=Ninja -DCXX=c++ \
     -DLIBDIR="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" -DPKG_CONFIG=pkg-config \
     -DVERSION="$(sed -n 's/^project(.* VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)" \
