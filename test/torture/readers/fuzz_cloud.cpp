@@ -4,7 +4,6 @@
 #include "common/errors.h"
 #include "fuzz_file.h"
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -51,7 +50,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   require(data->normals.empty() || data->normals.size() == count, "a normal for each point");
   require(data->colors.empty() || data->colors.size() == count, "a colour for each point");
   require(!data->has_alpha || !data->colors.empty(), "no alpha without colours");
-  require(data->rounding >= 0.0 && std::isfinite(data->rounding), "the rounding is a length");
   const std::optional<PointData> again = readOrRefuse(file.path());
   require(again && sameBytes(again->points, data->points) &&
               sameBytes(again->normals, data->normals) && sameBytes(again->colors, data->colors),

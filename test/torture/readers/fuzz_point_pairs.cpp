@@ -5,60 +5,53 @@
 #include "common/point_pairs.h"
 #include "fuzz_file.h"
 
-#include <pcl/PolygonMesh.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
-
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace {
 
 using namespace spherical_param::tools;
 using torture::require;
 
-/// A cloud on a sphere, one point of it twice and one not finite: these are no vertices of their
-/// own.
-struct Meshed {
-  explicit Meshed(int count) {
-    for (int i = 0; i < count; ++i) {
-      const double z = 1.0 - (2.0 * i + 1.0) / count;
-      const double radius = std::sqrt(1.0 - z * z);
-      cloud.data.addPoint({radius * std::cos(2.4 * i), radius * std::sin(2.4 * i), z});
-    }
-    cloud.data.points.push_back(cloud.data.points.front());
-    cloud.data.points.push_back({std::nanf(""), 0.0F, 0.0F});
-    auto points = pcl::PointCloud<pcl::PointXYZ>::Ptr(new pcl::PointCloud<pcl::PointXYZ>);
-    for (const Point& point : cloud.data.points) {
-      points->push_back(pcl::PointXYZ(point[0], point[1], point[2]));
-    }
-    cloud.reconstruction.setInputCloud(points);
-    pcl::PolygonMesh mesh;
-    cloud.reconstruction.reconstruct(mesh);
-    require(!mesh.polygons.empty(), "a sphere is meshed");
-  }
-
+/// The mesh of a cloud on a sphere, one point of it twice and one not finite: these are no vertices
+/// of their own.
+CloudReconstruction meshedSphere(int count) {
   CloudReconstruction cloud;
-};
+  std::vector<Point>& points = cloud.data.points;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / count;
+    const double radius = std::sqrt(1.0 - z * z);
+    points.push_back({radius * std::cos(2.4 * i), radius * std::sin(2.4 * i), z});
+  }
+  points.push_back(points.front());
+  spherical_param::Positions positions(3, count + 1);
+  for (int i = 0; i <= count; ++i) {
+    positions.col(i) = cloud.data.position(static_cast<std::size_t>(i));
+    cloud.meshed.push_back(i);
+  }
+  points.push_back({std::nan(""), 0.0, 0.0});
+  cloud.result = spherical_param::reconstruct(positions);
+  return cloud;
+}
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static torture::FuzzFile file(".txt");
-  static const Meshed first(60);
-  static const Meshed second(40);
+  static const CloudReconstruction first = meshedSphere(60);
+  static const CloudReconstruction second = meshedSphere(40);
   file.fill(bytes, size);
   try {
-    for (const FilePair& pair : readPointPairs(file.path(), first.cloud, second.cloud)) {
+    for (const FilePair& pair : readPointPairs(file.path(), first, second)) {
       require(pair.line > 0, "a pair has its line");
       for (std::size_t side = 0; side < 2; ++side) {
-        const CloudReconstruction& cloud = (side == 0 ? first : second).cloud;
+        const CloudReconstruction& cloud = side == 0 ? first : second;
         const auto points = static_cast<int>(cloud.data.points.size());
         require(pair.points[side] >= 0 && pair.points[side] < points, "the point is one");
         require(pair.vertices[side] >= -1 &&
-                    pair.vertices[side] <
-                        static_cast<int>(cloud.reconstruction.getVertexIndices().size()),
+                    pair.vertices[side] < static_cast<int>(cloud.result.vertexCount()),
                 "the vertex is one, or none");
       }
     }
