@@ -74,9 +74,12 @@ OptionValue toValue(const OptionRow& row, const py::handle& value) {
   if (py::isinstance<py::str>(value))
     return value.cast<std::string>();
   try {
-    if (PyIndex_Check(value.ptr()) != 0)
-      return py::reinterpret_steal<py::int_>(py::handle(PyNumber_Index(value.ptr())))
-          .cast<std::int64_t>();
+    if (PyIndex_Check(value.ptr()) != 0) {
+      PyObject* const index = PyNumber_Index(value.ptr());  // none for an array of two numbers
+      if (index == nullptr)
+        throw py::error_already_set();
+      return py::reinterpret_steal<py::int_>(index).cast<std::int64_t>();
+    }
     if (!py::isinstance<py::bytes>(value))
       return py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>();
   } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): no number, or too large

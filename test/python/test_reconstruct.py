@@ -307,6 +307,11 @@ class Options(unittest.TestCase):
         )
         self.assertEqual(len(mesh.vertices), 400)
 
+    def test_arrays_are_no_numbers(self):
+        for name in ("k", "damping"):
+            with self.assertRaisesRegex(sp.InvalidInput, name + " = .* cannot be used; use "):
+                sp.reconstruct(self.points, **{name: np.array([8, 9])})
+
     def test_an_absurd_k_is_refused_before_it_takes_all_memory(self):
         with self.assertRaisesRegex(sp.InvalidInput, "do not fit into memory; use a smaller k"):
             sp.reconstruct(shapes.directions(60000), k=2**31 - 1)
