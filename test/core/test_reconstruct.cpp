@@ -1130,5 +1130,13 @@ TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   expect_reason(good, lists, options, "smoothing = -1");
 }
 
+TEST(NeighborSearch, NoPointsAndQueriesThatAreNoIndicesAreRejected) {
+  EXPECT_THROW(makeNeighborSearch(Positions(3, 0)), InvalidInput);
+  const NeighborSearch search = makeNeighborSearch(Positions::Random(3, 10));
+  EXPECT_EQ(search({0, 9}, 3).size(), 2U);
+  EXPECT_THROW(search({-1}, 3), InvalidInput);
+  EXPECT_THROW(search({10}, 3), InvalidInput);
+}
+
 }  // namespace
 }  // namespace spherical_param

@@ -103,8 +103,14 @@ NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int c
 
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution) {
   internal::checkThreads(execution.threads);
+  if (points.cols() == 0)
+    throw InvalidInput("makeNeighborSearch: there are no points; give at least one");
   return [tree = std::make_shared<const KdTree>(points),
           execution](const std::vector<Index>& queries, int count) {
+    const auto size = static_cast<Index>(tree->size());
+    if (!std::all_of(queries.begin(), queries.end(),
+                     [size](Index query) { return query >= 0 && query < size; }))
+      throw InvalidInput("makeNeighborSearch: a query is no index of a point; use 0 to n - 1");
     return search(*tree, queries, count, execution);
   };
 }
