@@ -173,6 +173,7 @@ private:
     LevelReport report;
     double value = 0.0;
     std::exception_ptr error;
+    bool interrupted = false;  ///< the error only ends it because another start has failed
   };
 
   /// Unfolds a start and solves it, with adaptive weights, whatever was chosen: only they do not
@@ -211,8 +212,10 @@ private:
         const auto progress = [&](int, double) {
           if (thread == 0)
             reportFraction(report_, static_cast<double>(first) / static_cast<double>(count));
-          else if (has_failed.load(std::memory_order_relaxed))
+          else if (has_failed.load(std::memory_order_relaxed)) {
+            starts[i].interrupted = true;
             throw Cancelled("embed: another start failed");
+          }
         };
         try {
           solveStart(l, centers[first + i], preconditioners[thread], progress, starts[i]);
@@ -223,7 +226,7 @@ private:
       });
       // That of the calling thread comes first.
       for (const Start& start : starts)
-        if (start.error)
+        if (start.error && !start.interrupted)
           std::rethrow_exception(start.error);
       for (std::size_t i = 0; i < starts.size(); ++i) {
         Start& start = starts[i];
