@@ -163,11 +163,11 @@ private:
   void endOnNoise() {
     points_ = given_;
     optimizer_.setPoints(*points_);
+    result_.report.smoothed_self_intersections = result_.self_intersections.size();
     if (!options_.finish_on_points)
       return;
     // The work on the smoothed points may have spent it: a few points then stayed tangled.
     budget_ = budgetOf(static_cast<std::size_t>(points_->cols()));
-    result_.report.smoothed_self_intersections = result_.self_intersections.size();
     result_.self_intersections = optimizer_.intersections(report_);
     const auto count = static_cast<double>(result_.self_intersections.size());
     if (count <= std::max(tuned::kMaxFewIntersections,
@@ -334,7 +334,7 @@ private:
 
   /// Goes back to the mesh before the polish if fewer of its triangles intersect.
   void rollBackPolish(const Triangles& unpolished) {
-    phase("roll back", [&] {
+    OptimizationPhase& rolled_back = phase("roll back", [&] {
       const Triangles polished = optimizer_.mesh().triangles();
       optimizer_.reset(unpolished);
       auto pairs = optimizer_.intersections(report_);
@@ -344,7 +344,8 @@ private:
       }
       optimizer_.reset(polished);
       return Tally{1, 0};
-    }).self_intersections = result_.self_intersections.size();
+    });
+    rolled_back.self_intersections = result_.self_intersections.size();
   }
 
   const Graph& graph_;
