@@ -22,7 +22,7 @@ struct Execution {
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Called every second or more often during long work, from the calling thread only. Returning
   /// false ends the work with Cancelled. May be empty. The paper's own stages (qhull, and a
-  /// tolerance for the multilevel embedding) may take longer between two calls.
+  /// tolerance for the multilevel embedding) and smoothing may take longer between two calls.
   std::function<bool(const Progress&)> progress = {};
 };
 

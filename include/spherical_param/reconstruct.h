@@ -24,8 +24,8 @@ namespace spherical_param {
 
 /// Parameters of reconstruct(), nested by stage. The defaults need no tuning. The paper's own
 /// method is GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and
-/// TriangulationMethod::Qhull, with OptimizationMethod::None. optionTable() lists them with their
-/// ranges.
+/// TriangulationMethod::Qhull, with OptimizationMethod::None. optionTable() lists those
+/// that tools, Python and ROS have, with their ranges.
 struct Options : Execution {
   GraphOptions graph;                  ///< how points become neighbours
   EmbeddingOptions embedding;          ///< how the graph is embedded
@@ -35,9 +35,9 @@ struct Options : Execution {
   /// the smoothed points.
   SmoothingOptions smoothing;
 
-  /// Retries at most while the mesh intersects itself although the cloud looks like a closed
-  /// surface: with other graphs, then other seeds, then the radial start. The best mesh is
-  /// returned. 0 to 99.
+  /// Retries at most while the mesh intersects itself, if the cloud looks like a closed surface or
+  /// few triangles intersect: with other graphs, another seed, the radial start, then further
+  /// seeds. The best mesh is returned. 0 to 99.
   int retries = 3;
   std::uint32_t seed = 1;  ///< of all random choices
   /// Fill Result::vertex_residuals and SurfaceDiagnosis::triangle_marks as well.

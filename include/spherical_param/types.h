@@ -7,7 +7,8 @@
 #include <vector>
 
 /// Core of the library: meshing of genus-0 point clouds by spherical parameterisation.
-/// It depends on Eigen and the standard library only, reads and writes no files and prints nothing.
+/// Its headers need Eigen and the standard library only. It reads and writes no files and prints
+/// nothing.
 namespace spherical_param {
 
 /// \addtogroup types

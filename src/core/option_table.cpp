@@ -192,7 +192,7 @@ std::vector<OptionRow> runRows() {
           "seed", "seed", "seed of all random choices", Everybody, 0, kMaxSeed,
           [](Options & o) -> auto& { return o.seed; }),
       number(
-          "threads", "threads", "threads, 0: as many as there are processors", Everybody, 0, 1024,
+          "threads", "threads", "threads, 0: as many as OpenMP would use", Everybody, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),
   };
 }

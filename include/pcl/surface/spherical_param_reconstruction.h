@@ -131,8 +131,8 @@ public:
    * iterative embedding aims at 1e-8; the multilevel embedding ends with its smoothing sweeps and
    * does not converge.
    * \note Set it, 1e-8 say, for a map that hardly depends on how it was reached, and where
-   * smoothing alone leaves folds (getResult().measures.edges_outside_graph), as it may on long thin
-   * limbs. The mesh hardly gains otherwise. */
+   * smoothing alone leaves folds (getResult().diagnosis.edges_outside_graph), as it may on long
+   * thin limbs. The mesh hardly gains otherwise. */
   inline void setTolerance(std::optional<double> tolerance) {
     options_.embedding.tolerance = tolerance;
   }

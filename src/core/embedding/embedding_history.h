@@ -39,11 +39,10 @@ using EmbeddingObserver = std::function<void(const EmbeddingState&)>;
 class EmbeddingRecorder {
 public:
   /// For an embedding without levels: keeps nodes in even distances.
-  /// \param nodes of the graph. \param limits of the history. \throw InvalidInput if out of range.
+  /// \param nodes of the graph. \param limits of the history.
   EmbeddingRecorder(std::size_t nodes, const HistoryLimits& limits);
   /// For an embedding by levels: keeps nodes that coarser levels are made of.
   /// \param nodes of the graph. \param hierarchy is used here only. \param limits of the history.
-  /// \throw InvalidInput for limits out of range.
   EmbeddingRecorder(std::size_t nodes, const GraphHierarchy& hierarchy,
                     const HistoryLimits& limits);
 
