@@ -78,13 +78,12 @@ struct MeshOptimization {
 /// Relocate: vertices at sharp edges, or far on the mesh from their neighbours in the graph, are
 ///           taken out and put back where they cost least.
 /// Ruin and recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put
-/// back in
-///           random order.
+///           back in random order.
 /// Untangle: the same with up to 96 vertices around triangles that intersect, until none do.
 /// Polish:   flips (and relocation) again, in terms that suit the cloud. Where the sampling follows
 ///           the surface's curvature (simplified and designed models), or is random: angle^1.5 and
 ///           mu = 0.8.
-///           Elsewhere (scans, even samplings) angles count only beyond what is usual at a place,
+///           Elsewhere (scans, even samplings) angles count only beyond what is typical at a place,
 ///           and mu = 4: nearly the Delaunay triangulation on the surface, but for sharp edges.
 ///           Triangles that intersect thereafter are untangled, or else the polish is rolled back.
 ///

@@ -18,15 +18,14 @@ using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& poi
 
 /// Builds a k-d tree of points, in double precision.
 ///
-/// \param points 3 x n, n >= 1, finite; copied. Those that are near in space should be near in
-/// memory:
+/// \param points 3 x n, n >= 1, finite; copied. Those near in space should be near in memory:
 ///               spatialOrder() is such an order. Squared distances must neither overflow nor
 ///               underflow: bring the points to an extent of about 1.
 /// \param execution threads, progress; its progress callback must outlive the search.
 /// \return a search among these points; copies of it share the tree. It throws InvalidInput for
 ///         queries out of [0, n) and for lists of more than 2^31 entries in all; Cancelled.
-/// \throw InvalidInput for no points; std::bad_alloc. Cost: O(n log n), and O(log n) for each
-/// query, typically.
+/// \throw InvalidInput for no points; std::bad_alloc.
+/// Cost: O(n log n), and O(log n) for each query, typically.
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution = {});
 
 /// The `count` nearest neighbours of all points. \see makeNeighborSearch

@@ -19,8 +19,7 @@ enum class SmoothingMethod {
   /// The biharmonic flow dx/dt = -L^2 x (the higher order of Desbrun et al. 1999, "Implicit fairing
   /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2;
   /// its frequency of gain one half, c, is that of this number of steps of Umbrella with lambda
-  /// = 1. As
-  /// strong as those on noise, and hardly shrinks.
+  /// = 1. As strong as those on noise, and hardly shrinks.
   Biharmonic,
 };
 

@@ -23,7 +23,7 @@ constexpr double kMinMass = 1e-6;
 /// A vertex of more neighbours is only taken out if there are too few others.
 constexpr Index kMaxCoarseNeighbors = 8;
 /// This fraction of the candidates, the cheapest, is considered for a batch.
-constexpr double kShareOfCandidates = 0.7;
+constexpr double kFractionOfCandidates = 0.7;
 /// With fewer vertices than this they are taken out one at a time.
 constexpr Index kFewVertices = 64;
 
@@ -323,7 +323,7 @@ private:
         alive_.size() <= static_cast<std::size_t>(kFewVertices)
             ? candidates_.size()
             : static_cast<std::size_t>(
-                  std::ceil(kShareOfCandidates * static_cast<double>(candidates_.size())));
+                  std::ceil(kFractionOfCandidates * static_cast<double>(candidates_.size())));
     const std::size_t most = alive_.size() <= static_cast<std::size_t>(kFewVertices)
                                  ? 1
                                  : alive_.size() - static_cast<std::size_t>(kFewVertices);

@@ -215,7 +215,7 @@ public:
     const double area = options.area_weight;
     const double angle = std::max(1.0 - area, kMinAngleWeight);
     const double area_of_mass = kAreaOfSphere / mass_;
-    final_ = {angle, (1.0 - kRatioShare) * area, kRatioShare * area, area_of_mass};
+    final_ = {angle, (1.0 - kRatioFraction) * area, kRatioFraction * area, area_of_mass};
     const double mild_area = std::min(area, kMildAreaWeight);
     mild_ = {1.0 - mild_area, 0.0, mild_area, area_of_mass};
   }
@@ -242,7 +242,7 @@ private:
   /// Share of the ratio in the weight of areas, the logarithm has the rest. The more of that, the
   /// more triangles have just their areas, but the rougher is the map: others next to them are
   /// sheared for it.
-  static constexpr double kRatioShare = 0.7;
+  static constexpr double kRatioFraction = 0.7;
   /// Areas weigh no more than this while there are vertices that came just now: triangles that all
   /// have their areas leave each other no room to move, whatever their shapes are.
   static constexpr double kMildAreaWeight = 0.7;

@@ -229,7 +229,7 @@ bool isFlipped(const Positions& sphere, Index a, Index b, Index c) {
   return orientation3d(Eigen::Vector3d::Zero(), sphere.col(a), sphere.col(b), sphere.col(c)) <= 0;
 }
 
-/// Mends flipped triangles by moves of single vertices.
+/// Untangles flipped triangles by moves of single vertices.
 class Untangler {
 public:
   Untangler(const Triangles& triangles, Eigen::Index n, const std::vector<char>& is_fixed)
@@ -254,7 +254,7 @@ public:
     return all;
   }
 
-  /// Mends what it can. \return the triangles that are still flipped
+  /// Untangles what it can. \return the triangles that are still flipped
   std::vector<Index> untangle(Positions& sphere, int rounds, int threads, Index& moved) const {
     std::vector<Index> bad = flipped(sphere, threads);
     for (int round = 0; round < rounds && !bad.empty(); ++round) {

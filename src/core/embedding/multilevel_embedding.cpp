@@ -7,7 +7,6 @@
 #include "parallel.h"
 #include "planar_start.h"
 #include "progress.h"
-#include "spherical_param/errors.h"
 #include "tangential_laplacian.h"
 
 #include <algorithm>
@@ -173,8 +172,10 @@ private:
     LevelReport report;
     double value = 0.0;
     std::exception_ptr error;
-    bool interrupted = false;  ///< the error only ends it because another start has failed
   };
+
+  /// Ends a start whose result is not needed any more.
+  struct AnotherFailed {};
 
   /// Unfolds a start and solves it, with adaptive weights, whatever was chosen: only they do not
   /// collapse it. Several threads may do so at once.
@@ -212,13 +213,13 @@ private:
         const auto progress = [&](int, double) {
           if (thread == 0)
             reportFraction(report_, static_cast<double>(first) / static_cast<double>(count));
-          else if (has_failed.load(std::memory_order_relaxed)) {
-            starts[i].interrupted = true;
-            throw Cancelled("embed: another start failed");
-          }
+          else if (has_failed.load(std::memory_order_relaxed))
+            throw AnotherFailed();
         };
         try {
           solveStart(l, centers[first + i], preconditioners[thread], progress, starts[i]);
+        } catch (const AnotherFailed&) {
+          // Its error is the one to report.
         } catch (...) {
           starts[i].error = std::current_exception();
           has_failed.store(true, std::memory_order_relaxed);
@@ -226,7 +227,7 @@ private:
       });
       // That of the calling thread comes first.
       for (const Start& start : starts)
-        if (start.error && !start.interrupted)
+        if (start.error)
           std::rethrow_exception(start.error);
       for (std::size_t i = 0; i < starts.size(); ++i) {
         Start& start = starts[i];
@@ -265,7 +266,6 @@ private:
   }
 
   /// Damped Jacobi sweeps: `damping` times the tangential Laplacian, all nodes at once.
-  ///
   void smooth(std::size_t l, const EdgeWeightLaw& weights, int sweeps, const FractionReport& swept,
               Positions& u) const {
     const Graph& graph = graphOf(l);

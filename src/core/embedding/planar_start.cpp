@@ -17,9 +17,11 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Nodes far from each other by which central nodes are found.
+/// Nodes far from each other by which central nodes are found. With 1 the 25 awkward clouds of
+/// local_delaunay_graph.cpp have 1,377,940 self-intersections instead of 61,815, with 4, 58,590.
 constexpr int kLandmarks = 12;
-/// Logarithm of the factor by which conductances fall with each edge of distance.
+/// Logarithm of the factor by which conductances fall with each edge of distance. With 0 these
+/// clouds have 77,309.
 constexpr double kDrift = 0.5;
 /// Largest argument of exp(), with room for products.
 constexpr double kMaxExponent = 300.0;

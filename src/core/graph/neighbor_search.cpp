@@ -77,6 +77,9 @@ constexpr std::size_t kMaxEntries = std::size_t{1} << 31;
 
 NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int count,
                      const Execution& execution) {
+  if (std::any_of(points.begin(), points.end(),
+                  [n = static_cast<Index>(tree.size())](Index i) { return i < 0 || i >= n; }))
+    throw InvalidInput("makeNeighborSearch: a query is no index of a point; use 0 to n - 1");
   // One more, since a point is its own neighbour.
   const std::size_t size =
       std::min(static_cast<std::size_t>(std::max(count, 0)), tree.size() - 1) + 1;
@@ -107,10 +110,6 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
     throw InvalidInput("makeNeighborSearch: there are no points; give at least one");
   return [tree = std::make_shared<const KdTree>(points),
           execution](const std::vector<Index>& queries, int count) {
-    const auto size = static_cast<Index>(tree->size());
-    if (!std::all_of(queries.begin(), queries.end(),
-                     [size](Index query) { return query >= 0 && query < size; }))
-      throw InvalidInput("makeNeighborSearch: a query is no index of a point; use 0 to n - 1");
     return search(*tree, queries, count, execution);
   };
 }

@@ -28,8 +28,8 @@ inline constexpr std::size_t kParallelThreshold = 4096;
 /// thread that does not run, which takes as long as many such passes.
 inline constexpr std::size_t kShortPassThreshold = 50000;
 
-/// Least number of items between reports: regions that follow each other wait for their
-/// slowest thread once more each.
+/// Least number of items between reports: regions that follow each other wait for their slowest
+/// thread once more each.
 inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
 /// Approximate maximum of reports of a loop.
 inline constexpr std::size_t kMaxReports = 32;

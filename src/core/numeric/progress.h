@@ -8,8 +8,8 @@
 
 namespace spherical_param::internal {
 
-/// Receives the fraction of a loop that is done, in [0, 1], from the calling thread, which
-/// may be inside of a parallel region. It may throw to end the work. May be empty.
+/// Receives the fraction of a loop that is done, in [0, 1], from the calling thread, which may
+/// be inside of a parallel region. It may throw to end the work. May be empty.
 using FractionReport = std::function<void(double)>;
 
 /// The report of a stage: it passes the fraction to the progress callback and throws Cancelled if

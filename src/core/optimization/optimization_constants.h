@@ -39,8 +39,9 @@ constexpr double kMinTypicalAngle = 0.17453292519943295;
 
 // --- Gains ---------------------------------------------------------------------------------------
 
-/// Changes of the energy below this are rounding [mean length of the graph's edges]. With 0, half
-/// of the models change, for the better as often as for the worse.
+/// Changes of the energy below this are rounding [mean length of the graph's edges]. With 0,
+/// 11 of 26 clouds change, without self-intersections before and after, and noisy ones for the
+/// better or the worse.
 constexpr double kMinGain = 1e-9;
 /// Changes of the energy of a few triangles below this fraction of it are rounding: less than 16
 /// terms, none negative, are added. A flip that gains no more could be made and undone forever.

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <sstream>
+#include <string>
 
 namespace {
 
@@ -18,21 +19,20 @@ using torture::require;
 /// The mesh of a cloud on a sphere, one point of it twice and one not finite: these are no vertices
 /// of their own.
 CloudReconstruction meshedSphere(int count) {
-  CloudReconstruction cloud;
-  std::vector<Point>& points = cloud.data.points;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count;
-    const double radius = std::sqrt(1.0 - z * z);
-    points.push_back({radius * std::cos(2.4 * i), radius * std::sin(2.4 * i), z});
-  }
-  points.push_back(points.front());
-  spherical_param::Positions positions(3, count + 1);
+  std::ostringstream points;
   for (int i = 0; i <= count; ++i) {
-    positions.col(i) = cloud.data.position(static_cast<std::size_t>(i));
-    cloud.meshed.push_back(i);
+    const double z = 1.0 - (2.0 * (i % count) + 1.0) / count;
+    const double radius = std::sqrt(1.0 - z * z);
+    const double angle = 2.4 * (i % count);
+    points << radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << z << '\n';
   }
-  points.push_back({std::nan(""), 0.0, 0.0});
-  cloud.result = spherical_param::reconstruct(positions);
+  points << "nan 0 0\n";
+  const std::string text = points.str();
+  torture::FuzzFile file(".xyz");
+  file.fill(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  Console console(false);
+  CloudReconstruction cloud;
+  reconstructCloud(file.path(), {}, console, cloud);
   return cloud;
 }
 
