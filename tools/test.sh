@@ -73,7 +73,7 @@ if [ "$quick" = no ]; then
   echo 'leak:libomp' >"$logs/leaks-of-others"
   export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
   # The core, the PCL class, the seam to ROS and the readers; what tools do with files is tested above,
-  # and tools/torture.sh fuzzes.
+  # and tools/stress.sh fuzzes.
   programs=(test_core test_spherical_param_reconstruction test_ros_seam test_cloud_reader test_faults)
   if check "clang, ASan and UBSan: build" configure_and_build asan "${programs[@]}"; then
     # Not what runs long on large clouds: the same code runs on smaller ones in other tests.

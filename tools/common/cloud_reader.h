@@ -12,7 +12,7 @@ namespace spherical_param::tools {
 /// but for compressed .pcd, whose fields have to be unpacked as a whole.
 ///
 /// PCL's readers are not used: they trust the file, so that a broken one may end the program
-/// without a message. Ours are fuzzed (test/torture/readers).
+/// without a message. Ours are fuzzed (test/fuzz).
 ///
 /// \param progress is called with the fraction that is read; may be empty.
 /// \throw UsageError, Failure.

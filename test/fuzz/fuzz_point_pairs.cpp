@@ -14,7 +14,7 @@
 namespace {
 
 using namespace spherical_param::tools;
-using torture::require;
+using stress::require;
 
 /// The mesh of a cloud on a sphere, one point of it twice and one not finite: these are no vertices
 /// of their own.
@@ -28,7 +28,7 @@ CloudReconstruction meshedSphere(int count) {
   }
   points << "nan 0 0\n";
   const std::string text = points.str();
-  torture::FuzzFile file(".xyz");
+  stress::FuzzFile file(".xyz");
   file.fill(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   Console console(false);
   CloudReconstruction cloud;
@@ -39,7 +39,7 @@ CloudReconstruction meshedSphere(int count) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  static torture::FuzzFile file(".txt");
+  static stress::FuzzFile file(".txt");
   static const CloudReconstruction first = meshedSphere(60);
   static const CloudReconstruction second = meshedSphere(40);
   file.fill(bytes, size);

@@ -1,6 +1,6 @@
 // Meshes many nasty sets of points, in many ways. VTK and exact arithmetic check each answer.
 //
-//   torture_shapes [--quick] [--seed N]
+//   stress_shapes [--quick] [--seed N]
 
 #include "exact.h"
 #include "helpers.h"
@@ -8,7 +8,7 @@
 #include "result_bytes.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/reconstruct.h"
-#include "torture.h"
+#include "stress.h"
 
 #include <Eigen/Geometry>
 
@@ -129,14 +129,14 @@ Result reconstructBy(bool by_lists, const Positions& points, const Options& opti
 Faults faultsOf(const Positions& points, const Options& options, const Result& result) {
   Faults faults;
   const auto n = static_cast<std::size_t>(points.cols());
-  const std::size_t v = torture::countDistinct(points);
+  const std::size_t v = stress::countDistinct(points);
   if (result.vertexCount() != v || result.duplicates() != n - v ||
       result.vertex_of_input.size() != n || result.input_of_vertex.size() != v)
     return {"not one vertex for each distinct point"};
-  std::map<torture::Place, Index> first;
+  std::map<stress::Place, Index> first;
   for (std::size_t i = 0; i < n; ++i) {
     const Index own =
-        first.emplace(torture::placeOf(points, static_cast<Eigen::Index>(i)), static_cast<Index>(i))
+        first.emplace(stress::placeOf(points, static_cast<Eigen::Index>(i)), static_cast<Index>(i))
             .first->second;
     const auto vertex = static_cast<std::size_t>(result.vertex_of_input[i]);
     if (vertex >= v || result.input_of_vertex[vertex] != own)
@@ -161,7 +161,7 @@ Faults faultsOf(const Positions& points, const Options& options, const Result& r
 }
 
 Faults tryOut(std::uint64_t seed, std::string& family) {
-  const torture::NastySet set = torture::makeNastySet(seed);
+  const stress::NastySet set = stress::makeNastySet(seed);
   family = set.family;
   const Positions& points = set.points;
   std::mt19937_64 random(seed ^ 0x5eedULL);
@@ -169,7 +169,7 @@ Faults tryOut(std::uint64_t seed, std::string& family) {
   const bool by_lists = random() % 5 < 2;
   options.threads = 1;
   const bool can_be_meshed = points.allFinite() && (points.array().abs() <= 1e100).all() &&
-                             torture::countDistinct(points) >= 4 && !torture::liesInPlane(points);
+                             stress::countDistinct(points) >= 4 && !stress::liesInPlane(points);
   try {
     const Result result = reconstructBy(by_lists, points, options);
     if (!can_be_meshed)
@@ -177,7 +177,7 @@ Faults tryOut(std::uint64_t seed, std::string& family) {
     Faults faults = faultsOf(points, options, result);
     if (random() % 4 == 0) {
       options.threads = 3;
-      if (torture::bytesOf(result) != torture::bytesOf(reconstructBy(by_lists, points, options)))
+      if (stress::bytesOf(result) != stress::bytesOf(reconstructBy(by_lists, points, options)))
         faults.emplace_back("other bytes with 3 threads");
     }
     return faults;
@@ -211,7 +211,7 @@ bool findsPlantedFaults() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const torture::Arguments arguments = torture::parse(argc, argv);
+  const stress::Arguments arguments = stress::parse(argc, argv);
   if (!findsPlantedFaults()) {
     std::printf("the checks overlook planted faults\n");
     return 2;
@@ -232,5 +232,5 @@ int main(int argc, char** argv) {
     });
   for (std::thread& thread : threads)
     thread.join();
-  return torture::finish("nasty sets of points", sets, found);
+  return stress::finish("nasty sets of points", sets, found);
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace torture {
+namespace stress {
 
 /// Points that a mesher may fail on.
 struct NastySet {
@@ -16,4 +16,4 @@ struct NastySet {
 /// The same set for the same seed.
 NastySet makeNastySet(std::uint64_t seed);
 
-}  // namespace torture
+}  // namespace stress

@@ -14,7 +14,7 @@
 #include <vector>
 
 /// What is true of points, in exact arithmetic and without the library.
-namespace torture {
+namespace stress {
 
 using Place = std::tuple<double, double, double>;
 
@@ -66,4 +66,4 @@ inline bool liesInPlane(const spherical_param::Positions& points) {
   });
 }
 
-}  // namespace torture
+}  // namespace stress

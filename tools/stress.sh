@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Stress tests: fuzzed files and calls, nasty sets of points, surfaces that are no spheres, threads.
 #
-#   tools/torture.sh            everything: hours
-#   tools/torture.sh --quick    minutes, which CI runs
+#   tools/stress.sh            everything: hours
+#   tools/stress.sh --quick    minutes, which CI runs
 #
 # The last lines are a table of what was tried and found. Logs are in build/test-logs, inputs that
-# break a fuzzer in build/torture.
+# break a fuzzer in build/stress.
 set -euo pipefail
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -20,7 +20,7 @@ case "${1:-}" in
   seed=1
   ;;
 *)
-  sed -n -e '2,8s/^# \{0,1\}//p' tools/torture.sh
+  sed -n -e '2,8s/^# \{0,1\}//p' tools/stress.sh
   exit 2
   ;;
 esac
@@ -28,7 +28,7 @@ esac
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
 
-work="$PWD/build/torture"
+work="$PWD/build/stress"
 rm -rf "$work"
 mkdir -p "$work"
 : >"$work/rows"
@@ -62,17 +62,17 @@ fuzz() {
 }
 
 if check "fuzzers: build" configure_and_build asan fuzzers; then
-  for corpus in test/torture/*/corpus/*; do
+  for corpus in test/fuzz/corpus/*; do
     part "fuzz_${corpus##*/}" fuzz "$corpus" || true
   done
 fi
-if check "build" build_release torture_shapes torture_surfaces torture_threads; then
+if check "build" build_release stress_shapes stress_surfaces stress_threads; then
   for name in shapes surfaces threads; do
-    part "$name" "build/release/bin/torture_$name" "${quick[@]}" || true
+    part "$name" "build/release/bin/stress_$name" "${quick[@]}" || true
   done
 fi
-if check "thread sanitizer: build" configure_and_build tsan torture_threads; then
-  part "thread sanitizer" build/tsan/bin/torture_threads "${quick[@]}" || true
+if check "thread sanitizer: build" configure_and_build tsan stress_threads; then
+  part "thread sanitizer" build/tsan/bin/stress_threads "${quick[@]}" || true
 fi
 
 echo '| part | inputs tried | found |'

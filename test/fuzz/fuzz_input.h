@@ -241,9 +241,9 @@ inline bool areLists(const NeighborLists& lists, std::size_t count, std::size_t 
 
 // --- What is true of points ----------------------------------------------------------------------
 
-using torture::countDistinct;
-using torture::liesInPlane;
-using torture::placeOf;
+using stress::countDistinct;
+using stress::liesInPlane;
+using stress::placeOf;
 
 /// Whether no coordinate has digits below 1e-100 of the largest one: intersections are then exact.
 inline bool haveExactProducts(const Positions& points) {

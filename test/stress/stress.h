@@ -6,9 +6,9 @@
 #include <cstring>
 #include <string>
 
-namespace torture {
+namespace stress {
 
-/// What the programs of tools/torture.sh take.
+/// What the programs of tools/stress.sh take.
 struct Arguments {
   bool quick = false;
   unsigned long long seed = 1;
@@ -35,4 +35,4 @@ inline int finish(const std::string& part, std::size_t tried, std::size_t found)
   return found > 0 ? 1 : 0;
 }
 
-}  // namespace torture
+}  // namespace stress

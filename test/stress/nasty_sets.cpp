@@ -10,7 +10,7 @@
 #include <random>
 #include <utility>
 
-namespace torture {
+namespace stress {
 namespace {
 
 using Eigen::Vector3d;
@@ -368,4 +368,4 @@ NastySet makeNastySet(std::uint64_t seed) {
   return set;
 }
 
-}  // namespace torture
+}  // namespace stress

@@ -2,12 +2,12 @@
 // through all points of each, names the defect where there is one, and warns of nothing where there
 // is none. The exit code is 0 with warnings, 1 with -strict, and the mesh is the same.
 //
-//   torture_surfaces [--quick] [--seed N]
+//   stress_surfaces [--quick] [--seed N]
 
 #include "helpers.h"
 #include "scan_shapes.h"
+#include "stress.h"
 #include "tool_runner.h"
-#include "torture.h"
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -231,7 +231,7 @@ Complaints tryCase(const Truth& truth, const ScanOptions& scan_options, bool qui
 }  // namespace
 
 int main(int argc, char** argv) {
-  const torture::Arguments arguments = torture::parse(argc, argv);
+  const stress::Arguments arguments = stress::parse(argc, argv);
   const std::vector<std::size_t> sizes = arguments.quick
                                              ? std::vector<std::size_t>{2000}
                                              : std::vector<std::size_t>{2000, 8000, 30000};
@@ -256,5 +256,5 @@ int main(int argc, char** argv) {
         }
       }
   }
-  return torture::finish("surfaces, spheres and others", tried, found);
+  return stress::finish("surfaces, spheres and others", tried, found);
 }

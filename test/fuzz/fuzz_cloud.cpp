@@ -14,7 +14,7 @@
 namespace {
 
 using namespace spherical_param::tools;
-using torture::require;
+using stress::require;
 
 template <typename T>
 bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -39,7 +39,7 @@ std::optional<PointData> readOrRefuse(const std::string& path) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const std::string extension = FUZZED_EXTENSION;
-  static torture::FuzzFile file(extension);
+  static stress::FuzzFile file(extension);
   file.fill(bytes, size);
   const std::optional<PointData> data = readOrRefuse(file.path());
   if (!data) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace torture {
+namespace stress {
 
 /// The arrays and numbers of a result bit by bit, to compare results.
 inline std::string bytesOf(const spherical_param::Result& result) {
@@ -35,4 +35,4 @@ inline std::string bytesOf(const spherical_param::Result& result) {
   return bytes;
 }
 
-}  // namespace torture
+}  // namespace stress

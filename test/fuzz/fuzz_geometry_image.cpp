@@ -9,16 +9,16 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace spherical_param;
-  static torture::FuzzFile file(".tiff");
+  static stress::FuzzFile file(".tiff");
   file.fill(bytes, size);
   try {
     const GeometryImage image = tools::readGeometryImage(file.path());
-    torture::require(image.side >= 3 && image.side % 2 == 1, "the side is odd");
-    torture::require(image.positions.cols() == static_cast<Eigen::Index>(image.side) * image.side,
-                     "a position for each pixel");
-    torture::require(image.positions.allFinite(), "positions are finite");
+    stress::require(image.side >= 3 && image.side % 2 == 1, "the side is odd");
+    stress::require(image.positions.cols() == static_cast<Eigen::Index>(image.side) * image.side,
+                    "a position for each pixel");
+    stress::require(image.positions.allFinite(), "positions are finite");
   } catch (const tools::ToolError& error) {
-    torture::require(!error.remedy().empty(), "a refusal has its remedy");
+    stress::require(!error.remedy().empty(), "a refusal has its remedy");
   }
   return 0;
 }

@@ -1,13 +1,13 @@
 // Reconstructions on several threads of the caller at once answer what they answer alone, and each
 // answers the same bytes for any number of threads of its own. Also run with the thread sanitizer.
 //
-//   torture_threads [--quick] [--seed N]
+//   stress_threads [--quick] [--seed N]
 
 #include "helpers.h"
 #include "result_bytes.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/reconstruct.h"
-#include "torture.h"
+#include "stress.h"
 
 #include <array>
 #include <atomic>
@@ -82,13 +82,13 @@ std::string answerTo(const Job& job) {
     const Result result = reconstruct(job.points, job.options);
     const bool is_sphere =
         test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount()));
-    return job.is_valid && is_sphere ? torture::bytesOf(result) : std::string();
+    return job.is_valid && is_sphere ? stress::bytesOf(result) : std::string();
   } catch (const InvalidInput& error) {
     return job.is_valid ? std::string() : error.what();
   }
 }
 
-std::size_t differencesTogether(const torture::Arguments& arguments, std::size_t jobs_of_thread) {
+std::size_t differencesTogether(const stress::Arguments& arguments, std::size_t jobs_of_thread) {
   std::vector<Job> jobs;
   std::vector<std::string> alone;
   std::atomic<std::size_t> wrong{0};
@@ -133,7 +133,7 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
       std::string expected;
       for (const int threads : {1, 2, 4}) {
         options.threads = threads;
-        const std::string bytes = torture::bytesOf(reconstruct(points, options));
+        const std::string bytes = stress::bytesOf(reconstruct(points, options));
         if (threads == 1)
           expected = bytes;
         if (bytes != expected) {
@@ -148,7 +148,7 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const torture::Arguments arguments = torture::parse(argc, argv);
+  const stress::Arguments arguments = stress::parse(argc, argv);
   const std::size_t jobs_of_thread = arguments.quick ? 6 : 200;
   std::size_t tried = kThreads * jobs_of_thread;
   std::size_t wrong = differencesTogether(arguments, jobs_of_thread);
@@ -158,5 +158,5 @@ int main(int argc, char** argv) {
   tried += 2 * 3 * sizes.size();
   wrong += differencesByThreads(sizes);
 #endif
-  return torture::finish("threads: together as alone, and with 1, 2 and 4", tried, wrong);
+  return stress::finish("threads: together as alone, and with 1, 2 and 4", tried, wrong);
 }

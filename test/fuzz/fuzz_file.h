@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace torture {
+namespace stress {
 
 /// Ends the fuzzer if something does not hold, whatever the build.
 inline void require(bool holds, const char* what) {
@@ -57,4 +57,4 @@ private:
   std::string path_;
 };
 
-}  // namespace torture
+}  // namespace stress
