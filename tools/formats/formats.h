@@ -28,6 +28,7 @@ struct FormatRow {
 /// All formats. A new one is a file beside this one, its name in the list below, and a row.
 extern const std::vector<FormatRow> format_table;
 
+/// Readers throw Failure with the place of what is broken.
 CloudReader readPcd, readPly, readObj, readXyz;
 MeshFormatWriter writePcd, writePly, writeObj, writeVtk, writeXyz, writeStl, writeOff;
 
