@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # The Debian packages: made, used where they are unpacked, and installed in a bare root and used there.
+# A static core, installed, moved and used by a foreign project.
 #
 #   tools/test_package.sh
 #
@@ -48,14 +49,31 @@ no_path_of_the_build() {
   ! grep -r --text -l -F -e "$PWD" "$work/unpacked"
 }
 
+# used_by_foreign_projects <option of run_package_test.cmake>...
+used_by_foreign_projects() {
+  cmake -DSOURCE_DIR="$PWD" -DWORK_DIR="$work/consumers" -DGENERATOR=Ninja -DCXX=c++ \
+    -DPKG_CONFIG=pkg-config \
+    -DVERSION="$(sed -n 's/^project(.* VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)" "$@" \
+    -P test/package/run_package_test.cmake
+}
+
 # Packages hold no run paths: the system's folders are searched without. Here they are elsewhere.
 foreign_projects() {
-  LD_LIBRARY_PATH="$work/unpacked/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" \
-    cmake -DSOURCE_DIR="$PWD" -DBUILD_DIR="$PWD/build/package" -DWORK_DIR="$work/consumers" \
-    -DPREFIX="$work/unpacked/usr" "-DCOMPONENTS=core;pcl" -DGENERATOR=Ninja -DCXX=c++ \
-    -DLIBDIR="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" -DPKG_CONFIG=pkg-config \
-    -DVERSION="$(sed -n 's/^project(.* VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)" \
-    -P test/package/run_package_test.cmake
+  local lib
+  lib="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)"
+  LD_LIBRARY_PATH="$work/unpacked/usr/$lib" used_by_foreign_projects -DBUILD_DIR="$PWD/build/package" \
+    -DPREFIX="$work/unpacked/usr" "-DCOMPONENTS=core;pcl" -DLIBDIR="$lib"
+}
+
+# BUILD_TESTING=OFF, as packagers give it, wins over the project's own switch.
+static_core() {
+  local folder="$PWD/build/static"
+  cmake -G Ninja -S . -B "$folder" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
+    -DSPHERICAL_PARAM_BUILD_PCL=OFF -DSPHERICAL_PARAM_BUILD_TOOLS=OFF \
+    -DSPHERICAL_PARAM_BUILD_PYTHON=OFF -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON \
+    -DSPHERICAL_PARAM_BUILD_TESTS=ON -DBUILD_TESTING=OFF && [ ! -e "$folder/test" ] &&
+    cmake --build "$folder" -j "$jobs" &&
+    used_by_foreign_projects -DBUILD_DIR="$folder" "-DCOMPONENTS=core;core_dev;license" -DLIBDIR=lib
 }
 
 # The same release and mirror as this machine's.
@@ -89,6 +107,7 @@ installed_and_used() {
       ! ls /usr/bin /usr/lib/*/ | grep spherical'
 }
 
+check "static core: used by foreign projects" static_core || true
 if check "package: made" made && check "package: unpacked" unpacked; then
   check "package: lintian finds no error" lintian_finds_no_error || true
   check "package: no path of the build" no_path_of_the_build || true
