@@ -11,6 +11,8 @@
 namespace spherical_param::internal {
 namespace {
 
+using test::kPi;
+
 struct Sampled {
   Positions points;
   Graph graph;
@@ -24,10 +26,9 @@ Sampled cylinderGrid(int around, int along, double spacing_along) {
   };
   for (int l = 0; l < along; ++l)
     for (int a = 0; a < around; ++a) {
-      const double angle = 2.0 * test::kPi * a / around;
+      const double angle = 2.0 * kPi * a / around;
       sampled.points.col(number(a, l)) << std::cos(angle), std::sin(angle), spacing_along * l;
     }
-  sampled.graph.offsets = {0};
   for (int l = 0; l < along; ++l)
     for (int a = 0; a < around; ++a) {
       std::vector<Index> row;
@@ -46,14 +47,45 @@ Sampled cylinderGrid(int around, int along, double spacing_along) {
   return sampled;
 }
 
-TEST(SamplingAnalysis, AlignmentShowsWhetherPointsFollowTheCurvature) {
+TEST(SamplingAnalysis, AlignmentShowsWhetherPointsAreFartherApartWhereTheSurfaceBendsLess) {
+  // A cylinder bends around its axis only: long spacings along it follow the curvature.
   constexpr int around = 60;
-  constexpr double spacing = 2.0 * test::kPi / around;
-  // A cylinder bends around its axis only. Long spacings along it follow the curvature.
+  constexpr double spacing = 2.0 * kPi / around;
   const Sampled following = cylinderGrid(around, 20, 3.0 * spacing);
   EXPECT_GT(analyzeSampling(following.points, following.graph, 1).alignment, 0.95);
   const Sampled against = cylinderGrid(around, 60, spacing / 3.0);
   EXPECT_LT(analyzeSampling(against.points, against.graph, 1).alignment, -0.95);
+}
+
+TEST(SamplingAnalysis, EvenAndRandomSamplingsDoNotFollowTheCurvature) {
+  // Independent points on a cylinder and on a torus, as many everywhere as there is area.
+  constexpr int n = 1200;
+  std::mt19937_64 random(28);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Positions cylinder(3, n);
+  Positions torus(3, n);
+  for (Index i = 0; i < n; ++i) {
+    const double a = 2.0 * kPi * uniform(random);
+    cylinder.col(i) << std::cos(a), std::sin(a), 4.0 * uniform(random);
+    double b = 2.0 * kPi * uniform(random);
+    while (1.4 * uniform(random) > 1.0 + 0.4 * std::cos(b))
+      b = 2.0 * kPi * uniform(random);
+    const double radius = 1.0 + 0.4 * std::cos(b);
+    torus.col(i) << radius * std::cos(a), radius * std::sin(a), 0.4 * std::sin(b);
+  }
+  const auto sampling = [](const Positions& points) {
+    return analyzeSampling(points, test::localDelaunayGraph(points).graph, 1);
+  };
+  EXPECT_NEAR(sampling(cylinder).alignment, 0.0, 0.15);
+  EXPECT_NEAR(sampling(torus).alignment, 0.0, 0.15);
+  // A sphere bends in all directions alike: what is measured is chance.
+  const Sampling independent = sampling(test::randomSphere(n, 30));
+  const Sampling even = sampling(test::spiralSphere(n));
+  EXPECT_LT(independent.alignment, 0.15);
+  EXPECT_LT(even.alignment, 0.15);
+  EXPECT_GT(independent.unevenness, 0.3);
+  EXPECT_LT(even.unevenness, 0.3);
+  EXPECT_LT(sampling(test::cubeGrid(12)).unevenness, 0.3);
 }
 
 TEST(SamplingAnalysis, UnevennessIsTheSpreadOfDistances) {
@@ -61,7 +93,6 @@ TEST(SamplingAnalysis, UnevennessIsTheSpreadOfDistances) {
   Sampled line{Positions::Zero(3, 100), {}};
   for (Index i = 1; i < 100; ++i)
     line.points(0, i) = line.points(0, i - 1) + (i % 2 == 0 ? 3.0 : 1.0);
-  line.graph.offsets = {0};
   for (Index i = 0; i < 100; ++i) {
     for (const Index j : {i - 1, i + 1})
       if (j >= 0 && j < 100) {
@@ -89,12 +120,13 @@ TEST(SamplingAnalysis, NothingToCompareIsNoAlignment) {
   EXPECT_EQ(same.unevenness, 0.0);
 }
 
-TEST(SamplingAnalysis, SameForAnyNumberOfThreads) {
+TEST(SamplingAnalysis, SameBitsForAnyNumberOfThreads) {
   const Sampled sampled = cylinderGrid(60, 100, 0.07);
-  const Sampling alone = analyzeSampling(sampled.points, sampled.graph, 1);
-  const Sampling together = analyzeSampling(sampled.points, sampled.graph, 4);
-  EXPECT_EQ(alone.alignment, together.alignment);
-  EXPECT_EQ(alone.unevenness, together.unevenness);
+  const Sampling one = analyzeSampling(sampled.points, sampled.graph, 1);
+  const Sampling several = analyzeSampling(sampled.points, sampled.graph, 3);
+  EXPECT_NE(one.alignment, 0.0);
+  EXPECT_EQ(one.alignment, several.alignment);
+  EXPECT_EQ(one.unevenness, several.unevenness);
 }
 
 }  // namespace

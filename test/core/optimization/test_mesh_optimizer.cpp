@@ -1,0 +1,373 @@
+#include "mesh_optimizer.h"
+
+#include "helpers.h"
+#include "optimization_cases.h"
+#include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+using test::bentTube;
+using test::Case;
+using test::ellipsoid;
+using test::energyOf;
+using test::graphOfMesh;
+using test::isSphereOverAll;
+using test::noisySphere;
+using test::radialStart;
+using test::scrambled;
+using test::scrambledEllipsoid;
+using Bend = SurfaceEnergy::Bend;
+
+struct Terms {
+  Bend bend;
+  double mu;
+};
+constexpr std::array<Terms, 3> kTerms{
+    {{Bend::Angle, 0.3}, {Bend::Power, 0.8}, {Bend::Excess, 4.0}}};
+
+MeshOptimizer optimizerOf(const Case& of) {
+  return MeshOptimizer(of.points, of.triangles, of.graph, 1);
+}
+
+SurfaceEnergy energyWith(const Terms& terms, const double* usual_angle = nullptr) {
+  SurfaceEnergy energy;
+  energy.bend = terms.bend;
+  energy.mu = terms.mu;
+  energy.usual_angle = usual_angle;
+  return energy;
+}
+
+/// Clouds on which all moves have something to do.
+std::vector<Case> roughCases() {
+  return {scrambledEllipsoid(300, 0.3, 400, 1), noisySphere(300, 0.5, 2),
+          radialStart(test::withNoise(bentTube(12.0, 2.5, 10).points, 0.02, 3))};
+}
+
+/// Ends work that reports more often.
+FractionReport reportUpTo(int most) {
+  return [most, calls = 0](double) mutable {
+    if (++calls > most)
+      throw std::runtime_error("too many reports: it may go on forever");
+  };
+}
+
+/// Calls check(optimizer, energy of triangles from its definition, case).
+template <typename Check>
+void forEachEnergy(const Check& check) {
+  for (const Case& of : roughCases())
+    for (const Terms& terms : kTerms) {
+      SCOPED_TRACE(static_cast<int>(terms.bend));
+      MeshOptimizer optimizer = optimizerOf(of);
+      const std::vector<double> usual = optimizer.medianAngles();
+      optimizer.setEnergy(energyWith(terms, usual.data()));
+      check(
+          optimizer,
+          [&] {
+            return energyOf(of.points, optimizer.mesh().triangles(), terms.bend, terms.mu, usual);
+          },
+          of);
+    }
+}
+
+TEST(MeshOptimizer, RunningEnergyIsThatOfTheMeshAfterAllMoves) {
+  int relocated = 0;
+  int recreated = 0;
+  forEachEnergy([&](MeshOptimizer& optimizer, const auto& defined, const Case& of) {
+    // 1e-9: thousands of moves, each of which rounds at 1e-16 of the energy; acos near folds and
+    // flat edges loses half of the digits against atan2, of which the flat ones count for nothing.
+    const auto expect_energy = [&] {
+      EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
+      EXPECT_NEAR(optimizer.energy(), defined(), 1e-7 * optimizer.energy());
+    };
+    // Whether it was kept, which takes a gain.
+    const auto expect_gain = [&](const auto& move) {
+      const double before = optimizer.energy();
+      const bool is_kept = move();
+      if (is_kept)
+        EXPECT_LT(optimizer.energy(), before);
+      else
+        EXPECT_EQ(optimizer.energy(), before);
+      return is_kept ? 1 : 0;
+    };
+    const auto n = static_cast<Index>(of.points.cols());
+    const double mean_length =
+        std::accumulate(of.graph.lengths.begin(), of.graph.lengths.end(), 0.0) /
+        static_cast<double>(of.graph.lengths.size());
+    std::uint64_t random = 4;
+    expect_energy();
+    EXPECT_EQ(expect_gain([&] { return optimizer.flipAll() > 0; }), 1);
+    expect_energy();
+    for (Index v = 0; v < n; ++v)
+      relocated += expect_gain([&] { return optimizer.relocate(v); });
+    expect_energy();
+    for (Index v = 0; v < n; v += 5) {
+      const std::vector<Index> part = optimizer.spread({v}, 12, random);
+      recreated +=
+          expect_gain([&] { return optimizer.recreate(part, MeshOptimizer::isGain, random); });
+    }
+    expect_energy();
+    // At any cost.
+    for (Index v = 0; v < n; v += 3) {
+      const double before = optimizer.energy();
+      double reported = 0.0;
+      const auto accept = [&](double change) {
+        reported = change;
+        return true;
+      };
+      optimizer.recreate(optimizer.spread({v}, 8, random), accept, random);
+      EXPECT_NEAR(reported * mean_length, optimizer.energy() - before, 1e-12 * before);
+    }
+    expect_energy();
+    EXPECT_TRUE(isSphereOverAll(optimizer.mesh().triangles(), n));
+  });
+  EXPECT_GT(relocated, 100);
+  EXPECT_GT(recreated, 20);
+}
+
+TEST(MeshOptimizer, AMoveThatIsNotKeptLeavesEverythingBitByBit) {
+  forEachEnergy([](MeshOptimizer& optimizer, const auto&, const Case& of) {
+    const auto n = static_cast<Index>(of.points.cols());
+    std::uint64_t random = 6;
+    const auto is_rolled_back = [&](const auto& move) {
+      const Triangles triangles = optimizer.mesh().triangles();
+      const double energy = optimizer.energy();
+      const double recomputed = optimizer.recomputedEnergy();
+      if (move())
+        return false;
+      EXPECT_EQ(optimizer.mesh().triangles(), triangles);
+      EXPECT_EQ(optimizer.energy(), energy);
+      EXPECT_EQ(optimizer.recomputedEnergy(), recomputed);
+      return true;
+    };
+    for (Index size = 1; size <= n; size *= 2)
+      EXPECT_TRUE(is_rolled_back([&] {
+        return optimizer.recreate(
+            optimizer.spread({size - 1}, static_cast<std::size_t>(size), random),
+            [](double) { return false; }, random);
+      }));
+    optimizer.flipAll();
+    int stayed = 0;
+    for (Index v = 0; v < n; ++v)
+      stayed += is_rolled_back([&] { return optimizer.relocate(v); }) ? 1 : 0;
+    EXPECT_GT(stayed, 0);
+  });
+}
+
+TEST(MeshOptimizer, AfterFlipAllNoFlipGains) {
+  // By the energy of the whole mesh, flip by flip.
+  for (const Terms& terms : {kTerms[0], kTerms[1]})
+    for (const std::uint64_t seed : {1U, 2U}) {
+      const Case of = scrambledEllipsoid(60, 0.4, 80, seed);
+      MeshOptimizer optimizer = optimizerOf(of);
+      optimizer.setEnergy(energyWith(terms));
+      EXPECT_GT(optimizer.flipAll(), 0U);
+      const Triangles flipped = optimizer.mesh().triangles();
+      const double least = energyOf(of.points, flipped, terms.bend, terms.mu);
+      int tried = 0;
+      for (Index t = 0; t < flipped.cols(); ++t)
+        for (int k = 0; k < 3; ++k) {
+          SphereMesh other(flipped, 60);
+          if (!other.flip(t, k))
+            continue;
+          ++tried;
+          EXPECT_GT(energyOf(of.points, other.triangles(), terms.bend, terms.mu),
+                    least * (1.0 - 1e-7));
+        }
+      EXPECT_GT(tried, 200);
+      EXPECT_EQ(optimizer.flipAll(), 0U);
+    }
+}
+
+TEST(MeshOptimizer, NoFlipIsMadeForItsRounding) {
+  // Beside lengths this small, all that is rounded off looks like a gain: of the two diagonals of a
+  // rectangle, each may gain on the other. Of 600,000 turned boxes it does on these.
+  const Case cube = radialStart(test::cubeGrid(2));
+  for (const std::uint64_t seed :
+       {67289U, 88198U, 107940U, 132340U, 164943U, 270944U, 524909U, 559612U}) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(0.5, 2.0);
+    const auto next = [&] {
+      const double x = uniform(random);
+      const double y = uniform(random);
+      return Eigen::Vector3d(x, y, uniform(random));
+    };
+    Case of = cube;
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(uniform(random), next().normalized()).toRotationMatrix();
+    of.points = (turn * next().asDiagonal() * cube.points).eval();
+    of.triangles = scrambled(cube.triangles, 8, 10, seed);
+    std::fill(of.graph.lengths.begin(), of.graph.lengths.end(), 1e-30);
+    MeshOptimizer optimizer = optimizerOf(of);
+    optimizer.setEnergy(SurfaceEnergy());
+    EXPECT_NO_THROW(optimizer.flipAll(reportUpTo(10)));
+  }
+}
+
+TEST(MeshOptimizer, EnergiesBeyondTheRangeOfDoubleAreNoGain) {
+  // The difference of two of them is no number: the same flips were made for ever.
+  for (const double scale : {1e100, 1e150, 1e160, 1e300})
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Case of = scrambledEllipsoid(30, 0.4, 40, seed);
+      std::mt19937_64 random(seed);
+      for (Index v = 0; v < 30; ++v)
+        if (random() % 2 == 0)
+          of.points.col(v) *= scale;
+      std::fill(of.graph.lengths.begin(), of.graph.lengths.end(), seed % 2 == 0 ? 1.0 : 1e200);
+      MeshOptimizer optimizer = optimizerOf(of);
+      optimizer.setEnergy(SurfaceEnergy());
+      EXPECT_NO_THROW(optimizer.flipAll(reportUpTo(10)));
+      EXPECT_TRUE(isSphereOverAll(optimizer.mesh().triangles(), 30));
+    }
+}
+
+TEST(MeshOptimizer, ASecondPassGivesTheResultOfAFirstOne) {
+  constexpr double factor = 3.0;
+  constexpr double least = 0.2;
+  std::vector<Case> cases = roughCases();
+  cases.push_back(noisySphere(3000, 0.2, 5));
+  for (const Case& of : cases) {
+    MeshOptimizer optimizer = optimizerOf(of);
+    optimizer.setExcessEnergy(4.0, factor, least);
+    optimizer.flipAll();
+    std::uint64_t random = 8;
+    for (int round = 0; round < 3; ++round) {
+      optimizer.setEnergy(SurfaceEnergy{});
+      for (Index v = round; v < of.points.cols(); v += 37) {
+        optimizer.relocate(v);
+        optimizer.recreate(
+            optimizer.spread({v}, 5, random), [](double) { return true; }, random);
+      }
+      MeshOptimizer fresh(of.points, optimizer.mesh().triangles(), of.graph, 1);
+      std::vector<double> usual = fresh.medianAngles();
+      for (double& angle : usual)
+        angle = std::max(factor * angle, least);
+      fresh.setEnergy(energyWith({Bend::Excess, 4.0}, usual.data()));
+
+      optimizer.setExcessEnergy(4.0, factor, least);
+      EXPECT_EQ(optimizer.energy(), fresh.energy());
+      const std::size_t flips = optimizer.flipAll();
+      EXPECT_GT(flips, 0U);
+      EXPECT_EQ(flips, fresh.flipAll());
+      EXPECT_EQ(optimizer.energy(), fresh.energy());
+      EXPECT_EQ(optimizer.mesh().triangles(), fresh.mesh().triangles());
+    }
+  }
+}
+
+TEST(MeshOptimizer, SpreadStaysTogetherAndHasTheSeedsFirst) {
+  const Case of = ellipsoid(300, 0.8, 0.6);
+  MeshOptimizer optimizer = optimizerOf(of);
+  std::uint64_t random = 7;
+  for (const std::size_t count : {2U, 96U, 300U, 1000U}) {
+    const std::vector<Index> part = optimizer.spread({17, 17, 4}, count, random);
+    EXPECT_EQ(part.size(), std::min<std::size_t>(count, 300));
+    EXPECT_EQ(part[0], 17);
+    EXPECT_EQ(part[1], 4);
+    EXPECT_EQ(std::set<Index>(part.begin(), part.end()).size(), part.size());
+    std::set<Index> reached{17, 4};
+    for (const Index v : part) {
+      EXPECT_EQ(reached.count(v), 1U);
+      for (std::size_t e = of.graph.offsets[static_cast<std::size_t>(v)];
+           e < of.graph.offsets[static_cast<std::size_t>(v) + 1]; ++e)
+        reached.insert(of.graph.neighbors[e]);
+    }
+  }
+}
+
+TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
+  std::vector<Case> cases = roughCases();
+  cases.push_back(ellipsoid(1000, 0.7, 0.4));
+  cases.push_back(scrambledEllipsoid(3000, 0.3, 2000, 3));
+  cases.push_back(noisySphere(3000, 0.7, 4));
+  for (const Case& of : cases) {
+    MeshOptimizer optimizer = optimizerOf(of);
+    const auto expected = findSelfIntersections(of.points, of.triangles);
+    EXPECT_EQ(optimizer.intersections(), expected);
+    std::vector<Index> all(static_cast<std::size_t>(of.points.cols()));
+    std::iota(all.begin(), all.end(), Index{0});
+    EXPECT_EQ(optimizer.intersectionsAround(all), expected.size());
+    EXPECT_EQ(optimizer.intersectionsAround({}), 0U);
+  }
+}
+
+TEST(MeshOptimizer, TrianglesOfAPlainFanDoNotIntersect) {
+  std::vector<Case> cases = roughCases();
+  cases.push_back(scrambledEllipsoid(1000, 0.3, 700, 3));
+  for (const Case& of : cases) {
+    const MeshOptimizer optimizer = optimizerOf(of);
+    const std::vector<std::uint8_t> fans = optimizer.plainFans();
+    int plain = 0;
+    for (Index v = 0; v < of.points.cols(); ++v) {
+      if (fans[static_cast<std::size_t>(v)] == 0)
+        continue;
+      ++plain;
+      std::vector<Index> around;
+      optimizer.mesh().forEachAround(v, [&](Index t, int) { around.push_back(t); });
+      Triangles fan(3, static_cast<Eigen::Index>(around.size()));
+      for (Eigen::Index i = 0; i < fan.cols(); ++i)
+        fan.col(i) = of.triangles.col(around[static_cast<std::size_t>(i)]);
+      EXPECT_TRUE(findSelfIntersections(of.points, fan).empty());
+    }
+    EXPECT_GT(plain, 0);
+    EXPECT_LT(plain, of.points.cols());
+  }
+  // Where nothing is wrong, they are plain.
+  const Case smooth = ellipsoid(1000, 0.9, 0.8);
+  const std::vector<std::uint8_t> fans = optimizerOf(smooth).plainFans();
+  EXPECT_GT(std::count(fans.begin(), fans.end(), 1), 900);
+}
+
+TEST(MeshOptimizer, AFanThatGoesAroundTwiceIsNotPlain) {
+  // Seven spokes, each two sevenths of a turn after the last: always to the same side.
+  const Index ring = 7;
+  Case of{Positions(3, ring + 2), Triangles(3, 2 * ring), {}};
+  of.points.leftCols(2) << 0.0, 0.0, 0.0, 0.0, 0.1, -5.0;
+  for (Index i = 0; i < ring; ++i) {
+    const double angle = 2.0 * 2.0 * test::kPi * i / ring;
+    of.points.col(2 + i) << std::cos(angle), std::sin(angle), 0.01 * i;
+    const Index next = 2 + (i + 1) % ring;
+    of.triangles.col(2 * i) << 0, 2 + i, next;
+    of.triangles.col(2 * i + 1) << 1, next, 2 + i;
+  }
+  of.graph = graphOfMesh(of.points, of.triangles);
+  const MeshOptimizer optimizer = optimizerOf(of);
+  EXPECT_EQ(optimizer.plainFans()[0], 0);
+  EXPECT_EQ(optimizer.intersections(), findSelfIntersections(of.points, of.triangles));
+  EXPECT_FALSE(optimizer.intersections().empty());
+}
+
+TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
+  Case of = ellipsoid(400, 0.9, 0.8);
+  const MeshOptimizer clean = optimizerOf(of);
+  EXPECT_TRUE(clean.roughVertices(0.8).empty());
+  EXPECT_TRUE(clean.edgesBelow(0.8).empty());
+  // A mesh that joins points on opposite sides, and none to its neighbours in the graph.
+  const Triangles far = triangulateSphere(test::randomSphere(400, 8)).triangles;
+  EXPECT_GT(MeshOptimizer(of.points, far, of.graph, 1).roughVertices(-2.0).size(), 300U);
+  // One point pushed in.
+  of.points.col(200) *= 0.5;
+  const MeshOptimizer dented = optimizerOf(of);
+  const std::vector<Index> rough = dented.roughVertices(0.8);
+  EXPECT_TRUE(std::is_sorted(rough.begin(), rough.end()));
+  EXPECT_TRUE(std::binary_search(rough.begin(), rough.end(), 200));
+  EXPECT_LT(rough.size(), 10U);
+  EXPECT_FALSE(dented.edgesBelow(0.8).empty());
+}
+
+}  // namespace
+}  // namespace spherical_param::internal
