@@ -69,31 +69,6 @@ inline Case noisySphere(Index n, double noise, std::uint64_t seed) {
   return {points, hull, graphOfMesh(points, hull)};
 }
 
-/// A tube on the sphere by its axis and angle, as an embedding has it, but folded: beyond a place
-/// the axis runs back for a while.
-inline Case foldedTube() {
-  const double fold = 0.15;
-  const int ring = 10;
-  const Tube tube = bentTube(10.0, 2.0, ring);
-  const auto n = static_cast<Index>(tube.points.cols());
-  const int rings = (n - 2) / ring;
-  Positions directions(3, n);
-  for (Index i = 0; i < n - 2; ++i) {
-    const Index r = i / ring;
-    double s = (r + 1.0) / (rings + 1.0);
-    if (s > 0.5)
-      s = s < 0.5 + fold ? 1.0 - s + 1e-3 : s - 2.0 * fold + 1e-3;
-    const double angle = 2.0 * kPi * (i % ring + 0.5 * (r % 2)) / ring;
-    const double height = 1.0 - 1.8 * s;
-    const double radius = std::sqrt(1.0 - height * height);
-    directions.col(i) << radius * std::cos(angle), radius * std::sin(angle), height;
-  }
-  directions.col(n - 2) << 0.0, 0.0, 1.0;
-  directions.col(n - 1) << 0.0, 0.0, -1.0;
-  return {withNoise(tube.points, 0.01, 4), triangulateSphere(directions).triangles,
-          graphOfMesh(tube.points, tube.triangles)};
-}
-
 /// Equation (1) of optimizeMesh(), or its variants.
 inline double energyOf(const Positions& points, const Triangles& triangles, Bend bend = Bend::Angle,
                        double mu = 0.3, const std::vector<double>& usual = {}) {

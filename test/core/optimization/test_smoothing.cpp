@@ -11,11 +11,8 @@
 #include <limits>
 #include <utility>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::kPi;
-using test::withNoise;
 
 constexpr SmoothingMethod kMethods[] = {SmoothingMethod::Umbrella, SmoothingMethod::Biharmonic};
 
@@ -32,8 +29,8 @@ struct Mesh {
   Triangles triangles;
 };
 
-Mesh noisySphere(Index n, double noise, std::uint64_t seed) {
-  const Positions sphere = test::spiralSphere(n);
+Mesh noisyMesh(Index n, double noise, std::uint64_t seed) {
+  const Positions sphere = spiralSphere(n);
   return {withNoise(sphere, noise, seed), triangulateSphere(sphere).triangles};
 }
 
@@ -45,7 +42,7 @@ TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
   // On a torus of six neighbours each, plane waves are eigenvectors of the Laplacian. Of (8, 8) k
   // is 3/2, the most there can be: many steps would blow up what is amplified.
   constexpr Index m = 24;
-  const Triangles triangles = test::torusTriangles(m, m);
+  const Triangles triangles = torusTriangles(m, m);
   for (const int steps : {1, 5, 20, 300}) {
     SCOPED_TRACE(steps);
     const double half_gain = 1.0 - std::pow(0.5, 1.0 / steps);
@@ -74,8 +71,8 @@ TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
 }
 
 TEST(Smoothing, OneStepOfTheUmbrellaMovesToTheMeanOfTheNeighbours) {
-  const Mesh mesh = noisySphere(100, 0.1, 5);
-  const Graph graph = test::graphOfMesh(mesh.points, mesh.triangles);
+  const Mesh mesh = noisyMesh(100, 0.1, 5);
+  const Graph graph = graphOfMesh(mesh.points, mesh.triangles);
   Positions means = Positions::Zero(3, 100);
   for (std::size_t i = 0; i < graph.size(); ++i)
     for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
@@ -90,7 +87,7 @@ TEST(Smoothing, OneStepOfTheUmbrellaMovesToTheMeanOfTheNeighbours) {
 }
 
 TEST(Smoothing, NoiseIsTakenOffAndOnlyTheUmbrellaShrinks) {
-  const Mesh mesh = noisySphere(1000, 0.02, 1);
+  const Mesh mesh = noisyMesh(1000, 0.02, 1);
   const auto roughness = [](const Positions& points) {
     const Eigen::ArrayXd radii = points.colwise().norm().transpose().array();
     return std::sqrt((radii - radii.mean()).square().mean());
@@ -99,7 +96,7 @@ TEST(Smoothing, NoiseIsTakenOffAndOnlyTheUmbrellaShrinks) {
     const Smoothing smooth =
         smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 5, false));
     EXPECT_LT(roughness(smooth.points), 0.4 * roughness(mesh.points));
-    EXPECT_NEAR(smooth.report.volume_after, test::volumeOf(smooth.points, mesh.triangles), 1e-12);
+    EXPECT_NEAR(smooth.report.volume_after, volumeOf(smooth.points, mesh.triangles), 1e-12);
     // The coordinates of a sphere have k = h^2 / 2 with edges of h^2 = 4 pi / 1000 * 2 / sqrt(3),
     // so k = 0.0073: five steps of the umbrella take 3 * 5 k = 11 % of the volume, the flow takes
     // 3 ln(2) (k / 0.129)^2 = 0.7 %, and the noise adds to it.
@@ -112,16 +109,16 @@ TEST(Smoothing, NoiseIsTakenOffAndOnlyTheUmbrellaShrinks) {
 }
 
 TEST(Smoothing, VolumeIsRestored) {
-  const Mesh sphere = noisySphere(300, 0.05, 2);
-  const test::Tube tube = test::bentTube(12.0, 2.0, 12);
+  const Mesh sphere = noisyMesh(300, 0.05, 2);
+  const Tube tube = bentTube(12.0, 2.0, 12);
   for (const auto& [points, triangles] :
        {std::pair(sphere.points, sphere.triangles),
         std::pair(withNoise(tube.points, 0.05, 3), tube.triangles)}) {
-    const double volume = test::volumeOf(points, triangles);
+    const double volume = volumeOf(points, triangles);
     for (const SmoothingMethod method : kMethods) {
       const Smoothing smooth = smoothSurface(points, triangles, optionsOf(method));
       // Newton's method ends below 1e-12; the rest is the rounding of the sums.
-      EXPECT_NEAR(test::volumeOf(smooth.points, triangles) / volume, 1.0, 1e-11);
+      EXPECT_NEAR(volumeOf(smooth.points, triangles) / volume, 1.0, 1e-11);
       EXPECT_NEAR(smooth.report.volume_before / volume, 1.0, 1e-12);
       EXPECT_NEAR(smooth.report.volume_after / volume, 1.0, 1e-11);
     }
@@ -129,12 +126,12 @@ TEST(Smoothing, VolumeIsRestored) {
 }
 
 TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
-  const Mesh mesh = noisySphere(200, 0.1, 7);
+  const Mesh mesh = noisyMesh(200, 0.1, 7);
   Positions stray(3, 2);
   stray << 0.5, 7.0, 0.25, 8.0, 0.125, 9.0;
   for (const SmoothingMethod method : kMethods) {
     const Smoothing smooth =
-        smoothSurface(test::horizontally(mesh.points, stray), mesh.triangles, optionsOf(method));
+        smoothSurface(horizontally(mesh.points, stray), mesh.triangles, optionsOf(method));
     EXPECT_EQ(smooth.points.rightCols(2), stray);
     EXPECT_EQ(smooth.points.leftCols(200),
               smoothSurface(mesh.points, mesh.triangles, optionsOf(method)).points);
@@ -148,14 +145,14 @@ TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
 }
 
 TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesStay) {
-  Mesh mesh = noisySphere(80, 0.1, 8);
+  Mesh mesh = noisyMesh(80, 0.1, 8);
   mesh.points.array() += 0.1;
   for (const SmoothingMethod method : kMethods) {
     const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 0));
     EXPECT_EQ(smooth.points, mesh.points);
     EXPECT_EQ(smooth.report.max_displacement, 0.0);
     EXPECT_EQ(smooth.report.volume_after, smooth.report.volume_before);
-    EXPECT_NEAR(smooth.report.volume_before, test::volumeOf(mesh.points, mesh.triangles), 1e-12);
+    EXPECT_NEAR(smooth.report.volume_before, volumeOf(mesh.points, mesh.triangles), 1e-12);
     for (const Index n : {0, 2}) {
       const Positions points = mesh.points.leftCols(n);
       EXPECT_EQ(smoothSurface(points, Triangles(3, 0), optionsOf(method)).points, points);
@@ -164,7 +161,7 @@ TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesStay) {
 }
 
 TEST(Smoothing, MovesWithRotationTranslationScaleAndReversal) {
-  const Mesh mesh = noisySphere(200, 0.1, 9);
+  const Mesh mesh = noisyMesh(200, 0.1, 9);
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
   const Eigen::Vector3d shift(1000.0, -2000.0, 500.0);
@@ -188,7 +185,7 @@ TEST(Smoothing, SameBitsForAnyNumberOfThreads) {
   // Enough points for several threads, and not a multiple of the blocks.
   constexpr Index rings = 229;
   constexpr Index around = 220;
-  const Triangles triangles = test::torusTriangles(rings, around);
+  const Triangles triangles = torusTriangles(rings, around);
   Positions points(3, rings * around);
   for (Index i = 0; i < rings * around; ++i) {
     const double a = 2.0 * kPi * (i / around) / rings;
@@ -209,7 +206,7 @@ TEST(Smoothing, SameBitsForAnyNumberOfThreads) {
 
 TEST(Smoothing, MeshWithoutVolumeIsSmoothedAllTheSame) {
   // Flat, all in one place, and both sides of one triangle.
-  const Mesh mesh = noisySphere(80, 0.1, 13);
+  const Mesh mesh = noisyMesh(80, 0.1, 13);
   Positions flat = mesh.points;
   flat.row(2).setZero();
   const Positions same = Positions::Constant(3, 80, 0.3);
@@ -228,7 +225,7 @@ TEST(Smoothing, MeshWithoutVolumeIsSmoothedAllTheSame) {
 }
 
 TEST(Smoothing, BadInputIsInvalidInput) {
-  const Mesh good = noisySphere(50, 0.1, 14);
+  const Mesh good = noisyMesh(50, 0.1, 14);
   const Eigen::Index m = good.triangles.cols();
   const auto expect_refused = [&](const Positions& points, const Triangles& triangles,
                                   const SmoothingOptions& options = {}, int threads = 0) {
@@ -275,4 +272,4 @@ TEST(Smoothing, BadInputIsInvalidInput) {
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test

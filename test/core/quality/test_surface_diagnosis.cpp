@@ -10,30 +10,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
-#include <random>
+#include <optional>
 #include <set>
 #include <string>
-#include <tuple>
+#include <utility>
 #include <vector>
 
-namespace spherical_param {
+namespace spherical_param::test {
 namespace {
-
-using test::cutTorus;
-using test::filtered;
-using test::folded;
-using test::graphOfMesh;
-using test::isSphereOverAll;
-using test::kPi;
-using test::openSphere;
-using test::Scene;
-using test::sphereSpacing;
-using test::spiralSphere;
-using test::starShaped;
-using test::twoSpheres;
 
 SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {},
                           int threads = 1) {
@@ -56,12 +41,12 @@ void expectClosed(const char* what, const Scene& scene) {
 TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
   const Positions even = spiralSphere(1200);
   expectClosed("even", starShaped(even, even));
-  const Positions random = test::randomSphere(1200, 7);
+  const Positions random = randomSphere(1200, 7);
   expectClosed("random", starShaped(random, random));
-  const Positions cube = test::cubeGrid(13);
+  const Positions cube = cubeGrid(13);
   expectClosed("cube", starShaped((cube.array() - 0.5).matrix().colwise().normalized(), cube));
-  const test::Tube tube = test::bentTube(12.0, 2.0, 20);
-  expectClosed("tube", {tube.points, tube.triangles, test::localDelaunayGraph(tube.points)});
+  const Tube tube = bentTube(12.0, 2.0, 20);
+  expectClosed("tube", {tube.points, tube.triangles, localDelaunayGraph(tube.points)});
   expectClosed("4 times denser in one direction",
                starShaped(even, Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal() * even));
   Positions crowded = even;
@@ -74,44 +59,38 @@ TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
   }
   expectClosed("12 times denser at one end", starShaped(crowded, crowded));
   const int fine = 8 * 7 + 1;
-  const Positions creased =
-      filtered(test::cubeGrid(fine).array() - 0.5, [&](const Eigen::Vector3d& p) {
-        int at_end = 0;
-        bool coarse = true;
-        for (int c = 0; c < 3; ++c) {
-          const long step = std::lround((p[c] + 0.5) * (fine - 1));
-          at_end += step % (fine - 1) == 0 ? 1 : 0;
-          coarse = coarse && step % 8 == 0;
-        }
-        return coarse || at_end >= 2;
-      });
+  const Positions creased = filtered(cubeGrid(fine).array() - 0.5, [&](const Eigen::Vector3d& p) {
+    int at_end = 0;
+    bool coarse = true;
+    for (int c = 0; c < 3; ++c) {
+      const long step = std::lround((p[c] + 0.5) * (fine - 1));
+      at_end += step % (fine - 1) == 0 ? 1 : 0;
+      coarse = coarse && step % 8 == 0;
+    }
+    return coarse || at_end >= 2;
+  });
   expectClosed("8 times denser along edges", starShaped(creased.colwise().normalized(), creased));
   expectClosed("too narrow a handle", cutTorus(20, 5, 0.4));
 }
 
 TEST(SurfaceDiagnosis, FalseNeighborsOfThinSheetsAreNoHandle) {
   const Positions directions = spiralSphere(1500);
-  const Triangles hull = test::hullOf(directions);
+  const Triangles hull = hullOf(directions);
   const Positions points = Eigen::Vector3d(1.0, 1.0, 0.04).asDiagonal() * directions;
   // Edges from the top to the bottom, in the middle, where the way round is long.
-  std::vector<std::array<Index, 3>> shortcuts;
-  for (Index i = 0; i < points.cols(); ++i) {
-    Index nearest = -1;
+  Triangles edges(3, 2 * hull.cols());
+  edges << hull, hull;
+  for (Eigen::Index t = hull.cols(); t < edges.cols(); ++t) {
+    const Eigen::Vector3d p = points.col(edges(0, t));
+    if (p.z() < 0.0 || p.head<2>().norm() > 0.3)
+      continue;
+    double nearest = 1.0;
     for (Index j = 0; j < points.cols(); ++j)
-      if (points(2, i) > 0.0 && points(2, j) < 0.0 && points.col(i).head<2>().norm() < 0.3 &&
-          (nearest < 0 || (points.col(i) - points.col(j)).squaredNorm() <
-                              (points.col(i) - points.col(nearest)).squaredNorm()))
-        nearest = j;
-    for (Eigen::Index t = 0; t < hull.cols() && nearest >= 0; ++t)
-      if (hull(0, t) == i)
-        shortcuts.push_back({i, hull(1, t), nearest});
+      if (points(2, j) < 0.0 && (points.col(j) - p).norm() < nearest) {
+        nearest = (points.col(j) - p).norm();
+        edges(2, t) = j;
+      }
   }
-  ASSERT_GT(shortcuts.size(), 20U);
-  Triangles edges(3, hull.cols() + static_cast<Eigen::Index>(shortcuts.size()));
-  edges.leftCols(hull.cols()) = hull;
-  for (std::size_t s = 0; s < shortcuts.size(); ++s)
-    edges.col(hull.cols() + static_cast<Eigen::Index>(s)) << shortcuts[s][0], shortcuts[s][1],
-        shortcuts[s][2];
   expectClosed("sheets", {points, hull, {graphOfMesh(points, edges), {}}});
 }
 
@@ -138,7 +117,7 @@ void expectLoopsOfBoundary(const Scene& scene, const FilledHole& hole) {
       length += (scene.points.col(a) - scene.points.col(b)).norm();
       rim.insert(a);
     }
-    EXPECT_LE(length, last * (1.0 + 1e-12));
+    EXPECT_LE(length, last);
     total += last = length;
   }
   EXPECT_NEAR(total, hole.boundary_length, 1e-12 * total);
@@ -192,8 +171,8 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
 TEST(SurfaceDiagnosis, OfManyNeighborsTheNearestAreUsed) {
   for (const double height : {2.0, 0.8}) {
     Scene scene = openSphere(1000, height);
-    scene.graph = buildNeighborGraph(scene.points, test::bruteForceNeighbors(scene.points, 25),
-                                     test::nearest());
+    scene.graph =
+        buildNeighborGraph(scene.points, bruteForceNeighbors(scene.points, 25), nearest());
     const SurfaceDiagnosis diagnosis = diagnose(scene);
     EXPECT_EQ(diagnosis.kind, height < 1.0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0);
     EXPECT_EQ(diagnosis.filled_holes.size(), height < 1.0 ? 1U : 0U);
@@ -288,7 +267,7 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
     EXPECT_TRUE(diagnosis.filled_holes.empty() && diagnosis.handles.empty());
     EXPECT_GT(diagnosis.edges_outside_graph, 0.5);
     EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,
-                     test::fractionBeyondTwoSteps(scene.graph.graph, scene.triangles));
+                     fractionBeyondTwoSteps(scene.graph.graph, scene.triangles));
   };
   expect(folded(cutTorus(60, 24, 0.4)), SurfaceKind::Handles, 1);
   const Positions ball = spiralSphere(1000);
@@ -334,28 +313,25 @@ TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
     DiagnosisOptions options;
     options.max_vertices = 7;
     const SurfaceDiagnosis few = diagnose(scene, options);
+    EXPECT_TRUE(few.triangle_marks.empty());
     options.max_vertices = 100000;
     options.mark_triangles = true;
     const SurfaceDiagnosis all = diagnose(scene, options);
-    EXPECT_TRUE(few.triangle_marks.empty());
     const auto expect_some = [](const std::vector<Index>& some, const std::vector<Index>& of) {
       EXPECT_EQ(some.size(), std::min<std::size_t>(7, of.size()));
       EXPECT_TRUE(std::is_sorted(of.begin(), of.end()));
       EXPECT_TRUE(std::includes(of.begin(), of.end(), some.begin(), some.end()));
     };
-    // Triangles at the listed vertices must have the mark, others must not.
-    const auto expect_marked = [&](const std::vector<Index>& vertices, std::uint8_t mark) {
-      for (Eigen::Index t = 0; t < scene.triangles.cols(); ++t) {
-        bool is_at = false;
-        for (const Index v : scene.triangles.col(t))
-          is_at = is_at || std::binary_search(vertices.begin(), vertices.end(), v);
-        EXPECT_EQ((all.triangle_marks[static_cast<std::size_t>(t)] & mark) != 0, is_at);
-      }
+    const auto marked = [&](std::uint8_t mark, const auto& expected) {
+      for (Eigen::Index t = 0; t < scene.triangles.cols(); ++t)
+        EXPECT_EQ((all.triangle_marks[static_cast<std::size_t>(t)] & mark) != 0, expected(t));
     };
-    const auto marked = [&](std::uint8_t mark) {
-      return static_cast<std::size_t>(
-          std::count_if(all.triangle_marks.begin(), all.triangle_marks.end(),
-                        [&](std::uint8_t marks) { return (marks & mark) != 0; }));
+    const auto is_at = [&](const std::vector<Index>& vertices) {
+      return [&](Eigen::Index t) {
+        return std::any_of(
+            scene.triangles.col(t).begin(), scene.triangles.col(t).end(),
+            [&](Index v) { return std::binary_search(vertices.begin(), vertices.end(), v); });
+      };
     };
     std::size_t filled = 0;
     for (std::size_t i = 0; i < all.filled_holes.size(); ++i) {
@@ -363,24 +339,24 @@ TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
       expect_some(few.filled_holes[i].vertices, all.filled_holes[i].vertices);
       EXPECT_EQ(few.filled_holes[i].loops, all.filled_holes[i].loops);
     }
-    EXPECT_EQ(marked(TriangleMarks::filled_hole), filled);
+    EXPECT_EQ(std::count_if(all.triangle_marks.begin(), all.triangle_marks.end(),
+                            [](int marks) { return (marks & TriangleMarks::filled_hole) != 0; }),
+              static_cast<std::ptrdiff_t>(filled));
+    const std::vector<Index> none;
+    marked(TriangleMarks::handle, is_at(all.handles.empty() ? none : all.handles[0].vertices));
+    marked(TriangleMarks::part_bridge, is_at(all.bridges.empty() ? none : all.bridges[0].vertices));
     if (!all.handles.empty())
       expect_some(few.handles[0].vertices, all.handles[0].vertices);
-    expect_marked(all.handles.empty() ? std::vector<Index>() : all.handles[0].vertices,
-                  TriangleMarks::handle);
     if (!all.bridges.empty())
       expect_some(few.bridges[0].vertices, all.bridges[0].vertices);
-    expect_marked(all.bridges.empty() ? std::vector<Index>() : all.bridges[0].vertices,
-                  TriangleMarks::part_bridge);
-    EXPECT_EQ(marked(TriangleMarks::outside_graph) > 0, all.edges_outside_graph > 0.0);
-    EXPECT_EQ(marked(TriangleMarks::self_intersection), 0U);
+    marked(TriangleMarks::outside_graph, [&](Eigen::Index t) {
+      return fractionBeyondTwoSteps(scene.graph.graph, scene.triangles.col(t)) > 0.0;
+    });
   }
 }
 
 TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
   const Scene scene = openSphere(1000, 0.9);
-  const SurfaceDiagnosis still = diagnose(scene);
-  ASSERT_EQ(still.filled_holes.size(), 1U);
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   const Eigen::Vector3d shift(5.0, 6.0, -7.0);
@@ -389,13 +365,9 @@ TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
   moved.points = (scale * turn * scene.points).colwise() + shift;
   for (double& length : moved.graph.graph.lengths)
     length *= scale;
-  const SurfaceDiagnosis diagnosis = diagnose(moved);
-  ASSERT_EQ(diagnosis.filled_holes.size(), 1U);
-  EXPECT_EQ(diagnosis.kind, still.kind);
-  const FilledHole& a = still.filled_holes.front();
-  const FilledHole& b = diagnosis.filled_holes.front();
+  const FilledHole a = diagnose(scene).filled_holes.at(0);
+  const FilledHole b = diagnose(moved).filled_holes.at(0);
   EXPECT_EQ(a.triangles, b.triangles);
-  EXPECT_EQ(a.vertices, b.vertices);
   EXPECT_EQ(a.loops, b.loops);
   // The shift costs a factor of 1e4 of the digits.
   EXPECT_NEAR(b.area, scale * scale * a.area, 1e-16);
@@ -408,16 +380,12 @@ TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
   const Scene torus = cutTorus(2100, 24, 0.05);
   const SurfaceDiagnosis one = diagnose(torus, {}, 1);
   const SurfaceDiagnosis several = diagnose(torus, {}, 3);
-  ASSERT_EQ(one.handles.size(), 1U);
   EXPECT_EQ(several.summary, one.summary);
   EXPECT_EQ(several.edges_outside_graph, one.edges_outside_graph);
-  ASSERT_EQ(several.handles.size(), 1U);
-  EXPECT_EQ(several.handles[0].edges, one.handles[0].edges);
+  EXPECT_EQ(several.handles.at(0).edges, one.handles.at(0).edges);
   EXPECT_EQ(several.handles[0].vertices, one.handles[0].vertices);
-  ASSERT_EQ(several.filled_holes.size(), one.filled_holes.size());
-  EXPECT_EQ(one.filled_holes.size(), 2U);
-  for (std::size_t i = 0; i < one.filled_holes.size(); ++i) {
-    EXPECT_EQ(several.filled_holes[i].area, one.filled_holes[i].area);
+  for (const std::size_t i : {0U, 1U}) {
+    EXPECT_EQ(several.filled_holes.at(i).area, one.filled_holes.at(i).area);
     EXPECT_EQ(several.filled_holes[i].loops, one.filled_holes[i].loops);
   }
 }
@@ -426,22 +394,19 @@ TEST(SurfaceDiagnosis, BadInputIsInvalidInput) {
   const Scene good = openSphere(50, 2.0);
   for (const int threads : {-1, 1025})
     EXPECT_THROW(diagnose(good, {}, threads), InvalidInput);
-  const std::function<void(Scene&)> spoil[] = {
-      [](Scene& scene) { scene.points = spiralSphere(49); },
-      [](Scene& scene) { scene.triangles.resize(3, 0); },
-      [](Scene& scene) { scene.triangles(1, 3) = 50; },
-      [](Scene& scene) { scene.triangles(1, 3) = -1; },
-      [](Scene& scene) {
-        scene.graph.report.bridges.push_back({0, 50, 1.0});
-      },
-      [](Scene& scene) { scene.graph.graph.neighbors[3] = 50; },
-      [](Scene& scene) { scene.graph.graph.lengths.pop_back(); }};
-  for (const auto& change : spoil) {
+  const auto expect_refused = [&](const auto& spoil) {
     Scene scene = good;
-    change(scene);
+    spoil(scene);
     EXPECT_THROW(diagnose(scene), InvalidInput);
-  }
+  };
+  expect_refused([](Scene& scene) { scene.points = spiralSphere(49); });
+  expect_refused([](Scene& scene) { scene.triangles.resize(3, 0); });
+  expect_refused([](Scene& scene) { scene.triangles(1, 3) = 50; });
+  expect_refused([](Scene& scene) { scene.triangles(1, 3) = -1; });
+  expect_refused([](Scene& scene) { scene.graph.report.bridges.push_back({0, 50, 1.0}); });
+  expect_refused([](Scene& scene) { scene.graph.graph.neighbors[3] = 50; });
+  expect_refused([](Scene& scene) { scene.graph.graph.lengths.pop_back(); });
 }
 
 }  // namespace
-}  // namespace spherical_param
+}  // namespace spherical_param::test
