@@ -101,7 +101,7 @@ std::array<int, 2> expectMovesCounted(const Case& of, const Terms& terms) {
   expect_energy();
   // Accepted never, then at any cost.
   for (std::size_t size = 1; size <= 256; size *= 2) {
-    const std::vector<Index> part = optimizer.spread({static_cast<Index>(size)}, size, random);
+    const std::vector<Index> part = optimizer.spread({static_cast<Index>(size) % n}, size, random);
     EXPECT_EQ(is_kept([&] {
                 return optimizer.recreate(
                     part, [](double) { return false; }, random);
