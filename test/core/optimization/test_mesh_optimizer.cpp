@@ -24,21 +24,14 @@ using internal::MeshOptimizer;
 using internal::SphereMesh;
 using internal::SurfaceEnergy;
 
-struct Terms {
-  Bend bend;
-  double mu;
-};
-constexpr std::array<Terms, 3> kTerms{
-    {{Bend::Angle, 0.3}, {Bend::Power, 0.8}, {Bend::Excess, 4.0}}};
-
 MeshOptimizer optimizerOf(const Case& of) {
   return MeshOptimizer(of.points, of.triangles, of.graph, 1);
 }
 
-SurfaceEnergy energyWith(const Terms& terms, const double* usual_angle = nullptr) {
+SurfaceEnergy energyWith(Bend bend, const double* usual_angle = nullptr) {
   SurfaceEnergy energy;
-  energy.bend = terms.bend;
-  energy.mu = terms.mu;
+  energy.bend = bend;
+  energy.mu = 0.8;
   energy.usual_angle = usual_angle;
   return energy;
 }
@@ -58,15 +51,14 @@ internal::FractionReport reportUpTo(int most) {
 }
 
 /// Returns how many were relocated, and recreated.
-std::array<int, 2> expectMovesCounted(const Case& of, const Terms& terms) {
+std::array<int, 2> expectMovesCounted(const Case& of, Bend bend) {
   MeshOptimizer optimizer = optimizerOf(of);
   const std::vector<double> usual = optimizer.medianAngles();
-  optimizer.setEnergy(energyWith(terms, usual.data()));
+  optimizer.setEnergy(energyWith(bend, usual.data()));
   // 1e-9: thousands of moves, each of which rounds at 1e-16 of the energy; acos near folds and
   // flat edges loses half of the digits against atan2, of which the flat ones count for nothing.
   const auto expect_energy = [&] {
-    const double defined =
-        energyOf(of.points, optimizer.mesh().triangles(), terms.bend, terms.mu, usual);
+    const double defined = energyOf(of.points, optimizer.mesh().triangles(), bend, 0.8, usual);
     EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * defined);
     EXPECT_NEAR(optimizer.energy(), defined, 1e-7 * defined);
   };
@@ -130,9 +122,9 @@ TEST(MeshOptimizer, MovesThatAreKeptAreCountedAndOthersLeaveEverythingBitByBit) 
   int relocated = 0;
   int recreated = 0;
   for (const Case& of : roughCases())
-    for (const Terms& terms : kTerms) {
-      SCOPED_TRACE(static_cast<int>(terms.bend));
-      const auto kept = expectMovesCounted(of, terms);
+    for (const Bend bend : {Bend::Angle, Bend::Power, Bend::Excess}) {
+      SCOPED_TRACE(static_cast<int>(bend));
+      const auto kept = expectMovesCounted(of, bend);
       relocated += kept[0];
       recreated += kept[1];
     }
@@ -142,14 +134,14 @@ TEST(MeshOptimizer, MovesThatAreKeptAreCountedAndOthersLeaveEverythingBitByBit) 
 
 TEST(MeshOptimizer, AfterFlipAllNoFlipGains) {
   // By the energy of the whole mesh, flip by flip.
-  for (const Terms& terms : {kTerms[0], kTerms[1]})
+  for (const Bend bend : {Bend::Angle, Bend::Power})
     for (const std::uint64_t seed : {1U, 2U}) {
       const Case of = scrambledEllipsoid(60, 0.4, 80, seed);
       MeshOptimizer optimizer = optimizerOf(of);
-      optimizer.setEnergy(energyWith(terms));
+      optimizer.setEnergy(energyWith(bend));
       EXPECT_GT(optimizer.flipAll(), 0U);
       const Triangles flipped = optimizer.mesh().triangles();
-      const double least = energyOf(of.points, flipped, terms.bend, terms.mu);
+      const double least = energyOf(of.points, flipped, bend, 0.8);
       int tried = 0;
       for (Index t = 0; t < flipped.cols(); ++t)
         for (int k = 0; k < 3; ++k) {
@@ -157,8 +149,7 @@ TEST(MeshOptimizer, AfterFlipAllNoFlipGains) {
           if (!other.flip(t, k))
             continue;
           ++tried;
-          EXPECT_GT(energyOf(of.points, other.triangles(), terms.bend, terms.mu),
-                    least * (1.0 - 1e-7));
+          EXPECT_GT(energyOf(of.points, other.triangles(), bend, 0.8), least * (1.0 - 1e-7));
         }
       EXPECT_GT(tried, 200);
       EXPECT_EQ(optimizer.flipAll(), 0U);
@@ -187,7 +178,7 @@ TEST(MeshOptimizer, NoFlipIsMadeForItsRounding) {
     std::fill(of.graph.lengths.begin(), of.graph.lengths.end(), 1e-30);
     MeshOptimizer optimizer = optimizerOf(of);
     optimizer.setEnergy(SurfaceEnergy());
-    EXPECT_NO_THROW(optimizer.flipAll(reportUpTo(10)));
+    EXPECT_NO_THROW(optimizer.flipAll(reportUpTo(2)));
   }
 }
 
@@ -203,7 +194,7 @@ TEST(MeshOptimizer, EnergiesBeyondTheRangeOfDoubleAreNoGain) {
       std::fill(of.graph.lengths.begin(), of.graph.lengths.end(), seed % 2 == 0 ? 1.0 : 1e200);
       MeshOptimizer optimizer = optimizerOf(of);
       optimizer.setEnergy(SurfaceEnergy());
-      EXPECT_NO_THROW(optimizer.flipAll(reportUpTo(10)));
+      EXPECT_NO_THROW(optimizer.flipAll(reportUpTo(2)));
       EXPECT_TRUE(isSphereOverAll(optimizer.mesh().triangles(), 30));
     }
 }
@@ -215,7 +206,7 @@ TEST(MeshOptimizer, ASecondPassGivesTheResultOfAFirstOne) {
   cases.push_back(noisySphere(3000, 0.2, 5));
   for (const Case& of : cases) {
     MeshOptimizer optimizer = optimizerOf(of);
-    optimizer.setExcessEnergy(4.0, factor, least);
+    optimizer.setExcessEnergy(0.8, factor, least);
     optimizer.flipAll();
     std::uint64_t random = 8;
     for (int round = 0; round < 3; ++round) {
@@ -229,9 +220,9 @@ TEST(MeshOptimizer, ASecondPassGivesTheResultOfAFirstOne) {
       std::vector<double> usual = fresh.medianAngles();
       for (double& angle : usual)
         angle = std::max(factor * angle, least);
-      fresh.setEnergy(energyWith({Bend::Excess, 4.0}, usual.data()));
+      fresh.setEnergy(energyWith(Bend::Excess, usual.data()));
 
-      optimizer.setExcessEnergy(4.0, factor, least);
+      optimizer.setExcessEnergy(0.8, factor, least);
       EXPECT_EQ(optimizer.energy(), fresh.energy());
       const std::size_t flips = optimizer.flipAll();
       EXPECT_GT(flips, 0U);
@@ -279,25 +270,6 @@ TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
   // Where nothing is wrong, the triangles around nearly all vertices need not be compared.
   const std::vector<std::uint8_t> fans = optimizerOf(cases[3]).plainFans();
   EXPECT_GT(std::count(fans.begin(), fans.end(), 1), 900);
-}
-
-TEST(MeshOptimizer, AFanThatGoesAroundTwiceIsNotPlain) {
-  // Seven spokes, each two sevenths of a turn after the last: always to the same side.
-  const Index ring = 7;
-  Case of{Positions(3, ring + 2), Triangles(3, 2 * ring), {}};
-  of.points.leftCols(2) << 0.0, 0.0, 0.0, 0.0, 0.1, -5.0;
-  for (Index i = 0; i < ring; ++i) {
-    const double angle = 2.0 * 2.0 * kPi * i / ring;
-    of.points.col(2 + i) << std::cos(angle), std::sin(angle), 0.01 * i;
-    const Index next = 2 + (i + 1) % ring;
-    of.triangles.col(2 * i) << 0, 2 + i, next;
-    of.triangles.col(2 * i + 1) << 1, next, 2 + i;
-  }
-  of.graph = graphOfMesh(of.points, of.triangles);
-  const MeshOptimizer optimizer = optimizerOf(of);
-  EXPECT_EQ(optimizer.plainFans()[0], 0);
-  EXPECT_EQ(optimizer.intersections(), findSelfIntersections(of.points, of.triangles));
-  EXPECT_FALSE(optimizer.intersections().empty());
 }
 
 TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {

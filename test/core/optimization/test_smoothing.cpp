@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace spherical_param::test {
@@ -109,20 +110,17 @@ TEST(Smoothing, NoiseIsTakenOffAndOnlyTheUmbrellaShrinks) {
 }
 
 TEST(Smoothing, VolumeIsRestored) {
-  const Mesh sphere = noisyMesh(300, 0.05, 2);
   const Tube tube = bentTube(12.0, 2.0, 12);
-  for (const auto& [points, triangles] :
-       {std::pair(sphere.points, sphere.triangles),
-        std::pair(withNoise(tube.points, 0.05, 3), tube.triangles)}) {
-    const double volume = volumeOf(points, triangles);
+  for (const Mesh& mesh :
+       {noisyMesh(300, 0.05, 2), Mesh{withNoise(tube.points, 0.05, 3), tube.triangles}})
     for (const SmoothingMethod method : kMethods) {
-      const Smoothing smooth = smoothSurface(points, triangles, optionsOf(method));
+      const double volume = volumeOf(mesh.points, mesh.triangles);
+      const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method));
       // Newton's method ends below 1e-12; the rest is the rounding of the sums.
-      EXPECT_NEAR(volumeOf(smooth.points, triangles) / volume, 1.0, 1e-11);
+      EXPECT_NEAR(volumeOf(smooth.points, mesh.triangles) / volume, 1.0, 1e-11);
       EXPECT_NEAR(smooth.report.volume_before / volume, 1.0, 1e-12);
       EXPECT_NEAR(smooth.report.volume_after / volume, 1.0, 1e-11);
     }
-  }
 }
 
 TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
@@ -141,22 +139,6 @@ TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
     EXPECT_NEAR(smooth.report.mean_displacement, moved.mean(), 1e-13);
     EXPECT_NEAR(smooth.report.rms_displacement, std::sqrt(moved.square().mean()), 1e-13);
     EXPECT_GT(smooth.report.max_displacement, 0.01);
-  }
-}
-
-TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesStay) {
-  Mesh mesh = noisyMesh(80, 0.1, 8);
-  mesh.points.array() += 0.1;
-  for (const SmoothingMethod method : kMethods) {
-    const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 0));
-    EXPECT_EQ(smooth.points, mesh.points);
-    EXPECT_EQ(smooth.report.max_displacement, 0.0);
-    EXPECT_EQ(smooth.report.volume_after, smooth.report.volume_before);
-    EXPECT_NEAR(smooth.report.volume_before, volumeOf(mesh.points, mesh.triangles), 1e-12);
-    for (const Index n : {0, 2}) {
-      const Positions points = mesh.points.leftCols(n);
-      EXPECT_EQ(smoothSurface(points, Triangles(3, 0), optionsOf(method)).points, points);
-    }
   }
 }
 
@@ -183,17 +165,8 @@ TEST(Smoothing, MovesWithRotationTranslationScaleAndReversal) {
 
 TEST(Smoothing, SameBitsForAnyNumberOfThreads) {
   // Enough points for several threads, and not a multiple of the blocks.
-  constexpr Index rings = 229;
-  constexpr Index around = 220;
-  const Triangles triangles = torusTriangles(rings, around);
-  Positions points(3, rings * around);
-  for (Index i = 0; i < rings * around; ++i) {
-    const double a = 2.0 * kPi * (i / around) / rings;
-    const double b = 2.0 * kPi * (i % around) / around;
-    points.col(i) << (2.0 + std::cos(b)) * std::cos(a), (2.0 + std::cos(b)) * std::sin(a),
-        std::sin(b);
-  }
-  points = withNoise(points, 0.01, 11);
+  const Triangles triangles = torusTriangles(229, 220);
+  const Positions points = spiralSphere(229 * 220);
   for (const SmoothingMethod method : kMethods) {
     const Smoothing one = smoothSurface(points, triangles, optionsOf(method, 2), 1);
     const Smoothing several = smoothSurface(points, triangles, optionsOf(method, 2), 3);
@@ -204,15 +177,24 @@ TEST(Smoothing, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Smoothing, MeshWithoutVolumeIsSmoothedAllTheSame) {
-  // Flat, all in one place, and both sides of one triangle.
-  const Mesh mesh = noisyMesh(80, 0.1, 13);
+TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesOrVolume) {
+  Mesh mesh = noisyMesh(80, 0.1, 8);
+  mesh.points.array() += 0.1;
   Positions flat = mesh.points;
   flat.row(2).setZero();
   const Positions same = Positions::Constant(3, 80, 0.3);
   Triangles two_sides(3, 2);
   two_sides << 0, 0, 1, 2, 2, 1;
   for (const SmoothingMethod method : kMethods) {
+    const Smoothing none = smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 0));
+    EXPECT_EQ(none.points, mesh.points);
+    EXPECT_EQ(none.report.max_displacement, 0.0);
+    EXPECT_EQ(none.report.volume_after, none.report.volume_before);
+    EXPECT_NEAR(none.report.volume_before, volumeOf(mesh.points, mesh.triangles), 1e-12);
+    for (const Index n : {0, 2}) {
+      const Positions points = mesh.points.leftCols(n);
+      EXPECT_EQ(smoothSurface(points, Triangles(3, 0), optionsOf(method)).points, points);
+    }
     const Smoothing smooth = smoothSurface(flat, mesh.triangles, optionsOf(method));
     EXPECT_TRUE(smooth.points.allFinite());
     EXPECT_EQ(smooth.points.row(2).cwiseAbs().maxCoeff(), 0.0);
@@ -227,48 +209,45 @@ TEST(Smoothing, MeshWithoutVolumeIsSmoothedAllTheSame) {
 TEST(Smoothing, BadInputIsInvalidInput) {
   const Mesh good = noisyMesh(50, 0.1, 14);
   const Eigen::Index m = good.triangles.cols();
-  const auto expect_refused = [&](const Positions& points, const Triangles& triangles,
-                                  const SmoothingOptions& options = {}, int threads = 0) {
-    EXPECT_THROW(smoothSurface(points, triangles, options, threads), InvalidInput);
-  };
   EXPECT_NO_THROW(smoothSurface(good.points, good.triangles, {}));
   for (const int steps : {-1, 10001})
-    expect_refused(good.points, good.triangles, optionsOf(SmoothingMethod::Umbrella, steps));
+    EXPECT_THROW(
+        smoothSurface(good.points, good.triangles, optionsOf(SmoothingMethod::Umbrella, steps)),
+        InvalidInput);
   for (const int threads : {-1, 1025})
-    expect_refused(good.points, good.triangles, {}, threads);
+    EXPECT_THROW(smoothSurface(good.points, good.triangles, {}, threads), InvalidInput);
+  const auto expect_refused = [&](const auto& spoil) {
+    Mesh mesh = good;
+    spoil(mesh.points, mesh.triangles);
+    EXPECT_THROW(smoothSurface(mesh.points, mesh.triangles, {}), InvalidInput);
+  };
   for (const double value :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    Positions points = good.points;
-    points(1, 4) = value;
-    expect_refused(points, good.triangles);
-  }
-  for (const Index index : {-1, 50}) {
-    Triangles out_of_range = good.triangles;
-    out_of_range(2, 3) = index;
-    expect_refused(good.points, out_of_range);
-  }
-  expect_refused(good.points, good.triangles.leftCols(m - 1));  // open
-  Triangles reversed = good.triangles;
-  std::swap(reversed(0, 5), reversed(1, 5));
-  expect_refused(good.points, reversed);
-  // A triangle twice, and one that names a vertex twice or three times.
-  Triangles more(3, m + 1);
-  more << good.triangles, good.triangles.col(0);
-  expect_refused(good.points, more);
-  more.rightCols(1) << 0, 0, 1;
-  expect_refused(good.points, more);
-  more.rightCols(1) << 0, 0, 0;
-  expect_refused(good.points, more);
-  // The whole mesh twice: two fans at each vertex.
-  Triangles twice(3, 2 * m);
-  twice << good.triangles, good.triangles;
-  expect_refused(good.points, twice);
-  // Two tetrahedra at one vertex.
-  Triangles pinched(3, 8);
-  pinched << 0, 0, 1, 2, 3, 3, 4, 5,  //
-      2, 1, 2, 0, 5, 4, 5, 3,         //
-      1, 3, 3, 3, 4, 6, 6, 6;
-  expect_refused(good.points, pinched);
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    expect_refused([&](Positions& points, Triangles&) { points(1, 4) = value; });
+  for (const Index index : {-1, 50})
+    expect_refused([&](Positions&, Triangles& triangles) { triangles(2, 3) = index; });
+  expect_refused([&](Positions&, Triangles& triangles) {  // open
+    triangles.conservativeResize(3, m - 1);
+  });
+  expect_refused(
+      [](Positions&, Triangles& triangles) { std::swap(triangles(0, 5), triangles(1, 5)); });
+  // One more that is there already, or names a vertex twice or three times.
+  const Index first[] = {good.triangles(0, 0), good.triangles(1, 0), good.triangles(2, 0)};
+  for (const auto& [i, j, k] : {std::tuple(0, 1, 2), std::tuple(0, 0, 1), std::tuple(0, 0, 0)})
+    expect_refused([&, a = first[i], b = first[j], c = first[k]](Positions&, Triangles& triangles) {
+      triangles.conservativeResize(3, m + 1);
+      triangles.col(m) << a, b, c;
+    });
+  expect_refused([&](Positions&, Triangles& triangles) {  // all twice: two fans at each vertex
+    triangles.conservativeResize(3, 2 * m);
+    triangles.rightCols(m) = good.triangles;
+  });
+  expect_refused([](Positions&, Triangles& triangles) {  // two tetrahedra at one vertex
+    triangles.resize(3, 8);
+    triangles << 0, 0, 1, 2, 3, 3, 4, 5,  //
+        2, 1, 2, 0, 5, 4, 5, 3,           //
+        1, 3, 3, 3, 4, 6, 6, 6;
+  });
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <set>
 #include <vector>
 
 namespace spherical_param::test {
@@ -300,15 +301,13 @@ TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMeshOnAnyNumberOfThreads) {
     EXPECT_EQ(pairsOf(mesh, 3), pairs);
     const auto m = static_cast<Index>(mesh.triangles.cols());
     for (const Index size : {0, 1, 60, 400, m}) {
-      std::vector<Index> of;
-      std::vector<char> is_of(static_cast<std::size_t>(m), 0);
-      for (Index i = 0; i < size; ++i) {
-        of.push_back(std::uniform_int_distribution<Index>(0, m - 1)(random));
-        is_of[static_cast<std::size_t>(of.back())] = 1;
-      }
+      std::vector<Index> of(static_cast<std::size_t>(size));
+      for (Index& t : of)
+        t = std::uniform_int_distribution<Index>(0, m - 1)(random);
+      const std::set<Index> set(of.begin(), of.end());
       Pairs expected;
       for (const auto& [s, t] : pairs)
-        if (is_of[static_cast<std::size_t>(s)] != 0 || is_of[static_cast<std::size_t>(t)] != 0)
+        if (set.count(s) + set.count(t) > 0)
           expected.push_back({s, t});
       for (const int threads : {1, 3})
         EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of, onThreads(threads)),
