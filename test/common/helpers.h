@@ -362,4 +362,28 @@ inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triang
   return static_cast<double>(beyond) / static_cast<double>(3 * triangles.cols());
 }
 
+/// The graph of the tangent Delaunay neighbours, by brute force.
+inline NeighborGraph localDelaunayGraph(const Positions& points) {
+  return buildNeighborGraph(points, bruteForceNeighbors(points, 12), {}, bruteForceSearch(points));
+}
+
+/// A torus of rings x around quads, each split in two, over the vertices r * around + k: six
+/// neighbours everywhere.
+inline Triangles torusTriangles(Index rings, Index around) {
+  Triangles triangles(3, 2 * rings * around);
+  const auto at = [&](Index r, Index k) { return (r % rings) * around + k % around; };
+  for (Index r = 0; r < rings; ++r)
+    for (Index k = 0; k < around; ++k) {
+      triangles.col(2 * at(r, k)) << at(r, k), at(r + 1, k), at(r + 1, k + 1);
+      triangles.col(2 * at(r, k) + 1) << at(r, k), at(r + 1, k + 1), at(r, k + 1);
+    }
+  return triangles;
+}
+
+/// Distance of neighbours among n even points on the unit sphere: a hexagonal grid has sqrt(3) / 2
+/// of its square of area for each point.
+inline double sphereSpacing(Index n) {
+  return std::sqrt(4.0 * kPi / (n * std::sqrt(3.0) / 2.0));
+}
+
 }  // namespace spherical_param::test

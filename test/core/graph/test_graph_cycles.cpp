@@ -1,0 +1,91 @@
+#include "graph_cycles.h"
+
+#include "helpers.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+int cyclesOf(const Graph& graph, int reach) {
+  return countCycles(graph, reach).value_or(-1);
+}
+
+/// Of unit lengths.
+Graph graphOf(const std::vector<std::set<Index>>& rows) {
+  Graph graph;
+  for (const std::set<Index>& row : rows) {
+    graph.neighbors.insert(graph.neighbors.end(), row.begin(), row.end());
+    graph.offsets.push_back(graph.neighbors.size());
+  }
+  graph.lengths.assign(graph.neighbors.size(), 1.0);
+  return graph;
+}
+
+TEST(GraphCycles, AHandleHasTwoAndOpeningsHaveOneLessThanThereAre) {
+  const Positions sphere = test::spiralSphere(1000);
+  const Triangles hull = triangulateSphere(sphere).triangles;
+  for (const int reach : {1, 2, 3}) {
+    SCOPED_TRACE(reach);
+    // The positions do not matter.
+    EXPECT_EQ(cyclesOf(test::graphOfMesh(test::spiralSphere(40 * 20), test::torusTriangles(40, 20)),
+                       reach),
+              2);
+    EXPECT_EQ(cyclesOf(test::graphOfMesh(sphere, hull), reach), 0);
+    Triangles open = hull;
+    int cycles = 0;
+    for (const Eigen::Vector3d& center :
+         {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, 0.0, -1.0),
+          Eigen::Vector3d(1.0, 0.0, 0.0)}) {
+      Eigen::Index kept = 0;
+      for (Eigen::Index t = 0; t < open.cols(); ++t) {
+        bool is_far = true;
+        for (int k = 0; k < 3; ++k)
+          is_far = is_far && (Eigen::Vector3d(sphere.col(open(k, t))) - center).norm() > 0.35;
+        if (is_far)
+          open.col(kept++) = open.col(t);
+      }
+      open.conservativeResize(3, kept);
+      EXPECT_EQ(cyclesOf(test::graphOfMesh(sphere, open), reach), cycles++);
+    }
+  }
+}
+
+TEST(GraphCycles, ARingOfThreeTimesTheReachDoesNotCount) {
+  for (const int reach : {1, 2, 3})
+    for (const Index length : {3 * reach, 3 * reach + 1}) {
+      std::vector<std::set<Index>> rows(static_cast<std::size_t>(length));
+      for (Index v = 0; v < length; ++v)
+        rows[static_cast<std::size_t>(v)] = {(v + 1) % length, (v + length - 1) % length};
+      EXPECT_EQ(cyclesOf(graphOf(rows), reach), length == 3 * reach ? 0 : 1) << reach;
+    }
+}
+
+TEST(GraphCycles, OfNoSurfaceAndOfOneDirectionAreNotCounted) {
+  // Random edges: hundreds of cycles, and within three steps of a node half of all nodes.
+  std::mt19937 random(5);
+  std::vector<std::set<Index>> chaos(400);
+  for (std::size_t v = 0; v < chaos.size(); ++v)
+    for (int i = 0; i < 3; ++i) {
+      const std::size_t w = random() % chaos.size();
+      if (w != v) {
+        chaos[v].insert(static_cast<Index>(w));
+        chaos[w].insert(static_cast<Index>(v));
+      }
+    }
+  // Each names the next three: no row has an entry for the way back.
+  std::vector<std::set<Index>> one_way(40);
+  for (Index v = 0; v < 40; ++v)
+    one_way[static_cast<std::size_t>(v)] = {(v + 1) % 40, (v + 2) % 40, (v + 3) % 40};
+  EXPECT_FALSE(countCycles(graphOf(chaos), 1));
+  EXPECT_FALSE(countCycles(graphOf(chaos), 3));
+  for (const int reach : {1, 2, 3})
+    EXPECT_FALSE(countCycles(graphOf(one_way), reach)) << reach;
+}
+
+}  // namespace
+}  // namespace spherical_param::internal
