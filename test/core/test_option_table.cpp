@@ -8,11 +8,17 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
 
 namespace spherical_param {
+
+void PrintTo(const OptionRow& row, std::ostream* stream) {
+  *stream << row.name;
+}
+
 namespace {
 
 OptionValue numberOf(const OptionRow& row, double number) {

@@ -141,5 +141,13 @@ TEST(Retries, AreMadeUntilNoTrianglesIntersectAndTheBestCounts) {
   }
 }
 
+TEST(Retries, AreNotMadeWhereTheCloudIsNoClosedSurface) {
+  const Positions points = test::withNoise(test::twoSpheres(40, 40, 6.0), 0.4, 1);
+  const Result result = test::mesh(points);
+  test::expectGuarantees(points, result);
+  EXPECT_FALSE(result.self_intersections.empty());
+  EXPECT_EQ(result.runs.size(), 1U);
+}
+
 }  // namespace
 }  // namespace spherical_param
