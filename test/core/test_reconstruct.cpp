@@ -35,8 +35,6 @@ using test::randomSphere;
 using test::spiralSphere;
 using test::watched;
 
-// --- The mesh ------------------------------------------------------------------------------------
-
 TEST(Reconstruct, EllipsoidIsMeshedTrulyByAllMethods) {
   const Positions points = ellipsoid(800);
   std::vector<Options> all;
