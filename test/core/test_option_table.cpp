@@ -8,11 +8,17 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <ostream>
 #include <set>
 #include <string>
 #include <vector>
 
 namespace spherical_param {
+
+void PrintTo(const OptionRow& row, std::ostream* stream) {
+  *stream << row.name;
+}
+
 namespace {
 
 OptionValue numberOf(const OptionRow& row, double number) {
@@ -32,19 +38,15 @@ std::vector<OptionValue> goodValues(const OptionRow& row) {
   return values;
 }
 
-/// Values out of range or of another kind.
-std::vector<OptionValue> badValues(const OptionRow& row) {
+/// Numbers out of range.
+std::vector<OptionValue> numbersOutOfRange(const OptionRow& row) {
   if (!row.choices.empty())
-    return {std::string("no choice"), std::int64_t{0}, 0.5, OptionValue()};
-  std::vector<OptionValue> values{std::string("three"), numberOf(row, row.min - 1.0),
-                                  numberOf(row, row.max + 1.0),
-                                  std::numeric_limits<double>::quiet_NaN()};
+    return {};
+  std::vector<OptionValue> values{numberOf(row, row.min - 1.0), numberOf(row, row.max + 1.0)};
   if (row.min_excluded)
     values.push_back(numberOf(row, row.min));
-  if (row.is_integer)
-    values.emplace_back(row.min + 0.5);
-  if (!row.optional)
-    values.emplace_back();
+  if (!row.is_integer)
+    values.emplace_back(std::numeric_limits<double>::quiet_NaN());
   return values;
 }
 
@@ -58,40 +60,72 @@ void expectRefusal(const Call& call, const std::string& name) {
   }
 }
 
-TEST(OptionTable, DefaultsAreInRange) {
-  for (const OptionRow& row : optionTable()) {
-    Options options;
-    EXPECT_NO_THROW(setOption(options, row.name, row.get(options))) << row.name;
-  }
-  EXPECT_NO_THROW(checkOptions({}));
+/// By checkOptions(), and by reconstruct() before it looks at the points.
+void expectRefusal(const Options& options, const std::string& name) {
+  expectRefusal([&] { checkOptions(options); }, name);
+  expectRefusal([&] { reconstruct(Positions(3, 0), options); }, name);
 }
 
-TEST(OptionTable, NamesAndFieldsOccurOnce) {
+TEST(OptionTable, NamesAndFieldsOccurOnceAndDefaultsAreInRange) {
+  EXPECT_NO_THROW(checkOptions({}));
   std::set<std::string> names;
   std::set<std::string> fields;
   for (const OptionRow& row : optionTable()) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     EXPECT_TRUE(fields.insert(row.field).second) << row.field;
     EXPECT_EQ(&findOption(row.name), &row);
-    EXPECT_FALSE(row.help.empty());
-    EXPECT_FALSE(rangeOf(row).empty());
+    EXPECT_FALSE(row.help.empty() || rangeOf(row).empty());
     for (const auto& [other, value] : row.used_with)
       EXPECT_NO_THROW(findOption(other)) << row.name;
+    Options options;
+    EXPECT_NO_THROW(setOption(options, row.name, row.get(options))) << row.name;
+  }
+  expectRefusal([] { findOption("solver"); }, "solver");
+}
+
+class EveryOption : public testing::TestWithParam<OptionRow> {};
+INSTANTIATE_TEST_SUITE_P(OptionTable, EveryOption, testing::ValuesIn(optionTable()),
+                         [](const auto& of) { return of.param.name; });
+
+TEST_P(EveryOption, ExtremeIsReadBackChangesNoOtherAndIsMeshed) {
+  const OptionRow& row = GetParam();
+  for (const OptionValue& value : goodValues(row)) {
+    SCOPED_TRACE(textOf(value));
+    Options options;
+    setOption(options, row.name, value);
+    EXPECT_EQ(row.get(options), value);
+    EXPECT_NO_THROW(checkOptions(options));
+    for (const OptionRow& other : optionTable())
+      if (other.name != row.name) {
+        EXPECT_EQ(other.get(options), other.get({})) << other.name;
+      }
+    for (const Index n : {4, 150})
+      EXPECT_TRUE(
+          test::isSphereOverAll(reconstruct(test::randomSphere(n, 7), options).triangles, n));
   }
 }
 
-TEST(OptionTable, AValueThatIsSetIsReadBackAndChangesNoOtherOption) {
-  for (const OptionRow& row : optionTable())
-    for (const OptionValue& value : goodValues(row)) {
+TEST_P(EveryOption, OutOfRangeOrOfAnotherKindIsRefusedByName) {
+  const OptionRow& row = GetParam();
+  std::vector<OptionValue> bad = numbersOutOfRange(row);
+  for (const OptionValue& value : bad)
+    if (row.name != "seed") {  // which has the range of its type
       Options options;
-      setOption(options, row.name, value);
-      EXPECT_EQ(row.get(options), value) << row.name << " = " << textOf(value);
-      EXPECT_NO_THROW(checkOptions(options)) << row.name << " = " << textOf(value);
-      for (const OptionRow& other : optionTable())
-        if (other.name != row.name) {
-          EXPECT_EQ(other.get(options), other.get(Options())) << row.name << " " << other.name;
-        }
+      row.set(options, value);
+      expectRefusal(options, row.name);
     }
+  bad.emplace_back("three");
+  if (!row.choices.empty() || row.is_integer)
+    bad.emplace_back(3.5);
+  if (!row.choices.empty())
+    bad.emplace_back(std::int64_t{0});
+  if (!row.optional)
+    bad.emplace_back();
+  for (const OptionValue& value : bad) {
+    Options options;
+    expectRefusal([&] { setOption(options, row.name, value); }, row.name);
+    EXPECT_EQ(row.get(options), row.get({}));
+  }
 }
 
 TEST(OptionTable, AnIntegerWillDoForANumber) {
@@ -100,64 +134,29 @@ TEST(OptionTable, AnIntegerWillDoForANumber) {
   EXPECT_EQ(options.embedding.exponent, 4.0);
 }
 
-TEST(OptionTable, BadValuesAreRefusedByName) {
-  for (const OptionRow& row : optionTable())
-    for (const OptionValue& value : badValues(row)) {
-      Options options;
-      expectRefusal([&] { setOption(options, row.name, value); }, row.name);
-      EXPECT_EQ(row.get(options), row.get(Options())) << row.name;
-    }
-  Options options;
-  expectRefusal([&] { setOption(options, "solver", std::string("iterative")); }, "solver");
-  expectRefusal([] { findOption("solver"); }, "solver");
-}
-
-TEST(OptionTable, NestedOptionsAreCheckedWithoutRunningAStage) {
+TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
   const auto refuses = [](const std::string& name, const auto& change) {
     Options options;
     change(options);
-    expectRefusal([&] { checkOptions(options); }, name);
-    // reconstruct() checks them before the points.
-    expectRefusal([&] { reconstruct(Positions(3, 0), options); }, name);
+    expectRefusal(options, name);
   };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  refuses("k", [](Options& o) { o.graph.k = 2; });
-  refuses("graph", [](Options& o) { o.graph.method = static_cast<GraphMethod>(2); });
-  refuses("agreement", [](Options& o) { o.graph.agreement = static_cast<StarAgreement>(-1); });
-  refuses("damping", [](Options& o) { o.embedding.damping = 0.0; });
-  refuses("tolerance", [=](Options& o) { o.embedding.tolerance = nan; });
-  refuses("exponent", [](Options& o) { o.embedding.exponent = 2.0; });
+  for (const int past : {-1, 3}) {
+    refuses("graph", [=](Options& o) { o.graph.method = static_cast<GraphMethod>(past); });
+    refuses("agreement", [=](Options& o) { o.graph.agreement = static_cast<StarAgreement>(past); });
+    refuses("embedding",
+            [=](Options& o) { o.embedding.method = static_cast<EmbeddingMethod>(past); });
+    refuses("weights", [=](Options& o) { o.embedding.weights = static_cast<EdgeWeights>(past); });
+    refuses("triangulation",
+            [=](Options& o) { o.triangulation.method = static_cast<TriangulationMethod>(past); });
+    refuses("optimization",
+            [=](Options& o) { o.optimization.method = static_cast<OptimizationMethod>(past); });
+    refuses("smoothing",
+            [=](Options& o) { o.smoothing.method = static_cast<SmoothingMethod>(past); });
+  }
   refuses("exponent", [](Options& o) {
     o.embedding.method = EmbeddingMethod::Iterative;
     o.embedding.exponent = 4.0;
   });
-  refuses("max_iterations", [](Options& o) { o.embedding.max_iterations = -1; });
-  refuses("stagnation_window", [](Options& o) { o.embedding.stagnation_window = -1; });
-  refuses("starts", [](Options& o) { o.embedding.starts = 101; });
-  refuses("weights", [](Options& o) { o.embedding.weights = static_cast<EdgeWeights>(3); });
-  refuses("history_vertices", [](Options& o) { o.embedding.history.vertices = -1; });
-  refuses("history_frames", [](Options& o) { o.embedding.history.frames = 1; });
-  refuses("triangulation",
-          [](Options& o) { o.triangulation.method = static_cast<TriangulationMethod>(2); });
-  refuses("optimization",
-          [](Options& o) { o.optimization.method = static_cast<OptimizationMethod>(3); });
-  refuses("smoothing", [](Options& o) { o.smoothing.steps = 10001; });
-  refuses("smoothing", [](Options& o) { o.smoothing.method = static_cast<SmoothingMethod>(2); });
-  refuses("retries", [](Options& o) { o.retries = -1; });
-  refuses("retries", [](Options& o) { o.retries = 100; });
-  refuses("threads", [](Options& o) { o.threads = 1025; });
-}
-
-TEST(OptionTable, ExtremesOfEveryOptionAreMeshed) {
-  const Positions points = test::randomSphere(200, 7);
-  for (const OptionRow& row : optionTable())
-    for (const OptionValue& value : goodValues(row)) {
-      Options options;
-      setOption(options, row.name, value);
-      const Result result = reconstruct(points, options);
-      EXPECT_TRUE(test::isSphereOverAll(result.triangles, 200))
-          << row.name << " = " << textOf(value);
-    }
 }
 
 }  // namespace

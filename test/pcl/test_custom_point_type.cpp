@@ -2,24 +2,16 @@
 // before the first of them is included.
 #define PCL_NO_PRECOMPILE
 
-#include <pcl/conversions.h>
 #include <pcl/pcl_macros.h>
-#include <pcl/point_cloud.h>
-#include <pcl/point_types.h>
 #include <pcl/register_point_struct.h>
 #include <pcl/search/octree.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
-#include <gtest/gtest.h>
+#include "clouds.h"
 
-#include <cmath>
-#include <cstdint>
-#include <map>
 #include <set>
 #include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 namespace custom {
 
@@ -59,61 +51,23 @@ using custom::BarePoint;
 using custom::ScannerPoint;
 
 template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr makeEllipsoid(int count) {
-  typename pcl::PointCloud<PointT>::Ptr cloud(new pcl::PointCloud<PointT>);
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count;
-    const double radius = std::sqrt(1.0 - z * z);
-    const double angle = i * 2.399963229728653;
-    PointT point{};
-    point.x = static_cast<float>(1.5 * radius * std::cos(angle));
-    point.y = static_cast<float>(radius * std::sin(angle));
-    point.z = static_cast<float>(0.8 * z);
-    cloud->push_back(point);
-  }
-  return cloud;
-}
-
-/// V - E + F, with the numbers counted in the polygons; 0 if an edge is not there once each way.
-long long eulerCharacteristic(const std::vector<pcl::Vertices>& polygons) {
-  std::set<pcl::index_t> vertices;
-  std::map<std::pair<pcl::index_t, pcl::index_t>, int> edges;
-  for (const pcl::Vertices& polygon : polygons)
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      vertices.insert(polygon.vertices[corner]);
-      ++edges[{polygon.vertices[corner], polygon.vertices[(corner + 1) % 3]}];
-    }
-  for (const auto& [edge, count] : edges)
-    if (count != 1 || edges.count({edge.second, edge.first}) == 0)
-      return 0;
-  return static_cast<long long>(vertices.size()) - static_cast<long long>(edges.size() / 2) +
-         static_cast<long long>(polygons.size());
+test::Polygons meshed(const typename pcl::PointCloud<PointT>::Ptr& cloud, pcl::PolygonMesh& mesh,
+                      const typename pcl::search::Search<PointT>::Ptr& search = {}) {
+  pcl::SphericalParamReconstruction<PointT> reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setSearchMethod(search);
+  reconstruction.reconstruct(mesh);
+  EXPECT_EQ(reconstruction.getErrorMessage(), "");
+  return mesh.polygons;
 }
 
 template <typename PointT>
 class CustomPointType : public testing::Test {};
 using CustomPointTypes = testing::Types<ScannerPoint, BarePoint>;
-struct CustomPointTypeName {
-  template <typename PointT>
-  static std::string GetName(int /*index*/) {
-    return std::is_same_v<PointT, BarePoint> ? "BarePoint" : "ScannerPoint";
-  }
-};
-TYPED_TEST_SUITE(CustomPointType, CustomPointTypes, CustomPointTypeName);
+TYPED_TEST_SUITE(CustomPointType, CustomPointTypes);
 
-TYPED_TEST(CustomPointType, EveryPointIsAVertexOfAClosedGenus0Mesh) {
-  const auto cloud = makeEllipsoid<TypeParam>(400);
-  pcl::SphericalParamReconstruction<TypeParam> reconstruction;
-  reconstruction.setInputCloud(cloud);
-  pcl::PolygonMesh mesh;
-  reconstruction.reconstruct(mesh);
-  EXPECT_EQ(reconstruction.getErrorMessage(), "");
-  EXPECT_EQ(mesh.polygons.size(), 2 * cloud->size() - 4);
-  EXPECT_EQ(eulerCharacteristic(mesh.polygons), 2);
-}
-
-TYPED_TEST(CustomPointType, MeshDoesNotDependOnThePointType) {
-  const auto cloud = makeEllipsoid<TypeParam>(400);
+TYPED_TEST(CustomPointType, HasTheMeshOfAStandardOneAndItsOwnFields) {
+  const auto cloud = test::makeEllipsoid<TypeParam>(400);
   // Values that would decide the neighbours if they were taken for coordinates.
   for (std::size_t i = 0; i < cloud->size(); ++i) {
     if constexpr (std::is_same_v<TypeParam, BarePoint>)
@@ -121,28 +75,9 @@ TYPED_TEST(CustomPointType, MeshDoesNotDependOnThePointType) {
     else
       (*cloud)[i].reflectance = static_cast<float>(i);
   }
-  pcl::SphericalParamReconstruction<TypeParam> reconstruction;
-  reconstruction.setInputCloud(cloud);
-  std::vector<pcl::Vertices> polygons;
-  reconstruction.reconstruct(polygons);
-
-  pcl::SphericalParamReconstruction<pcl::PointXYZ> standard;
-  standard.setInputCloud(makeEllipsoid<pcl::PointXYZ>(400));
-  std::vector<pcl::Vertices> expected;
-  standard.reconstruct(expected);
-
-  ASSERT_FALSE(expected.empty());
-  ASSERT_EQ(polygons.size(), expected.size());
-  for (std::size_t t = 0; t < polygons.size(); ++t)
-    EXPECT_EQ(polygons[t].vertices, expected[t].vertices);
-}
-
-TYPED_TEST(CustomPointType, OwnFieldsAreInTheOutput) {
-  const auto cloud = makeEllipsoid<TypeParam>(50);
-  pcl::SphericalParamReconstruction<TypeParam> reconstruction;
-  reconstruction.setInputCloud(cloud);
   pcl::PolygonMesh mesh;
-  reconstruction.reconstruct(mesh);
+  const auto triangles = test::trianglesOf(meshed<TypeParam>(cloud, mesh));
+  EXPECT_TRUE(test::isSphere(mesh.polygons, 400));
   std::set<std::string> names;
   for (const pcl::PCLPointField& field : mesh.cloud.fields)
     names.insert(field.name);
@@ -150,18 +85,14 @@ TYPED_TEST(CustomPointType, OwnFieldsAreInTheOutput) {
     EXPECT_EQ(names, (std::set<std::string>{"weight", "x", "y", "z"}));
   else
     EXPECT_EQ(names, (std::set<std::string>{"x", "y", "z", "reflectance", "ring", "time"}));
+  EXPECT_EQ(test::trianglesOf(meshed<pcl::PointXYZ>(test::makeEllipsoid(400), mesh)), triangles);
 }
 
 TEST(ScannerPointSearch, OctreeOfTheUserWorks) {
-  const auto cloud = makeEllipsoid<ScannerPoint>(400);
-  pcl::SphericalParamReconstruction<ScannerPoint> reconstruction;
-  reconstruction.setInputCloud(cloud);
-  pcl::search::Octree<ScannerPoint>::Ptr octree(new pcl::search::Octree<ScannerPoint>(0.1));
-  reconstruction.setSearchMethod(octree);
   pcl::PolygonMesh mesh;
-  reconstruction.reconstruct(mesh);
-  EXPECT_EQ(reconstruction.getErrorMessage(), "");
-  EXPECT_EQ(eulerCharacteristic(mesh.polygons), 2);
+  const pcl::search::Octree<ScannerPoint>::Ptr octree(new pcl::search::Octree<ScannerPoint>(0.1));
+  meshed<ScannerPoint>(test::makeEllipsoid<ScannerPoint>(400), mesh, octree);
+  EXPECT_TRUE(test::isSphere(mesh.polygons, 400));
 }
 
 }  // namespace

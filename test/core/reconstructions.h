@@ -1,0 +1,110 @@
+#pragma once
+
+#include "helpers.h"
+#include "spherical_param/reconstruct.h"
+#include "spherical_param/self_intersection.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+/// Clouds, options and checks for tests of reconstruct().
+namespace spherical_param::test {
+
+inline Positions ellipsoid(Index n) {
+  return Eigen::Vector3d(1.0, 0.7, 0.5).asDiagonal() * spiralSphere(n);
+}
+
+/// A sphere with noise of so many distances of its points.
+inline Positions noisySphere(Index n, double noise) {
+  const double spacing = std::sqrt(8.0 * kPi / (std::sqrt(3.0) * n));
+  return withNoise(spiralSphere(n), noise * spacing, 7);
+}
+
+/// Two spheres with a gap between them.
+inline Positions twoSpheres(Index n, Index m, double distance) {
+  Positions second = spiralSphere(m);
+  second.row(0).array() += distance;
+  return horizontally(spiralSphere(n), second);
+}
+
+/// The method as it was published.
+inline Options paper() {
+  Options options;
+  options.graph.method = GraphMethod::NearestNeighbors;
+  options.embedding.method = EmbeddingMethod::Iterative;
+  options.triangulation.method = TriangulationMethod::Qhull;
+  return options;
+}
+
+/// Both methods, whole.
+inline std::vector<Options> bothMethods() {
+  return {Options(), paper()};
+}
+
+/// For clouds that no run meshes well: a single one, without the search for a better mesh.
+inline Options quick(Options options = {}) {
+  options.retries = 0;
+  options.optimization.method = OptimizationMethod::Flips;
+  return options;
+}
+
+/// Keeps a history and the details.
+inline Options watched(Options options = {}) {
+  options.embedding.history = {300, 25};
+  options.details = true;
+  return options;
+}
+
+/// With neighbours by brute force.
+inline Result mesh(const Positions& points, const Options& options = {}) {
+  return reconstruct(points, bruteForceNeighbors(points, neighborsToSearch(options.graph)), options,
+                     bruteForceSearch(points));
+}
+
+inline Positions verticesOf(const Positions& points, const Result& result) {
+  Positions vertices(3, static_cast<Eigen::Index>(result.vertexCount()));
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
+    vertices.col(v) = points.col(result.input_of_vertex[static_cast<std::size_t>(v)]);
+  return vertices;
+}
+
+inline bool isWarnedOf(const Result& result, const std::string& text) {
+  return std::any_of(
+      result.warnings.begin(), result.warnings.end(),
+      [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+/// Everything that is promised for any input.
+inline void expectGuarantees(const Positions& points, const Result& result) {
+  const auto v = static_cast<Index>(result.vertexCount());
+  EXPECT_TRUE(isSphereOverAll(result.triangles, v));
+  EXPECT_TRUE(result.topology.isSphere());
+  ASSERT_EQ(result.sphere.cols(), v);
+  EXPECT_LT((result.sphere.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+  ASSERT_EQ(result.vertex_of_input.size(), static_cast<std::size_t>(points.cols()));
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Index vertex = result.vertex_of_input[static_cast<std::size_t>(i)];
+    ASSERT_TRUE(vertex >= 0 && vertex < v);
+    const Index first = result.input_of_vertex[static_cast<std::size_t>(vertex)];
+    EXPECT_LE(first, i);
+    EXPECT_EQ(points.col(i), points.col(first));
+  }
+  EXPECT_EQ(result.duplicates(), static_cast<std::size_t>(points.cols() - v));
+  Positions vertices = verticesOf(points, result);
+  EXPECT_EQ(result.self_intersections, findSelfIntersections(vertices, result.triangles));
+  EXPECT_EQ(std::count_if(result.runs.begin(), result.runs.end(),
+                          [](const RunReport& run) { return run.chosen; }),
+            1);
+  EXPECT_FALSE(result.diagnosis.summary.empty());
+  vertices.colwise() -= Eigen::Vector3d(vertices.col(0));
+  const double rounding = 1e-9 * std::pow(vertices.colwise().norm().maxCoeff(), 3.0);
+  EXPECT_NEAR(result.measures.volume, volumeOf(vertices, result.triangles), rounding);
+  EXPECT_GE(result.measures.volume, 0.0);
+}
+
+}  // namespace spherical_param::test

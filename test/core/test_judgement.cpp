@@ -1,0 +1,196 @@
+#include "reconstructions.h"
+#include "spherical_param/embedding.h"
+#include "spherical_param/neighbor_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <set>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using test::expectGuarantees;
+using test::mesh;
+using test::quick;
+using test::watched;
+
+TEST(Judgement, CleanCloudLooksClosedAndIsFreeOfFindings) {
+  for (const Positions& points : {test::ellipsoid(500), test::cubeGrid(8)})
+    for (const Options& options : test::bothMethods()) {
+      const Result result = mesh(points, options);
+      expectGuarantees(points, result);
+      EXPECT_TRUE(result.self_intersections.empty());
+      EXPECT_TRUE(result.diagnosis.looksClosedGenus0());
+      EXPECT_LT(result.optimization.rough, 0.3);
+      EXPECT_EQ(result.optimization.noise_steps, 0);
+      EXPECT_EQ(result.runs[0].self_intersections, 0U);
+      EXPECT_EQ(result.runs[0].energy, result.optimization.energy);
+      EXPECT_EQ(result.smoothed.cols(), 0);
+      EXPECT_EQ(result.smoothing.volume_before, 0.0);
+      EXPECT_FALSE(test::isWarnedOf(result, "intersect"));
+    }
+}
+
+TEST(Judgement, CubeHasItsMeasuresAndItsCreases) {
+  const Eigen::Vector3d shift(5.0, -3.0, 7.0);
+  Positions points = 2.0 * test::cubeGrid(9);
+  points.colwise() += shift;
+  const MeshMeasures measures = mesh(points).measures;
+  // Corners are cut if any crease is missing.
+  EXPECT_NEAR(measures.volume, 8.0, 1e-12);
+  EXPECT_NEAR(measures.area, 24.0, 1e-12);
+  EXPECT_EQ(measures.box_min, shift);
+  EXPECT_EQ(measures.box_max, Eigen::Vector3d(shift.array() + 2.0));
+  EXPECT_LT((measures.centroid - shift - Eigen::Vector3d::Ones()).norm(), 1e-12);
+  // m a^2 / 6
+  EXPECT_LT((measures.inertia - 8.0 * 4.0 / 6.0 * Eigen::Matrix3d::Identity()).norm(), 1e-11);
+}
+
+TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
+  Positions torus(3, 40 * 20);
+  for (Index i = 0; i < 40; ++i)
+    for (Index j = 0; j < 20; ++j) {
+      const double a = 2.0 * test::kPi * (i + 0.5 * (j % 2)) / 40.0;
+      const double b = 2.0 * test::kPi * j / 20.0;
+      torus.col(20 * i + j) << (1.0 + 0.5 * std::cos(b)) * std::cos(a),
+          (1.0 + 0.5 * std::cos(b)) * std::sin(a), 0.5 * std::sin(b);
+    }
+  const Positions bowl = test::spiralSphere(1500).rightCols(1100);  // without its top
+  const Positions parts = test::twoSpheres(200, 160, 6.0);
+  for (Options options : test::bothMethods()) {
+    options.graph.k = 10;
+    const Result of_torus = mesh(torus, quick(options));
+    EXPECT_GT(of_torus.diagnosis.edges_outside_graph, 0.01);
+    options.graph.k.reset();
+    const Result of_bowl = mesh(bowl, quick(options));
+    EXPECT_EQ(of_bowl.diagnosis.kind, SurfaceKind::Open);
+    EXPECT_EQ(of_bowl.diagnosis.openings(), 1U);
+    EXPECT_GT(of_bowl.diagnosis.edges_outside_graph, 0.001);
+    const Result of_parts = mesh(parts, quick(options));
+    EXPECT_EQ(of_parts.diagnosis.kind, SurfaceKind::SeveralParts);
+    EXPECT_EQ(of_parts.graph.components, 2);
+    EXPECT_TRUE(test::isWarnedOf(of_parts, "2 pieces"));
+    ASSERT_FALSE(of_parts.graph.bridges.empty());
+    for (const Bridge& bridge : of_parts.graph.bridges) {
+      EXPECT_DOUBLE_EQ(bridge.length, (parts.col(bridge.from) - parts.col(bridge.to)).norm());
+      EXPECT_NE(bridge.from < 200, bridge.to < 200);
+    }
+    ASSERT_EQ(of_parts.diagnosis.bridges.size(), 1U);
+    EXPECT_EQ(of_parts.diagnosis.bridges[0].points, 160U);
+    for (const Index v : of_parts.diagnosis.bridges[0].vertices)
+      EXPECT_LT(std::abs(parts(0, v) - 3.0), 3.0);  // the ends look at each other
+    for (const auto& [points, result] :
+         {std::pair(torus, of_torus), {bowl, of_bowl}, {parts, of_parts}}) {
+      expectGuarantees(points, result);
+      EXPECT_FALSE(result.diagnosis.looksClosedGenus0());
+      EXPECT_TRUE(test::isWarnedOf(result, result.diagnosis.summary));
+    }
+  }
+}
+
+TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
+  const Positions points = test::ellipsoid(600);
+  Options options = quick(test::paper());
+  options.embedding.max_iterations = 3;
+  options.embedding.weights = EdgeWeights::InverseLength;
+  const Result result = mesh(points, watched(options));
+  const Graph graph =
+      buildNeighborGraph(points, test::bruteForceNeighbors(points, 25), options.graph).graph;
+  const std::vector<double> expected =
+      tangentialLaplacianLengths(graph, result.sphere, options.embedding.weights);
+  ASSERT_EQ(result.vertex_residuals.size(), expected.size());
+  for (std::size_t v = 0; v < expected.size(); ++v)
+    EXPECT_NEAR(result.vertex_residuals[v], expected[v], 1e-12);
+  options.embedding = {};
+  options.embedding.exponent = 4.0;
+  const Result other = mesh(points, watched(options));
+  const double mean =
+      std::accumulate(other.vertex_residuals.begin(), other.vertex_residuals.end(), 0.0) / 600.0;
+  EXPECT_NEAR(mean, other.embedding.residual, 1e-9 * mean);
+}
+
+TEST(Judgement, MarksAreThoseOfTheFindings) {
+  const auto count = [](const Result& result, std::uint8_t bit) {
+    const std::vector<std::uint8_t>& marks = result.diagnosis.triangle_marks;
+    return static_cast<std::size_t>(std::count_if(
+        marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
+  };
+  const Positions bowl = test::spiralSphere(1500).rightCols(1300);  // rim at z = 0.73
+  const Result open = mesh(bowl, watched(quick()));
+  ASSERT_EQ(open.diagnosis.filled_holes.size(), 1U);
+  EXPECT_EQ(count(open, TriangleMarks::filled_hole), open.diagnosis.filled_holes[0].triangles);
+  EXPECT_GE(count(open, TriangleMarks::outside_graph), 1U);
+  for (Index t = 0; t < open.triangles.cols(); ++t) {
+    const auto mark = open.diagnosis.triangle_marks[static_cast<std::size_t>(t)];
+    const double lowest = bowl(2, open.triangles.col(t)).minCoeff();
+    EXPECT_TRUE((mark & TriangleMarks::filled_hole) == 0 || lowest > 0.5);
+  }
+  const Positions rough = test::noisySphere(300, 1.0);
+  const Result tangled = mesh(rough, watched(quick()));
+  std::set<Index> intersecting;
+  for (const auto& pair : tangled.self_intersections)
+    intersecting.insert(pair.begin(), pair.end());
+  EXPECT_FALSE(intersecting.empty());
+  EXPECT_EQ(count(tangled, TriangleMarks::self_intersection), intersecting.size());
+  for (const Index t : intersecting)
+    EXPECT_NE(tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
+                  TriangleMarks::self_intersection,
+              0);
+  const Result parts = mesh(test::twoSpheres(200, 160, 5.0), watched(quick()));
+  EXPECT_GT(count(parts, TriangleMarks::part_bridge), 0U);
+  EXPECT_EQ(count(parts, TriangleMarks::handle), 0U);
+  EXPECT_EQ(count(mesh(test::ellipsoid(300), watched()), 0xff), 0U);
+}
+
+TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
+  const Positions base = test::noisySphere(500, 0.15);
+  const Positions points = test::horizontally(base.leftCols(50), base);
+  const Result rough = mesh(points);
+  Options options;
+  options.smoothing.steps = 3;
+  const Result result = mesh(points, options);
+  expectGuarantees(points, result);
+  ASSERT_EQ(result.smoothed.cols(), 500);
+  // Without intersections on the smoothed points the triangles are those without smoothing.
+  EXPECT_EQ(result.smoothing.self_intersections, 0U);
+  EXPECT_EQ(result.triangles, rough.triangles);
+  EXPECT_EQ(result.sphere, rough.sphere);
+  EXPECT_EQ(result.measures.volume, rough.measures.volume);
+  const Positions vertices = test::verticesOf(points, result);
+  const Eigen::VectorXd moved = (result.smoothed - vertices).colwise().norm();
+  EXPECT_GT(moved.minCoeff(), 0.0);
+  EXPECT_NEAR(result.smoothing.max_displacement, moved.maxCoeff(), 1e-12);
+  EXPECT_NEAR(result.smoothing.rms_displacement, std::sqrt(moved.squaredNorm() / 500.0), 1e-12);
+  const double volume = test::volumeOf(result.smoothed, result.triangles);
+  EXPECT_NEAR(result.smoothing.volume_before, result.measures.volume, 1e-12);
+  EXPECT_NEAR(result.smoothing.volume_after, volume, 1e-12);
+  EXPECT_NEAR(volume, result.measures.volume, 1e-3 * result.measures.volume);
+  const auto deviation = [](const Positions& of) {
+    return (of.colwise().norm().array() - 1.0).matrix().norm();
+  };
+  EXPECT_LT(deviation(result.smoothed), 0.5 * deviation(vertices));
+}
+
+TEST(Judgement, NoisySphereIsWarnedOfOrSmoothedWithoutSelfIntersections) {
+  const Positions points = test::noisySphere(400, 0.6);
+  const Result rough = mesh(points);
+  expectGuarantees(points, rough);
+  EXPECT_GT(rough.optimization.noise_steps, 0);
+  EXPECT_TRUE(test::isWarnedOf(rough, "nois"));
+  Options options;
+  options.smoothing.steps = 5;
+  const Result result = mesh(points, options);
+  expectGuarantees(points, result);
+  EXPECT_FALSE(test::isWarnedOf(result, "nois"));
+  EXPECT_FALSE(result.self_intersections.empty());  // on the points themselves
+  EXPECT_EQ(result.smoothing.self_intersections, 0U);
+  EXPECT_TRUE(findSelfIntersections(result.smoothed, result.triangles).empty());
+  EXPECT_NEAR(result.smoothing.volume_after, 4.0 / 3.0 * test::kPi, 0.3);
+}
+
+}  // namespace
+}  // namespace spherical_param

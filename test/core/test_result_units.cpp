@@ -1,0 +1,163 @@
+#include "result_units.h"
+
+#include "reconstructions.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// Calls visit(name, number, power of the unit) for every number of a result that has a unit.
+template <typename Visit>
+void visitQuantities(Result& r, const Visit& visit) {
+  const auto visit_all = [&](const char* name, auto& values, int power) {
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      visit(name, values.data()[i], power);
+  };
+  visit("volume", r.measures.volume, 3);
+  visit("area", r.measures.area, 2);
+  visit("edge length", r.measures.mean_edge_length, 1);
+  visit_all("box", r.measures.box_min, 1);
+  visit_all("box", r.measures.box_max, 1);
+  visit_all("centroid", r.measures.centroid, 1);
+  visit_all("inertia", r.measures.inertia, 5);
+  visit("energy", r.optimization.energy, 1);
+  for (OptimizationPhase& phase : r.optimization.phases) {
+    visit("energy before phase", phase.energy_before, 1);
+    visit("energy of phase", phase.energy, 1);
+  }
+  for (RunReport& run : r.runs)
+    visit("energy of run", run.energy, 1);
+  visit_all("smoothed", r.smoothed, 1);
+  visit("max displacement", r.smoothing.max_displacement, 1);
+  visit("mean displacement", r.smoothing.mean_displacement, 1);
+  visit("rms displacement", r.smoothing.rms_displacement, 1);
+  visit("volume before", r.smoothing.volume_before, 3);
+  visit("volume after", r.smoothing.volume_after, 3);
+  for (Bridge& bridge : r.graph.bridges)
+    visit("bridge", bridge.length, 1);
+  for (FilledHole& hole : r.diagnosis.filled_holes) {
+    visit("hole area", hole.area, 2);
+    visit("hole boundary", hole.boundary_length, 1);
+    visit("hole diameter", hole.diameter, 1);
+    visit("hole spacing", hole.spacing, 1);
+    visit_all("hole center", hole.center, 1);
+  }
+  for (CollapsedHandle& handle : r.diagnosis.handles) {
+    visit("handle size", handle.size, 1);
+    visit_all("handle center", handle.center, 1);
+  }
+  for (PartBridge& bridge : r.diagnosis.bridges) {
+    visit("gap", bridge.gap, 1);
+    visit("gap spacing", bridge.spacing, 1);
+    visit_all("gap center", bridge.center, 1);
+  }
+}
+
+/// A result on four nodes with one of each finding.
+Result onNodes() {
+  Result r;
+  r.triangles = Triangles{{0, 0, 0, 1}, {1, 2, 3, 3}, {2, 3, 1, 2}};
+  r.sphere = Positions{{0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
+  r.smoothed = Positions::Constant(3, 4, 1.0);
+  r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
+  r.history.vertices = {3, 0};
+  r.optimization.phases.resize(1);
+  r.runs.resize(2);
+  r.graph.bridges = {{0, 3, 1.0}};
+  r.graph.without_tangent_plane = {0, 3};
+  r.diagnosis.filled_holes.resize(1);
+  r.diagnosis.filled_holes[0].vertices = {0, 1, 2};
+  r.diagnosis.filled_holes[0].loops = {{0, 1, 2}};
+  r.diagnosis.handles.resize(1);
+  r.diagnosis.handles[0].vertices = {1, 3};
+  r.diagnosis.bridges.resize(1);
+  r.diagnosis.bridges[0].vertices = {2, 3};
+  return r;
+}
+
+/// Node i is vertex {2, 0, 3, 1}[i], and scaled by 2^-3.
+internal::OrderedPoints reorderedNodes() {
+  internal::OrderedPoints nodes;
+  nodes.exponent = 3;
+  nodes.vertex_of_node = {2, 0, 3, 1};
+  nodes.distinct.vertex_of_input = {0, 1, 2, 3, 3};
+  nodes.distinct.input_of_vertex = {0, 1, 2, 3};
+  return nodes;
+}
+
+TEST(ResultUnits, EveryQuantityIsScaledByItsPowerOfTheUnit) {
+  Result result = onNodes();
+  visitQuantities(result, [](const char*, double& number, int) { number = 1.0; });
+  internal::OrderedPoints nodes = reorderedNodes();
+  internal::toInput(nodes, result);
+  visitQuantities(result, [](const char* name, double number, int power) {
+    EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
+  });
+  EXPECT_EQ(result.diagnosis.summary, summaryOf(result.diagnosis));
+}
+
+TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
+  Result result = onNodes();
+  internal::OrderedPoints nodes = reorderedNodes();
+  internal::toInput(nodes, result);
+  using Indices = std::vector<Index>;
+  EXPECT_EQ(result.triangles, (Triangles{{2, 2, 2, 0}, {0, 3, 1, 1}, {3, 1, 0, 3}}));
+  EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));
+  EXPECT_EQ(result.vertex_residuals, (std::vector<double>{1, 3, 0, 2}));
+  EXPECT_EQ(result.history.vertices, (Indices{1, 2}));
+  EXPECT_EQ(result.graph.bridges[0].from, 2);
+  EXPECT_EQ(result.graph.bridges[0].to, 1);
+  EXPECT_EQ(result.graph.without_tangent_plane, (Indices{1, 2}));
+  EXPECT_EQ(result.diagnosis.filled_holes[0].vertices, (Indices{0, 2, 3}));
+  EXPECT_EQ(result.diagnosis.filled_holes[0].loops[0], (Indices{0, 3, 2}));  // turned, not sorted
+  EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
+  EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
+  EXPECT_EQ(result.vertex_of_input, (Indices{0, 1, 2, 3, 3}));
+  EXPECT_EQ(result.duplicates(), 1U);
+}
+
+void expectScaled(Result& result, Result& scaled, double scale) {
+  std::vector<double> expected;
+  visitQuantities(result, [&](const char*, double number, int power) {
+    expected.push_back(number * std::pow(scale, power));
+  });
+  std::size_t i = 0;
+  visitQuantities(scaled, [&](const char* name, double number, int power) {
+    const double size = std::max(std::abs(expected.at(i)), std::pow(scale, power));
+    EXPECT_NEAR(number, expected.at(i++), 1e-9 * size) << name;
+  });
+  EXPECT_EQ(i, expected.size());
+}
+
+TEST(ResultUnits, ResultOfAScaledCloudIsTheScaledResult) {
+  // Open at one end, so that there is a filled hole to measure.
+  const Positions points = test::withNoise(test::spiralSphere(500), 0.003, 8).rightCols(400);
+  Options options;
+  options.smoothing.steps = 2;
+  Result result = test::mesh(points, options);
+  ASSERT_EQ(result.diagnosis.filled_holes.size(), 1U);
+  for (const double scale : {4.0, std::ldexp(1.0, -70), 1000.0, 1e50}) {
+    SCOPED_TRACE(scale);
+    Result scaled = test::mesh(scale * points, options);
+    expectScaled(result, scaled, scale);
+    EXPECT_NE(scaled.diagnosis.summary, result.diagnosis.summary);
+    // Other factors round the coordinates, but no decision is so close.
+    EXPECT_EQ(test::canonical(scaled.triangles), test::canonical(result.triangles));
+    if (scale == 4.0 || scale < 1.0) {
+      EXPECT_EQ(scaled.triangles, result.triangles);
+      EXPECT_EQ(scaled.sphere, result.sphere);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param

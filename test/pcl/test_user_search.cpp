@@ -1,0 +1,159 @@
+#include "reconstructions.h"
+
+#include <pcl/search/brute_force.h>
+#include <pcl/search/flann_search.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/search/octree.h>
+#include <pcl/search/organized.h>
+
+#include <cmath>
+#include <functional>
+#include <new>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace test;
+using Search = pcl::search::Search<PointXYZ>;
+
+class UserSearch : public Silent {};
+
+Search::Ptr makeFlannSearch() {
+  using Flann = pcl::search::FlannSearch<PointXYZ>;
+  return Search::Ptr(
+      new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeIndexCreator(15))));
+}
+
+/// Searches of PCL, which return indices of the cloud or positions in the subset.
+std::vector<std::function<Search::Ptr()>> searchesOfPcl() {
+  return {[] { return Search::Ptr(new pcl::search::KdTree<PointXYZ>(false)); },
+          [] { return Search::Ptr(new pcl::search::Octree<PointXYZ>(0.1)); },
+          [] { return Search::Ptr(new pcl::search::BruteForce<PointXYZ>()); }, makeFlannSearch};
+}
+
+TEST_F(UserSearch, GivesTheMeshOfTheDefaultOne) {
+  const HardCase hard;
+  const auto searches = searchesOfPcl();
+  for (std::size_t i = 0; i < searches.size(); ++i) {
+    SCOPED_TRACE(i);
+    Reconstruction reconstruction;
+    reconstruction.setInputCloud(hard.cloud);
+    const Search::Ptr search = searches[i]();
+    reconstruction.setSearchMethod(search);
+    EXPECT_EQ(meshed(reconstruction).size(), 2 * 396U - 4);
+    EXPECT_EQ(search->getInputCloud(), hard.cloud) << "the search was not used";
+    EXPECT_EQ(reconstruction.getSearchMethod(), search);
+    reconstruction.setIndices(share(hard.indices));
+    EXPECT_EQ(trianglesOf(meshed(reconstruction)), hard.expected());
+    reconstruction.setIndices(share({29, 3, 1, 11}));
+    EXPECT_EQ(meshed(reconstruction).size(), 4U);
+    reconstruction.setSearchMethod(Search::Ptr());
+    reconstruction.setIndices(pcl::IndicesPtr());
+    reconstruction.setInputCloud(makeEllipsoid(50));
+    EXPECT_FALSE(meshed(reconstruction).empty());
+    EXPECT_EQ(search->getInputCloud(), hard.cloud) << "it was used once more";
+  }
+}
+
+TEST_F(UserSearch, MayBeApproximate) {
+  using Flann = pcl::search::FlannSearch<PointXYZ>;
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(makeEllipsoid(600));
+  reconstruction.setIndices(share(shuffledIndices(600)));
+  reconstruction.setSearchMethod(Search::Ptr(
+      new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeMultiIndexCreator(4)))));
+  EXPECT_TRUE(isSphere(meshed(reconstruction), 600));
+}
+
+/// A depth image of a ball by a pinhole camera; NaN around the ball.
+Cloud::Ptr makeDepthImage() {
+  Cloud::Ptr cloud(new Cloud(40, 30));
+  const Eigen::Vector3d center(0.03, 0.017, 2.0);
+  for (std::uint32_t row = 0; row < cloud->height; ++row)
+    for (std::uint32_t column = 0; column < cloud->width; ++column) {
+      const Eigen::Vector3d ray =
+          Eigen::Vector3d((column - 19.5) / 60.0, (row - 14.5) / 60.0, 1.0).normalized();
+      const double along = ray.dot(center);
+      const double discriminant = along * along - center.squaredNorm() + 0.5 * 0.5;
+      // The root of a negative number is NaN.
+      (*cloud)(column, row).getVector3fMap() =
+          (ray * (along - std::sqrt(discriminant))).cast<float>();
+    }
+  cloud->is_dense = false;
+  return cloud;
+}
+
+TEST_F(UserSearch, OrganizedNeighborWorksOnDepthImagesAlone) {
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(makeDepthImage());
+  const Triangles by_default = trianglesOf(meshed(reconstruction));
+  ASSERT_GT(by_default.cols(), 800);
+  reconstruction.setSearchMethod(Search::Ptr(new pcl::search::OrganizedNeighbor<PointXYZ>()));
+  EXPECT_EQ(trianglesOf(meshed(reconstruction)), by_default);
+  // Not with the camera of the last image, which PCL keeps.
+  const Cloud::Ptr cloud = makeEllipsoid(600);
+  cloud->width = 30;
+  cloud->height = 20;
+  reconstruction.setInputCloud(cloud);
+  expectFailure(reconstruction, "pinhole");
+  reconstruction.setInputCloud(makeEllipsoid(100));
+  expectFailure(reconstruction, "not organized");
+}
+
+/// An unusual but allowed search: it sorts in descending order, leaves the query point out and
+/// finds fewer than it is asked for. One of its answers can be changed.
+class OddSearch : public pcl::search::BruteForce<PointXYZ> {
+public:
+  explicit OddSearch(int at_most, std::function<void(pcl::index_t&)> change = {})
+      : at_most_(at_most), change_(std::move(change)) {}
+
+  using pcl::search::BruteForce<PointXYZ>::nearestKSearch;
+  int nearestKSearch(const PointXYZ& point, int k, Indices& indices,
+                     std::vector<float>& distances) const override {
+    int found = pcl::search::BruteForce<PointXYZ>::nearestKSearch(point, k, indices, distances);
+    std::reverse(indices.begin(), indices.end());
+    if (k > 1)
+      --found;  // the nearest, which is the query point, is the last now
+    if (k > 1 && change_)
+      change_(indices.front());
+    return std::min(found, at_most_);
+  }
+
+private:
+  int at_most_;
+  std::function<void(pcl::index_t&)> change_;
+};
+
+TEST_F(UserSearch, OddAnswersOfASearchWorkAndWrongOnesFail) {
+  const Cloud::Ptr cloud = makeEllipsoid(300);
+  (*cloud)[5].x = kNan;
+  const Triangles expected = trianglesOf(meshed(cloud));
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  const auto search = [&](int at_most, const std::function<void(pcl::index_t&)>& change = {}) {
+    reconstruction.setSearchMethod(Search::Ptr(new OddSearch(at_most, change)));
+  };
+  search(1000);
+  EXPECT_EQ(trianglesOf(meshed(reconstruction)), expected);
+  for (const int at_most : {1, 7}) {
+    search(at_most);
+    EXPECT_EQ(meshed(reconstruction).size(), 2 * 299U - 4);
+  }
+  search(0);  // it does not even find the points themselves
+  expectFailure(reconstruction, "search object");
+  // Out of the cloud on both sides, and in the cloud but not among the points that were asked for.
+  for (const pcl::index_t wrong : {-1, 300, 5}) {
+    search(1000, [wrong](pcl::index_t& index) { index = wrong; });
+    expectFailure(reconstruction, "index " + std::to_string(wrong));
+  }
+  search(1000, [](pcl::index_t&) { throw std::runtime_error("index broken"); });
+  expectFailure(reconstruction, "index broken");
+  search(1000, [](pcl::index_t&) { throw std::bad_alloc(); });
+  expectFailure(reconstruction, "out of memory");
+  search(1000, [](pcl::index_t&) { throw 42; });
+  expectFailure(reconstruction, "unknown");
+}
+
+}  // namespace
