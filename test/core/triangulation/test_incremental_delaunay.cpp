@@ -1,0 +1,371 @@
+#include "exact_predicates.h"
+#include "spherical_param/mesh_topology.h"
+#include "triangulations.h"
+
+#include <set>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using test::cap;
+using test::expectSound;
+using test::horizontally;
+using test::isSphereOverAll;
+using test::latitude;
+using test::randomSphere;
+using Method = TriangulationMethod;
+
+SphereTriangulation triangulate(const Positions& directions) {
+  return triangulateSphere(directions);  // the incremental method is the default
+}
+
+/// Most triangles around one of the vertices [0, n).
+int highestDegree(const Triangles& triangles, Index n) {
+  std::vector<int> degree(static_cast<std::size_t>(n), 0);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k)
+      ++degree[static_cast<std::size_t>(triangles(k, t))];
+  return *std::max_element(degree.begin(), degree.end());
+}
+
+/// Points crowded into caps of radius 0.3 and 0.01.
+Positions clusters(Index n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const Positions centres = randomSphere(5, seed + 100);
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i) {
+    const double radius = i % 2 == 0 ? 0.3 : 0.01;
+    points.col(i) = (centres.col(i % 5) +
+                     radius * Eigen::Vector3d(normal(random), normal(random), normal(random)))
+                        .normalized();
+  }
+  return points;
+}
+
+/// What an embedding makes of a few limbs: distances to their tips that shrink exponentially.
+Positions limbs(Index n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const Positions tips = randomSphere(4, seed + 200);
+  Positions points(3, n);
+  for (Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d tip = tips.col(i % 4);
+    const Eigen::Vector3d east = tip.unitOrthogonal();
+    const double radius = std::exp(-7.0 * uniform(random));
+    const double angle = 2.0 * test::kPi * uniform(random);
+    points.col(i) =
+        (tip + radius * (std::cos(angle) * east + std::sin(angle) * tip.cross(east))).normalized();
+  }
+  return points;
+}
+
+TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
+  int compared = 0;
+  for (const Index n : {4, 5, 6, 7, 10, 30, 127, 128, 129, 1000, 3000})
+    for (std::uint64_t seed = 0; seed < (n < 100 ? 20U : 2U); ++seed)
+      for (const Positions& points : {randomSphere(n, seed), clusters(n, seed), limbs(n, seed),
+                                      cap(n, 0.1, {1, 0, 0}, seed)}) {
+        const SphereTriangulation result = triangulate(points);
+        expectSound(points, result);
+        EXPECT_EQ(result.report.coincident, 0);
+        const SphereTriangulation reference = triangulateSphere(points, {Method::Qhull});
+        if (reference.report.reinserted > 0)
+          continue;
+        ++compared;
+        ASSERT_EQ(test::canonical(result.triangles), test::canonical(reference.triangles))
+            << "n = " << n << ", seed " << seed;
+      }
+  EXPECT_GT(compared, 400);
+}
+
+TEST(IncrementalDelaunay, DoesNotDependOnTheOrderOfThePoints) {
+  for (const Positions& points :
+       {randomSphere(5000, 1), clusters(5000, 2), limbs(5000, 3),
+        horizontally(randomSphere(500, 1), cap(3000, 1e-11, {0.6, 0.0, 0.8}, 2))}) {
+    const auto n = static_cast<Index>(points.cols());
+    std::vector<Index> order(static_cast<std::size_t>(n));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(7));
+    Positions shuffled(3, n);
+    for (Index i = 0; i < n; ++i)
+      shuffled.col(i) = points.col(order[static_cast<std::size_t>(i)]);
+    Triangles triangles = triangulate(shuffled).triangles;
+    triangles =
+        triangles.unaryExpr([&](Index v) { return order[static_cast<std::size_t>(v)]; }).eval();
+    EXPECT_EQ(test::canonical(triangles), test::canonical(triangulate(points).triangles));
+  }
+}
+
+/// Integer points in the plane, and their image around the lowest or highest point of the sphere:
+/// an integer step is 2^-53, small enough for the sphere to be its tangent plane.
+struct IntegerCluster {
+  std::vector<std::array<std::int64_t, 2>> places;
+
+  Positions directions(double z) const {
+    Positions result(3, static_cast<Eigen::Index>(places.size()));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      result.col(static_cast<Eigen::Index>(i)) << std::ldexp(places[i][0], -53),
+          std::ldexp(places[i][1], -53), z;
+    return result;
+  }
+  /// Twice the area, counter-clockwise.
+  std::int64_t area(std::size_t a, std::size_t b, std::size_t c) const {
+    return (places[b][0] - places[a][0]) * (places[c][1] - places[a][1]) -
+           (places[b][1] - places[a][1]) * (places[c][0] - places[a][0]);
+  }
+  /// Positive if d is inside the circle of a, b, c (counter-clockwise). Exact below 2^14.
+  std::int64_t inCircle(std::size_t a, std::size_t b, std::size_t c, std::size_t d) const {
+    std::int64_t sum = 0;
+    const std::array<std::size_t, 3> corners{a, b, c};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t x = places[corners[k]][0] - places[d][0];
+      const std::int64_t y = places[corners[k]][1] - places[d][1];
+      sum += (x * x + y * y) * area(d, corners[(k + 1) % 3], corners[(k + 2) % 3]);
+    }
+    return sum;
+  }
+  /// Delaunay triangles by brute force, but for those of circles of more than 2^6 steps of the
+  /// grid below: the points around the cluster have a say in these.
+  std::vector<std::array<Index, 3>> smallTriangles() const {
+    std::vector<std::array<Index, 3>> result;
+    for (std::size_t a = 0; a < places.size(); ++a)
+      for (std::size_t b = a + 1; b < places.size(); ++b)
+        for (std::size_t c = a + 1; c < places.size(); ++c)
+          if (b != c && area(a, b, c) > 0 && isSmall(a, b, c)) {
+            bool is_empty = true;
+            for (std::size_t d = 0; d < places.size() && is_empty; ++d)
+              is_empty = d == a || d == b || d == c || inCircle(a, b, c, d) <= 0;
+            if (is_empty)
+              result.push_back(
+                  {static_cast<Index>(a), static_cast<Index>(b), static_cast<Index>(c)});
+          }
+    std::sort(result.begin(), result.end());
+    return result;
+  }
+  bool isSmall(std::size_t a, std::size_t b, std::size_t c) const {
+    const auto length = [&](std::size_t i, std::size_t j) {
+      return std::hypot(static_cast<double>(places[i][0] - places[j][0]),
+                        static_cast<double>(places[i][1] - places[j][1]));
+    };
+    const double radius =
+        length(a, b) * length(b, c) * length(c, a) / (2.0 * static_cast<double>(area(a, b, c)));
+    return radius < 1024.0 * 64.0;
+  }
+  /// The small ones of some triangles of which the cluster's points are the first.
+  std::vector<std::array<Index, 3>> smallOf(const Triangles& triangles) const {
+    std::vector<std::array<Index, 3>> result;
+    const auto n = static_cast<Index>(places.size());
+    for (const auto& t : test::canonical(triangles))
+      if (std::max({t[0], t[1], t[2]}) < n &&
+          isSmall(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                  static_cast<std::size_t>(t[2])))
+        result.push_back(t);
+    return result;
+  }
+};
+
+/// A grid of (2 m + 1)^2 points of spacing 2^-43, each moved at random by up to `jitter` x 2^-53.
+IntegerCluster integerGrid(int m, int jitter, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> move(-jitter, jitter);
+  IntegerCluster cluster;
+  for (int i = -m; i <= m; ++i)
+    for (int j = -m; j <= m; ++j)
+      cluster.places.push_back({1024 * i + move(random), 1024 * j + move(random)});
+  return cluster;
+}
+
+// Spacings of 1e-13: the triangles are those of integer arithmetic. Around the lowest point the
+// pole is opposite and its direction exact, around the highest point the pole is in the cluster.
+TEST(IncrementalDelaunay, IsThatOfIntegerArithmeticInClustersOf1em13) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed)
+    for (const double z : {-1.0, 1.0}) {
+      IntegerCluster cluster = integerGrid(3, 400, seed);
+      Positions points = horizontally(cluster.directions(z), randomSphere(200, seed));
+      points = horizontally(points, Eigen::Vector3d::UnitZ());
+      SphereTriangulation result = triangulate(points);
+      expectSound(points, result);
+      EXPECT_EQ(result.report.coincident, 0);
+      if (z > 0.0) {
+        // Seen from outside, the highest point has the axes the right way round; there the added
+        // point is in the midst of the cluster.
+        cluster.places.push_back({0, 0});
+        const auto added = static_cast<Index>(cluster.places.size()) - 1;
+        result.triangles = result.triangles
+                               .unaryExpr([&](Index v) {
+                                 return v == points.cols() - 1 ? added : v < added ? v : v + 1;
+                               })
+                               .eval();
+      } else {
+        flipOrientation(result.triangles);
+      }
+      const auto expected = cluster.smallTriangles();
+      EXPECT_GT(expected.size(), 60U);
+      EXPECT_EQ(cluster.smallOf(result.triangles), expected);
+    }
+}
+
+// The same elsewhere on the sphere: rounding of a unit vector is 1e-3 of the spacing.
+TEST(IncrementalDelaunay, IsRightWithinRoundingInClustersOf1em13) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed)
+    for (const int axis : {0, 1}) {
+      const IntegerCluster cluster = integerGrid(20, 400, seed);
+      Positions directions = cluster.directions(seed % 2 == 0 ? 1.0 : -1.0);
+      directions.row(axis).swap(directions.row(2));
+      const Positions points = horizontally(randomSphere(200, seed), directions);
+      const SphereTriangulation result = triangulate(points);
+      expectSound(points, result);
+      EXPECT_EQ(result.report.coincident, 0);
+      int checked = 0;
+      const int bad =
+          test::sidesToFlip(points, result.triangles, Eigen::Vector3d::Unit(axis), 200, checked);
+      EXPECT_GT(checked, 4000);
+      EXPECT_LE(bad, checked / 100);
+    }
+}
+
+// Few cells of a grid, taken at random, put most points on lines through others, on the hull too.
+TEST(IncrementalDelaunay, IsDelaunayOnRandomSubsetsOfAGrid) {
+  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_int_distribution<int> cell(0, 2 + static_cast<int>(seed % 5));
+    std::set<std::array<std::int64_t, 2>> cells;
+    for (int i = 0; i < 4 + static_cast<int>(seed % 17); ++i)
+      cells.insert({1024 * cell(random), 1024 * cell(random)});
+    if (cells.size() < 3)
+      continue;
+    IntegerCluster cluster;
+    cluster.places.assign(cells.begin(), cells.end());
+    std::shuffle(cluster.places.begin(), cluster.places.end(), random);
+    const Positions points = horizontally(cluster.directions(-1.0), Eigen::Vector3d::UnitZ());
+    const Index pole = static_cast<Index>(points.cols()) - 1;
+    SphereTriangulation result = triangulate(points);
+    expectSound(points, result);
+    flipOrientation(result.triangles);
+    std::int64_t area = 0;
+    for (const auto& t : test::canonical(result.triangles)) {
+      if (std::max({t[0], t[1], t[2]}) == pole)
+        continue;
+      const auto a = static_cast<std::size_t>(t[0]);
+      const auto b = static_cast<std::size_t>(t[1]);
+      const auto c = static_cast<std::size_t>(t[2]);
+      area += cluster.area(a, b, c);
+      // On one line, both sides of the polygon are flat.
+      ASSERT_GE(cluster.area(a, b, c), 0);
+      for (std::size_t d = 0; d < cluster.places.size(); ++d)
+        if (cluster.area(a, b, c) > 0) {
+          ASSERT_LE(cluster.inCircle(a, b, c, d), 0);
+        }
+    }
+    // Either all triangles or none are flat: a flat one between others would not be Delaunay.
+    for (const auto& t : test::canonical(result.triangles))
+      if (area > 0 && std::max({t[0], t[1], t[2]}) < pole) {
+        ASSERT_GT(cluster.area(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                               static_cast<std::size_t>(t[2])),
+                  0);
+      }
+  }
+}
+
+// Within rounding of a line, some triples are on it and some are not.
+TEST(IncrementalDelaunay, GreatCircleWithinRoundingIsTriangulatedWhole) {
+  const Positions points = latitude(10000, 0.0);
+  expectSound(points, triangulate(points));
+}
+
+// Circles through the pole are lines in the plane.
+TEST(IncrementalDelaunay, CirclesThroughThePoleAreTriangulatedWhole) {
+  for (const Index n : {4, 5, 6, 7, 8, 99, 1000})
+    for (const double tilt : {0.0, 0.4}) {
+      Positions points(3, n);
+      for (Index i = 0; i < n; ++i) {
+        const double angle = 2.0 * test::kPi * i / n;
+        points.col(i) << std::sin(angle) * std::cos(tilt), std::sin(tilt),
+            std::cos(angle) * std::cos(tilt);
+      }
+      const SphereTriangulation result = triangulate(points);
+      expectSound(points, result);
+      if (tilt == 0.0) {
+        // All points are on one line: a zigzag on either side.
+        EXPECT_LE(highestDegree(result.triangles, n), 6);
+      }
+      // And with few points that are not on it, put in last.
+      points = horizontally(points, Eigen::Vector3d(0.0, -1.0, 0.0));
+      expectSound(points, triangulate(points));
+      points = horizontally(points, Eigen::Vector3d(0.0, 1.0, 0.0));
+      expectSound(points, triangulate(points));
+    }
+}
+
+// Every way to put 4, 5 or 6 points to 6 places, some on one circle.
+TEST(IncrementalDelaunay, FewPlacesAreTriangulatedWhole) {
+  Positions places(3, 6);
+  places << 0, 1, 0, 0, 0.6, -1,  //
+      0, 0, 1, 0, 0, 0,           //
+      1, 0, 0, -1, 0.8, 0;
+  for (const Index n : {4, 5, 6}) {
+    const auto ways = static_cast<int>(std::lround(std::pow(6.0, n)));
+    for (int way = 0; way < ways; ++way) {
+      Positions points(3, n);
+      std::set<int> used;
+      int rest = way;
+      for (Index i = 0; i < n; ++i, rest /= 6) {
+        used.insert(rest % 6);
+        points.col(i) = places.col(rest % 6);
+      }
+      const SphereTriangulation result = triangulate(points);
+      ASSERT_TRUE(isSphereOverAll(result.triangles, n)) << n << " points, way " << way;
+      ASSERT_EQ(result.report.coincident, n - static_cast<Index>(used.size()));
+      if (used.size() == 6) {
+        ASSERT_GT(test::volumeOf(points, result.triangles), 0.0);
+      }
+    }
+  }
+}
+
+// Distances from the pole, and from its antipode, from 1/2 down to the smallest doubles.
+TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
+  Positions points = randomSphere(50, 1);
+  for (int k = 1; k < 1074; ++k) {
+    const double d = std::ldexp(1.0, -k);
+    Positions ring(3, 3);
+    ring << d, -0.5 * d, -0.75 * d,  //
+        0.125 * d, d, -d,            //
+        1.0, 1.0, 1.0;
+    ring.colwise().normalize();
+    points = horizontally(points, ring);
+  }
+  for (const double z : {1.0, -1.0}) {
+    points.row(2) *= z;
+    const SphereTriangulation result = triangulate(horizontally(points, Eigen::Vector3d::UnitZ()));
+    expectSound(horizontally(points, Eigen::Vector3d::UnitZ()), result);
+    // From about 2^-200 on they coincide: beyond that, predicates would leave the range of double.
+    EXPECT_LT(result.report.coincident, 3 * (1074 - 195));
+    EXPECT_GT(result.report.coincident, 3 * (1074 - 210));
+  }
+}
+
+// Vertices at one place do not crowd round one of them.
+TEST(IncrementalDelaunay, PointsAtOnePlaceShareItsTriangles) {
+  const Positions points =
+      horizontally(randomSphere(100, 3), Positions(randomSphere(100, 3).col(5).replicate(1, 1000)));
+  const SphereTriangulation result = triangulate(points);
+  expectSound(points, result);
+  EXPECT_EQ(result.report.coincident, 1000);
+  EXPECT_EQ(result.report.reinserted, 1000);
+  EXPECT_LE(highestDegree(result.triangles, static_cast<Index>(points.cols())), 40);
+}
+
+// All in caps smaller than the cells of the curve: a walk through them stays short.
+TEST(IncrementalDelaunay, CrowdsAreTriangulatedInTime) {
+  for (const double radius : {1e-3, 1e-7, 1e-11}) {
+    const Positions points = cap(100000, radius, {0.6, 0.0, 0.8}, 2);
+    const SphereTriangulation result = triangulate(points);
+    EXPECT_EQ(result.triangles.cols(), 2 * points.cols() - 4);
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param
