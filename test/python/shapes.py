@@ -20,12 +20,6 @@ def bumpy(count, seed=20040602):
     return u * (1.0 + 0.2 * np.sin(5.0 * u[:, :1]) * np.cos(4.0 * u[:, 1:2]))
 
 
-def bowl():
-    """Points of an ellipsoid with an opening around the axis, at z = 0.3."""
-    points = directions(2000)
-    return points[points[:, 2] < 0.3]
-
-
 def check_closed(test, vertex_count, triangles):
     """Each directed edge once, and its reverse; every vertex used; V - E + F = 2."""
     test.assertEqual(triangles.shape, (2 * vertex_count - 4, 3))
@@ -37,13 +31,6 @@ def check_closed(test, vertex_count, triangles):
 
 def volume(vertices, triangles):
     return np.linalg.det(vertices[triangles]).sum() / 6.0
-
-
-def triangle_set(triangles):
-    """Triangles without the order of rows, and of corners but for their sense."""
-    first = triangles.argmin(axis=1)
-    turned = np.stack([triangles[np.arange(len(triangles)), (first + i) % 3] for i in range(3)], 1)
-    return set(map(tuple, turned.tolist()))
 
 
 def read_ply(path):
