@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The Debian packages: made, used where they are unpacked, and installed in a bare root and used there.
+# Installations: of the release build and of static libraries, used by foreign projects; the Debian
+# packages, used where they are unpacked, and installed in a bare root and used there.
 #
 #   tools/test_package.sh
 #
@@ -11,7 +12,6 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
-need_packages package
 
 packages="$PWD/build/package/packages"
 work="$PWD/build/test-package"
@@ -48,14 +48,36 @@ no_path_of_the_build() {
   ! grep -r --text -l -F -e "$PWD" "$work/unpacked"
 }
 
-# Packages hold no run paths: the system's folders are searched without. Here they are elsewhere.
-foreign_projects() {
-  LD_LIBRARY_PATH="$work/unpacked/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" \
-    cmake -DSOURCE_DIR="$PWD" -DBUILD_DIR="$PWD/build/package" -DWORK_DIR="$work/consumers" \
-    -DPREFIX="$work/unpacked/usr" "-DCOMPONENTS=core;pcl" -DGENERATOR=Ninja -DCXX=c++ \
-    -DLIBDIR="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" -DPKG_CONFIG=pkg-config \
-    -DVERSION="$(sed -n 's/^project(.* VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)" \
+# served <build> <components> <folder> <option>...: what is installed builds and runs foreign projects.
+served() {
+  local build="$1" components="$2" folder="$3"
+  shift 3
+  cmake -DSOURCE_DIR="$PWD" -DBUILD_DIR="$PWD/build/$build" -DWORK_DIR="$work/$folder" \
+    "-DCOMPONENTS=$components" -DGENERATOR=Ninja -DCXX=c++ -DPKG_CONFIG=pkg-config \
+    -DLIBDIR="$(sed -n 's/^CMAKE_INSTALL_LIBDIR:[A-Z]*=//p' "build/$build/CMakeCache.txt")" \
+    -DVERSION="$(sed -n 's/^project(.* VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)" "$@" \
     -P test/package/run_package_test.cmake
+}
+
+# Packages hold no run paths: the system's folders are searched without. Here they are elsewhere.
+unpacked_serves() {
+  LD_LIBRARY_PATH="$work/unpacked/usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" \
+    served package "core;pcl" consumers -DPREFIX="$work/unpacked/usr"
+}
+
+# The core and the map only, because the PCL class takes long to compile.
+static_core_builds() {
+  cmake --preset release -B build/release-Static -DBUILD_SHARED_LIBS=OFF \
+    -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON -DSPHERICAL_PARAM_BUILD_TESTS=OFF \
+    -DSPHERICAL_PARAM_BUILD_PYTHON=OFF -DSPHERICAL_PARAM_BUILD_TOOLS=OFF &&
+    cmake --build build/release-Static -j "$jobs" --target spherical_param_map
+}
+
+# As packagers give it, BUILD_TESTING wins over the project's own switch.
+no_tests_without_build_testing() {
+  cmake -S . -B "$work/no-tests" -G Ninja -DSPHERICAL_PARAM_BUILD_PCL=OFF \
+    -DSPHERICAL_PARAM_BUILD_TOOLS=OFF -DSPHERICAL_PARAM_BUILD_PYTHON=OFF \
+    -DSPHERICAL_PARAM_BUILD_TESTS=ON -DBUILD_TESTING=OFF && [ ! -e "$work/no-tests/test" ]
 }
 
 # The same release and mirror as this machine's.
@@ -89,10 +111,20 @@ installed_and_used() {
       ! ls /usr/bin /usr/lib/*/ | grep spherical'
 }
 
+check "BUILD_TESTING=OFF makes no tests" no_tests_without_build_testing || true
+if check "release: build" build_release spherical_param_map pcl_spherical_param; then
+  check "release: its installation serves foreign projects" \
+    served release "core;core_dev;pcl;pcl_dev;license" release || true
+fi
+if check "static core: build" static_core_builds; then
+  check "static core: its installation serves foreign projects" \
+    served release-Static "core;core_dev;license" static || true
+fi
+need_packages package
 if check "package: made" made && check "package: unpacked" unpacked; then
   check "package: lintian finds no error" lintian_finds_no_error || true
   check "package: no path of the build" no_path_of_the_build || true
-  check "package: foreign projects" foreign_projects || true
+  check "package: foreign projects" unpacked_serves || true
   if run "package: bare root" bare_root; then
     check "package: installed and used in the bare root" installed_and_used || true
   else
