@@ -46,20 +46,20 @@ foreach(text IN LISTS texts)
   endforeach()
 endforeach()
 
-# Without PCL: the core must be found and work.
+# The core must be found and work without PCL.
 set(settings -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=Debug
              -DCMAKE_PREFIX_PATH=${prefix})
-run("configuration against core" ${CMAKE_COMMAND} ${settings} -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON
-    -S ${SOURCE_DIR}/test/package/consumer_core -B ${WORK_DIR}/core)
-run("build against core" ${CMAKE_COMMAND} --build ${WORK_DIR}/core)
-run("program that uses core" ${WORK_DIR}/core/consumer)
-
+set(parts core)
 if("pcl" IN_LIST COMPONENTS)
-  run("configuration against the PCL class" ${CMAKE_COMMAND} ${settings}
-      -S ${SOURCE_DIR}/test/package/consumer_pcl -B ${WORK_DIR}/pcl)
-  run("build against the PCL class" ${CMAKE_COMMAND} --build ${WORK_DIR}/pcl)
-  run("program that uses the PCL class" ${WORK_DIR}/pcl/consumer)
+  list(APPEND parts pcl)
 endif()
+set(settings_of_core -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON)
+foreach(part IN LISTS parts)
+  run("configuration against ${part}" ${CMAKE_COMMAND} ${settings} ${settings_of_${part}}
+      -S ${SOURCE_DIR}/test/package/consumer_${part} -B ${WORK_DIR}/${part})
+  run("build against ${part}" ${CMAKE_COMMAND} --build ${WORK_DIR}/${part})
+  run("program that uses ${part}" ${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${part}/consumer)
+endforeach()
 
 # Later versions, and another one where the version must be exact, are found but rejected.
 string(REGEX MATCH "^([0-9]+)\\.([0-9]+)" minor "${VERSION}")
@@ -92,22 +92,19 @@ endif()
 if(PKG_CONFIG)
   set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
   set(ENV{LD_LIBRARY_PATH} ${prefix}/${LIBDIR})
-  set(names spherical_param_core)
-  set(source_of_spherical_param_core consumer_core/main.cpp)
-  if("pcl" IN_LIST COMPONENTS)
-    list(APPEND names pcl_spherical_param)
-    # The line of doc/install.md: reading files takes PCL's own library for it.
-    set(packages_of_pcl_spherical_param pcl_io)
-    set(source_of_pcl_spherical_param consumer_pcl/read_ply.cpp)
-  endif()
-  foreach(name IN LISTS names)
-    run("pkg-config ${name}" ${PKG_CONFIG} --cflags --libs ${name} ${packages_of_${name}})
+  set(name_of_core spherical_param_core)
+  set(name_of_pcl pcl_spherical_param)
+  # The line of doc/install.md: reading files takes PCL's own library for it.
+  set(packages_of_pcl pcl_io)
+  set(definitions_of_pcl -DFILES)
+  foreach(part IN LISTS parts)
+    set(name ${name_of_${part}})
+    run("pkg-config ${name}" ${PKG_CONFIG} --cflags --libs ${name} ${packages_of_${part}})
     separate_arguments(flags UNIX_COMMAND "${output}")
     run("compilation with pkg-config ${name}" ${CXX} -std=c++17
-        ${SOURCE_DIR}/test/package/${source_of_${name}} -o ${WORK_DIR}/${name}_by_pkg_config
-        ${flags})
-    run("program compiled with pkg-config ${name}" ${CMAKE_COMMAND} -E chdir ${WORK_DIR}
-        ${WORK_DIR}/${name}_by_pkg_config)
+        ${SOURCE_DIR}/test/package/consumer_${part}/main.cpp -o ${WORK_DIR}/${name}
+        ${definitions_of_${part}} ${flags})
+    run("program compiled with pkg-config ${name}" ${CMAKE_COMMAND} -E chdir ${WORK_DIR} ./${name})
     run("version of ${name}" ${PKG_CONFIG} --modversion ${name})
     if(NOT output STREQUAL "${VERSION}\n")
       message(FATAL_ERROR "pkg-config says that ${name} has version ${output}")

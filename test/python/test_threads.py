@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 import traceback
+import tracemalloc
 import unittest
 
 import numpy as np
@@ -15,12 +16,13 @@ import shapes
 import spherical_param as sp
 
 STAGES = ["neighbors", "graph", "embedding", "triangulation", "optimization", "quality"]
+MAP_STAGES = ["map", "surface", "resample", "untangle", "intersections"]
 
 INTERRUPTED = """
-import signal, sys, traceback
+import signal, traceback
 signal.signal(signal.SIGINT, signal.default_int_handler)
 import shapes, spherical_param
-points = shapes.bumpy(100000)
+points = shapes.bumpy(10000)
 print("ready", flush=True)
 try:
     while True:
@@ -30,100 +32,93 @@ except KeyboardInterrupt as error:
 """
 
 
+def in_thread(work, *arguments):
+    thread = threading.Thread(target=work, args=arguments)
+    thread.start()
+    return thread
+
+
 class Threads(unittest.TestCase):
     def test_other_threads_run_meanwhile(self):
-        points = shapes.bumpy(60000)
-        works = threading.Event()
-        done = threading.Event()
+        points, works = shapes.bumpy(4000), threading.Event()
 
         def work():
             works.set()
             sp.reconstruct(points, threads=1)
-            done.set()
 
-        interval = sys.getswitchinterval()
         # A thread that does not give up the interpreter by itself keeps it.
+        self.addCleanup(sys.setswitchinterval, sys.getswitchinterval())
         sys.setswitchinterval(1000.0)
-        try:
-            worker = threading.Thread(target=work)
-            worker.start()
-            works.wait()
-            turns = 0
-            while not done.is_set() and turns < 20:
-                time.sleep(0.001)
-                turns += not done.is_set()
-        finally:
-            sys.setswitchinterval(interval)
+        worker = in_thread(work)
+        works.wait()
+        turns = 0
+        while worker.is_alive() and turns < 10:
+            time.sleep(0.001)
+            turns += worker.is_alive()
+        worker.join()
+        self.assertEqual(turns, 10)
+
+    def test_several_at_once_and_any_number_of_threads_give_the_same_bytes(self):
+        points, found = shapes.bumpy(1000), {}
+
+        def run(threads):
+            mesh = sp.reconstruct(points, threads=threads)
+            new = sp.remesh(mesh, points=162, sweeps=3, threads=threads)
+            arrays = (mesh.triangles, mesh.sphere, new.vertices)
+            found[threads] = b"".join(array.tobytes() for array in arrays)
+
+        run(1)
+        for worker in [in_thread(run, 0), in_thread(run, 2)]:
             worker.join()
-        self.assertEqual(turns, 20)
-
-    def test_two_at_once_give_the_bytes_of_one_after_the_other(self):
-        clouds = [shapes.bumpy(8000, seed=1), shapes.ellipsoid(8000, seed=2)]
-
-        def run(points):
-            mesh = sp.reconstruct(points)
-            new = sp.remesh(mesh, points=642)
-            return mesh.triangles.tobytes() + mesh.sphere.tobytes() + new.vertices.tobytes()
-
-        expected = [run(points) for points in clouds]
-        found = [b"", b""]
-
-        def work(i):
-            found[i] = run(clouds[i])
-
-        workers = [threading.Thread(target=work, args=(i,)) for i in range(2)]
-        for worker in workers:
-            worker.start()
-        for worker in workers:
-            worker.join()
-        self.assertEqual(found, expected)
+        self.assertEqual(found, dict.fromkeys((0, 1, 2), found[1]))
 
     def test_a_forked_process_works_on_after_its_parent_has_worked(self):
-        points = shapes.bumpy(20000)
+        points = shapes.bumpy(500)
         expected = sp.reconstruct(points, threads=2).triangles.tobytes()
-        reader, writer = os.pipe()
         child = os.fork()
         if child == 0:
+            # OpenMP's threads are not those of the child, which would wait for them forever.
+            signal.alarm(60)
             try:
                 same = sp.reconstruct(points, threads=2).triangles.tobytes() == expected
-                os.write(writer, b"same" if same else b"different")
+                os._exit(0 if same else 1)
             finally:
-                os._exit(0)
-        os.close(writer)
-        with os.fdopen(reader, "rb") as answer:
-            # OpenMP's threads are not those of the child, which would wait for them forever.
-            killer = threading.Timer(60.0, os.kill, (child, signal.SIGKILL))
-            killer.start()
-            self.assertEqual(answer.read(), b"same")
-            killer.cancel()
-        os.waitpid(child, 0)
+                os._exit(2)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
 
 
 class Progress(unittest.TestCase):
-    def test_each_stage_is_reported_from_its_beginning_to_its_end(self):
-        told = []
-        thread = threading.get_ident()
-
-        def listen(*state):
-            self.assertEqual(threading.get_ident(), thread)
-            told.append(state)
-
-        mesh = sp.reconstruct(shapes.bumpy(5000), progress=listen)
-        self.assertEqual(list(dict.fromkeys(stage for stage, _ in told)), STAGES)
+    def test_stages_are_reported_from_beginning_to_end_and_false_ends_them(self):
+        mesh = sp.reconstruct(shapes.bumpy(300))
+        points, thread = mesh.vertices, threading.get_ident()
         self.assertEqual(list(mesh.stages), STAGES)
-        for stage in STAGES:
-            fractions = [fraction for name, fraction in told if name == stage]
-            self.assertEqual((fractions[0], fractions[-1]), (0.0, 1.0))
-            self.assertTrue(all(0.0 <= fraction <= 1.0 for fraction in fractions))
+        for stages, function, arguments, options in (
+            (STAGES, sp.reconstruct, points, {}),
+            (MAP_STAGES, sp.remesh, mesh, {"points": 200, "sweeps": 3}),
+            (["neighbors", "outliers"], sp.find_outliers, points, {}),
+        ):
+            told = []
 
-    def test_false_cancels_in_any_stage_and_nothing_else_does(self):
-        points = shapes.bumpy(500)
-        for no in (False, np.False_):
-            for last in STAGES:
+            def listen(*state):
+                self.assertEqual(threading.get_ident(), thread)
+                told.append(state)
+
+            function(arguments, threads=1, progress=listen, **options)
+            self.assertEqual(list(dict.fromkeys(stage for stage, _ in told)), stages)
+            for stage in stages:
+                fractions = [fraction for name, fraction in told if name == stage]
+                self.assertEqual(fractions[-1], 1.0, stage)
+                self.assertTrue(all(0.0 <= fraction <= 1.0 for fraction in fractions))
                 with self.assertRaises(sp.Cancelled):
-                    sp.reconstruct(points, progress=lambda stage, *_: no if stage == last else True)
+                    end = lambda name, _: name != stage  # noqa: E731
+                    function(arguments, threads=1, progress=end, **options)
+
+    def test_only_false_ends_the_work(self):
+        points = shapes.bumpy(50)
         for yes in (None, True, 0, "", []):
             sp.reconstruct(points, progress=lambda *_: yes)
+        with self.assertRaises(sp.Cancelled):
+            sp.reconstruct(points, progress=lambda *_: np.False_)
 
     def test_exceptions_of_the_function_come_out_as_they_are(self):
         error = LookupError("mine")
@@ -145,44 +140,30 @@ class Progress(unittest.TestCase):
 
 class Signals(unittest.TestCase):
     def test_ctrl_c_ends_long_work_within_the_call(self):
+        folder = os.path.dirname(os.path.abspath(__file__))
         process = subprocess.Popen(
-            [sys.executable, "-c", INTERRUPTED],
-            stdout=subprocess.PIPE,
-            text=True,
-            cwd=os.path.dirname(os.path.abspath(__file__)),
+            [sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True, cwd=folder
         )
-        try:
-            self.assertEqual(process.stdout.readline(), "ready\n")
-            time.sleep(0.5)  # into the work
-            process.send_signal(signal.SIGINT)
-            where, _ = process.communicate(timeout=100)
-        finally:
-            process.kill()
-        self.assertEqual(where, "reconstruct\n")
+        self.addCleanup(process.kill)
+        self.assertEqual(process.stdout.readline(), "ready\n")
+        time.sleep(0.1)  # into the work
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.communicate(timeout=100)[0], "reconstruct\n")
         self.assertEqual(process.returncode, 0)
 
     def test_handlers_of_signals_run_during_the_work(self):
-        caught = []
+        caught, told = [], []
         before = signal.signal(signal.SIGUSR1, lambda *_: caught.append(len(told)))
-        told = []
+        self.addCleanup(signal.signal, signal.SIGUSR1, before)
 
         def listen(*state):
             told.append(state)
             if len(told) == 3:
                 signal.raise_signal(signal.SIGUSR1)
 
-        try:
-            sp.reconstruct(shapes.bumpy(500), progress=listen)
-        finally:
-            signal.signal(signal.SIGUSR1, before)
+        sp.reconstruct(shapes.bumpy(500), progress=listen)
         self.assertEqual(len(caught), 1)
         self.assertLess(caught[0], len(told))
-
-
-def resident():
-    gc.collect()
-    with open("/proc/self/statm", encoding="ascii") as file:
-        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
 class Memory(unittest.TestCase):
@@ -200,27 +181,27 @@ class Memory(unittest.TestCase):
                 raise LookupError
 
         def round_of_calls():
-            result = sp.reconstruct(points, progress=listen, smoothing=1)
-            sp.remesh(sp.sphere_map(result, sweeps=1), points=100, progress=listen)
+            result = sp.reconstruct(points, threads=1, progress=listen, smoothing=1)
+            sp.remesh(sp.sphere_map(result, threads=1, sweeps=1), threads=1, progress=listen)
             for function, error in ((stop, sp.Cancelled), (fail, LookupError)):
                 with self.assertRaises(error):
-                    sp.reconstruct(points, progress=function)
+                    sp.reconstruct(points, threads=1, progress=function)
             with self.assertRaises(sp.InvalidInput):
                 sp.reconstruct(points[:3])
-            sp.find_outliers(points)
+            sp.find_outliers(points, threads=1)
 
-        def references():
+        tracemalloc.start()
+        self.addCleanup(tracemalloc.stop)
+        sizes, counts = [], []
+        for _ in range(6):
+            round_of_calls()
             gc.collect()
-            return [sys.getrefcount(one) for one in (points, listen, stop, fail, sp.InvalidInput)]
-
-        for _ in range(20):
-            round_of_calls()
-        counts, size = references(), resident()
-        for _ in range(60):
-            round_of_calls()
-        self.assertEqual(references(), counts)
-        # The arrays of each round are some 80 kB: of all they would be 5 MB.
-        self.assertLess(resident() - size, 2 * 2**20)
+            sizes.append(tracemalloc.get_traced_memory()[0])  # with NumPy's arrays
+            held = (points, listen, stop, fail, sp.InvalidInput)
+            counts.append([sys.getrefcount(one) for one in held])
+        self.assertEqual(counts[5], counts[2])
+        # The arrays of a round are some 100 kB.
+        self.assertLess(sizes[5] - sizes[2], 20000)
 
 
 if __name__ == "__main__":

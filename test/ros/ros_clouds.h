@@ -7,13 +7,12 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
-#include <vector>
 
 /// Clouds as middleware brings them.
 namespace spherical_param_ros::test {
 
 inline pcl::PCLPointField field(const std::string& name, std::uint32_t offset,
-                                std::uint8_t datatype) {
+                                std::uint8_t datatype = pcl::PCLPointField::FLOAT32) {
   pcl::PCLPointField result;
   result.name = name;
   result.offset = offset;
@@ -22,46 +21,36 @@ inline pcl::PCLPointField field(const std::string& name, std::uint32_t offset,
   return result;
 }
 
-inline void put(pcl::PCLPointCloud2& cloud, std::size_t point, std::size_t offset,
-                const void* value, std::size_t size) {
-  std::memcpy(cloud.data.data() + point * cloud.point_step + offset, value, size);
+template <typename Value>
+void put(pcl::PCLPointCloud2& cloud, std::size_t point, std::size_t offset, const Value& value) {
+  std::memcpy(cloud.data.data() + point * cloud.point_step + offset, &value, sizeof(value));
 }
 
-/// A cloud of n points with x, y, z, the number of the point as intensity, and a colour from it.
-inline pcl::PCLPointCloud2 emptyCloud(std::uint32_t n) {
+inline void setPoint(pcl::PCLPointCloud2& cloud, std::size_t i, double x, double y, double z) {
+  put(cloud, i, 0, static_cast<float>(x));
+  put(cloud, i, 4, static_cast<float>(y));
+  put(cloud, i, 8, static_cast<float>(z));
+}
+
+/// n points on an ellipsoid (golden-angle spiral), with their number as intensity, and a colour.
+inline pcl::PCLPointCloud2 ellipsoid(std::uint32_t n) {
   pcl::PCLPointCloud2 cloud;
   cloud.header.frame_id = "scanner";
   cloud.header.stamp = 1234567;
-  cloud.fields = {field("x", 0, pcl::PCLPointField::FLOAT32),
-                  field("y", 4, pcl::PCLPointField::FLOAT32),
-                  field("z", 8, pcl::PCLPointField::FLOAT32),
-                  field("intensity", 12, pcl::PCLPointField::FLOAT32),
-                  field("rgb", 16, pcl::PCLPointField::FLOAT32)};
+  cloud.fields = {field("x", 0), field("y", 4), field("z", 8), field("intensity", 12),
+                  field("rgb", 16)};
   cloud.point_step = 20;
   cloud.width = n;
   cloud.height = 1;
   cloud.row_step = n * cloud.point_step;
   cloud.data.resize(cloud.row_step);
-  return cloud;
-}
-
-inline void setPoint(pcl::PCLPointCloud2& cloud, std::uint32_t i, float x, float y, float z) {
-  const float point[] = {x, y, z, static_cast<float>(i)};
-  const std::uint8_t bgra[] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 77,
-                               0};
-  put(cloud, i, 0, point, sizeof(point));
-  put(cloud, i, 16, bgra, sizeof(bgra));
-}
-
-/// n points on an ellipsoid, evenly (golden-angle spiral).
-inline pcl::PCLPointCloud2 ellipsoid(std::uint32_t n) {
-  pcl::PCLPointCloud2 cloud = emptyCloud(n);
   for (std::uint32_t i = 0; i < n; ++i) {
     const double z = 1.0 - (2.0 * i + 1.0) / n;
     const double radius = std::sqrt(1.0 - z * z);
     const double angle = 2.399963229728653 * i;
-    setPoint(cloud, i, static_cast<float>(radius * std::cos(angle)),
-             static_cast<float>(0.8 * radius * std::sin(angle)), static_cast<float>(0.5 * z));
+    setPoint(cloud, i, radius * std::cos(angle), 0.8 * radius * std::sin(angle), 0.5 * z);
+    put(cloud, i, 12, static_cast<float>(i));
+    put(cloud, i, 16, std::uint32_t{99000000} * (i + 1));
   }
   return cloud;
 }

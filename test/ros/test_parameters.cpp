@@ -14,69 +14,53 @@
 namespace spherical_param_ros {
 namespace {
 
-/// The message of the refusal; empty if there is none.
-std::string refusal(const std::string& name, const Value& value) {
-  Settings settings;
-  try {
-    setParameter(settings, name, value);
-  } catch (const spherical_param::InvalidInput& error) {
-    return error.what();
-  }
-  return "";
-}
+using Values = std::vector<std::pair<std::string, Value>>;
 
-TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
-  Settings settings;
-  for (const ParameterInfo& info : parameters()) {
-    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
-    setParameter(settings, info.name, info.default_value);
-    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
-    EXPECT_FALSE(info.description.empty());
-  }
-  EXPECT_FALSE(settings.options.graph.k);
-  EXPECT_FALSE(settings.options.embedding.tolerance);
-  EXPECT_FALSE(settings.outliers);
-}
-
-TEST(RosParameters, EveryOptionOfTheCoreIsOne) {
+TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheQueue) {
   const auto& rows = spherical_param::optionTable();
-  ASSERT_GE(parameters().size(), rows.size());
+  ASSERT_EQ(parameters().size(), rows.size() + 5);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ParameterInfo& info = parameters()[i];
     EXPECT_EQ(info.name, rows[i].name);
     EXPECT_EQ(info.choices, rows[i].choices);
+    EXPECT_EQ(info.min, rows[i].optional ? kUnset : rows[i].min) << info.name;
+    EXPECT_EQ(info.max, rows[i].max) << info.name;
     EXPECT_NE(info.description.find(rangeOf(rows[i])), std::string::npos) << info.description;
     // No value in its range means that it is not set.
     EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << info.name;
   }
 }
 
-TEST(RosParameters, EachChangesWhatItNames) {
-  const std::vector<std::pair<std::string, Value>> values = {
-      {"graph", std::string("knn")},
-      {"k", 20},
-      {"embedding", std::string("iterative")},
-      {"weights", std::string("uniform")},
-      {"exponent", 3.5},
-      {"damping", 0.25},
-      {"tolerance", 1e-9},
-      {"max_iterations", 100},
-      {"stagnation_window", 7},
-      {"starts", 3},
-      {"history_vertices", 10},
-      {"history_frames", 5},
-      {"triangulation", std::string("qhull")},
-      {"optimization", std::string("flips")},
-      {"smoothing", 5},
-      {"retries", 2},
-      {"seed", 9},
-      {"threads", 2},
-      {"outliers", 4.0},
-      {"max_points", 1000},
-      {"queue_depth", 4},
-      {"cancel_running", false},
-      {"max_cancellations", 9},
-  };
+TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
+  const Values own = {{"outliers", -1.0},
+                      {"max_points", std::int64_t{5000000}},
+                      {"queue_depth", std::int64_t{1}},
+                      {"cancel_running", true},
+                      {"max_cancellations", std::int64_t{3}}};
+  for (const auto& [name, value] : own)
+    EXPECT_EQ(parameterOf({}, name), value) << name;
+  Settings settings;
+  for (const ParameterInfo& info : parameters()) {
+    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
+    setParameter(settings, info.name, info.default_value);
+    EXPECT_EQ(parameterOf(settings, info.name), info.default_value) << info.name;
+  }
+}
+
+TEST(RosParameters, EachChangesWhatItNamesOnly) {
+  Values values = {{"outliers", 4.0},
+                   {"max_points", std::int64_t{1000}},
+                   {"queue_depth", std::int64_t{4}},
+                   {"cancel_running", false},
+                   {"max_cancellations", std::int64_t{9}}};
+  for (const spherical_param::OptionRow& row : spherical_param::optionTable()) {
+    if (!row.choices.empty())
+      values.emplace_back(row.name, row.choices.back());
+    else if (row.is_integer)
+      values.emplace_back(row.name, static_cast<std::int64_t>(row.min) + 7);
+    else
+      values.emplace_back(row.name, (row.min + row.max) / 2.0);
+  }
   for (const auto& [name, value] : values) {
     Settings settings;
     setParameter(settings, name, value);
@@ -86,61 +70,51 @@ TEST(RosParameters, EachChangesWhatItNames) {
   }
 }
 
-TEST(RosParameters, AnIntegerWillDoForANumber) {
+TEST(RosParameters, AnIntegerWillDoForANumberAndMinusOneUnsets) {
   Settings settings;
   setParameter(settings, "exponent", 4);
   EXPECT_EQ(settings.options.embedding.exponent, 4.0);
+  setParameter(settings, "outliers", 4);
+  EXPECT_EQ(settings.outliers, 4.0);
+  for (const Value& unset : {Value(std::int64_t{kUnset}), Value(-1.0)})
+    for (const char* name : {"k", "tolerance", "outliers"}) {
+      setParameter(settings, name, name == std::string("k") ? 3 : 1);
+      setParameter(settings, name, unset);
+      EXPECT_EQ(parameterOf(settings, name), parameterOf({}, name)) << name;
+    }
 }
 
 TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::pair<std::string, Value>> wrong = {
-      {"graph", std::string("gabriel")},
-      {"graph", 1},
-      {"k", 2},
-      {"k", -2},
-      {"k", 12.0},
-      {"exponent", 2.0},
-      {"exponent", nan},
-      {"tolerance", -0.5},
-      {"tolerance", 1.5},
-      {"tolerance", nan},
-      {"damping", 0.0},
-      {"damping", 1.01},
-      {"damping", true},
-      {"max_iterations", -1},
-      {"starts", 0},
-      {"seed", -1},
-      {"retries", 100},
-      {"smoothing", 10001},
-      {"outliers", 1000.5},
-      {"outliers", nan},
-      {"outliers", std::string("many")},
-      {"threads", 1025},
-      {"threads", std::string("many")},
-      {"max_points", std::int64_t{1} << 40},
-      {"queue_depth", 0},
-      {"cancel_running", 1},
-      {"max_cancellations", -1},
-      {"nonsense", 1},
-  };
+  const Values wrong = {{"graph", std::string("gabriel")},
+                        {"graph", 1},
+                        {"k", 12.0},
+                        {"exponent", 2.0},
+                        {"damping", true},
+                        {"outliers", 1000.5},
+                        {"outliers", -0.5},
+                        {"outliers", nan},
+                        {"outliers", std::string("many")},
+                        {"max_points", -1},
+                        {"max_points", std::int64_t{1} << 40},
+                        {"queue_depth", 0},
+                        {"cancel_running", 1},
+                        {"max_cancellations", -1},
+                        {"nonsense", 1}};
   for (const auto& [name, value] : wrong) {
-    const std::string message = refusal(name, value);
-    EXPECT_NE(message.find(name), std::string::npos) << name << ": " << message;
-    EXPECT_NE(message.find("; "), std::string::npos) << message;
+    Settings settings;
+    try {
+      setParameter(settings, name, value);
+      ADD_FAILURE() << name << " = " << textOf(value) << " is taken";
+    } catch (const spherical_param::InvalidInput& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(name), std::string::npos) << message;
+      EXPECT_NE(message.find("; "), std::string::npos) << message;
+    }
+    if (name != "nonsense") {
+      EXPECT_EQ(parameterOf(settings, name), parameterOf({}, name));
+    }
   }
-}
-
-TEST(RosParameters, MinusOneUnsetsWhatIsOptional) {
-  Settings settings;
-  for (const char* name : {"k", "tolerance", "outliers"}) {
-    setParameter(settings, name, name == std::string("k") ? 3 : 1);
-    setParameter(settings, name, kUnset);
-    EXPECT_EQ(refusal(name, -1.0), "");
-  }
-  EXPECT_FALSE(settings.options.graph.k);
-  EXPECT_FALSE(settings.options.embedding.tolerance);
-  EXPECT_FALSE(settings.outliers);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -21,35 +23,33 @@ namespace spherical_param_ros {
 namespace {
 
 using Cloud = ReconstructionWorker::Cloud;
+using Numbers = std::vector<int>;
 
-/// A cloud with a number.
 Cloud cloudNumber(int number) {
   auto cloud = std::make_shared<pcl::PCLPointCloud2>();
   cloud->header.seq = static_cast<std::uint32_t>(number);
   return cloud;
 }
 
-/// Stands for the reconstruction: holds each cloud until it is let through or cancelled.
+Cloud ellipsoid(std::uint32_t points) {
+  return std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(points));
+}
+
+/// Stands for the reconstruction: holds each cloud until it is let through or cancelled. Notes what
+/// is begun and what becomes of clouds.
 class Gate {
 public:
-  Outcome mesh(const pcl::PCLPointCloud2& cloud, const std::function<bool()>& is_wanted) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    begun_.push_back(static_cast<int>(cloud.header.seq));
-    changed_.notify_all();
-    Outcome outcome;
-    while (passes_ == 0) {
-      lock.unlock();
-      const bool wanted = is_wanted();
-      lock.lock();
-      if (!wanted) {
-        outcome.status = Status::Cancelled;
-        return outcome;
-      }
-      changed_.wait_for(lock, std::chrono::milliseconds(1));
-    }
-    --passes_;
-    outcome.status = Status::Done;
-    return outcome;
+  ReconstructionWorker::Mesher mesher() {
+    return [this](const pcl::PCLPointCloud2& cloud, const Settings&,
+                  const std::function<bool()>& is_wanted) { return mesh(cloud, is_wanted); };
+  }
+
+  /// Submits a cloud with this number.
+  bool submit(ReconstructionWorker& worker, int number) {
+    return worker.submit(cloudNumber(number), [this, number](const Outcome& outcome) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      (outcome.status == Status::Done ? done_ : others_).push_back(number);
+    });
   }
 
   void letThrough(int count) {
@@ -64,236 +64,203 @@ public:
     changed_.wait(lock, [&] { return begun_.size() >= count && begun_.back() == number; });
   }
 
-  std::vector<int> begun() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return begun_;
-  }
+  Numbers begun() const { return copyOf(begun_); }
+  Numbers done() const { return copyOf(done_); }
+  Numbers others() const { return copyOf(others_); }
 
 private:
-  std::mutex mutex_;
+  Outcome mesh(const pcl::PCLPointCloud2& cloud, const std::function<bool()>& is_wanted) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    begun_.push_back(static_cast<int>(cloud.header.seq));
+    changed_.notify_all();
+    Outcome outcome;
+    outcome.status = Status::Cancelled;
+    while (passes_ == 0) {
+      lock.unlock();
+      const bool wanted = is_wanted();
+      lock.lock();
+      if (!wanted)
+        return outcome;
+      changed_.wait_for(lock, std::chrono::milliseconds(1));
+    }
+    --passes_;
+    outcome.status = Status::Done;
+    return outcome;
+  }
+
+  Numbers copyOf(const Numbers& numbers) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return numbers;
+  }
+
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   int passes_ = 0;
-  std::vector<int> begun_;
+  Numbers begun_;
+  Numbers done_;
+  Numbers others_;
 };
 
-/// Notes what becomes of each cloud.
-class Notes {
-public:
-  ReconstructionWorker::Handler of(int number) {
-    return [this, number](const Outcome& outcome) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      (outcome.status == Status::Done ? done_ : others_).push_back(number);
-    };
-  }
-  std::vector<int> done() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return done_;
-  }
-  std::vector<int> others() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return others_;
-  }
-
-private:
-  std::mutex mutex_;
-  std::vector<int> done_;
-  std::vector<int> others_;
-};
-
-ReconstructionWorker::Mesher through(Gate& gate) {
-  return [&gate](const pcl::PCLPointCloud2& cloud, const Settings&,
-                 const std::function<bool()>& is_wanted) { return gate.mesh(cloud, is_wanted); };
+/// Calls from a thread of its own.
+std::future<Outcome> call(ReconstructionWorker& worker, int number) {
+  return std::async(std::launch::async,
+                    [&worker, number] { return worker.process(cloudNumber(number)); });
 }
 
-void expectAllAccountedFor(const Statistics& s) {
+void waitForQueued(const ReconstructionWorker& worker, std::size_t count) {
+  while (worker.statistics().queued < count)
+    std::this_thread::yield();
+}
+
+void expectAllAccountedFor(const ReconstructionWorker& worker) {
+  const Statistics s = worker.statistics();
   EXPECT_EQ(s.received,
             s.done + s.failed + s.cancelled + s.dropped + s.queued + (s.is_working ? 1U : 0U));
 }
 
-TEST(ConcurrencyReconstructionWorker, DropsTheOldestAndNeverGrows) {
+Settings queueOf(std::size_t depth) {
   Settings settings;
-  settings.queue_depth = 3;
+  settings.queue_depth = depth;
   settings.cancel_running = false;
+  return settings;
+}
+
+TEST(ConcurrencyReconstructionWorker, DropsTheOldestAndNeverGrows) {
   Gate gate;
-  Notes notes;
-  ReconstructionWorker worker(settings, through(gate));
-  worker.submit(cloudNumber(0), notes.of(0));
+  ReconstructionWorker worker(queueOf(3), gate.mesher());
+  gate.submit(worker, 0);
   gate.waitForBegin(1, 0);
   for (int i = 1; i <= 100; ++i) {
-    EXPECT_EQ(worker.submit(cloudNumber(i), notes.of(i)), i <= 3);
+    EXPECT_EQ(gate.submit(worker, i), i <= 3);
     EXPECT_LE(worker.statistics().queued, 3U);
-    expectAllAccountedFor(worker.statistics());
+    expectAllAccountedFor(worker);
   }
-  gate.letThrough(4);
+  // A smaller queue holds at once.
+  worker.setSettings(queueOf(2));
+  EXPECT_EQ(worker.statistics().queued, 2U);
+  gate.letThrough(3);
   worker.waitUntilIdle();
-  EXPECT_EQ(notes.done(), (std::vector<int>{0, 98, 99, 100}));
-  EXPECT_EQ(notes.others().size(), 97U);
-  const Statistics statistics = worker.statistics();
-  EXPECT_EQ(statistics.received, 101U);
-  EXPECT_EQ(statistics.done, 4U);
-  EXPECT_EQ(statistics.dropped, 97U);
-  EXPECT_FALSE(statistics.is_working);
+  EXPECT_EQ(gate.done(), (Numbers{0, 99, 100}));
+  EXPECT_EQ(gate.others().size(), 98U);
+  EXPECT_EQ(worker.statistics().received, 101U);
+  EXPECT_EQ(worker.statistics().done, 3U);
+  EXPECT_EQ(worker.statistics().dropped, 98U);
 }
 
-TEST(ConcurrencyReconstructionWorker, NewerCloudCancelsTheRunningOne) {
-  Gate gate;
-  Notes notes;
-  ReconstructionWorker worker({}, through(gate));
-  worker.submit(cloudNumber(0), notes.of(0));
-  gate.waitForBegin(1, 0);
-  worker.submit(cloudNumber(1), notes.of(1));
-  gate.waitForBegin(2, 1);
-  EXPECT_EQ(notes.others(), std::vector<int>{0});
-  gate.letThrough(1);
-  worker.waitUntilIdle();
-  EXPECT_EQ(notes.done(), std::vector<int>{1});
-  EXPECT_EQ(worker.statistics().cancelled, 1U);
-}
-
-TEST(ConcurrencyReconstructionWorker, StreamThatIsFasterThanTheWorkStillGetsMeshes) {
+TEST(ConcurrencyReconstructionWorker, NewerCloudCancelsTheRunningOneButNotForEver) {
   Settings settings;
   settings.max_cancellations = 2;
   Gate gate;
-  Notes notes;
-  ReconstructionWorker worker(settings, through(gate));
+  ReconstructionWorker worker(settings, gate.mesher());
   // Each cloud arrives while the one before it is worked on.
-  worker.submit(cloudNumber(0), notes.of(0));
+  gate.submit(worker, 0);
   for (int i = 0; i < 9; ++i) {
     gate.waitForBegin(static_cast<std::size_t>(i + 1), i);
-    worker.submit(cloudNumber(i + 1), notes.of(i + 1));
+    gate.submit(worker, i + 1);
     if (i % 3 == 2)
       gate.letThrough(1);
   }
   gate.waitForBegin(10, 9);
+  EXPECT_EQ(gate.others(), (Numbers{0, 1, 3, 4, 6, 7}));
   gate.letThrough(1);
   worker.waitUntilIdle();
-  EXPECT_EQ(notes.done(), (std::vector<int>{2, 5, 8, 9}));
+  EXPECT_EQ(gate.done(), (Numbers{2, 5, 8, 9}));
   EXPECT_EQ(worker.statistics().cancelled, 6U);
-}
-
-TEST(ConcurrencyReconstructionWorker, RunningOneIsLeftAloneIfSoWanted) {
-  Settings settings;
-  settings.cancel_running = false;
-  Gate gate;
-  Notes notes;
-  ReconstructionWorker worker(settings, through(gate));
-  worker.submit(cloudNumber(0), notes.of(0));
-  gate.waitForBegin(1, 0);
-  worker.submit(cloudNumber(1), notes.of(1));
-  gate.letThrough(2);
-  worker.waitUntilIdle();
-  EXPECT_EQ(notes.done(), (std::vector<int>{0, 1}));
-  EXPECT_EQ(worker.statistics().cancelled, 0U);
 }
 
 TEST(ConcurrencyReconstructionWorker, RequestsAreNeitherDroppedNorCancelled) {
   Gate gate;
-  Notes notes;
-  ReconstructionWorker worker({}, through(gate));
-  Outcome answer;
-  std::thread caller([&] { answer = worker.process(cloudNumber(7)); });
+  ReconstructionWorker worker({}, gate.mesher());
+  std::future<Outcome> answer = call(worker, 7);
   gate.waitForBegin(1, 7);
   for (int i = 10; i < 20; ++i)
-    worker.submit(cloudNumber(i), notes.of(i));
+    gate.submit(worker, i);
   gate.letThrough(2);
-  caller.join();
+  EXPECT_EQ(answer.get().status, Status::Done);
   worker.waitUntilIdle();
-  EXPECT_EQ(answer.status, Status::Done);
-  EXPECT_EQ(notes.done(), std::vector<int>{19});
+  EXPECT_EQ(gate.done(), Numbers{19});
   EXPECT_EQ(worker.statistics().dropped, 9U);
 }
 
 TEST(ConcurrencyReconstructionWorker, RequestsAndStreamTakeTurns) {
-  Settings settings;
-  settings.queue_depth = 2;
-  settings.cancel_running = false;
   Gate gate;
-  Notes notes;
-  ReconstructionWorker worker(settings, through(gate));
-  worker.submit(cloudNumber(0), notes.of(0));
+  ReconstructionWorker worker(queueOf(2), gate.mesher());
+  gate.submit(worker, 0);
   gate.waitForBegin(1, 0);
-  worker.submit(cloudNumber(1), notes.of(1));
-  worker.submit(cloudNumber(2), notes.of(2));
-  std::vector<std::thread> callers;
-  for (int i = 0; i < 2; ++i)
-    callers.emplace_back([&worker] { worker.process(cloudNumber(50)); });
-  while (worker.statistics().queued < 4)
-    std::this_thread::yield();
+  gate.submit(worker, 1);
+  gate.submit(worker, 2);
+  const std::future<Outcome> requests[] = {call(worker, 50), call(worker, 50)};
+  waitForQueued(worker, 4);
   gate.letThrough(5);
-  for (std::thread& caller : callers)
-    caller.join();
   worker.waitUntilIdle();
-  EXPECT_EQ(gate.begun(), (std::vector<int>{0, 50, 1, 50, 2}));
+  EXPECT_EQ(gate.begun(), (Numbers{0, 50, 1, 50, 2}));
 }
 
 TEST(ConcurrencyReconstructionWorker, TooManyRequestsAreRefusedAtOnce) {
+  constexpr std::size_t most = ReconstructionWorker::max_requests;
   Gate gate;
-  ReconstructionWorker worker({}, through(gate));
-  std::vector<std::thread> callers;
-  callers.emplace_back([&worker] { worker.process(cloudNumber(0)); });
+  ReconstructionWorker worker({}, gate.mesher());
+  std::vector<std::future<Outcome>> requests;
+  requests.push_back(call(worker, 0));
   gate.waitForBegin(1, 0);
-  for (std::size_t i = 0; i < ReconstructionWorker::max_requests; ++i)
-    callers.emplace_back([&worker] { worker.process(cloudNumber(1)); });
-  while (worker.statistics().queued < ReconstructionWorker::max_requests)
-    std::this_thread::yield();
+  for (std::size_t i = 0; i < most; ++i)
+    requests.push_back(call(worker, 1));
+  waitForQueued(worker, most);
   const Outcome refused = worker.process(cloudNumber(2));
   EXPECT_EQ(refused.status, Status::Refused);
   EXPECT_NE(refused.message.find("; "), std::string::npos);
-  gate.letThrough(1 + static_cast<int>(ReconstructionWorker::max_requests));
-  for (std::thread& caller : callers)
-    caller.join();
+  gate.letThrough(1 + static_cast<int>(most));
+  for (std::future<Outcome>& request : requests)
+    EXPECT_EQ(request.get().status, Status::Done);
   EXPECT_EQ(worker.statistics().refused, 1U);
-  EXPECT_EQ(worker.statistics().done, 1 + ReconstructionWorker::max_requests);
+  expectAllAccountedFor(worker);
 }
 
 TEST(ConcurrencyReconstructionWorker, StopAnswersAllThatWait) {
-  Settings settings;
-  settings.queue_depth = 5;
-  settings.cancel_running = false;
   Gate gate;
-  Notes notes;
-  ReconstructionWorker worker(settings, through(gate));
+  ReconstructionWorker worker(queueOf(5), gate.mesher());
   for (int i = 0; i < 4; ++i)
-    worker.submit(cloudNumber(i), notes.of(i));
-  Outcome answer;
-  std::thread caller([&] { answer = worker.process(cloudNumber(9)); });
-  while (worker.statistics().queued + (worker.statistics().is_working ? 1 : 0) < 5)
-    std::this_thread::yield();
+    gate.submit(worker, i);
+  gate.waitForBegin(1, 0);
+  std::future<Outcome> answer = call(worker, 9);
+  waitForQueued(worker, 4);
   worker.stop();
-  caller.join();
-  EXPECT_NE(answer.status, Status::Done);
-  EXPECT_EQ(notes.others().size(), 4U);
+  EXPECT_EQ(answer.get().status, Status::Dropped);
+  EXPECT_EQ(gate.others().size(), 4U);
   EXPECT_EQ(worker.process(cloudNumber(1)).status, Status::Refused);
-  EXPECT_FALSE(worker.submit(cloudNumber(1), notes.of(1)));
-  expectAllAccountedFor(worker.statistics());
+  EXPECT_FALSE(gate.submit(worker, 1));
+  EXPECT_EQ(gate.others().size(), 5U);
+  expectAllAccountedFor(worker);
 }
 
 TEST(ConcurrencyReconstructionWorker, StopEndsTheWaitForIdleness) {
   // Where stop() comes before the worker has taken the cloud that is waited for.
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 100; ++i) {
     Gate gate;
-    Notes notes;
-    ReconstructionWorker worker({}, through(gate));
+    ReconstructionWorker worker({}, gate.mesher());
     std::atomic<bool> is_submitted{false};
     std::thread waiter([&] {
       while (!is_submitted)
         std::this_thread::yield();
       worker.waitUntilIdle();
     });
-    worker.submit(cloudNumber(i), notes.of(i));
+    gate.submit(worker, i);
     is_submitted = true;
     std::this_thread::yield();
     worker.stop();
     waiter.join();
-    EXPECT_EQ(notes.others(), std::vector<int>{i});
+    EXPECT_EQ(gate.others(), Numbers{i});
   }
 }
 
 TEST(ConcurrencyReconstructionWorker, SurvivesWhateverIsThrown) {
-  ReconstructionWorker worker(
-      {}, [](const pcl::PCLPointCloud2&, const Settings&, const std::function<bool()>&) -> Outcome {
-        throw std::runtime_error("no luck");
-      });
+  ReconstructionWorker worker({},
+                              [](const pcl::PCLPointCloud2& cloud, const Settings&,
+                                 const std::function<bool()>&) -> Outcome {
+                                if (cloud.header.seq == 0)
+                                  throw 1;
+                                throw std::runtime_error("no luck");
+                              });
   worker.submit(cloudNumber(0), [](const Outcome&) { throw 1; });
   worker.waitUntilIdle();
   EXPECT_EQ(worker.process(cloudNumber(1)).message, "no luck");
@@ -323,17 +290,15 @@ TEST(ConcurrencyReconstructionWorker, EverythingIsAccountedForUnderLoad) {
   settings.queue_depth = 2;
   ReconstructionWorker worker(settings);
   std::vector<std::thread> threads;
-  for (std::uint32_t t = 0; t < 2; ++t) {
-    threads.emplace_back([&worker, t] {
+  for (int t = 0; t < 2; ++t) {
+    threads.emplace_back([&worker] {
       for (std::uint32_t i = 0; i < 20; ++i)
-        worker.submit(std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(4 + 30 * i + t)), {});
+        worker.submit(ellipsoid(4 + 30 * i), {});
     });
-    threads.emplace_back([&worker, t] {
-      for (std::uint32_t i = 0; i < 5; ++i) {
-        const Outcome outcome = worker.process(
-            std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(i == 2 ? 3 : 50 + t)));
-        EXPECT_EQ(outcome.status, i == 2 ? Status::Failed : Status::Done) << outcome.message;
-      }
+    threads.emplace_back([&worker] {
+      for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(worker.process(ellipsoid(i == 2 ? 3 : 50)).status,
+                  i == 2 ? Status::Failed : Status::Done);
     });
   }
   for (std::thread& thread : threads)
@@ -341,30 +306,28 @@ TEST(ConcurrencyReconstructionWorker, EverythingIsAccountedForUnderLoad) {
   worker.waitUntilIdle();
   const Statistics statistics = worker.statistics();
   EXPECT_EQ(statistics.received, 50U);
-  EXPECT_EQ(statistics.queued, 0U);
   EXPECT_EQ(statistics.failed, 2U);
   EXPECT_GE(statistics.done, 9U);
   EXPECT_TRUE(statistics.has_last);
-  expectAllAccountedFor(statistics);
+  EXPECT_EQ(statistics.last.mesh, nullptr);
+  expectAllAccountedFor(worker);
 }
 
 TEST(ConcurrencyReconstructionWorker, RealReconstructionIsCancelled) {
   Settings settings;
-  settings.options.threads = 1;
   settings.options.embedding.method = spherical_param::EmbeddingMethod::Iterative;
   settings.options.embedding.max_iterations = 1000000000;
   settings.options.embedding.stagnation_window = 0;
   settings.options.embedding.tolerance = 0.0;
   ReconstructionWorker worker(settings);
   // Would take weeks.
-  worker.submit(std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(1000)), {});
+  worker.submit(ellipsoid(1000), {});
   while (!worker.statistics().is_working)
     std::this_thread::yield();
   worker.setSettings({});
-  Notes notes;
-  worker.submit(std::make_shared<pcl::PCLPointCloud2>(test::ellipsoid(100)), notes.of(1));
+  worker.submit(ellipsoid(100), {});
   worker.waitUntilIdle();
-  EXPECT_EQ(notes.done(), std::vector<int>{1});
+  EXPECT_EQ(worker.statistics().done, 1U);
   EXPECT_EQ(worker.statistics().cancelled, 1U);
 }
 
