@@ -1,0 +1,82 @@
+#pragma once
+
+#include "embedding_energy.h"
+#include "graph_hierarchy.h"
+#include "helpers.h"
+#include "multilevel_embedding.h"
+#include "spherical_param/embedding.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+/// A surface and short calls for the tests of the multilevel embedding and its parts.
+namespace spherical_param::test {
+
+using internal::buildGraphHierarchy;
+using internal::EmbeddingEnergy;
+using internal::GraphHierarchy;
+using internal::TangentBasis;
+using internal::TangentVector;
+
+const internal::EdgeWeightLaw kAdaptive(EdgeWeights::Adaptive, 3.0);
+
+/// An ellipsoid with dents and its true edges.
+struct Cloud {
+  Positions points;
+  Triangles triangles;
+  Graph graph;
+};
+
+inline Cloud dentedCloud(Index n) {
+  const Positions sphere = spiralSphere(n);
+  Cloud cloud;
+  cloud.points = sphere;
+  for (Index i = 0; i < n; ++i)
+    cloud.points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
+  cloud.points.row(2) *= 1.7;
+  cloud.triangles = triangulateSphere(sphere).triangles;
+  cloud.graph = graphOfMesh(cloud.points, cloud.triangles);
+  return cloud;
+}
+
+struct Setting : EmbeddingOptions, Execution {};
+
+inline Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
+                               const Setting& setting = {}) {
+  return internal::embedByLevels(graph, hierarchy, setting, {}, setting);
+}
+
+inline Embedding solve(const Graph& graph, const Setting& setting = {}, Index coarsest_size = 200,
+                       std::uint32_t seed = 1) {
+  return embedByLevels(graph, buildGraphHierarchy(graph, seed, coarsest_size), setting);
+}
+
+inline Setting converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive) {
+  Setting options;
+  options.tolerance = tolerance;
+  options.weights = weights;
+  return options;
+}
+
+/// Moves unit vectors along tangent vectors.
+inline Positions moved(const Positions& u, const std::vector<TangentBasis>& bases,
+                       const TangentVector& step, double fraction) {
+  Positions result = u;
+  for (Eigen::Index i = 0; i < u.cols(); ++i)
+    result.col(i) += bases[static_cast<std::size_t>(i)] * (fraction * step.segment<2>(2 * i));
+  result.colwise().normalize();
+  return result;
+}
+
+inline TangentVector randomTangent(Eigen::Index n, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  TangentVector result(2 * n);
+  for (double& entry : result)
+    entry = normal(generator);
+  return result;
+}
+
+}  // namespace spherical_param::test
