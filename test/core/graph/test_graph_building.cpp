@@ -50,8 +50,33 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
   EXPECT_LT(dangling, 280);
 }
 
+TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
+  for (const Index left : {10, 30}) {  // of 40, with node 39 in both parts
+    const Positions points = test::randomSphere(40, 2);
+    Graph graph;
+    graph.offsets.assign(41, 0);
+    std::vector<Bridge> edges;
+    for (Index i = 0; i < 40; ++i)
+      for (Index j = i + 1; j < 40; ++j)
+        if (j == 39 || (i < left) == (j < left))
+          edges.push_back({i, j, 1.0});
+    const std::vector<Bridge> bridges = danglingBridges(points, withEdges(graph, edges), 3);
+    ASSERT_EQ(bridges.size(), 3U);
+    std::set<Index> taken{39};
+    for (const Bridge& bridge : bridges) {
+      double shortest = 1e300;
+      for (Index i = 0; i < left; ++i)
+        for (Index j = left; j < 39; ++j)
+          if (taken.count(i) == 0 && taken.count(j) == 0)
+            shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
+      EXPECT_DOUBLE_EQ(bridge.length, shortest);
+      taken.insert({bridge.from, bridge.to});
+    }
+  }
+}
+
 TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {
-  for (const double scale : {1.0, 1e-100, 1e-150, 1e-200, 1e-300, 1e-320, 0.0}) {
+  for (const double scale : {1.0, 1e-100, 1e-150, 1e-160, 1e-200, 1e-300, 1e-320, 0.0}) {
     Positions points(3, 2);
     points << 0.0, 3.0 * scale, 0.0, 4.0 * scale, 0.0, 0.0;
     EXPECT_DOUBLE_EQ(edgeLength(points, 0, 1),

@@ -45,7 +45,7 @@ TEST(SpaceFillingCurve, MortonOrderIsTheSameAtAnyScale) {
   std::mt19937_64 random(1);
   Positions points(3, 1000);
   for (Eigen::Index i = 0; i < points.size(); ++i)
-    points.data()[i] = static_cast<double>(random() % 1024) - 512.0;
+    points.data()[i] = static_cast<double>(random() % 2047) - 1023.0;
   const std::vector<Index> order = mortonOrder(points);
   for (const double scale :
        {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(), 0x1p-300,
