@@ -1,7 +1,5 @@
 #include "component_tree.h"
 
-#include "helpers.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,16 +18,6 @@ std::tuple<double, Index, Index> contentOf(const Pair& pair) {
   return {pair.squared_distance, pair.from, pair.to};
 }
 
-/// The least pair of point i with an accepted one, by comparing with each of them.
-Pair byBruteForce(const Positions& points, Index i, const std::function<bool(Index)>& accepts) {
-  Pair best;
-  for (Index j = 0; j < points.cols(); ++j)
-    if (accepts(j))
-      best = std::min(best, Pair{(points.col(i) - points.col(j)).squaredNorm(), std::min(i, j),
-                                 std::max(i, j)});
-  return best;
-}
-
 /// Points of a small lattice, several in most of its places: distances are full of ties.
 Positions latticePoints(Index n, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -44,55 +32,44 @@ TEST(ComponentTree, EveryQuestionIsAnsweredAsByBruteForce) {
   std::mt19937_64 random(1);
   for (const Index n : {1, 2, 8, 9, 17, 200}) {
     const Positions points = latticePoints(n, static_cast<std::uint64_t>(n));
+    const auto below = [&](Index end) {
+      return static_cast<Index>(random() % static_cast<unsigned>(end));
+    };
     ComponentTree tree(points);
-    for (const unsigned parts : {1U, 2U, 5U}) {
+    for (const Index parts : {1, 2, 5}) {
       std::vector<Index> component(static_cast<std::size_t>(n));
       for (Index i = 0; i < n; ++i)
         // Halves of space, so that whole subtrees are of one component, or any at all.
-        component[static_cast<std::size_t>(i)] = static_cast<Index>(
-            parts == 2 ? (points(0, i) > 2.0 ? 1U : 0U) : static_cast<unsigned>(random() % parts));
+        component[static_cast<std::size_t>(i)] =
+            parts == 2 ? (points(0, i) > 2.0 ? 1 : 0) : below(parts);
       tree.setComponents(component);
       const auto of = [&](Index i) { return component[static_cast<std::size_t>(i)]; };
       for (Index i = 0; i < n; ++i) {
-        std::vector<Index> excluded;
-        for (int k = 0; k < 3; ++k)
-          excluded.push_back(static_cast<Index>(random() % static_cast<unsigned>(n)));
-        const auto is_free = [&](Index j) {
-          return std::find(excluded.begin(), excluded.end(), j) == excluded.end();
+        const std::vector<Index> excluded{below(n), below(n), below(n)};
+        // A better pair than there is stays, of equally long ones that of lower indices.
+        const Pair start = i % 2 == 0 ? Pair() : Pair{static_cast<double>(below(3)), below(n), n};
+        const auto expect = [&](Pair found, const std::function<bool(Index)>& accepts) {
+          Pair best = start;
+          for (Index j = 0; j < n; ++j)
+            if (accepts(j) && std::find(excluded.begin(), excluded.end(), j) == excluded.end())
+              best = std::min(best, Pair{(points.col(i) - points.col(j)).squaredNorm(),
+                                         std::min(i, j), std::max(i, j)});
+          EXPECT_EQ(contentOf(found), contentOf(best));
         };
-        Pair other;
+        Pair other = start;
         tree.nearestOther(i, excluded, other);
-        EXPECT_EQ(contentOf(other), contentOf(byBruteForce(points, i, [&](Index j) {
-                    return of(j) != of(i) && is_free(j);
-                  })));
-        for (Index c = 0; c < static_cast<Index>(parts); ++c) {
-          Pair in;
-          tree.nearestIn(c, i, excluded, in);
-          EXPECT_EQ(contentOf(in), contentOf(byBruteForce(points, i, [&](Index j) {
-                      return of(j) == c && is_free(j);
-                    })));
-        }
-        Pair any;
+        expect(other, [&](Index j) { return of(j) != of(i); });
+        Pair any = start;
         tree.nearestExcept(i, excluded, any);
-        EXPECT_EQ(contentOf(any), contentOf(byBruteForce(
-                                      points, i, [&](Index j) { return j != i && is_free(j); })));
+        expect(any, [&](Index j) { return j != i; });
+        for (Index c = 0; c < parts; ++c) {
+          Pair in = start;
+          tree.nearestIn(c, i, excluded, in);
+          expect(in, [&](Index j) { return of(j) == c; });
+        }
       }
     }
   }
-}
-
-TEST(ComponentTree, ABetterPairStays) {
-  Positions points(3, 3);
-  points << 0.0, 1.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0;
-  ComponentTree tree(points);
-  tree.setComponents({0, 1, 1});
-  Pair best{0.5, 7, 8};
-  tree.nearestOther(0, {}, best);
-  EXPECT_EQ(contentOf(best), contentOf({0.5, 7, 8}));
-  // Of equally long ones the lower indices.
-  best = {1.0, 1, 2};
-  tree.nearestOther(0, {}, best);
-  EXPECT_EQ(contentOf(best), contentOf({1.0, 0, 1}));
 }
 
 }  // namespace

@@ -1,0 +1,88 @@
+#include "graph_building.h"
+
+#include "graph_helpers.h"
+
+namespace spherical_param::internal {
+namespace {
+
+/// Points with a random tree as their graph, and some more edges.
+Graph randomGraph(Index n, int extra, std::mt19937_64& random) {
+  std::vector<Bridge> edges;
+  const auto below = [&](Index end) {
+    return static_cast<Index>(random() % static_cast<std::uint64_t>(end));
+  };
+  for (Index i = 1; i < n; ++i)
+    edges.push_back({below(i), i, 1.0});
+  for (; extra > 0; --extra) {
+    const Index i = below(n);
+    const Index j = below(n);
+    if (i != j)
+      edges.push_back({std::min(i, j), std::max(i, j), 1.0});
+  }
+  Graph graph;
+  graph.offsets.assign(static_cast<std::size_t>(n) + 1, 0);
+  return withEdges(graph, edges);
+}
+
+TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
+  std::mt19937_64 random(19);
+  int dangling = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Index n = 5 + round % 12;
+    const Positions points = test::randomSphere(n, static_cast<std::uint64_t>(round));
+    Graph graph = randomGraph(n, round % 14, random);
+    ASSERT_EQ(test::countReachable(graph), n);
+    const bool had_cut_node = test::hasCutNode(graph);
+    dangling += had_cut_node ? 1 : 0;
+    const std::vector<Bridge> bridges = danglingBridges(points, graph, 2);
+    EXPECT_EQ(bridges.empty(), !had_cut_node);
+    const test::Edges before = test::edgesOf(graph);
+    for (const Bridge& bridge : bridges) {
+      EXPECT_EQ(before.count({bridge.from, bridge.to}), 0U);
+      EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
+    }
+    // Of parts in a chain the ends are tied at first.
+    for (Index k = 0; k < n; ++k)
+      graph = withEdges(graph, danglingBridges(points, graph, 2));
+    EXPECT_FALSE(test::hasCutNode(graph));
+  }
+  EXPECT_GT(dangling, 50);
+  EXPECT_LT(dangling, 280);
+}
+
+TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
+  for (const Index left : {10, 30}) {  // of 40, with node 39 in both parts
+    const Positions points = test::randomSphere(40, 2);
+    Graph graph;
+    graph.offsets.assign(41, 0);
+    std::vector<Bridge> edges;
+    for (Index i = 0; i < 40; ++i)
+      for (Index j = i + 1; j < 40; ++j)
+        if (j == 39 || (i < left) == (j < left))
+          edges.push_back({i, j, 1.0});
+    const std::vector<Bridge> bridges = danglingBridges(points, withEdges(graph, edges), 3);
+    ASSERT_EQ(bridges.size(), 3U);
+    std::set<Index> taken{39};
+    for (const Bridge& bridge : bridges) {
+      double shortest = 1e300;
+      for (Index i = 0; i < left; ++i)
+        for (Index j = left; j < 39; ++j)
+          if (taken.count(i) == 0 && taken.count(j) == 0)
+            shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
+      EXPECT_DOUBLE_EQ(bridge.length, shortest);
+      taken.insert({bridge.from, bridge.to});
+    }
+  }
+}
+
+TEST(GraphBuilding, LengthsArePositiveAndDoNotUnderflow) {
+  for (const double scale : {1.0, 1e-100, 1e-150, 1e-160, 1e-200, 1e-300, 1e-320, 0.0}) {
+    Positions points(3, 2);
+    points << 0.0, 3.0 * scale, 0.0, 4.0 * scale, 0.0, 0.0;
+    EXPECT_DOUBLE_EQ(edgeLength(points, 0, 1),
+                     std::max(5.0 * scale, std::numeric_limits<double>::min()));
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param::internal

@@ -1,0 +1,70 @@
+#include "spherical_param/neighbor_search.h"
+
+#include "graph_helpers.h"
+#include "spherical_param/errors.h"
+
+namespace spherical_param {
+namespace {
+
+using test::rowOf;
+
+/// List k holds `count` nearest points of queries[k], the point itself among them.
+void expectNearest(const Positions& points, const std::vector<Index>& queries, int count,
+                   const NeighborLists& lists) {
+  ASSERT_EQ(lists.size(), queries.size());
+  for (std::size_t k = 0; k < queries.size(); ++k) {
+    std::vector<double> all;
+    for (Index j = 0; j < points.cols(); ++j)
+      all.push_back((points.col(queries[k]) - points.col(j)).norm());
+    std::vector<double> found;
+    const std::vector<Index> list = rowOf(lists, static_cast<Index>(k));
+    for (const Index j : list)
+      found.push_back(all[static_cast<std::size_t>(j)]);
+    EXPECT_EQ(std::set<Index>(list.begin(), list.end()).size(), list.size());
+    EXPECT_EQ(std::count(list.begin(), list.end(), queries[k]), 1);
+    std::sort(all.begin(), all.end());
+    all.resize(std::min(all.size(), static_cast<std::size_t>(count) + 1));
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, all);
+  }
+}
+
+TEST(NeighborSearch, FindsTheNearestPointsOfEachQuery) {
+  for (const Positions& points : {test::randomSphere(300, 1), test::cubeGrid(6)}) {
+    const NeighborSearch search = makeNeighborSearch(points);
+    const std::vector<Index> queries{7, 0, 7, 120, 3};
+    for (const int count : {0, 1, 12, 10000})
+      expectNearest(points, queries, count, search(queries, count));
+    std::vector<Index> all(static_cast<std::size_t>(points.cols()));
+    std::iota(all.begin(), all.end(), Index{0});
+    expectNearest(points, all, 5, findNearestNeighbors(points, 5));
+  }
+  EXPECT_EQ(findNearestNeighbors(Positions(3, 0), 5).size(), 0U);
+  EXPECT_EQ(findNearestNeighbors(Positions::Zero(3, 1), 5).indices, std::vector<Index>{0});
+}
+
+TEST(NeighborSearch, GivesTheSameListsForAnyNumberOfThreads) {
+  const Positions points = test::randomSphere(6000, 2);
+  const NeighborLists expected = findNearestNeighbors(points, 6, test::onThreads(1));
+  for (const int threads : {2, 0})
+    EXPECT_EQ(findNearestNeighbors(points, 6, test::onThreads(threads)).indices, expected.indices);
+}
+
+TEST(NeighborSearch, RefusesNoPointsStrangeQueriesAndAnswersBeyondMemory) {
+  EXPECT_THROW(makeNeighborSearch(Positions(3, 0)), InvalidInput);
+  const NeighborSearch search = makeNeighborSearch(test::randomSphere(10, 3));
+  EXPECT_EQ(search({0, 9}, 3).size(), 2U);
+  EXPECT_THROW(search({-1}, 3), InvalidInput);
+  EXPECT_THROW(search({10}, 3), InvalidInput);
+  // 50,000 lists of as many entries are more than 2^31.
+  EXPECT_THROW(findNearestNeighbors(test::spiralSphere(50000), 50000), InvalidInput);
+}
+
+TEST(NeighborSearch, CanBeCancelled) {
+  EXPECT_THROW(findNearestNeighbors(test::randomSphere(10, 3), 3,
+                                    test::reportingTo([](double) { return false; })),
+               Cancelled);
+}
+
+}  // namespace
+}  // namespace spherical_param
