@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 /// A test of each chart.
 class EachChart : public testing::TestWithParam<SphereChart> {
 protected:
-  TextureAtlasOptions options() const { return {GetParam()}; }
+  TextureAtlasOptions options() const { return {GetParam(), 0.1}; }
   bool isEquirectangular() const { return GetParam() == SphereChart::Equirectangular; }
   bool isCubeMap() const { return GetParam() == SphereChart::CubeMap; }
 

