@@ -1,14 +1,11 @@
 #include "spherical_param/map/spherical_harmonics.h"
 
-#include "helpers.h"
+#include "map_shapes.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace spherical_param {
@@ -19,12 +16,7 @@ using test::kPi;
 
 template <typename Place>
 SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
-  const Positions sphere = test::spiralSphere(n);
-  Positions points(3, n);
-  for (Index i = 0; i < n; ++i)
-    points.col(i) = place(Vector3d(sphere.col(i)));
-  return SphereSurface(points, triangulateSphere(sphere).triangles, sphere,
-                       {SurfaceFit::Linear, threads});
+  return test::mappedOver(test::spiralSphere(n), place).surface(SurfaceFit::Linear, threads);
 }
 
 /// P_l by the recurrence of its definition.
@@ -40,12 +32,12 @@ double legendre(int degree, double z) {
 }
 
 TEST(SphericalHarmonics, LowDegreesAreThePolynomialsOfTheBooks) {
+  // Signs, order and the axis of each m; the addition theorem has none of these.
   const Positions directions = test::randomSphere(20, 1);
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {
     const double x = directions(0, i);
     const double y = directions(1, i);
     const double z = directions(2, i);
-    const Eigen::VectorXd values = sphericalHarmonicsAt(directions.col(i), 3);
     Eigen::VectorXd expected(16);
     expected << 0.5 * std::sqrt(1.0 / kPi), std::sqrt(0.75 / kPi) * y, std::sqrt(0.75 / kPi) * z,
         std::sqrt(0.75 / kPi) * x, 0.5 * std::sqrt(15.0 / kPi) * x * y,
@@ -58,84 +50,53 @@ TEST(SphericalHarmonics, LowDegreesAreThePolynomialsOfTheBooks) {
         0.25 * std::sqrt(10.5 / kPi) * x * (5.0 * z * z - 1.0),
         0.25 * std::sqrt(105.0 / kPi) * z * (x * x - y * y),
         0.25 * std::sqrt(17.5 / kPi) * x * (x * x - 3.0 * y * y);
-    EXPECT_LT((values - expected).norm(), 1e-14);
+    for (const double length : {1.0, 1e200, 1e-200})
+      EXPECT_LT((sphericalHarmonicsAt(length * directions.col(i), 3) - expected).norm(), 1e-14);
   }
-}
-
-TEST(SphericalHarmonics, AreOrthonormal) {
-  // Fejer's first rule in z, which is exact up to the degree n - 1, and equal steps around.
-  const int degree = 9;
-  const int n = 20;
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(100, 100);
-  for (int k = 0; k < n; ++k) {
-    const double angle = (k + 0.5) * kPi / n;
-    double weight = 1.0;
-    for (int j = 1; j <= n / 2; ++j)
-      weight -= (2 * j == n ? 1.0 : 2.0) * std::cos(2.0 * j * angle) / (4.0 * j * j - 1.0);
-    for (int i = 0; i < n; ++i) {
-      const double phi = 2.0 * kPi * i / n + 0.1;
-      const Eigen::VectorXd values =
-          sphericalHarmonicsAt(Vector3d(std::sin(angle) * std::cos(phi),
-                                        std::sin(angle) * std::sin(phi), std::cos(angle)),
-                               degree);
-      products += 2.0 / n * weight * 2.0 * kPi / n * values * values.transpose();
-    }
-  }
-  EXPECT_LT((products - Eigen::MatrixXd::Identity(100, 100)).cwiseAbs().maxCoeff(), 1e-13);
 }
 
 TEST(SphericalHarmonics, ObeyTheAdditionTheoremUpToTheHighestDegree) {
+  // As only orthonormal ones do.
   const int degree = 512;
-  std::vector<Vector3d> directions{Vector3d::UnitZ(), -Vector3d::UnitZ(), Vector3d::UnitX(),
-                                   Vector3d(1e-3, 1e-4, 1.0).normalized(),
-                                   Vector3d(1e-12, 0.0, -1.0).normalized()};
-  const Positions random = test::randomSphere(3, 2);
-  for (Eigen::Index i = 0; i < random.cols(); ++i)
-    directions.emplace_back(random.col(i));
-  for (const Vector3d& u : directions) {
-    const Eigen::VectorXd at_u = sphericalHarmonicsAt(u, degree);
-    for (const Vector3d& w : directions) {
-      const Eigen::VectorXd at_w = sphericalHarmonicsAt(w, degree);
+  std::vector<Vector3d> directions{Vector3d::UnitZ(), Vector3d::UnitX(),
+                                   Vector3d(1e-12, 0.0, -1.0).normalized(),
+                                   Vector3d(0.3, -0.5, 0.7).normalized()};
+  std::vector<Eigen::VectorXd> values;
+  for (const Vector3d& u : directions)
+    values.push_back(sphericalHarmonicsAt(u, degree));
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
       for (int l = 0; l <= degree; ++l) {
-        const double sum = at_u.segment(l * l, 2 * l + 1).dot(at_w.segment(l * l, 2 * l + 1));
-        const double expected = (2.0 * l + 1.0) / (4.0 * kPi) * legendre(l, u.dot(w));
+        const double sum =
+            values[i].segment(l * l, 2 * l + 1).dot(values[j].segment(l * l, 2 * l + 1));
+        const double expected =
+            (2.0 * l + 1.0) / (4.0 * kPi) * legendre(l, directions[i].dot(directions[j]));
         // P_l changes by up to l (l + 1) / 2 times the rounding of u.w.
         ASSERT_NEAR(sum, expected, 1e-15 * (l + 1.0) * (l + 1.0) * (l + 1.0) / 4.0 + 1e-13);
       }
-    }
-  }
-}
-
-TEST(SphericalHarmonics, LengthOfTheDirectionDoesNotMatter) {
-  const Vector3d direction(0.3, -0.4, 0.2);
-  const Eigen::VectorXd expected = sphericalHarmonicsAt(direction, 20);
-  EXPECT_LT((sphericalHarmonicsAt(1e200 * direction, 20) - expected).norm(), 1e-12);
-  EXPECT_LT((sphericalHarmonicsAt(1e-200 * direction, 20) - expected).norm(), 1e-12);
 }
 
 TEST(SphericalHarmonics, OfAnEllipsoidAreOfDegreeOne) {
   const Vector3d axes(3.0, 2.0, 1.0);
   const Vector3d center(5.0, -1.0, 2.0);
-  double last = 0.0;
-  for (const Index n : {1000, 4000}) {
-    const SphereSurface surface =
-        surfaceOver(n, [&](const Vector3d& u) { return Vector3d(axes.cwiseProduct(u) + center); });
-    const SphericalHarmonics harmonics = computeSphericalHarmonics(surface, 4);
-    ASSERT_EQ(harmonics.coefficients.cols(), 25);
-    Positions expected = Positions::Zero(3, 25);
-    expected.col(0) = std::sqrt(4.0 * kPi) * center;
-    expected(1, 1) = std::sqrt(4.0 * kPi / 3.0) * axes.y();
-    expected(2, 2) = std::sqrt(4.0 * kPi / 3.0) * axes.z();
-    expected(0, 3) = std::sqrt(4.0 * kPi / 3.0) * axes.x();
-    const double error = (harmonics.coefficients - expected).norm();
+  Positions expected = Positions::Zero(3, 25);
+  expected.col(0) = std::sqrt(4.0 * kPi) * center;
+  expected(1, 1) = std::sqrt(4.0 * kPi / 3.0) * axes.y();
+  expected(2, 2) = std::sqrt(4.0 * kPi / 3.0) * axes.z();
+  expected(0, 3) = std::sqrt(4.0 * kPi / 3.0) * axes.x();
+  const auto error_of = [&](Index n) {
+    const SphericalHarmonics harmonics = computeSphericalHarmonics(
+        surfaceOver(n, [&](const Vector3d& u) { return Vector3d(axes.cwiseProduct(u) + center); }),
+        4);
+    EXPECT_EQ(harmonics.degree, 4);
     // The triangles cut off a piece, which a quarter of their size makes a quarter as high.
-    EXPECT_LT(error, 30.0 / n);
     EXPECT_LT(harmonics.rms_residual, 30.0 / n);
-    if (last > 0.0) {
-      EXPECT_NEAR(last / error, 4.0, 0.5);
-    }
-    last = error;
-  }
+    return (harmonics.coefficients - expected).norm();
+  };
+  const double coarse = error_of(1000);
+  const double fine = error_of(4000);
+  EXPECT_LT(fine, 30.0 / 4000);
+  EXPECT_NEAR(coarse / fine, 4.0, 0.5);
 }
 
 TEST(SphericalHarmonics, OfAShapeThatIsASeriesAreItsCoefficients) {
@@ -144,52 +105,40 @@ TEST(SphericalHarmonics, OfAShapeThatIsASeriesAreItsCoefficients) {
   given.coefficients = 0.05 * test::randomSphere(36, 3);
   given.coefficients.col(0).setZero();
   given.coefficients(1, 1) = given.coefficients(2, 2) = given.coefficients(0, 3) = 2.0;
-  const SphereSurface surface = surfaceOver(20000, [&](const Vector3d& u) {
+  const SphereSurface surface = surfaceOver(8000, [&](const Vector3d& u) {
     return Vector3d(evaluateSphericalHarmonics(given, u).col(0));
   });
   const SphericalHarmonics found = computeSphericalHarmonics(surface, 7);
-  EXPECT_LT((found.coefficients.leftCols(36) - given.coefficients).cwiseAbs().maxCoeff(), 2e-3);
-  EXPECT_LT(found.coefficients.rightCols(28).cwiseAbs().maxCoeff(), 1e-3);
-  EXPECT_LT(found.rms_residual, 1e-3);
+  EXPECT_LT((found.coefficients.leftCols(36) - given.coefficients).cwiseAbs().maxCoeff(), 5e-3);
+  EXPECT_LT(found.coefficients.rightCols(28).cwiseAbs().maxCoeff(), 2e-3);
+  EXPECT_LT(found.rms_residual, 2e-3);
   // Too few terms leave what they cannot show: orthonormal ones, by Pythagoras.
   const SphericalHarmonics few = computeSphericalHarmonics(surface, 3);
-  const double rest = given.coefficients.rightCols(20).squaredNorm() / (4.0 * kPi);
-  EXPECT_NEAR(few.rms_residual, std::sqrt(rest), 0.01 * std::sqrt(rest));
-}
-
-TEST(SphericalHarmonics, SeriesIsTheSumOfItsTerms) {
-  SphericalHarmonics harmonics;
-  harmonics.degree = 6;
-  harmonics.coefficients = test::randomSphere(49, 3);
-  const Positions directions = test::randomSphere(10, 4);
-  const Positions values = evaluateSphericalHarmonics(harmonics, directions);
-  for (Eigen::Index i = 0; i < directions.cols(); ++i)
-    EXPECT_LT((values.col(i) - harmonics.coefficients * sphericalHarmonicsAt(directions.col(i), 6))
-                  .norm(),
-              1e-14);
+  const double rest = std::sqrt(given.coefficients.rightCols(20).squaredNorm() / (4.0 * kPi));
+  EXPECT_NEAR(few.rms_residual, rest, 0.01 * rest);
 }
 
 TEST(SphericalHarmonics, ResidualIsThatOfTheSurfaceAtManyDirections) {
   const SphereSurface surface = surfaceOver(
-      2000, [](const Vector3d& u) { return Vector3d((1.0 + 0.2 * std::sin(6.0 * u.x())) * u); });
+      1000, [](const Vector3d& u) { return Vector3d((1.0 + 0.2 * std::sin(6.0 * u.x())) * u); });
   const SphericalHarmonics harmonics = computeSphericalHarmonics(surface, 4);
-  const Positions directions = test::spiralSphere(20000);
+  const Positions directions = test::spiralSphere(10000);
   const double expected = std::sqrt(
       (surface.evaluate(directions).positions - evaluateSphericalHarmonics(harmonics, directions))
           .squaredNorm() /
-      20000.0);
-  EXPECT_NEAR(harmonics.rms_residual, expected, 1e-3 * expected);
+      10000.0);
+  EXPECT_NEAR(harmonics.rms_residual, expected, 2e-3 * expected);
   EXPECT_LT(computeSphericalHarmonics(surface, 12).rms_residual, 0.1 * harmonics.rms_residual);
 }
 
 TEST(SphericalHarmonics, AreTheSameForAnyNumberOfThreads) {
-  const auto place = [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); };
-  const SphericalHarmonics expected = computeSphericalHarmonics(surfaceOver(500, place, 1), 12, 1);
-  const Positions directions = test::randomSphere(3000, 5);
+  const SphereSurface surface =
+      surfaceOver(500, [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); });
+  const SphericalHarmonics expected = computeSphericalHarmonics(surface, 12, 1);
+  const Positions directions = test::randomSphere(2000, 5);
   const Positions values = evaluateSphericalHarmonics(expected, directions, 1);
   for (const int threads : {2, 3}) {
-    const SphericalHarmonics found =
-        computeSphericalHarmonics(surfaceOver(500, place, threads), 12, threads);
+    const SphericalHarmonics found = computeSphericalHarmonics(surface, 12, threads);
     EXPECT_EQ(found.coefficients, expected.coefficients);
     EXPECT_EQ(found.rms_residual, expected.rms_residual);
     EXPECT_EQ(evaluateSphericalHarmonics(expected, directions, threads), values);

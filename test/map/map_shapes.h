@@ -1,0 +1,116 @@
+#pragma once
+
+#include "exact_predicates.h"
+#include "helpers.h"
+#include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+/// Meshes with a map to the sphere that the tests of the map share.
+namespace spherical_param::test {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// A mesh with its map.
+struct Mapped {
+  Positions points;
+  Triangles triangles;
+  Positions sphere;
+
+  SphereSurface surface(SurfaceFit fit = SurfaceFit::Linear, int threads = 0) const {
+    return {points, triangles, sphere, {fit, threads}};
+  }
+};
+
+/// The shape that place() makes of directions.
+template <typename Place>
+Mapped mappedOver(const Positions& sphere, const Place& place) {
+  Mapped mesh{sphere, triangulateSphere(sphere).triangles, sphere};
+  for (Eigen::Index i = 0; i < sphere.cols(); ++i)
+    mesh.points.col(i) = place(Vector3d(sphere.col(i)));
+  return mesh;
+}
+
+/// Directions as their own mesh.
+inline Mapped mapped(const Positions& sphere) {
+  return mappedOver(sphere, [](const Vector3d& u) { return u; });
+}
+
+/// A bumpy shape over directions.
+inline Mapped bumpy(const Positions& sphere) {
+  return mappedOver(sphere, [](const Vector3d& u) {
+    return Vector3d((2.0 + 0.3 * std::sin(3.0 * u.x()) * std::cos(2.0 * u.y())) * u);
+  });
+}
+
+/// The 4 f^2 + 2 grid points on an octahedron whose edges have f parts: vertices and edges on the
+/// planes of coordinates.
+inline Mapped octasphere(int parts) {
+  Positions sphere(3, 4 * parts * parts + 2);
+  Eigen::Index i = 0;
+  for (int x = -parts; x <= parts; ++x)
+    for (int y = -parts; y <= parts; ++y)
+      for (int z = -parts; z <= parts; ++z)
+        if (std::abs(x) + std::abs(y) + std::abs(z) == parts)
+          sphere.col(i++) = Vector3d(x, y, z).normalized();
+  return mapped(sphere);
+}
+
+/// Two apices and a ring of so many vertices between them.
+inline Mapped doubleCone(Index ring) {
+  Positions sphere(3, ring + 2);
+  for (Index i = 0; i < ring; ++i) {
+    const double angle = 2.0 * kPi * i / ring;
+    sphere.col(i) << std::cos(angle), std::sin(angle), 0.0;
+  }
+  sphere.rightCols<2>() << 0.0, 0.0, 0.0, 0.0, 1.0, -1.0;
+  return mapped(sphere);
+}
+
+inline Positions regularTetrahedron() {
+  Positions corners(3, 4);
+  corners << 1, -1, -1, 1, 1, -1, 1, -1, 1, 1, -1, -1;
+  return corners / std::sqrt(3.0);
+}
+
+/// Without any order: triangles of all shapes and sizes that intersect each other.
+inline Positions randomPositions(Eigen::Index n, std::uint64_t seed) {
+  return withNoise(Positions::Zero(3, n), 1.0, seed);
+}
+
+inline Matrix3d rotationBy(double angle, const Vector3d& axis) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+/// Area of the unit sphere that a triangle covers, by its angles (A. Girard, 1629).
+inline double sphericalArea(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
+  double sum = -kPi;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d a = sphere.col(triangles(k, t));
+    const Vector3d b = sphere.col(triangles((k + 1) % 3, t));
+    const Vector3d c = sphere.col(triangles((k + 2) % 3, t));
+    sum += std::atan2(std::abs(a.dot(b.cross(c))), a.cross(b).dot(a.cross(c)));
+  }
+  return sum;
+}
+
+/// Whether directions are unit vectors, no triangle is flipped, and all cover the sphere once.
+inline bool isOneToOne(const Positions& sphere, const Triangles& triangles) {
+  double area = 0.0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    if (internal::orientation3d(Vector3d::Zero(), sphere.col(triangles(0, t)),
+                                sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0)
+      return false;
+    area += sphericalArea(sphere, triangles, t);
+  }
+  return (sphere.colwise().norm().array() - 1.0).abs().maxCoeff() < 1e-14 &&
+         std::abs(area - 4.0 * kPi) < 1e-6;
+}
+
+}  // namespace spherical_param::test

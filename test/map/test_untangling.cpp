@@ -1,0 +1,69 @@
+#include "map_shapes.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/map/resampling.h"
+#include "spherical_param/self_intersection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(Untangle, SlidesVerticesUntilNothingIntersectsAndKeepsAllElse) {
+  // A cigar whose map is twisted: triangles of a grid wind round it, and cut across each other.
+  const SphereSurface surface = test::mappedOver(test::spiralSphere(4000), [](const Vector3d& u) {
+                                  const Vector3d turned =
+                                      test::rotationBy(10.0 * u.z(), Vector3d::UnitZ()) * u;
+                                  return Vector3d(turned.x(), 0.15 * turned.y(), 2.0 * turned.z());
+                                }).surface();
+  const ResampledMesh before = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 8));
+  const std::size_t pairs = findSelfIntersections(before.points, before.triangles).size();
+  ASSERT_GT(pairs, 0U);
+  ResampledMesh mesh = before;
+  const UntanglingReport report = untangle(surface, mesh, 1);
+  EXPECT_EQ(report.before, pairs);
+  EXPECT_EQ(report.after, 0U);
+  EXPECT_GT(report.rounds, 0);
+  EXPECT_EQ(findSelfIntersections(mesh.points, mesh.triangles).size(), 0U);
+  EXPECT_EQ(mesh.triangles, before.triangles);
+  EXPECT_TRUE(test::isOneToOne(mesh.directions, mesh.triangles));
+  const SurfaceSamples samples = surface.evaluate(mesh.directions);
+  EXPECT_EQ(samples.positions, mesh.points);
+  EXPECT_EQ(samples.normals, mesh.normals);
+  Index moved = 0;
+  for (Eigen::Index i = 0; i < mesh.points.cols(); ++i)
+    moved += mesh.directions.col(i) != before.directions.col(i) ? 1 : 0;
+  EXPECT_EQ(moved, report.moved);
+  EXPECT_LT(moved, mesh.points.cols());
+  ResampledMesh other = before;
+  untangle(surface, other, 3);
+  EXPECT_EQ(other.points, mesh.points);
+}
+
+TEST(Untangle, AMeshWithoutIntersectionsIsKeptAndOneThatIsNoSphereRefused) {
+  const SphereSurface surface = test::bumpy(test::randomSphere(50, 1)).surface();
+  const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
+  ResampledMesh mesh = good;
+  const UntanglingReport report = untangle(surface, mesh);
+  EXPECT_EQ(report.before + report.after, 0U);
+  EXPECT_EQ(report.rounds, 0);
+  EXPECT_EQ(report.moved, 0);
+  EXPECT_EQ(mesh.points, good.points);
+  EXPECT_EQ(mesh.directions, good.directions);
+
+  EXPECT_THROW(untangle(surface, mesh, -1), InvalidInput);
+  mesh.directions.conservativeResize(3, 5);
+  EXPECT_THROW(untangle(surface, mesh), InvalidInput);
+  mesh = good;
+  mesh.normals.conservativeResize(3, 5);
+  EXPECT_THROW(untangle(surface, mesh), InvalidInput);
+  mesh = good;
+  mesh.triangles(0, 0) = 38;
+  EXPECT_THROW(untangle(surface, mesh), InvalidInput);
+}
+
+}  // namespace
+}  // namespace spherical_param
