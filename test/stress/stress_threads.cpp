@@ -3,21 +3,19 @@
 //
 //   stress_threads [--quick] [--seed N]
 
+#include "guarantees.h"
 #include "helpers.h"
-#include "result_bytes.h"
+#include "random.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/reconstruct.h"
 #include "stress.h"
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
-#include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace {
@@ -35,23 +33,22 @@ struct Job {
 
 /// The same job for the same seed and number.
 Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
-  std::seed_seq sequence{seed, static_cast<std::uint64_t>(number)};
-  std::mt19937_64 random(sequence);
-  const auto below = [&random](std::uint64_t count) { return random() % count; };
+  stress::Random random(1000000 * seed + number);
+  const auto below = [&random](int count) { return random.integer(0, count - 1); };
   Job job;
-  const Index n = 8 + static_cast<Index>(below(static_cast<std::uint64_t>(most_points)));
+  const Index n = 8 + below(most_points);
   switch (below(4)) {
   case 0:
     job.points = Eigen::Vector3d(1.0, 0.6, 0.3).asDiagonal() * test::spiralSphere(n);
     break;
   case 1:
-    job.points = test::withNoise(test::randomSphere(n, random()), 0.02, random());
+    job.points = test::withNoise(test::randomSphere(n, number), 0.02, number);
     break;
   case 2:
-    job.points = test::cubeGrid(2 + static_cast<int>(below(5)));
+    job.points = test::cubeGrid(2 + below(5));
     break;
   default:  // each point twice
-    job.points = test::randomSphere(n / 2, random());
+    job.points = test::randomSphere(n / 2, number);
     job.points = test::horizontally(job.points, job.points);
     break;
   }
@@ -66,13 +63,12 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
   options.embedding.max_iterations = 60;
   options.triangulation.method =
       below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
-  options.optimization.method = std::array{OptimizationMethod::None, OptimizationMethod::Flips,
-                                           OptimizationMethod::Full}[below(3)];
+  options.optimization.method = static_cast<OptimizationMethod>(below(3));
   options.smoothing.steps = below(3) == 0 ? 5 : 0;
-  options.retries = static_cast<int>(below(3));
+  options.retries = below(3);
   options.seed = static_cast<std::uint32_t>(below(1000));
   options.details = below(4) == 0;
-  options.threads = 1 + static_cast<int>(below(2));
+  options.threads = 1 + below(2);
   return job;
 }
 
@@ -80,9 +76,8 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
 std::string answerTo(const Job& job) {
   try {
     const Result result = reconstruct(job.points, job.options);
-    const bool is_sphere =
-        test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount()));
-    return job.is_valid && is_sphere ? stress::bytesOf(result) : std::string();
+    const bool is_right = job.is_valid && stress::faultOf(job.points, job.options, result).empty();
+    return is_right ? stress::bytesOf(result) : std::string();
   } catch (const InvalidInput& error) {
     return job.is_valid ? std::string() : error.what();
   }
@@ -91,26 +86,25 @@ std::string answerTo(const Job& job) {
 std::size_t differencesTogether(const stress::Arguments& arguments, std::size_t jobs_of_thread) {
   std::vector<Job> jobs;
   std::vector<std::string> alone;
-  std::atomic<std::size_t> wrong{0};
   for (std::size_t i = 0; i < kThreads * jobs_of_thread; ++i) {
     jobs.push_back(makeJob(arguments.seed, i, arguments.quick ? 100 : 400));
     alone.push_back(answerTo(jobs.back()));
-    if (alone.back().empty()) {
-      ++wrong;
-      std::printf("job %zu: not the right kind of answer\n", i);
-    }
   }
-  std::vector<std::thread> threads;
-  for (std::size_t t = 0; t < kThreads; ++t)
-    threads.emplace_back([&, t] {
-      for (std::size_t i = t; i < jobs.size(); i += kThreads)
-        if (answerTo(jobs[i]) != alone[i]) {
-          ++wrong;
-          std::printf("job %zu: other bytes together with others than alone\n", i);
-        }
-    });
-  for (std::thread& thread : threads)
-    thread.join();
+  const auto together = test::runTogether(kThreads, [&](std::size_t thread) {
+    std::vector<std::string> answers;
+    for (std::size_t i = thread; i < jobs.size(); i += kThreads)
+      answers.push_back(answerTo(jobs[i]));
+    return answers;
+  });
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const bool is_right = !alone[i].empty() && together[i % kThreads][i / kThreads] == alone[i];
+    if (!is_right)
+      std::printf("job %zu: %s\n", i,
+                  alone[i].empty() ? "not the right kind of answer"
+                                   : "other bytes together with others than alone");
+    wrong += is_right ? 0 : 1;
+  }
   return wrong;
 }
 
@@ -130,16 +124,14 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
         options.triangulation.method = TriangulationMethod::Qhull;
         options.optimization.method = OptimizationMethod::None;
       }
-      std::string expected;
-      for (const int threads : {1, 2, 4}) {
-        options.threads = threads;
-        const std::string bytes = stress::bytesOf(reconstruct(points, options));
-        if (threads == 1)
-          expected = bytes;
-        if (bytes != expected) {
-          ++wrong;
-          std::printf("%d points: other bytes with %d threads\n", size, threads);
-        }
+      std::array<std::string, 3> bytes;
+      for (std::size_t i = 0; i < bytes.size(); ++i) {
+        options.threads = 1 << i;
+        bytes[i] = stress::bytesOf(reconstruct(points, options));
+        if (bytes[i] == bytes[0])
+          continue;
+        ++wrong;
+        std::printf("%d points: other bytes with %d threads\n", size, options.threads);
       }
     }
   return wrong;

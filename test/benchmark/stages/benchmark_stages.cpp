@@ -110,38 +110,19 @@ void embedBy(const EmbeddingOptions& options, const Data& data, int threads) {
   keep(embed(data.graph.graph, data.points, options, 1, withThreads(threads)));
 }
 
-void embedConverged(const Data& data, int threads) {
+EmbeddingOptions toTolerance(double tolerance) {
   EmbeddingOptions options;
-  options.tolerance = 1e-8;
-  embedBy(options, data, threads);
+  options.tolerance = tolerance;
+  return options;
 }
 
-void embedIteratively(const Data& data, int threads) {
-  // As many iterations, however they converge.
-  EmbeddingOptions options;
+/// As many iterations, however they converge.
+EmbeddingOptions ofIterations(int count) {
+  EmbeddingOptions options = toTolerance(0.0);
   options.method = EmbeddingMethod::Iterative;
-  options.max_iterations = 50;
-  options.tolerance = 0.0;
+  options.max_iterations = count;
   options.stagnation_window = 0;
-  embedBy(options, data, threads);
-}
-
-void triangulateByQhull(const Data& data, int) {
-  TriangulationOptions options;
-  options.method = TriangulationMethod::Qhull;
-  keep(triangulateSphere(data.sphere, options));
-}
-
-void smooth(const Data& data, int threads) {
-  SmoothingOptions options;
-  options.steps = 5;
-  keep(smoothSurface(data.points, data.triangles, options, threads));
-}
-
-void reconstructAll(const Data& data, int threads) {
-  Options options;
-  options.threads = threads;
-  keep(reconstruct(data.scan, options));
+  return options;
 }
 
 struct Entry {
@@ -169,11 +150,13 @@ const std::vector<Entry> kEntries = {
     {"nearest-neighbour graph", false,
      [](const Data& d, int) { keep(buildNeighborGraph(d.points, d.long_lists, ofPaper())); }},
     {"embedding, multilevel", true, [](const Data& d, int n) { embedBy({}, d, n); }},
-    {"embedding, converged", true, embedConverged},
-    {"embedding, 50 iterations", true, embedIteratively},
+    {"embedding, converged", true, [](const Data& d, int n) { embedBy(toTolerance(1e-8), d, n); }},
+    {"embedding, 50 iterations", true,
+     [](const Data& d, int n) { embedBy(ofIterations(50), d, n); }},
     {"triangulation, incremental", false,
      [](const Data& d, int) { keep(triangulateSphere(d.sphere)); }},
-    {"triangulation, qhull", false, triangulateByQhull},
+    {"triangulation, qhull", false,
+     [](const Data& d, int) { keep(triangulateSphere(d.sphere, {TriangulationMethod::Qhull})); }},
     {"optimisation", true,
      [](const Data& d, int n) {
        keep(optimizeMesh(d.points, d.sphere_triangles, d.graph.graph, {}, 1, withThreads(n)));
@@ -182,14 +165,24 @@ const std::vector<Entry> kEntries = {
      [](const Data& d, int n) {
        keep(findSelfIntersections(d.points, d.triangles, withThreads(n)));
      }},
-    {"smoothing", true, smooth},
+    {"smoothing", true,
+     [](const Data& d, int n) {
+       SmoothingOptions options;
+       options.steps = 5;
+       keep(smoothSurface(d.points, d.triangles, options, n));
+     }},
     {"diagnosis", false,
      [](const Data& d, int) {
        keep(diagnoseSurface(d.points, d.triangles, d.graph.graph, d.graph.report.bridges));
      }},
     {"measures", false, [](const Data& d, int) { keep(measureMesh(d.points, d.triangles)); }},
     {"topology", false, [](const Data& d, int) { keep(checkTopology(d.triangles, d.all.size())); }},
-    {"whole core", true, reconstructAll},
+    {"whole core", true,
+     [](const Data& d, int n) {
+       Options options;
+       options.threads = n;
+       keep(reconstruct(d.scan, options));
+     }},
 };
 
 void addBenchmarks() {

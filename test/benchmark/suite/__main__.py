@@ -8,7 +8,7 @@ import time
 
 from . import comparison, machine, maps, paper, scaling
 from .programs import Failure, Programs, load_clouds
-from .report import update_doc, write_report
+from .report import Report
 
 SECTIONS = {
     "paper": paper.section,
@@ -27,6 +27,7 @@ class Context:
         self.quick, self.large = arguments.quick, arguments.large
         self.programs = Programs(arguments.build / "bin", self.work, self.choose(10000, 50000))
         self.models = load_clouds(arguments.models) if arguments.models else []
+        self.report = Report(self.out)
         self.started = time.monotonic()
 
     def choose(self, quick, full):
@@ -54,13 +55,16 @@ def main(words):
     with tempfile.TemporaryDirectory(prefix="work_", dir=out) as work:
         context = Context(arguments, work)
         provenance = machine.describe(root, arguments.build)
-        sections = [make(context) for name, make in SECTIONS.items()
-                    if not arguments.only or name in arguments.only]  # fmt: skip
+        for name, make in SECTIONS.items():
+            if not arguments.only or name in arguments.only:
+                make(context)
     minutes = (time.monotonic() - context.started) / 60
-    tables = write_report(out, f"{provenance} It took {minutes:.1f} minutes.", sections)
+    report = context.report
+    report.facts.update(provenance=provenance, minutes=minutes)
+    report.write()
     if arguments.update_doc:
         for page in ("README.md", "doc/benchmarks.md"):
-            update_doc(root / page, provenance, tables)
+            report.update_doc(root / page)
     context.say(f"report: {out / 'report.md'}")
 
 

@@ -4,7 +4,6 @@ import json
 import statistics
 
 from .programs import Failure, in_turn, median_seconds
-from .report import Figure, Section, Table
 
 OURS = "ours"
 PEERS = [  # label, program, method
@@ -33,11 +32,11 @@ RACE = [("model", "cloud"), ("ours", "ours [s]", 2), ("single", "ours, one threa
         ("gain", "one thread / all", 2), ("peer", "CGAL advancing front [s]", 2),
         ("ratio", "ours / advancing front", 2)]  # fmt: skip
 
-TEXT = """Each method gets the points alone. Methods that need normals estimate them with their own
-library; that is part of the time. *Closed, manifold, genus 0* is judged by a referee of the suite on
-the file that was written. Self-intersections are pairs of triangles, in exact arithmetic. *True edges*
-are those of the mesh whose vertices are the points of the cloud.
-"""
+# Scans, quick and in full.
+GENERATED = (("animal_2000",), ("hand_10000", "animal_10000", "star_10000", "plate_10000", "tweety",
+                                "max", "igea"))  # fmt: skip
+WITH_PEERS = (("animal_2000",), ("hand_10000",))
+RACES = (("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))
 # Pictures of larger meshes take long to draw and show no more.
 MAX_DRAWN_BYTES = 200000
 
@@ -46,8 +45,8 @@ def _run_ours(context, cloud, mesh, report):
     return [context.programs.reconstruction, cloud.points, mesh, "-quiet", "-json", report]
 
 
-def _compare(context, cloud, peers, table, parameters, figures):
-    """Adds a row for each method on one cloud."""
+def _compare(context, cloud, peers, rows, parameters):
+    """Adds a row for each method on one cloud; returns a line with its picture, if there is one."""
     methods = [(OURS, None, None), *peers]
     meshes = [context.work / f"compare_{index}.ply" for index in range(len(methods))]
     reports = [mesh.with_suffix(".json") for mesh in meshes]
@@ -60,7 +59,7 @@ def _compare(context, cloud, peers, table, parameters, figures):
     drawn = []
     for (label, program, _), mesh, report, done in zip(methods, meshes, reports, runs):
         row = {"model": cloud.name, "method": label}
-        table.rows.append(row)
+        rows.append(row)
         if done[-1].problem:
             row["failure"] = done[-1].problem
             if context.quick or not program:
@@ -75,42 +74,42 @@ def _compare(context, cloud, peers, table, parameters, figures):
                                  "parameters": told["parameters"]}  # fmt: skip
         row.update(context.programs.measure(mesh, cloud))
         drawn.append((mesh, label))
+    picture = ""
     if peers and cloud.points.stat().st_size < MAX_DRAWN_BYTES:
         from .drawing import Pictures
 
         pictures = Pictures(context.out / f"methods_{cloud.name}.png")
         for begin in range(0, len(drawn), 5):
-            files, labels = zip(*drawn[begin : begin + 5])
-            pictures.row(files, labels, up=cloud.up)
-        file = pictures.save()
-        figures.append(Figure(file, f"{cloud.name}, by each method", "Flat shaded."))
+            pictures.row(*zip(*drawn[begin : begin + 5]), up=cloud.up)
+        picture = f"![{cloud.name}, by each method, flat shaded]({pictures.save()})\n"
     for mesh in meshes:
         mesh.unlink(missing_ok=True)
+    return picture
 
 
-def summarize(table):
+def summarize(rows):
     """What each method did on all clouds, beside ours on the same cloud."""
-    ours = {row["model"]: row for row in table.rows if row["method"] == OURS}
-    summary = Table(f"{table.name}_summary", SUMMARY)
-    for method in dict.fromkeys(row["method"] for row in table.rows):
-        rows = [row for row in table.rows if row["method"] == method]
-        good = [row for row in rows if row.get("sphere") and row["used"] == 100.0]
-        entry = {"method": method, "clouds": len(rows), "spheres": len(good),
+    ours = {row["model"]: row for row in rows if row["method"] == OURS}
+    summary = []
+    for method in dict.fromkeys(row["method"] for row in rows):
+        own = [row for row in rows if row["method"] == method]
+        good = [row for row in own if row.get("sphere") and row["used"] == 100.0]
+        entry = {"method": method, "clouds": len(own), "spheres": len(good),
                  "clean": sum(row["intersections"] == 0 for row in good)}  # fmt: skip
         for key in ("rms", "hausdorff", "seconds", "megabytes"):
-            ratios = [row[key] / ours[row["model"]][key] for row in rows
+            ratios = [row[key] / ours[row["model"]][key] for row in own
                       if row.get(key) and ours[row["model"]].get(key)]  # fmt: skip
             entry[key] = statistics.median(ratios) if ratios else None
-        edges = [row["edges"] for row in rows if row.get("edges") is not None]
+        edges = [row["edges"] for row in own if row.get("edges") is not None]
         entry["edges"] = statistics.mean(edges) if edges else None
-        summary.rows.append(entry)
+        summary.append(entry)
     return summary
 
 
 def race(context, clouds):
     """Ours, on one thread and on all, and the fastest peer that keeps all points, in turn."""
     peer = None if context.quick else context.programs.find("benchmark_peer_cgal", required=False)
-    table = Table("race", RACE)
+    rows = []
     mesh = context.work / "race.ply"
     for cloud in clouds:
         ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
@@ -124,40 +123,34 @@ def race(context, clouds):
                "gain": seconds[1] / seconds[0]}  # fmt: skip
         if peer:
             row.update(peer=seconds[2], ratio=seconds[0] / seconds[2])
-        table.rows.append(row)
+        rows.append(row)
     mesh.unlink(missing_ok=True)
-    return ["### In turn with the fastest peer\n",
-            "Whole processes in turn; medians of 5, or one run if it takes longer than 4 s.\n",
-            table]  # fmt: skip
+    context.report.add("race", RACE, rows)
 
 
 def section(context):
-    programs = context.programs
+    programs, report = context.programs, context.report
     found = [(label, programs.find(name, required=False), method) for label, name, method in PEERS
              if name == "benchmark_peer_pcl" or not context.quick]  # fmt: skip
     peers = [peer for peer in found if peer[1]]
-    missing = [label for label, program, _ in found if not program]
-    parts = [TEXT]
-    if missing:
-        parts.append(f"Not built, hence not compared: {', '.join(missing)}.\n")
+    missing = ", ".join(label for label, program, _ in found if not program)
+    report.facts["missing_peers"] = f"Not built, hence not compared: {missing}." if missing else ""
+    generated = [programs.scan(name) for name in context.choose(*GENERATED)]
     parameters = {}
-    sets = [("models", "Models", [(cloud, peers) for cloud in context.models]),
-            ("generated", "Generated scans",
-             [(programs.scan(name), peers if context.quick or name == "hand_10000" else [])
-              for name in context.choose(("animal_2000",),
-                                         ("hand_10000", "animal_10000", "star_10000", "plate_10000",
-                                          "tweety", "max", "igea"))])]  # fmt: skip
-    for name, title, clouds in sets:
-        table, figures = Table(name, QUALITY), []
-        for cloud, others in clouds:
-            context.say(f"{title.lower()}: {cloud.name}, {len(others) + 1} methods")
-            _compare(context, cloud, others, table, parameters, figures)
-        if clouds:
-            parts += [f"### {title}\n", summarize(table), table, *figures]
+    for name, clouds, with_peers in (
+        ("models", context.models, {cloud.name for cloud in context.models}),
+        ("generated", generated, context.choose(*WITH_PEERS)),
+    ):
+        rows, pictures = [], ""
+        for cloud in clouds:
+            others = peers if cloud.name in with_peers else []
+            context.say(f"{name}: {cloud.name}, {len(others) + 1} methods")
+            pictures += _compare(context, cloud, others, rows, parameters)
+        report.facts[f"{name}_pictures"] = pictures
+        report.add(f"{name}_summary", SUMMARY, summarize(rows))
+        report.add(name, QUALITY, rows)
     context.say("in turn with the fastest peer")
     largest = sorted(context.models, key=lambda cloud: cloud.points.stat().st_size)[-1:]
-    parts += race(context, largest + [programs.scan(name, truth=False) for name in context.choose(
-        ("animal_2000",), ("hand_10000", "head_134345", "head_1000000"))])  # fmt: skip
+    race(context, largest + [programs.scan(name, truth=False) for name in context.choose(*RACES)])
     columns = [("method", "method"), ("library", "library"), ("parameters", "parameters")]
-    parts += ["### Parameters of the peers\n", Table("peers", columns, list(parameters.values()))]
-    return Section("Quality and peers", parts)
+    report.add("peers", columns, list(parameters.values()))

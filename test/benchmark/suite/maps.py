@@ -3,7 +3,6 @@
 import json
 
 from .programs import require, stage_seconds
-from .report import Section, Table
 
 SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake",
           "plate", "torus", "bowl", "pair")  # fmt: skip
@@ -25,16 +24,6 @@ REMESHED = [("model", "cloud"), ("made", "remeshed as"), ("vertices", "points"),
             ("mesh_rms", "RMS of the mesh [%]", 4), ("mesh_hausdorff", "Hausdorff of the mesh [%]", 3),
             ("seconds", "time [s]", 1)]  # fmt: skip
 
-TEXT = """The map of a finished mesh beside the embedding that the mesh came from. The optimisation of the
-mesh moves vertices, so that the embedding has flipped triangles. Area distortion is max(r, 1/r) of the
-ratio r of a triangle's fraction of the area on the sphere to its fraction in space; angle distortion is
-the ratio of the singular values. Both are weighted by area and are 1 without distortion. *Angles off
-by*: mean absolute difference of the angles at corners. Stretch efficiency: Praun and Hoppe 2003.
-"""
-TEXT_REMESHED = """The surface, sampled again from the sphere: {points:,} points of a geodesic grid, and a
-geometry image of {side} x {side} positions that was written and read. Times include the meshing.
-"""
-
 
 def _remesh(context, *words):
     """Runs the tool: seconds of the whole process, and the tool's report."""
@@ -43,30 +32,21 @@ def _remesh(context, *words):
     return done.seconds, json.loads(done.output)
 
 
-def map_row(cloud, report):
-    before, area, angle = (
-        report[key] for key in ("embedding_distortion", "area_distortion", "angle_distortion")
-    )
+def _map_row(cloud, report):
     seconds = stage_seconds(report)
     meshing = sum(s for stage, s in seconds.items() if stage not in MAP_STAGES)
-    return {
-        "model": cloud.name,
-        "vertices": report["vertices"],
-        "flipped_before": before["flipped_triangles"],
-        "flipped": report["flipped_triangles"],
-        "area_before": before["area_distortion"]["mean"],
-        "area": area["mean"],
-        "area_95": area["p95"],
-        "area_max": area["max"],
-        "angle_before": before["angle_distortion"]["mean"],
-        "angle": angle["mean"],
-        "angle_95": angle["p95"],
-        "angle_max": angle["max"],
-        "degrees": report["mean_angle_difference_degrees"],
-        "stretch": report["stretch_efficiency"],
-        "seconds": seconds["map"],
-        "ratio": seconds["map"] / meshing,
-    }
+    row = {"model": cloud.name, "vertices": report["vertices"],
+           "flipped_before": report["embedding_distortion"]["flipped_triangles"],
+           "flipped": report["flipped_triangles"],
+           "degrees": report["mean_angle_difference_degrees"],
+           "stretch": report["stretch_efficiency"],
+           "seconds": seconds["map"], "ratio": seconds["map"] / meshing}  # fmt: skip
+    for kind in ("area", "angle"):
+        distortion = report[f"{kind}_distortion"]
+        row.update({kind: distortion["mean"], f"{kind}_95": distortion["p95"],
+                    f"{kind}_max": distortion["max"],
+                    f"{kind}_before": report["embedding_distortion"][f"{kind}_distortion"]["mean"]})  # fmt: skip
+    return row
 
 
 def _remeshed_rows(context, cloud, points, side):
@@ -87,26 +67,27 @@ def _remeshed_rows(context, cloud, points, side):
 
 
 def section(context):
-    programs = context.programs
+    programs, report = context.programs, context.report
     generated = [programs.scan(name, truth=False) for name in context.choose(
         ("animal_2000",), [f"{shape}_10000" for shape in SHAPES])]  # fmt: skip
-    parts = [TEXT]
+    mesh = context.work / "map.ply"
     for name, clouds in (("maps", context.models), ("maps_generated", generated)):
-        table = Table(name, MAPS)
+        rows = []
         for cloud in clouds:
             context.say(f"map: {cloud.name}")
-            mesh = context.work / "map.ply"
-            table.rows.append(map_row(cloud, _remesh(context, cloud.points, mesh)[1]))
-        parts += [table] if clouds else []
-    remeshed = Table("remeshed", REMESHED)
-    points, side = context.choose(*GRIDS)
+            rows.append(_map_row(cloud, _remesh(context, cloud.points, mesh)[1]))
+        report.add(name, MAPS, rows)
     by_size = sorted((cloud for cloud in context.models if cloud.truth),
                      key=lambda cloud: cloud.points.stat().st_size)  # fmt: skip
     # The smallest, one in the middle, the largest: each takes ten seconds or more.
     half = len(by_size) // 2
-    for cloud in dict.fromkeys(by_size[:1] + by_size[half : half + 1] + by_size[-1:]) or [
+    chosen = dict.fromkeys(by_size[:1] + by_size[half : half + 1] + by_size[-1:])
+    points, side = context.choose(*GRIDS)
+    rows = []
+    for cloud in chosen or [
         programs.scan(name) for name in context.choose(("animal_2000",), ("hand_10000", "igea"))
     ]:
         context.say(f"remesh: {cloud.name}")
-        remeshed.rows += _remeshed_rows(context, cloud, points, side)
-    return Section("The map to the sphere", [*parts, TEXT_REMESHED.format(points=points, side=side), remeshed])
+        rows += _remeshed_rows(context, cloud, points, side)
+    report.facts.update(grid_points=points, grid_side=side)
+    report.add("remeshed", REMESHED, rows)

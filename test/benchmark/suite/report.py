@@ -1,17 +1,20 @@
-"""The report: sections of text, tables and figures, written to a folder."""
+"""The report: report.md with its marks <!-- TABLE --> and {FACT} filled, and a CSV file for each table."""
 
 import csv
 import dataclasses
 import math
 import os
+import pathlib
 import re
+
+MARK = re.compile(r"<!-- (\w+) -->\n(?:[^\n]+\n)*")
+FACT = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 
 
 @dataclasses.dataclass
 class Table:
     """Rows of values. Columns are (key, title with unit[, digits after the point])."""
 
-    name: str  # of its file, and its mark in doc/benchmarks.md
     columns: list
     rows: list[dict] = dataclasses.field(default_factory=list)
 
@@ -42,57 +45,47 @@ def _cell(value, digits=None):
     return f"{value:,.{digits}f}" if isinstance(value, float) and digits is not None else str(value)
 
 
-@dataclasses.dataclass
-class Figure:
-    """A plot or picture with the text under it."""
-
-    file: str  # in the folder of the report
-    title: str
-    text: str
-
-    def markdown(self):
-        return f"![{self.title}]({self.file})\n\n**{self.title}.** {self.text}\n"
-
-
-@dataclasses.dataclass
-class Section:
-    title: str
-    parts: list  # str, Table or Figure
-
-
 def _write(path, text):
     part = path.with_name(path.name + ".part")
     part.write_text(text)
     os.replace(part, path)
 
 
-def write_report(folder, provenance, sections):
-    """Writes report.md and a CSV file for each table; returns the tables by name."""
-    lines = [
-        "# Benchmark report of pcl_spherical_param\n",
-        provenance + "\n",
-        "Times are wall times of whole processes, the median of several runs, unless the text says "
-        "otherwise. Lengths are in percent of the diagonal of the bounding box of the true surface. "
-        "`-`: not defined, or not known.\n",
-    ]
-    tables = {}
-    for section in sections:
-        lines.append(f"## {section.title}\n")
-        for part in section.parts:
-            lines.append(part.strip() + "\n" if isinstance(part, str) else part.markdown())
-            if isinstance(part, Table):
-                tables[part.name] = part
-                part.write_csv(folder / f"{part.name}.csv")
-                lines.append(f"[{part.name}.csv]({part.name}.csv)\n")
-    _write(folder / "report.md", "\n".join(lines))
-    return tables
+class Report:
+    def __init__(self, folder):
+        self.folder = folder
+        self.tables, self.facts = {}, {}
 
+    def add(self, name, columns, rows):
+        """A table, unless there are no rows."""
+        if rows:
+            self.tables[name] = Table(columns, rows)
 
-def update_doc(path, provenance, tables):
-    """Replaces what follows each mark <!-- NAME --> in a page, up to the next blank line."""
-    blocks = {"provenance": provenance + "\n"}
-    blocks.update((name, table.markdown()) for name, table in tables.items())
-    text = re.sub(r"<!-- (\w+) -->\n(?:[^\n]+\n)*",
-                  lambda found: f"<!-- {found[1]} -->\n{blocks[found[1]]}"
-                  if found[1] in blocks else found[0], path.read_text())  # fmt: skip
-    _write(path, text)
+    def write(self):
+        """Parts of report.md whose tables or facts are missing are left out."""
+        for name, table in self.tables.items():
+            table.write_csv(self.folder / f"{name}.csv")
+        text = pathlib.Path(__file__).with_name("report.md").read_text()
+        pages = []
+        for section in re.split(r"^(?=## )", text, flags=re.MULTILINE):
+            head, *parts = re.split(r"^(?=### )", section, flags=re.MULTILINE)
+            made = [self._filled(part) for part in parts if self._has_all(part)]
+            pages += [self._filled(head), *made] if made or not parts else []
+        _write(self.folder / "report.md", "".join(pages))
+
+    def _has_all(self, text):
+        return (all(found[1] in self.tables for found in MARK.finditer(text))
+                and all(found[1] in self.facts for found in FACT.finditer(text)))  # fmt: skip
+
+    def _filled(self, text):
+        text = FACT.sub(lambda found: format(self.facts[found[1]], found[2] or ""), text)
+        return MARK.sub(lambda found: self.tables[found[1]].markdown()
+                        + f"\n[{found[1]}.csv]({found[1]}.csv)\n", text)  # fmt: skip
+
+    def update_doc(self, path):
+        """Replaces what follows each mark in a page, up to the next blank line."""
+        blocks = {name: table.markdown() for name, table in self.tables.items()}
+        blocks["provenance"] = self.facts["provenance"] + "\n"
+        _write(path, MARK.sub(
+            lambda found: f"<!-- {found[1]} -->\n{blocks[found[1]]}" if found[1] in blocks
+            else found[0], path.read_text()))  # fmt: skip

@@ -8,7 +8,6 @@ import time
 
 from .machine import available_memory
 from .programs import require, stage_seconds
-from .report import Figure, Section, Table
 
 # What a stage cannot do without, for each point: bytes that it moves if everything is at hand, and
 # steps of some ten arithmetic operations with a comparison (a distance, an orientation, the side of
@@ -60,7 +59,7 @@ def _measure(context, cloud, repeats, threads=None):
 def growth(context):
     from .drawing import Plot
 
-    table = Table("scaling", SCALING)
+    rows = []
     sizes = context.choose([1000, 10000], [1000, 10000, 100000, 134345, 1000000])
     for n in sizes + ([10000000] if context.large else []):
         if n * BYTES_A_POINT > available_memory():
@@ -72,20 +71,17 @@ def growth(context):
         cloud.points.unlink()
         row.update(throughput=n / row["seconds"], bytes=row["peak"] / n,
                    unit=1e9 * row["seconds"] / (n * math.log2(n)))  # fmt: skip
-        table.rows.append(row)
+        rows.append(row)
     plot = Plot(panels=2)
-    points = [row["points"] for row in table.rows]
+    points = [row["points"] for row in rows]
     for color, stage in enumerate(STAGES):
-        plot.curve(0, points, [row[stage] for row in table.rows], stage, color, "-", "o")
-    plot.curve(0, points, [row["seconds"] for row in table.rows], "whole process", 7, "--")
+        plot.curve(0, points, [row[stage] for row in rows], stage, color, "-", "o")
+    plot.curve(0, points, [row["seconds"] for row in rows], "whole process", 7, "--")
     plot.label(0, "points", "seconds", "time of each stage")
-    plot.curve(1, points, [row["bytes"] for row in table.rows], "process, peak", 0, "-", "o")
+    plot.curve(1, points, [row["bytes"] for row in rows], "process, peak", 0, "-", "o")
     plot.label(1, "points", "bytes a point", "memory")
-    return ["### Over the number of points\n",
-            "Generated heads, default options, all threads. The memory of a process of 1,000 points "
-            "is mostly that of its libraries.\n", table,
-            Figure(plot.save(context.out / "scaling.svg"), "Time and memory over n",
-                   "Logarithmic axes.")]  # fmt: skip
+    plot.save(context.out / "scaling.svg")
+    context.report.add("scaling", SCALING, rows)
 
 
 def threads(context):
@@ -93,21 +89,20 @@ def threads(context):
 
     cores = len(os.sched_getaffinity(0))
     cloud = context.programs.scan(context.choose("head_10000", "igea"), truth=False)
-    table = Table("threads", THREADS)
+    rows = []
     for count in sorted({1, cores} | {2**i for i in range(12) if 2**i < cores}):
         context.say(f"scaling: {count} threads")
         row = _measure(context, cloud, context.choose(1, 5), threads=count)
-        row.update(threads=count, speedup=(table.rows or [row])[0]["seconds"] / row["seconds"])
-        table.rows.append(row)
-    plot = Plot(size=(7.5, 0.9 + 0.5 * len(table.rows)))
-    plot.bars([f"threads: {row['threads']}" for row in table.rows], STAGES,
-              [[row[stage] for stage in STAGES] for row in table.rows])  # fmt: skip
+        row.update(threads=count, speedup=(rows or [row])[0]["seconds"] / row["seconds"])
+        rows.append(row)
+    plot = Plot(size=(7.5, 0.9 + 0.5 * len(rows)))
+    plot.bars([f"threads: {row['threads']}" for row in rows], STAGES,
+              [[row[stage] for stage in STAGES] for row in rows])  # fmt: skip
     plot.label(0, "seconds", "", cloud.name, logarithmic=False)
-    return ["### Over the number of threads\n",
-            f"{cloud.name}; the mesh is the same, byte by byte, for any number.\n", table,
-            Figure(plot.save(context.out / "threads.svg"), "Stages over threads",
-                   "Seconds of each stage, one after the other."),
-            *budget(cloud, table.rows[0], table.rows[-1])]  # fmt: skip
+    plot.save(context.out / "threads.svg")
+    context.report.facts["threads_cloud"] = cloud.name
+    context.report.add("threads", THREADS, rows)
+    budget(context.report, rows[0], rows[-1])
 
 
 def _bandwidth():
@@ -122,39 +117,36 @@ def _bandwidth():
     return 2e-9 * len(source) / best
 
 
-def budget(cloud, single, full):
+def budget(report, single, full):
     """What each stage takes, beside the least that it could take."""
     bandwidth = _bandwidth()
-    table = Table("budget", BUDGET)
+    rows = []
     for stage, (moved, steps, what) in LEAST.items():
         least = moved / bandwidth + STEP * steps
         one, every = (1e9 * row[stage] / row["points"] for row in (single, full))
-        table.rows.append({"stage": stage, "one": one, "all": every, "least": least,
-                           "times": one / least, "what": what})  # fmt: skip
-    return ["### Budget of the stages\n",
-            f"{cloud.name}. The least is counted by hand, at {bandwidth:.0f} bytes a nanosecond that "
-            f"one core copies here, and {STEP:.0f} ns a step of some ten operations. A stage that "
-            "takes many times as long can still become faster.\n", table]  # fmt: skip
+        rows.append({"stage": stage, "one": one, "all": every, "least": least,
+                     "times": one / least, "what": what})  # fmt: skip
+    report.facts.update(bandwidth=bandwidth, step=STEP)
+    report.add("budget", BUDGET, rows)
 
 
 def stages(context):
     """The stages one by one, by Google Benchmark."""
     program = context.programs.find("benchmark_stages", required=False)
     if not program:
-        return ["benchmark_stages is not built: Google Benchmark was not found.\n"]
+        context.say("benchmark_stages is not built: Google Benchmark was not found")
+        return
     context.say("stages, one by one")
     output = context.work / "stages.json"
     require([program, f"--benchmark_out={output}", "--benchmark_out_format=json",
              *context.choose(["--benchmark_filter=/10000/", "--benchmark_min_time=0.01"], [])])  # fmt: skip
-    table = Table("stages", SINGLE)
-    for one in json.loads(output.read_text())["benchmarks"]:
-        table.rows.append({"name": one["name"].removesuffix("/real_time"),
-                           "milliseconds": one["real_time"],
-                           "nanoseconds": 1e9 / one["items_per_second"]})  # fmt: skip
-    return ["### Stages, one by one\n",
-            "On a generated hand. `benchmark_stages --benchmark_filter=NAME` repeats one of them.\n",
-            table]  # fmt: skip
+    context.report.add("stages", SINGLE, [
+        {"name": one["name"].removesuffix("/real_time"), "milliseconds": one["real_time"],
+         "nanoseconds": 1e9 / one["items_per_second"]}
+        for one in json.loads(output.read_text())["benchmarks"]])  # fmt: skip
 
 
 def section(context):
-    return Section("Scaling", [*growth(context), *threads(context), *stages(context)])
+    growth(context)
+    threads(context)
+    stages(context)

@@ -1,0 +1,163 @@
+#pragma once
+
+#include "helpers.h"
+#include "spherical_param/reconstruct.h"
+#include "spherical_param/types.h"
+
+#include <Eigen/Geometry>
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+/// What reconstruct() guarantees, decided in exact arithmetic and without the library.
+namespace stress {
+
+using spherical_param::Index;
+using spherical_param::Positions;
+using spherical_param::Triangles;
+
+using Place = std::tuple<double, double, double>;
+
+/// The first point at each place; -0 is 0.
+inline std::map<Place, Index> firstAtPlaces(const Positions& points) {
+  std::map<Place, Index> first;
+  for (Index i = 0; i < points.cols(); ++i)
+    first.emplace(Place{points(0, i) + 0.0, points(1, i) + 0.0, points(2, i) + 0.0}, i);
+  return first;
+}
+
+/// Whether finite points lie in one plane: in integers of any size.
+inline bool liesInPlane(const Positions& points) {
+  using Integer = boost::multiprecision::cpp_int;
+  using Vector = std::array<Integer, 3>;
+  // In units of the least double.
+  const auto integer = [](double x) {
+    int exponent = 0;
+    const double mantissa = std::frexp(x, &exponent);
+    const int shift = exponent - 53 + 1074;
+    const Integer value = static_cast<std::int64_t>(std::ldexp(mantissa, 53));
+    const Integer power = Integer(1) << static_cast<unsigned>(std::abs(shift));
+    return shift >= 0 ? Integer(value * power) : Integer(value / power);
+  };
+  std::vector<Vector> vectors;
+  for (Eigen::Index i = 1; i < points.cols(); ++i)
+    vectors.push_back({integer(points(0, i)) - integer(points(0, 0)),
+                       integer(points(1, i)) - integer(points(1, 0)),
+                       integer(points(2, i)) - integer(points(2, 0))});
+  const auto cross = [](const Vector& a, const Vector& b) {
+    return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const auto is_zero = [](const Vector& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; };
+  const auto first = std::find_if_not(vectors.begin(), vectors.end(), is_zero);
+  if (first == vectors.end())
+    return true;
+  Vector normal{};
+  for (const Vector& v : vectors)
+    if (is_zero(normal))
+      normal = cross(*first, v);
+  return std::all_of(vectors.begin(), vectors.end(), [&](const Vector& v) {
+    return v[0] * normal[0] + v[1] * normal[1] + v[2] * normal[2] == 0;
+  });
+}
+
+/// Whether reconstruct() must mesh points; it must reject all others.
+inline bool canBeMeshed(const Positions& points) {
+  return points.allFinite() && (points.array().abs() <= 1e100).all() &&
+         firstAtPlaces(points).size() >= 4 && !liesInPlane(points);
+}
+
+/// Whether lists are as types.h says: `count` lists of indices in [0, n).
+inline bool areLists(const spherical_param::NeighborLists& lists, std::size_t count,
+                     std::size_t n) {
+  const auto& [offsets, indices] = lists;
+  return offsets.size() == count + 1 && offsets.front() == 0 && offsets.back() == indices.size() &&
+         std::is_sorted(offsets.begin(), offsets.end()) &&
+         std::all_of(indices.begin(), indices.end(),
+                     [&](Index j) { return j >= 0 && static_cast<std::size_t>(j) < n; });
+}
+
+inline bool areUnitVectors(const Positions& directions) {
+  return ((directions.colwise().norm().array() - 1.0).abs() < 1e-9).all();
+}
+
+/// Whether the volume, in long double, is negative by more than its rounding.
+inline bool facesInward(const Positions& points, const Triangles& triangles) {
+  using Vector = Eigen::Matrix<long double, 3, 1>;
+  const Vector origin = points.col(0).cast<long double>();
+  long double volume = 0.0L;
+  long double size = 0.0L;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const auto corner = [&](int k) -> Vector {
+      return points.col(triangles(k, t)).cast<long double>() - origin;
+    };
+    volume += corner(0).dot(corner(1).cross(corner(2)));
+    size += corner(0).norm() * corner(1).norm() * corner(2).norm();
+  }
+  return volume < -1e-12L * size;
+}
+
+/// What a result lacks of what is guaranteed; empty if it lacks nothing.
+inline std::string faultOf(const Positions& points, const spherical_param::Options& options,
+                           const spherical_param::Result& result) {
+  const auto n = static_cast<std::size_t>(points.cols());
+  const std::map<Place, Index> first = firstAtPlaces(points);
+  const std::size_t v = first.size();
+  if (result.vertexCount() != v || result.duplicates() != n - v ||
+      result.vertex_of_input.size() != n)
+    return "not one vertex for each distinct point";
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto p = points.col(static_cast<Eigen::Index>(i));
+    const auto vertex = static_cast<std::size_t>(result.vertex_of_input[i]);
+    if (vertex >= v ||
+        result.input_of_vertex[vertex] != first.at({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}))
+      return "the vertex of a point is not that of the first point at its place";
+  }
+  const auto count = static_cast<Eigen::Index>(v);
+  if (!spherical_param::test::isSphereOverAll(result.triangles, static_cast<Index>(v)))
+    return "the mesh is not a sphere over all points";
+  if (!result.topology.isSphere())
+    return "the result's own check says that the mesh is not a sphere";
+  if (facesInward(points(Eigen::all, result.input_of_vertex), result.triangles))
+    return "the triangles face inward";
+  if (result.sphere.cols() != count || !areUnitVectors(result.sphere))
+    return "the embedding is not of unit vectors";
+  if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))
+    return "the volume or the area is not finite";
+  if (options.smoothing.steps > 0 &&
+      (result.smoothed.cols() != count || !result.smoothed.allFinite()))
+    return "the smoothed points are not as many finite ones";
+  return "";
+}
+
+/// The arrays and numbers of a result bit by bit, to compare results.
+inline std::string bytesOf(const spherical_param::Result& result) {
+  std::string bytes;
+  const auto add = [&bytes](const auto& array) {
+    const auto count = static_cast<std::size_t>(array.size());
+    bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+    bytes.append(reinterpret_cast<const char*>(array.data()), count * sizeof *array.data());
+  };
+  add(result.triangles);
+  add(result.sphere);
+  add(result.smoothed);
+  add(result.vertex_of_input);
+  add(result.input_of_vertex);
+  add(result.vertex_residuals);
+  add(result.self_intersections);
+  add(result.embedding.residuals);
+  add(std::array{result.measures.volume, result.measures.area, result.embedding.energy,
+                 result.optimization.energy, result.smoothing.volume_after});
+  for (const std::string& warning : result.warnings)
+    add(warning);
+  return bytes;
+}
+
+}  // namespace stress
