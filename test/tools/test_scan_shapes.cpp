@@ -201,7 +201,7 @@ TEST_P(EveryShape, ReferenceMeshHasTheSizeAndTheTopologyOfTheShape) {
 
 /// Even where the shape is no sphere.
 TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
-  constexpr Index n = 600;
+  constexpr Index n = 400;
   const Positions points = scanOf(GetParam().shape, n).points;
   const auto expect_sphere = [&](const char* name, const Options& options) {
     SCOPED_TRACE(name);

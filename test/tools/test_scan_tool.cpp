@@ -68,7 +68,7 @@ TEST_F(ScanTool, ListHelpAndVersionSucceed) {
   for (const auto& preset : spherical_param::tools::allPresets())
     names.emplace_back(preset.name);
   for (const std::string& name : names)
-    EXPECT_NE(list.output.find("\n  " + name + " "), std::string::npos) << name;
+    EXPECT_NE(list.output.find("\n  " + name), std::string::npos) << name;
   for (const char* option : {"-h", "-version"}) {
     const RunResult result = scan({option});
     EXPECT_EQ(result.exit_code, 0);

@@ -24,7 +24,7 @@ public:
     if (is_text_) {
       double value = 0.0;
       text_ >> value;
-      return value;
+      return type == "float" ? static_cast<double>(static_cast<float>(value)) : value;
     }
     if (type == "float")
       return static_cast<double>(take<float>());

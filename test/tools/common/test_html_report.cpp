@@ -241,7 +241,7 @@ TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
     ReconstructionSettings settings = flipsAlone();
     settings.options.threads = threads;
     settings.options.smoothing.steps = 2;
-    const Shown shown = show(scanOf(Shape::Animal, 3000), settings, 0, 3000);
+    const Shown shown = show(scanOf(Shape::Animal, 2000), settings, 0, 2000);
     if (threads == 1)
       first = shown.page.texts;
     EXPECT_TRUE(shown.page.texts == first) << threads;
@@ -258,11 +258,11 @@ TEST(HtmlReport, HasAboutTwelveBytesForATriangle) {
 }
 
 TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
-  const Shown whole = show(scanOf(Shape::Bowl, 4000));
-  const Shown shown = show(scanOf(Shape::Bowl, 4000), flipsAlone(), 0, 2000);
+  const Shown whole = show(scanOf(Shape::Bowl, 2400));
+  const Shown shown = show(scanOf(Shape::Bowl, 2400), flipsAlone(), 0, 1200);
   expectShown(shown);
-  EXPECT_EQ(shown.mesh.triangles.cols(), 2000);
-  EXPECT_EQ(std::set<Index>(shown.mesh.vertices.begin(), shown.mesh.vertices.end()).size(), 1002U);
+  EXPECT_EQ(shown.mesh.triangles.cols(), 1200);
+  EXPECT_EQ(std::set<Index>(shown.mesh.vertices.begin(), shown.mesh.vertices.end()).size(), 602U);
   const auto holes = [](const Shown& of) {
     return std::count_if(of.mesh.marks.begin(), of.mesh.marks.end(),
                          [](std::uint8_t mark) { return (mark & 2U) != 0; });
