@@ -130,7 +130,7 @@ TEST_F(EveryTool, QuietPrintsNothingAndWritesTheSameBytesByAnyNumberOfThreads) {
 }
 
 TEST_F(EveryTool, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
-  ASSERT_EQ(run(SCAN_TOOL, {"bowl", "in.ply", "-points", "400"}).exit_code, 0);
+  ASSERT_EQ(run(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"}).exit_code, 0);
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
     const RunResult lax = run(tool.program, with(tool.arguments, {"-quiet", "-retries", "0"}));
