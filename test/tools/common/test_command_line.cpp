@@ -1,0 +1,103 @@
+#include "common/command_line.h"
+
+#include "common/errors.h"
+#include "common/numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+const std::vector<OptionInfo> options = {{"k", "N", "neighbours", false},
+                                         {"kind", "NAME", "of graph", true},
+                                         {"quiet", "", "print nothing", false}};
+
+TEST(CommandLine, TakesOptionsInEveryNotationAndOrder) {
+  const std::vector<std::vector<std::string>> notations = {
+      {"in", "out", "-k", "7", "-kind", "x", "-quiet"},
+      {"--quiet", "--k", "7", "in", "--kind", "x", "out"},
+      {"-kind=x", "in", "-k=7", "-quiet", "out"},
+      {"in", "--k=7", "out", "--quiet", "--kind=x"},
+  };
+  for (const std::vector<std::string>& words : notations) {
+    const CommandLine line(words, options);
+    EXPECT_EQ(line.value("k", "none"), "7");
+    EXPECT_EQ(line.value("kind", "none"), "x");
+    EXPECT_TRUE(line.has("quiet"));
+    EXPECT_EQ(line.others(), (std::vector<std::string>{"in", "out"}));
+    EXPECT_FALSE(line.wantsHelp() || line.wantsVersion());
+  }
+  EXPECT_EQ(CommandLine({"in"}, options).value("k", "none"), "none");
+  EXPECT_EQ(CommandLine({"-k", "-7"}, options).value("k", ""), "-7");
+  EXPECT_EQ(CommandLine({"-", "--", "-k"}, options).others(),
+            (std::vector<std::string>{"-", "-k"}));
+  for (const char* help : {"-h", "--h", "-help", "--help"})
+    EXPECT_TRUE(CommandLine({help}, options).wantsHelp());
+  EXPECT_TRUE(CommandLine({"--version"}, options).wantsVersion());
+}
+
+TEST(CommandLine, RefusesWhatMakesNoSense) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"-diameter", "1"},
+                                             {"-ki", "x"},  // no abbreviations
+                                             {"-k"},
+                                             {"-k", "-quiet"},
+                                             {"-quiet=1"},
+                                             {"-k", "5", "-k", "6"},
+                                             {"-x", "--", "-k"}})
+    EXPECT_THROW(CommandLine(words, options), UsageError) << testing::PrintToString(words);
+}
+
+TEST(CommandLine, HelpListsEveryOptionThoseOfExpertsLast) {
+  const std::string help = describeOptions(options);
+  std::size_t last = 0;
+  for (const char* line :
+       {"  -k N ", "  -quiet ", "  -version ", "\nExpert options:\n", "  -kind NAME "}) {
+    const std::size_t place = help.find(line);
+    ASSERT_NE(place, std::string::npos) << line;
+    EXPECT_GE(place, last) << line;
+    last = place;
+  }
+}
+
+TEST(Numbers, AreTheWholeTextAndNothingElse) {
+  EXPECT_EQ(toReal("+.25"), 0.25);
+  EXPECT_EQ(toReal("-1e-3"), -1e-3);
+  EXPECT_EQ(toReal("1e999"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(toReal("-1e-999"), 0.0);
+  EXPECT_EQ(toInteger("+5"), 5);
+  for (const char* text : {"", "+", "+-1", "1x", " 1", "0,5", "0x5"}) {
+    EXPECT_EQ(toReal(text), std::nullopt) << text;
+    EXPECT_EQ(toInteger(text), std::nullopt) << text;
+  }
+  EXPECT_EQ(toInteger("25.5"), std::nullopt);
+  EXPECT_EQ(toInteger("99999999999999999999"), std::nullopt);
+}
+
+TEST(Numbers, OfOptionsAreInTheirRange) {
+  for (const char* text : {"3", "9"})
+    EXPECT_EQ(std::to_string(parseInteger("k", text, {3, 9})), text);
+  for (const char* text : {"2", "10", "x"})
+    EXPECT_THROW(parseInteger("k", text, {3, 9}), UsageError) << text;
+  for (const bool lowest_included : {true, false}) {
+    EXPECT_EQ(parseReal("x", "1", {0.0, 1.0, lowest_included}), 1.0);
+    if (lowest_included) {
+      EXPECT_EQ(parseReal("x", "0", {0.0, 1.0, true}), 0.0);
+    } else {
+      EXPECT_THROW(parseReal("x", "0", {0.0, 1.0, false}), UsageError);
+    }
+    for (const char* text : {"-1e-9", "1.001", "nan", "inf", "1e999", ""})
+      EXPECT_THROW(parseReal("x", text, {0.0, 1.0, lowest_included}), UsageError) << text;
+  }
+  EXPECT_EQ(parseUnsigned("seed", "18446744073709551615"), 18446744073709551615U);
+  for (const char* text : {"-1", "18446744073709551616", "1.5"})
+    EXPECT_THROW(parseUnsigned("seed", text), UsageError) << text;
+}
+
+}  // namespace
+}  // namespace spherical_param::tools

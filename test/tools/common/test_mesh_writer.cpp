@@ -1,0 +1,312 @@
+// Meshes and clouds of all formats, read back by PCL, VTK or a few lines of our own.
+
+#include "common/mesh_writer.h"
+
+#include "common/cloud_reader.h"
+#include "common/file_formats.h"
+#include "common/output_file.h"
+#include "tool_runner.h"
+
+#include <pcl/PolygonMesh.h>
+#include <pcl/console/print.h>
+#include <pcl/conversions.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
+#include <pcl/point_types.h>
+
+#include <vtkCellArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataReader.h>
+#include <vtkSTLReader.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+using tool_test::readFile;
+using tool_test::TemporaryDirectory;
+
+/// To 22 bits. Not by a cast to float and back, which GCC 12 leaves out.
+double rounded(double value) {
+  return std::ldexp(std::round(std::ldexp(value, 22)), -22);
+}
+
+/// Points with coordinates that need all digits of a float, or of a double where they are shifted.
+TriangleMesh makeMesh(std::size_t n, double shift = 0.0) {
+  TriangleMesh mesh;
+  PointData& vertices = mesh.vertices;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto t = static_cast<double>(i);
+    vertices.points.push_back({shift + rounded(std::sin(t) / 3.0),
+                               shift + rounded(std::cos(0.7 * t) / 7.0),
+                               shift + rounded(1e-5 * t)});
+    vertices.normals.push_back(toFloat({std::cos(t), 0.0, std::sin(t)}));
+    vertices.colors.push_back({static_cast<std::uint8_t>(i % 256),
+                               static_cast<std::uint8_t>(7 * i % 256),
+                               static_cast<std::uint8_t>(255 - i % 256), 255});
+  }
+  for (std::int32_t i = 0; i + 2 < static_cast<std::int32_t>(n); ++i)
+    mesh.triangles.push_back({i + 2, i, i + 1});
+  return mesh;
+}
+
+void writeTo(const std::string& path, const TriangleMesh& mesh, Encoding encoding,
+             const FileProgress& progress = {}) {
+  OutputFile file(path);
+  writeMesh(file, mesh, formatOf(path), encoding, progress);
+  file.commit();
+}
+
+template <typename Values>
+Point toPoint(const Values& values) {
+  return {static_cast<double>(values[0]), static_cast<double>(values[1]),
+          static_cast<double>(values[2])};
+}
+
+TriangleMesh readPlyWithPcl(const std::string& path) {
+  pcl::PolygonMesh file;
+  EXPECT_EQ(pcl::PLYReader().read(path, file), 0);
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
+  pcl::fromPCLPointCloud2(file.cloud, cloud);
+  TriangleMesh mesh;
+  for (const auto& point : cloud) {
+    mesh.vertices.points.push_back(toPoint(point.data));
+    mesh.vertices.normals.push_back({point.normal_x, point.normal_y, point.normal_z});
+    mesh.vertices.colors.push_back({point.r, point.g, point.b, 255});
+  }
+  for (const pcl::Vertices& polygon : file.polygons) {
+    EXPECT_EQ(polygon.vertices.size(), 3U);
+    mesh.triangles.push_back({static_cast<std::int32_t>(polygon.vertices[0]),
+                              static_cast<std::int32_t>(polygon.vertices[1]),
+                              static_cast<std::int32_t>(polygon.vertices[2])});
+  }
+  return mesh;
+}
+
+template <typename Reader>
+TriangleMesh readWithVtk(const std::string& path) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  vtkPolyData& data = *reader->GetOutput();
+  TriangleMesh mesh;
+  auto* const normals = data.GetPointData()->GetNormals();
+  auto* const colors = vtkUnsignedCharArray::SafeDownCast(data.GetPointData()->GetScalars());
+  for (vtkIdType i = 0; i < data.GetNumberOfPoints(); ++i) {
+    mesh.vertices.points.push_back(toPoint(data.GetPoint(i)));
+    if (normals != nullptr)
+      mesh.vertices.normals.push_back(toFloat(toPoint(normals->GetTuple3(i))));
+    if (colors != nullptr)
+      mesh.vertices.colors.push_back({colors->GetTypedComponent(i, 0),
+                                      colors->GetTypedComponent(i, 1),
+                                      colors->GetTypedComponent(i, 2), 255});
+  }
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType i = 0; i < data.GetPolys()->GetNumberOfCells(); ++i) {
+    data.GetPolys()->GetCellAtId(i, cell);
+    EXPECT_EQ(cell->GetNumberOfIds(), 3);
+    mesh.triangles.push_back({static_cast<std::int32_t>(cell->GetId(0)),
+                              static_cast<std::int32_t>(cell->GetId(1)),
+                              static_cast<std::int32_t>(cell->GetId(2))});
+  }
+  return mesh;
+}
+
+/// STL has no vertices, only corners: they are found again by their coordinates.
+TriangleMesh readStl(const std::string& path, const std::vector<Point>& points) {
+  TriangleMesh mesh = readWithVtk<vtkSTLReader>(path);
+  std::map<Point, std::int32_t> index_of_point;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    index_of_point[points[i]] = static_cast<std::int32_t>(i);
+  for (auto& triangle : mesh.triangles)
+    for (std::int32_t& corner : triangle) {
+      const auto found =
+          index_of_point.find(mesh.vertices.points[static_cast<std::size_t>(corner)]);
+      corner = found == index_of_point.end() ? -1 : found->second;
+    }
+  mesh.vertices.points = points;
+  return mesh;
+}
+
+/// The numbers of a text, without the words.
+std::vector<float> numbersOf(std::string text) {
+  std::replace(text.begin(), text.end(), '/', ' ');
+  std::istringstream words(text);
+  std::vector<float> numbers;
+  for (std::string word; words >> word;)
+    if (word.find_first_not_of("0123456789+-.e") == std::string::npos)
+      numbers.push_back(std::stof(word));
+  return numbers;
+}
+
+/// All lines of an OFF file have all values; OBJ has normals and faces (vertex and normal) apart.
+TriangleMesh readText(const std::string& path) {
+  const bool is_off = formatOf(path) == formatOf("a.off");
+  const std::string text = readFile(path);
+  EXPECT_TRUE(!is_off || text.rfind("CNOFF\n", 0) == 0);
+  TriangleMesh mesh;
+  std::istringstream lines(text.substr(is_off ? text.find('\n', 6) + 1 : 0));
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<float> n = numbersOf(line);
+    const bool is_face = is_off ? n.size() == 4 : line[0] == 'f';
+    const bool is_normal = line.rfind("vn", 0) == 0;
+    if (is_face && n.size() == (is_off ? 4U : 6U))
+      mesh.triangles.push_back({static_cast<std::int32_t>(n[is_off ? 1 : 0]) - (is_off ? 0 : 1),
+                                static_cast<std::int32_t>(n[2]) - (is_off ? 0 : 1),
+                                static_cast<std::int32_t>(n[is_off ? 3 : 4]) - (is_off ? 0 : 1)});
+    else if (is_normal)
+      mesh.vertices.normals.push_back({n[0], n[1], n[2]});
+    else if (n.size() == (is_off ? 10U : 6U)) {
+      mesh.vertices.points.push_back(toPoint(n));
+      if (is_off)
+        mesh.vertices.normals.push_back({n[3], n[4], n[5]});
+      const float scale = is_off ? 1.0F : 255.0F;
+      const std::size_t first = is_off ? 6 : 3;
+      mesh.vertices.colors.push_back({static_cast<std::uint8_t>(std::lround(scale * n[first])),
+                                      static_cast<std::uint8_t>(std::lround(scale * n[first + 1])),
+                                      static_cast<std::uint8_t>(std::lround(scale * n[first + 2])),
+                                      static_cast<std::uint8_t>(is_off ? n[9] : 255.0F)});
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh readMesh(const std::string& path, const std::vector<Point>& points) {
+  const FileFormat format = formatOf(path);
+  if (format == formatOf("a.ply"))
+    return readPlyWithPcl(path);
+  if (format == formatOf("a.vtk"))
+    return readWithVtk<vtkPolyDataReader>(path);
+  if (format == formatOf("a.stl"))
+    return readStl(path, points);
+  return readText(path);
+}
+
+class MeshWriter : public testing::Test {
+protected:
+  // There is no curvature in a file.
+  MeshWriter() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
+
+  const TemporaryDirectory directory;
+};
+
+TEST_F(MeshWriter, OtherReadersFindThePointsNormalsColoursAndTriangles) {
+  const TriangleMesh mesh = makeMesh(300);
+  for (const Encoding encoding : {Encoding::Binary, Encoding::Ascii})
+    for (const char* name : {"out.PLY", "out.obj", "out.stl", "out.vtk", "out.off"}) {
+      const bool is_text = encoding == Encoding::Ascii;
+      SCOPED_TRACE(std::string(name) + (is_text ? " as text" : ""));
+      const std::string path = directory.file(name);
+      writeTo(path, mesh, encoding);
+      const TriangleMesh read = readMesh(path, mesh.vertices.points);
+      EXPECT_EQ(read.vertices.points, mesh.vertices.points);
+      EXPECT_EQ(read.triangles, mesh.triangles);
+      const FileFormat format = formatOf(path);
+      if (format != formatOf("a.stl")) {
+        EXPECT_EQ(read.vertices.normals, mesh.vertices.normals);
+        EXPECT_EQ(read.vertices.colors, mesh.vertices.colors);
+      }
+      const bool has_text_only = format == formatOf("a.obj") || format == formatOf("a.off");
+      EXPECT_EQ(readFile(path).find('\0') == std::string::npos, is_text || has_text_only);
+    }
+}
+
+TEST_F(MeshWriter, PclReadsThePcdFile) {
+  const TriangleMesh mesh = makeMesh(100);
+  writeTo(directory.file("a.pcd"), mesh, Encoding::Binary);
+  pcl::PointCloud<pcl::PointXYZRGBNormal> cloud;
+  ASSERT_EQ(pcl::io::loadPCDFile(directory.file("a.pcd"), cloud), 0);
+  ASSERT_EQ(cloud.size(), 100U);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_EQ(toPoint(cloud[i].data), mesh.vertices.points[i]);
+    EXPECT_EQ((Normal{cloud[i].normal_x, cloud[i].normal_y, cloud[i].normal_z}),
+              mesh.vertices.normals[i]);
+    EXPECT_EQ((Color{cloud[i].r, cloud[i].g, cloud[i].b, 255}), mesh.vertices.colors[i]);
+  }
+}
+
+std::vector<FloatTriple> floatsOf(const std::vector<Point>& points) {
+  std::vector<FloatTriple> floats;
+  std::transform(points.begin(), points.end(), std::back_inserter(floats), toFloat);
+  return floats;
+}
+
+/// More than a block, with alpha where the format has it, near the origin and far from it.
+TEST_F(MeshWriter, OurReadersFindWhatIsInLargeClouds) {
+  for (const double shift : {0.0, 5e5})
+    for (const bool has_alpha : {false, true}) {
+      TriangleMesh mesh = makeMesh(60000, shift);
+      mesh.triangles.clear();
+      mesh.vertices.has_alpha = has_alpha;
+      for (Color& color : mesh.vertices.colors)
+        color[3] = has_alpha ? color[0] : std::uint8_t{255};
+      for (const char* name : {"a.pcd", "a.ply", "a.obj", "a.xyz", "a.txt"}) {
+        if (has_alpha && formatOf(name) != formatOf("a.pcd") && formatOf(name) != formatOf("a.ply"))
+          continue;
+        SCOPED_TRACE(std::string(name) + " at " + std::to_string(shift));
+        std::vector<double> shares;
+        writeTo(directory.file(name), mesh, Encoding::Binary,
+                [&](double share) { shares.push_back(share); });
+        ASSERT_FALSE(shares.empty());
+        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+        EXPECT_GT(shares.front(), 0.0);
+        EXPECT_LE(shares.back(), 1.0);
+        const PointData read = readCloud(directory.file(name));
+        // Text in single precision has no more digits than that needs.
+        EXPECT_TRUE(shift == 0.0 ? floatsOf(read.points) == floatsOf(mesh.vertices.points)
+                                 : read.points == mesh.vertices.points);
+        EXPECT_TRUE(read.normals == mesh.vertices.normals);
+        EXPECT_TRUE(read.colors == mesh.vertices.colors);
+        EXPECT_EQ(read.has_alpha, has_alpha);
+      }
+    }
+}
+
+TEST_F(MeshWriter, DoubleIsWrittenOnlyWhereSinglePrecisionMovesPointsTooFar) {
+  for (const auto& [shift, is_double] : {std::tuple(0.1, false), std::tuple(5e5, true)}) {
+    const TriangleMesh mesh = makeMesh(50, shift);
+    Positions points(3, 50);
+    for (Eigen::Index i = 0; i < 50; ++i)
+      points.col(i) = mesh.vertices.position(static_cast<std::size_t>(i));
+    EXPECT_EQ(asWritten(points) == points, is_double);
+    const std::string type = is_double ? "double" : "float";
+    for (const auto& [name, header] :
+         {std::tuple("a.ply", "property " + type + " x\n"), std::tuple("a.vtk", "50 " + type)}) {
+      writeTo(directory.file(name), mesh, Encoding::Ascii);
+      EXPECT_NE(readFile(directory.file(name)).find(header), std::string::npos) << name;
+    }
+    const std::vector<Point> read = readCloud(directory.file("a.ply")).points;
+    const Positions written = asWritten(points);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      EXPECT_EQ(Eigen::Vector3d(read[i].data()), written.col(static_cast<Eigen::Index>(i)));
+  }
+}
+
+TEST_F(MeshWriter, PointsAloneHaveNeitherNormalsNorColours) {
+  TriangleMesh mesh = makeMesh(4);
+  mesh.vertices.normals.clear();
+  mesh.vertices.colors.clear();
+  for (const char* name : {"a.off", "a.obj", "a.vtk", "a.ply"}) {
+    writeTo(directory.file(name), mesh, Encoding::Ascii);
+    for (const char* part : {"NOFF", "COFF", "vn ", "NORMALS", "nx", "red", "COLOR"})
+      EXPECT_EQ(readFile(directory.file(name)).find(part), std::string::npos) << name;
+  }
+  EXPECT_EQ(readFile(directory.file("a.off")).rfind("OFF\n4 2 0\n", 0), 0U);
+}
+
+}  // namespace
+}  // namespace spherical_param::tools

@@ -1,0 +1,183 @@
+// What all tools promise: help, silence, reports, the same bytes, and nothing half done.
+
+#include "spherical_param/option_table.h"
+#include "tool_test.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <csignal>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+using nlohmann::json;
+using tool_test::RunOptions;
+using tool_test::RunResult;
+using Words = std::vector<std::string>;
+
+/// A tool that takes the options of the reconstruction, with a run of it that writes all it can.
+struct Tool {
+  std::string name;
+  std::string program;
+  Words arguments;
+  Words further_options;  ///< besides those of the table
+};
+
+std::vector<Tool> meshingTools() {
+  return {{"reconstruction",
+           RECONSTRUCTION_TOOL,
+           {"in.ply", "out.ply", "-sphere", "s.vtk", "-smoothing", "4", "-outliers", "5"},
+           {"outliers", "sphere", "report", "json", "ascii", "strict", "quiet"}},
+          {"remesh",
+           REMESH_TOOL,
+           {"in.ply", "out.ply", "-sphere", "s.ply", "-harmonics", "c.json", "-degree", "6"},
+           {"grid", "points", "side", "fit", "sphere", "harmonics", "series", "degree",
+            "area-weight", "map-sweeps", "outliers", "json", "ascii", "strict", "quiet"}},
+          {"texture",
+           TEXTURE_TOOL,
+           {"in.ply", "out.obj", "-size", "64", "-chart", "cube"},
+           {"chart", "size", "gutter", "checker", "image", "area-weight", "map-sweeps", "outliers",
+            "json", "ascii", "strict", "quiet"}},
+          {"morph",
+           MORPH_TOOL,
+           {"in.ply", "other.ply", "out.ply", "-frames", "3", "-pairs", "pairs.txt"},
+           {"frames", "pairs", "align", "connectivity", "samples", "fit", "match", "check",
+            "area-weight", "map-sweeps", "outliers", "json", "ascii", "strict", "quiet"}}};
+}
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+class EveryTool : public tool_test::ToolTest {
+protected:
+  void SetUp() override {
+    write("in.ply", cloud(300));
+    write("other.ply", cloud(250));
+    write("pairs.txt", "3 5\n290 240\n");
+  }
+
+  static std::string cloud(int points) {
+    const spherical_param::Positions surface = tool_test::ellipsoid(points);
+    return tool_test::plyOf(surface, {}, (100.0 * surface.array().abs() + 20.0).round().matrix());
+  }
+};
+
+TEST_F(EveryTool, HelpListsEveryOptionAndHelpAndVersionSucceed) {
+  for (const Tool& tool : meshingTools()) {
+    SCOPED_TRACE(tool.name);
+    const RunResult help = run(tool.program, {"-h"});
+    EXPECT_EQ(help.exit_code, 0);
+    Words options = tool.further_options;
+    for (const spherical_param::OptionRow& row : spherical_param::optionTable())
+      if (row.name.rfind("history", 0) != 0)  // -report sets it
+        options.push_back(row.name);
+    for (const std::string& option : options)
+      EXPECT_NE(help.output.find("\n  -" + option + " "), std::string::npos) << option;
+    EXPECT_EQ(help.output.find("-history"), std::string::npos);
+    const RunResult version = run(tool.program, {"--version"});
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_EQ(version.output.rfind("pcl_spherical_param_" + tool.name + " ", 0), 0U);
+  }
+}
+
+TEST_F(EveryTool, ReportIsAloneOnStandardOutputAndHasEveryOption) {
+  for (const Tool& tool : meshingTools()) {
+    SCOPED_TRACE(tool.name);
+    const json report = reportOf(tool.program, with(tool.arguments, {"-seed", "7", "-k", "9"}));
+    ASSERT_TRUE(report.is_object());
+    EXPECT_EQ(report["options"]["seed"], 7);
+    EXPECT_EQ(report["options"]["k"], 9);
+    EXPECT_TRUE(report["options"]["tolerance"].is_null());
+    Words options = tool.further_options;
+    for (const spherical_param::OptionRow& row : spherical_param::optionTable())
+      if (row.name.rfind("history", 0) != 0)
+        options.push_back(row.name);
+    for (std::string option : options) {
+      std::replace(option.begin(), option.end(), '-', '_');
+      EXPECT_TRUE(report["options"].contains(option)) << option;
+    }
+    EXPECT_TRUE(report["version"].is_string());
+    EXPECT_EQ(report["stages"].back()["name"], "write");
+    for (const json& stage : report["stages"])
+      EXPECT_GE(stage["seconds"], 0.0);
+  }
+}
+
+TEST_F(EveryTool, QuietPrintsNothingAndWritesTheSameBytesByAnyNumberOfThreads) {
+  for (const Tool& tool : meshingTools()) {
+    SCOPED_TRACE(tool.name);
+    std::map<std::string, std::string> first;
+    for (const char* threads : {"1", "3"}) {
+      const RunResult result =
+          run(tool.program, with(tool.arguments, {"-quiet", "-threads", threads}));
+      EXPECT_EQ(result.exit_code, 0);
+      EXPECT_EQ(result.output + result.errors, "");
+      EXPECT_TRUE(exists(tool.name == "morph" ? "out_002.ply" : tool.arguments[1]));
+      const auto files = directory.listing();
+      if (first.empty())
+        first = files;
+      EXPECT_TRUE(files == first) << threads;
+    }
+  }
+}
+
+TEST_F(EveryTool, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
+  ASSERT_EQ(run(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"}).exit_code, 0);
+  for (const Tool& tool : meshingTools()) {
+    SCOPED_TRACE(tool.name);
+    const RunResult lax = run(tool.program, with(tool.arguments, {"-quiet", "-retries", "0"}));
+    EXPECT_EQ(lax.exit_code, 0);
+    EXPECT_EQ(lax.errors, "");
+    auto files = directory.listing();
+    files.erase("report.json");  // of the tool before
+    const RunResult strict =
+        run(tool.program,
+            with(tool.arguments, {"-strict", "-quiet", "-json", "report.json", "-retries", "0"}));
+    EXPECT_EQ(strict.exit_code, 1);
+    const std::vector<std::string> lines = strict.errorLines();
+    ASSERT_EQ(lines.size(), 2U) << strict.errors;
+    EXPECT_EQ(lines[1].rfind("  remedy: the files were written", 0), 0U) << lines[1];
+    auto strict_files = directory.listing();
+    strict_files.erase("report.json");
+    EXPECT_TRUE(strict_files == files);
+    const json report = json::parse(content("report.json"));
+    EXPECT_EQ(report["options"]["strict"], true);
+    // Morphing has warnings of each object.
+    const json& warnings = (tool.name == "morph" ? report["first"] : report)["warnings"];
+    EXPECT_FALSE(warnings.empty());
+    for (const json& warning : warnings)
+      EXPECT_NE(lines[0].find(warning.get<std::string>()), std::string::npos) << warning;
+  }
+  // Where there is none, nothing changes.
+  EXPECT_EQ(run(RECONSTRUCTION_TOOL, {"other.ply", "out.ply", "-strict", "-quiet"}).exit_code, 0);
+}
+
+TEST_F(EveryTool, ASignalLeavesNothingBehindAndKeepsTheOldFile) {
+  // The tool waits for a reader of the pipe, with the mesh in a temporary file.
+  ASSERT_EQ(mkfifo(directory.file("pipe.ply").c_str(), 0600), 0);
+  write("out.ply", "kept");
+  const auto before = directory.listing();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+    SCOPED_TRACE(signal);
+    RunOptions options;
+    options.signal_when_temporary = signal;
+    options.time_limit = 20;
+    const RunResult result =
+        run(RECONSTRUCTION_TOOL, {"in.ply", "out.ply", "-sphere", "pipe.ply"}, options);
+    EXPECT_EQ(result.signal, signal);
+    if (signal != SIGKILL) {
+      EXPECT_TRUE(directory.listing() == before);
+    }
+    EXPECT_EQ(content("out.ply"), "kept");
+  }
+}
+
+}  // namespace
