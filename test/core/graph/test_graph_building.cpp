@@ -51,23 +51,25 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
 }
 
 TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
-  for (const Index left : {10, 30}) {  // of 40, with node 39 in both parts
+  // Node 1 is in both parts; one of them has the nodes from 2 up to `end`.
+  for (const Index end : {12, 30}) {
+    const auto is_inner = [&](Index i) { return i >= 2 && i < end; };
     const Positions points = test::randomSphere(40, 2);
     Graph graph;
     graph.offsets.assign(41, 0);
     std::vector<Bridge> edges;
     for (Index i = 0; i < 40; ++i)
       for (Index j = i + 1; j < 40; ++j)
-        if (j == 39 || (i < left) == (j < left))
+        if (i == 1 || j == 1 || is_inner(i) == is_inner(j))
           edges.push_back({i, j, 1.0});
     const std::vector<Bridge> bridges = danglingBridges(points, withEdges(graph, edges), 3);
     ASSERT_EQ(bridges.size(), 3U);
-    std::set<Index> taken{39};
+    std::set<Index> taken{1};
     for (const Bridge& bridge : bridges) {
       double shortest = 1e300;
-      for (Index i = 0; i < left; ++i)
-        for (Index j = left; j < 39; ++j)
-          if (taken.count(i) == 0 && taken.count(j) == 0)
+      for (Index i = 0; i < 40; ++i)
+        for (Index j = 0; j < 40; ++j)
+          if (is_inner(i) && !is_inner(j) && taken.count(i) == 0 && taken.count(j) == 0)
             shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
       EXPECT_DOUBLE_EQ(bridge.length, shortest);
       taken.insert({bridge.from, bridge.to});
