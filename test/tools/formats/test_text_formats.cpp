@@ -1,4 +1,4 @@
-#include "common/text_clouds.h"
+#include "formats/text_lines.h"
 
 #include "common/cloud_reader.h"
 #include "tool_runner.h"
