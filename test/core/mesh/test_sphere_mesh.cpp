@@ -1,14 +1,12 @@
 #include "sphere_mesh.h"
 
 #include "helpers.h"
-#include "spherical_param/mesh_topology.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <random>
 #include <utility>
 #include <vector>
@@ -53,7 +51,6 @@ Triangles compact(const SphereMesh& mesh, Index vertex_count, Index& present) {
 void expectSound(const SphereMesh& mesh, Index vertex_count) {
   Index present = 0;
   const Triangles triangles = compact(mesh, vertex_count, present);
-  ASSERT_TRUE(checkTopology(triangles, static_cast<std::size_t>(present)).isSphere());
   ASSERT_TRUE(test::isSphereOverAll(triangles, present));
   std::vector<Index> degree(static_cast<std::size_t>(vertex_count), 0);
   Index count = 0;
@@ -205,45 +202,18 @@ private:
   std::mt19937_64 random_;
 };
 
-TEST(SphereMesh, HoldsTheTrianglesThatItWasGiven) {
-  for (const Index n : {4, 5, 30, 500}) {
-    const Triangles triangles = triangulateSphere(test::randomSphere(n, 1)).triangles;
-    const SphereMesh mesh(triangles, static_cast<std::size_t>(n));
-    EXPECT_EQ(mesh.triangles(), triangles);
-    expectSound(mesh, n);
-  }
-}
-
-/// Compares with the neighbours by a map of all sides.
-void expectTrueNeighbors(const SphereMesh& mesh) {
-  std::map<std::pair<Index, Index>, Index> triangle_of_side;
-  for (Index t = 0; t < mesh.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      triangle_of_side[{mesh.vertex(t, (k + 1) % 3), mesh.vertex(t, (k + 2) % 3)}] = t;
-  Index wrong = 0;
-  for (Index t = 0; t < mesh.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const auto twin =
-          triangle_of_side.find({mesh.vertex(t, (k + 2) % 3), mesh.vertex(t, (k + 1) % 3)});
-      wrong += twin == triangle_of_side.end() || twin->second != mesh.neighbor(t, k) ? 1 : 0;
-    }
-  EXPECT_EQ(wrong, 0);
-}
-
-TEST(SphereMesh, NeighborsAreTrueForAnyOrderAndNumberOfThreads) {
-  const Index n = 30000;  // enough for several threads
-  Triangles triangles = triangulateSphere(test::spiralSphere(n)).triangles;
+TEST(SphereMesh, HoldsItsTrianglesInAnyOrderWhateverTheNumberOfThreads) {
   std::mt19937_64 random(1);
-  for (const bool is_shuffled : {false, true}) {
-    if (is_shuffled)
-      for (Eigen::Index t = triangles.cols() - 1; t > 0; --t)
-        triangles.col(t).swap(
-            triangles.col(static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(t + 1))));
-    for (const int threads : {1, 2, 3, 8}) {
+  for (const Index n : {4, 5, 30, 30000}) {  // the last is enough for several threads
+    Triangles triangles = triangulateSphere(test::spiralSphere(n)).triangles;
+    for (Eigen::Index t = triangles.cols() - 1; t > 0; --t)
+      triangles.col(t).swap(
+          triangles.col(static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(t + 1))));
+    for (const int threads : {1, 3}) {
       const SphereMesh mesh(triangles, static_cast<std::size_t>(n), threads);
-      expectTrueNeighbors(mesh);
-      EXPECT_TRUE(mesh.isSphere(threads));
       EXPECT_EQ(mesh.triangles(), triangles);
+      EXPECT_TRUE(mesh.isSphere(threads));
+      expectSound(mesh, n);
     }
   }
 }
@@ -284,7 +254,7 @@ TEST(SphereMesh, OtherSurfacesAreNoSphere) {
 }
 
 TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphere) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const Index n = 60;
     SphereMesh mesh(tetrahedron(), static_cast<std::size_t>(n));
     Moves moves(mesh, n, seed);
@@ -300,56 +270,46 @@ TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphere) {
   }
 }
 
-TEST(SphereMesh, MergeUndoesSplit) {
+TEST(SphereMesh, MergeUndoesSplitAndFlipUndoesFlip) {
   const Index n = 51;
   const Triangles triangles = triangulateSphere(test::randomSphere(n - 1, 2)).triangles;
+  const auto expected = test::canonical(triangles);
   SphereMesh mesh(triangles, static_cast<std::size_t>(n));
+  int flips = 0;
   for (Index t = 0; t < triangles.cols(); ++t) {
     mesh.split(t, n - 1);
     EXPECT_EQ(mesh.degree(n - 1), 3);
     expectSound(mesh, n);
     EXPECT_EQ(mesh.merge(n - 1), t);
-    expectSound(mesh, n);
     EXPECT_FALSE(isInMesh(mesh, n - 1));
-    ASSERT_EQ(test::canonical(mesh.triangles()), test::canonical(triangles));
-  }
-}
-
-TEST(SphereMesh, FlipUndoesFlip) {
-  const Index n = 50;
-  const Triangles triangles = triangulateSphere(test::randomSphere(n, 3)).triangles;
-  SphereMesh mesh(triangles, static_cast<std::size_t>(n));
-  int flips = 0;
-  for (Index t = 0; t < mesh.size(); ++t)
+    ASSERT_EQ(test::canonical(mesh.triangles()), expected);
     for (int k = 0; k < 3; ++k) {
       if (!mesh.flip(t, k))
         continue;
       ++flips;
-      ASSERT_NE(test::canonical(mesh.triangles()), test::canonical(triangles));
+      ASSERT_NE(test::canonical(mesh.triangles()), expected);
       // The triangle is (c, a, d) now: its new side is opposite to a.
       ASSERT_TRUE(mesh.flip(t, 1));
-      ASSERT_EQ(test::canonical(mesh.triangles()), test::canonical(triangles));
+      ASSERT_EQ(test::canonical(mesh.triangles()), expected);
     }
+  }
   EXPECT_GT(flips, 200);
 }
 
-TEST(SphereMesh, ATetrahedronStaysOne) {
-  SphereMesh mesh(tetrahedron(), 4);
-  const State before = stateOf(mesh, 4);
+TEST(SphereMesh, RefusedMovesChangeNothing) {
+  SphereMesh least(tetrahedron(), 4);
+  SphereMesh octahedron(bipyramid(4), 6);  // no vertex has three triangles
+  const State least_before = stateOf(least, 4);
+  const State octahedron_before = stateOf(octahedron, 6);
   for (Index v = 0; v < 4; ++v)
-    EXPECT_EQ(mesh.merge(v), -1);
+    EXPECT_EQ(least.merge(v), -1);
+  for (Index v = 0; v < 6; ++v)
+    EXPECT_EQ(octahedron.merge(v), -1);
   for (Index t = 0; t < 4; ++t)
     for (int k = 0; k < 3; ++k)
-      EXPECT_FALSE(mesh.flip(t, k));
-  EXPECT_EQ(stateOf(mesh, 4), before);
-}
-
-TEST(SphereMesh, OnlyVerticesOfThreeTrianglesAreMerged) {
-  SphereMesh mesh(bipyramid(4), 6);
-  const State before = stateOf(mesh, 6);
-  for (Index v = 0; v < 6; ++v)
-    EXPECT_EQ(mesh.merge(v), -1);
-  EXPECT_EQ(stateOf(mesh, 6), before);
+      EXPECT_FALSE(least.flip(t, k));
+  EXPECT_EQ(stateOf(least, 4), least_before);
+  EXPECT_EQ(stateOf(octahedron, 6), octahedron_before);
 }
 
 TEST(SphereMesh, AFlipWhoseEndsAreJoinedIsRefused) {
@@ -365,35 +325,6 @@ TEST(SphereMesh, AFlipWhoseEndsAreJoinedIsRefused) {
   const State before = stateOf(mesh, n);
   for (Index t = 2; t < mesh.size(); ++t)
     EXPECT_FALSE(mesh.flip(t, 0));
-  EXPECT_EQ(stateOf(mesh, n), before);
-  expectSound(mesh, n);
-}
-
-TEST(SphereMesh, HubsOfManyTrianglesAreRemovedAndRestored) {
-  const Index ring = 2000;
-  const Index n = ring + 2;
-  SphereMesh mesh(bipyramid(ring), static_cast<std::size_t>(n));
-  const State before = stateOf(mesh, n);
-  mesh.record();
-  while (mesh.degree(0) > 3) {
-    const Index t = mesh.triangleAt(0);
-    const int k = (mesh.cornerOf(t, 0) + 1) % 3;
-    if (!mesh.flip(t, k)) {
-      // Ears that are joined already: go on with the next triangle.
-      bool flipped = false;
-      std::vector<Index> around;
-      mesh.forEachAround(0, [&](Index u, int) { around.push_back(u); });
-      for (std::size_t i = 0; i < around.size() && !flipped; ++i)
-        flipped = mesh.flip(around[i], (mesh.cornerOf(around[i], 0) + 1) % 3);
-      ASSERT_TRUE(flipped);
-    }
-  }
-  const Index place = mesh.merge(0);
-  ASSERT_GE(place, 0);
-  expectSound(mesh, n);
-  mesh.split(place, 0);
-  expectSound(mesh, n);
-  mesh.rollBack();
   EXPECT_EQ(stateOf(mesh, n), before);
   expectSound(mesh, n);
 }
