@@ -33,21 +33,23 @@ void expectEven(const Positions& points, double area) {
 }
 
 TEST(SampleEvenly, PointsAreOnTheSurfaceAndKeepTheirDistance) {
-  const SphereSurface surface = surfaceOver(1000, [](const Vector3d& u) { return 3.0 * u; });
-  for (const std::size_t count : {1U, 50U, 400U, 1500U}) {
-    const SurfacePoints samples = sampleEvenly(surface, count);
-    ASSERT_EQ(samples.points.cols(), static_cast<Eigen::Index>(count));
-    ASSERT_EQ(samples.locations.size(), count);
-    if (count > 1)
-      expectEven(samples.points, surface.area() / static_cast<double>(count));
-    for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
-      const Vector3d point = samples.points.col(i);
-      EXPECT_LT((surface.evaluate(point).position - point).norm(), 1e-13);
-      const SurfaceSample same = surface.evaluate(samples.locations[static_cast<std::size_t>(i)]);
-      EXPECT_EQ(same.position, point);
-      EXPECT_EQ(same.normal, samples.normals.col(i));
+  // Of many triangles, and of eight.
+  for (const test::Mapped& mesh : {test::mapped(test::spiralSphere(1000)), test::octasphere(1)})
+    for (const std::size_t count : {1U, 50U, 400U, 1500U}) {
+      const SphereSurface surface = mesh.surface();
+      const SurfacePoints samples = sampleEvenly(surface, count);
+      ASSERT_EQ(samples.points.cols(), static_cast<Eigen::Index>(count));
+      ASSERT_EQ(samples.locations.size(), count);
+      if (count > 1)
+        expectEven(samples.points, surface.area() / static_cast<double>(count));
+      for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
+        const Vector3d point = samples.points.col(i);
+        EXPECT_LT((surface.evaluate(point).position - point).norm(), 1e-13);
+        const SurfaceSample same = surface.evaluate(samples.locations[static_cast<std::size_t>(i)]);
+        EXPECT_EQ(same.position, point);
+        EXPECT_EQ(same.normal, samples.normals.col(i));
+      }
     }
-  }
 }
 
 TEST(SampleEvenly, IsEvenInSpaceWhateverTheMap) {

@@ -146,11 +146,17 @@ TEST(SphereMap, TurnsWithItsStartAndNotWithTheMesh) {
   Mapped mesh = stretchedSphere(16, {1.0, 1.5, 2.5});
   // Nothing is symmetric, so that rounding breaks no ties.
   mesh.points = test::withNoise(mesh.points, 0.002, 6);
-  const SphereMap map = mapOf(mesh);
   const Eigen::Matrix3d turn = test::rotationBy(1.2, {3.0, -1.0, 2.0});
-  const SphereMap of_start = mapOf({mesh.points, mesh.triangles, turn * mesh.sphere});
-  EXPECT_LT((of_start.sphere - turn * map.sphere).cwiseAbs().maxCoeff(), 1e-12);
-  const SphereMap of_mesh = mapOf({1e6 * turn * mesh.points, mesh.triangles, mesh.sphere});
+  const Positions sphere = mesh.sphere;
+  const SphereMap map = mapOf(mesh);
+  // Also where the start is mirrored.
+  for (const double sign : {1.0, -1.0}) {
+    mesh.sphere = sign * sphere;
+    const Positions expected = turn * mapOf(mesh).sphere;
+    mesh.sphere = sign * turn * sphere;
+    EXPECT_LT((mapOf(mesh).sphere - expected).cwiseAbs().maxCoeff(), 1e-12);
+  }
+  const SphereMap of_mesh = mapOf({1e6 * turn * mesh.points, mesh.triangles, sphere});
   // Rounding may change the order of the collapses of a few vertices.
   EXPECT_LT((of_mesh.sphere - map.sphere).cwiseAbs().maxCoeff(), 0.02);
 }
