@@ -73,7 +73,7 @@ if [ "$quick" = no ]; then
   export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
   # The core, the map, the PCL class, the seam to ROS and the readers; what tools do with files is
   # tested above, and tools/stress.sh fuzzes.
-  programs=(test_core test_map test_spherical_param_reconstruction test_ros_seam test_cloud_reader
+  programs=(test_core test_map test_pcl test_ros_seam test_cloud_reader
     test_faults)
   if check "clang, ASan and UBSan: build" configure_and_build asan "${programs[@]}" \
     spherical_param_tools; then

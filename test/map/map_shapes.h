@@ -37,6 +37,11 @@ Mapped mappedOver(const Positions& sphere, const Place& place) {
   return mesh;
 }
 
+template <typename Place>
+SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
+  return mappedOver(spiralSphere(n), place).surface(SurfaceFit::Linear, threads);
+}
+
 /// Directions as their own mesh.
 inline Mapped mapped(const Positions& sphere) {
   return mappedOver(sphere, [](const Vector3d& u) { return u; });

@@ -173,8 +173,10 @@ TEST(Morphing, PairsAreOneVertex) {
       // Each to one near it, apart from the others.
       const auto a = static_cast<Index>(random() % 800);
       const Vector3d place = first.sphere.col(a);
-      const Index b = nearestTo(
-          place + (count < 10 ? 0.3 : 0.05) * test::randomSphere(1, a + 1U).col(0), second);
+      const Index b =
+          nearestTo(place + (count < 10 ? 0.3 : 0.05) *
+                                test::randomSphere(1, static_cast<unsigned>(a) + 1U).col(0),
+                    second);
       if (std::all_of(pairs.begin(), pairs.end(),
                       [&](const PointPair& pair) {
                         return (first.sphere.col(pair.first) - place).norm() > 0.2;

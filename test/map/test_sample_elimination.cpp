@@ -14,11 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-template <typename Place>
-SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
-  return test::mappedOver(test::spiralSphere(n), place).surface(SurfaceFit::Linear, threads);
-}
-
 /// Expects that points keep the distances of Poisson disk sets: these reach 0.65 to 0.85 of disks
 /// packed as densely as can be; random points have nearly 0. \param area for each of them
 void expectEven(const Positions& points, double area) {
@@ -54,7 +49,7 @@ TEST(SampleEvenly, PointsAreOnTheSurfaceAndKeepTheirDistance) {
 
 TEST(SampleEvenly, IsEvenInSpaceWhateverTheMap) {
   // A cigar, whose ends the map squeezes: as many points for each part as it has area.
-  const SphereSurface surface = surfaceOver(2000, [](const Vector3d& u) {
+  const SphereSurface surface = test::surfaceOver(2000, [](const Vector3d& u) {
     return Vector3d(u.x(), u.y(), 8.0 * u.z() * std::abs(u.z()));
   });
   const double count = 2000.0;
@@ -79,8 +74,8 @@ TEST(SampleEvenly, IsEvenInSpaceWhateverTheMap) {
 TEST(SampleEvenly, SheetsThatAreCloseDoNotPushEachOther) {
   // A plate that is far thinner than the distance of the points: as many on either side, and no
   // farther from each other on a side than they would be without the other.
-  const SphereSurface surface =
-      surfaceOver(2000, [](const Vector3d& u) { return Vector3d(u.x(), u.y(), 1e-3 * u.z()); });
+  const SphereSurface surface = test::surfaceOver(
+      2000, [](const Vector3d& u) { return Vector3d(u.x(), u.y(), 1e-3 * u.z()); });
   const SurfacePoints samples = sampleEvenly(surface, 400);
   Positions upper(3, 0);
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i)
@@ -92,21 +87,22 @@ TEST(SampleEvenly, SheetsThatAreCloseDoNotPushEachOther) {
 
 TEST(SampleEvenly, IsTheSameForTheSameSeedAndAnyNumberOfThreads) {
   const auto place = [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); };
-  const SurfacePoints expected = sampleEvenly(surfaceOver(500, place, 1), 1000, 7);
+  const SurfacePoints expected = sampleEvenly(test::surfaceOver(500, place, 1), 1000, 7);
   for (const int threads : {2, 3}) {
-    const SurfacePoints samples = sampleEvenly(surfaceOver(500, place, threads), 1000, 7);
+    const SurfacePoints samples = sampleEvenly(test::surfaceOver(500, place, threads), 1000, 7);
     EXPECT_EQ(samples.points, expected.points);
     EXPECT_EQ(samples.normals, expected.normals);
   }
-  EXPECT_NE(sampleEvenly(surfaceOver(500, place), 1000, 8).points, expected.points);
+  EXPECT_NE(sampleEvenly(test::surfaceOver(500, place), 1000, 8).points, expected.points);
 }
 
 TEST(SampleEvenly, RefusesBadInput) {
-  const SphereSurface surface = surfaceOver(20, [](const Vector3d& u) { return u; });
+  const SphereSurface surface = test::surfaceOver(20, [](const Vector3d& u) { return u; });
   EXPECT_THROW(sampleEvenly(surface, 0), InvalidInput);
   EXPECT_THROW(sampleEvenly(surface, (std::size_t{1} << 24) + 1), InvalidInput);
-  EXPECT_THROW(sampleEvenly(surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); }), 5),
-               InvalidInput);
+  EXPECT_THROW(
+      sampleEvenly(test::surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); }), 5),
+      InvalidInput);
 }
 
 }  // namespace

@@ -14,11 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using test::kPi;
 
-template <typename Place>
-SphereSurface surfaceOver(Index n, const Place& place, int threads = 0) {
-  return test::mappedOver(test::spiralSphere(n), place).surface(SurfaceFit::Linear, threads);
-}
-
 /// P_l by the recurrence of its definition.
 double legendre(int degree, double z) {
   double before = 0.0;
@@ -86,7 +81,8 @@ TEST(SphericalHarmonics, OfAnEllipsoidAreOfDegreeOne) {
   expected(0, 3) = std::sqrt(4.0 * kPi / 3.0) * axes.x();
   const auto error_of = [&](Index n) {
     const SphericalHarmonics harmonics = computeSphericalHarmonics(
-        surfaceOver(n, [&](const Vector3d& u) { return Vector3d(axes.cwiseProduct(u) + center); }),
+        test::surfaceOver(
+            n, [&](const Vector3d& u) { return Vector3d(axes.cwiseProduct(u) + center); }),
         4);
     EXPECT_EQ(harmonics.degree, 4);
     // The triangles cut off a piece, which a quarter of their size makes a quarter as high.
@@ -105,7 +101,7 @@ TEST(SphericalHarmonics, OfAShapeThatIsASeriesAreItsCoefficients) {
   given.coefficients = 0.05 * test::randomSphere(36, 3);
   given.coefficients.col(0).setZero();
   given.coefficients(1, 1) = given.coefficients(2, 2) = given.coefficients(0, 3) = 2.0;
-  const SphereSurface surface = surfaceOver(8000, [&](const Vector3d& u) {
+  const SphereSurface surface = test::surfaceOver(8000, [&](const Vector3d& u) {
     return Vector3d(evaluateSphericalHarmonics(given, u).col(0));
   });
   const SphericalHarmonics found = computeSphericalHarmonics(surface, 7);
@@ -119,7 +115,7 @@ TEST(SphericalHarmonics, OfAShapeThatIsASeriesAreItsCoefficients) {
 }
 
 TEST(SphericalHarmonics, ResidualIsThatOfTheSurfaceAtManyDirections) {
-  const SphereSurface surface = surfaceOver(
+  const SphereSurface surface = test::surfaceOver(
       1000, [](const Vector3d& u) { return Vector3d((1.0 + 0.2 * std::sin(6.0 * u.x())) * u); });
   const SphericalHarmonics harmonics = computeSphericalHarmonics(surface, 4);
   const Positions directions = test::spiralSphere(10000);
@@ -133,7 +129,7 @@ TEST(SphericalHarmonics, ResidualIsThatOfTheSurfaceAtManyDirections) {
 
 TEST(SphericalHarmonics, AreTheSameForAnyNumberOfThreads) {
   const SphereSurface surface =
-      surfaceOver(500, [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); });
+      test::surfaceOver(500, [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); });
   const SphericalHarmonics expected = computeSphericalHarmonics(surface, 12, 1);
   const Positions directions = test::randomSphere(2000, 5);
   const Positions values = evaluateSphericalHarmonics(expected, directions, 1);
@@ -146,7 +142,7 @@ TEST(SphericalHarmonics, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(SphericalHarmonics, RefuseBadInput) {
-  const SphereSurface surface = surfaceOver(20, [](const Vector3d& u) { return u; });
+  const SphereSurface surface = test::surfaceOver(20, [](const Vector3d& u) { return u; });
   for (const int degree : {-1, 513}) {
     EXPECT_THROW(sphericalHarmonicsAt(Vector3d::UnitX(), degree), InvalidInput);
     EXPECT_THROW(computeSphericalHarmonics(surface, degree), InvalidInput);

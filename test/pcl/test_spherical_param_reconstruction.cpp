@@ -139,7 +139,7 @@ template <typename PointT>
 class StandardPointType : public testing::Test {};
 using StandardPointTypes = testing::Types<pcl::PointXYZ, pcl::PointXYZI, pcl::PointXYZRGB,
                                           pcl::PointNormal, pcl::PointXYZRGBNormal>;
-TYPED_TEST_SUITE(StandardPointType, StandardPointTypes);
+TYPED_TEST_SUITE(StandardPointType, StandardPointTypes, );
 
 TYPED_TEST(StandardPointType, WorksThroughMeshConstructionAndKeepsHeaderAndFields) {
   const auto cloud = makeEllipsoid<TypeParam>(100);
@@ -234,7 +234,7 @@ TEST_F(SphericalParamReconstruction, SphereAndSmoothedPointsFitTheCloudAndOutliv
           (*cloud)[static_cast<std::size_t>(reconstruction.getVertexIndices()[v])].getVector3fMap(),
           expected.col(static_cast<Eigen::Index>(v)).cast<float>());
     EXPECT_EQ((*cloud)[20].getVector3fMap(), (*cloud)[30].getVector3fMap());
-    for (const std::size_t i : {0, 7, 8, 350, 399})
+    for (const std::size_t i : {0U, 7U, 8U, 350U, 399U})
       EXPECT_TRUE((*cloud)[i].getVector3fMap().array().isNaN().all()) << i;
   }
 }

@@ -27,7 +27,7 @@ protected:
 
 TEST_F(SphericalParamRemesh, OutputIsAClosedSphereOnTheEllipsoidWithNormals) {
   for (const SphereGrid grid : {SphereGrid::Icosahedral, SphereGrid::Octahedral})
-    for (const std::size_t points : {0, 2500}) {  // 0: as many as the mesh has
+    for (const std::size_t points : {0U, 2500U}) {  // 0: as many as the mesh has
       pcl::SphericalParamRemeshOptions options;
       options.grid = grid;
       options.points = points;

@@ -13,16 +13,13 @@ namespace {
 using spherical_param::SphereChart;
 using spherical_param::TextureImage;
 
-template <typename PointT>
-using Reconstruction = pcl::SphericalParamReconstruction<PointT>;
-
 class SphericalParamTexture : public test::Silent {
 protected:
   SphericalParamTexture() { options.bake.height = 256; }
 
   template <typename PointT>
   bool texture(unsigned threads = 0) {
-    Reconstruction<PointT> reconstruction;
+    pcl::SphericalParamReconstruction<PointT> reconstruction;
     reconstruction.setInputCloud(test::makeEllipsoid<PointT>(800));
     reconstruction.setNumberOfThreads(threads);
     return pcl::textureSphericalParam(reconstruction, mesh, image, options);
@@ -109,7 +106,7 @@ TEST_F(SphericalParamTexture, AFailureLeavesNothingButTheHeader) {
   expect_failure([](auto& o) { o.bake.height = 5; });
   expect_failure([](auto& o) { o.atlas.margin = 0.5; });
   expect_failure([](auto& o) { o.checkerboard_cells = 0; });
-  Reconstruction<pcl::PointXYZ> without_cloud;
+  pcl::SphericalParamReconstruction<pcl::PointXYZ> without_cloud;
   EXPECT_FALSE(pcl::textureSphericalParam(without_cloud, mesh, image));
   EXPECT_TRUE(mesh.tex_polygons.empty());
 }

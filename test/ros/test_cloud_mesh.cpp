@@ -188,7 +188,7 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
 }
 
 TEST(RosCloudMesh, LargestCloudIsMeshedAndZeroIsNoLimit) {
-  for (const std::size_t limit : {0, 100}) {
+  for (const std::size_t limit : {0U, 100U}) {
     Settings settings;
     settings.max_points = limit;
     meshed(ellipsoid(100), settings);

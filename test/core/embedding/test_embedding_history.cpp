@@ -1,6 +1,6 @@
 #include "embedding_history.h"
 
-#include "helpers.h"
+#include "embeddings.h"
 #include "iterative_embedding.h"
 #include "multilevel_embedding.h"
 #include "spherical_param/errors.h"
@@ -25,29 +25,18 @@ using internal::EmbeddingObserver;
 using internal::EmbeddingRecorder;
 using internal::EmbeddingState;
 using internal::GraphHierarchy;
-using test::graphOfMesh;
 using test::spiralSphere;
 
-/// An ellipsoid with dents, and its true edges.
-Graph dentedGraph(Index n) {
-  const Positions sphere = spiralSphere(n);
-  Positions points = sphere;
-  for (Index i = 0; i < n; ++i)
-    points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
-  points.row(2) *= 1.7;
-  return graphOfMesh(points, triangulateSphere(sphere).triangles);
-}
-
-struct Setting : EmbeddingOptions, Execution {
+struct Observed : test::Setting {
   EmbeddingObserver observer;
 };
 
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
-                        const Setting& setting) {
+                        const Observed& setting) {
   return internal::embedByLevels(graph, hierarchy, setting, setting.observer, setting);
 }
 
-Embedding iterate(const Graph& graph, const Positions& start, const Setting& setting) {
+Embedding iterate(const Graph& graph, const Positions& start, const Observed& setting) {
   return internal::embedIteratively(graph, start, setting, setting.observer, setting);
 }
 
@@ -70,11 +59,11 @@ EmbeddingObserver into(std::vector<Seen>& states) {
 }
 
 TEST(EmbeddingObserver, SeesEveryLevelFromTheStartToTheEndAndChangesNothing) {
-  const Graph graph = dentedGraph(6000);
+  const Graph graph = test::dentedCloud(6000).graph;
   const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   for (const EdgeWeights weights : {EdgeWeights::Adaptive, EdgeWeights::Uniform})
     for (const int threads : {1, 3}) {
-      Setting options;
+      Observed options;
       options.weights = weights;
       options.starts = 4;
       options.threads = threads;
@@ -111,8 +100,8 @@ TEST(EmbeddingObserver, SeesEveryLevelFromTheStartToTheEndAndChangesNothing) {
 }
 
 TEST(EmbeddingObserver, SeesEveryIterationOfThePapersSolver) {
-  const Graph graph = dentedGraph(5000);
-  Setting options;
+  const Graph graph = test::dentedCloud(5000).graph;
+  Observed options;
   options.max_iterations = 12;
   options.threads = 3;
   const Embedding alone = iterate(graph, spiralSphere(5000), options);
@@ -136,25 +125,25 @@ TEST(EmbeddingObserver, SeesEveryIterationOfThePapersSolver) {
 }
 
 TEST(EmbeddingObserver, ExceptionsOfTheObserverArePassedOn) {
-  const Graph graph = dentedGraph(3000);
+  const Graph graph = test::dentedCloud(3000).graph;
   const auto fail = [](const EmbeddingState& state) {
     if (state.step == EmbeddingStep::End || state.iteration == 2)
       throw std::runtime_error("enough");
   };
-  Setting iterative;
+  Observed iterative;
   iterative.observer = fail;
   EXPECT_THROW(iterate(graph, spiralSphere(3000), iterative), std::runtime_error);
-  Setting multilevel;
+  Observed multilevel;
   multilevel.observer = fail;
   EXPECT_THROW(embedByLevels(graph, buildGraphHierarchy(graph, 1, 200), multilevel),
                std::runtime_error);
 }
 
 TEST(EmbeddingRecorder, KeepsAtMostTheLimitAndAlwaysBothEnds) {
-  const Graph graph = dentedGraph(6000);
+  const Graph graph = test::dentedCloud(6000).graph;
   const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   std::vector<Seen> states;
-  Setting options;
+  Observed options;
   options.observer = into(states);
   const Embedding embedding = embedByLevels(graph, hierarchy, options);
   for (const auto& [vertices, frames] : std::vector<std::pair<Index, int>>{
@@ -181,7 +170,7 @@ TEST(EmbeddingRecorder, KeepsAtMostTheLimitAndAlwaysBothEnds) {
 }
 
 TEST(EmbeddingRecorder, CarriesCoarseStatesAsTheSolverDoes) {
-  const Graph graph = dentedGraph(6000);
+  const Graph graph = test::dentedCloud(6000).graph;
   const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   ASSERT_GE(hierarchy.levels.size(), 2U);
   for (const Index vertices : {300, 6000}) {

@@ -152,7 +152,7 @@ TEST(MultilevelEmbedding, ReportsItsLevels) {
   EXPECT_EQ(result.report.collapsed_starts, 0);
 }
 
-TEST(MultilevelEmbedding, SameBitsForAnyNumberOfThreads) {
+TEST(MultilevelEmbedding, LargeGraphsHaveTheSameBitsForAnyNumberOfThreads) {
   // More nodes than single passes need to be shared among threads.
   const Cloud cloud = dentedCloud(40000);
   const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1);

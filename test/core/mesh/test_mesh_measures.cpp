@@ -4,6 +4,7 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/sphere_triangulation.h"
+#include "triangle_lists.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -19,35 +20,27 @@ struct Mesh {
   Triangles triangles;
 };
 
-Triangles make(std::initializer_list<std::array<Index, 3>> list) {
-  Triangles triangles(3, static_cast<Eigen::Index>(list.size()));
-  Eigen::Index t = 0;
-  for (const auto& triangle : list)
-    triangles.col(t++) << triangle[0], triangle[1], triangle[2];
-  return triangles;
-}
-
 /// The box [0, a] x [0, b] x [0, c].
 Mesh box(double a, double b, double c) {
-  Mesh mesh{Positions(3, 8), make({{0, 2, 1},
-                                   {1, 2, 3},
-                                   {4, 5, 6},
-                                   {5, 7, 6},
-                                   {0, 1, 4},
-                                   {1, 5, 4},
-                                   {2, 6, 3},
-                                   {3, 6, 7},
-                                   {0, 4, 2},
-                                   {2, 4, 6},
-                                   {1, 3, 5},
-                                   {3, 7, 5}})};
+  Mesh mesh{Positions(3, 8), test::trianglesOf({{0, 2, 1},
+                                                {1, 2, 3},
+                                                {4, 5, 6},
+                                                {5, 7, 6},
+                                                {0, 1, 4},
+                                                {1, 5, 4},
+                                                {2, 6, 3},
+                                                {3, 6, 7},
+                                                {0, 4, 2},
+                                                {2, 4, 6},
+                                                {1, 3, 5},
+                                                {3, 7, 5}})};
   for (Index i = 0; i < 8; ++i)
     mesh.points.col(i) << (i % 2) * a, (i / 2 % 2) * b, (i / 4) * c;
   return mesh;
 }
 
-Mesh tetrahedron() {
-  Mesh mesh{Positions::Zero(3, 4), make({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})};
+Mesh cornerTetrahedron() {
+  Mesh mesh{Positions::Zero(3, 4), test::trianglesOf({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})};
   mesh.points.rightCols(3) = Eigen::Matrix3d::Identity();
   return mesh;
 }
@@ -90,7 +83,7 @@ TEST(MeshMeasures, BoxHasItsTextbookMeasures) {
 }
 
 TEST(MeshMeasures, TetrahedronHasProductsOfInertia) {
-  const Mesh mesh = tetrahedron();
+  const Mesh mesh = cornerTetrahedron();
   const MeshMeasures measures = measureMesh(mesh.points, mesh.triangles);
   EXPECT_NEAR(measures.volume, 1.0 / 6.0, 1e-16);
   EXPECT_NEAR(measures.area, 1.5 + std::sqrt(3.0) / 2.0, 1e-15);
@@ -178,7 +171,7 @@ TEST(MeshMeasures, FlatMeshHasTheCentroidOfItsSurface) {
   Positions points = Positions::Zero(3, 3);
   points.col(1) << 3.0, 0.0, 0.0;
   points.col(2) << 0.0, 3.0, 0.0;
-  const MeshMeasures measures = measureMesh(points, make({{0, 1, 2}, {0, 2, 1}}));
+  const MeshMeasures measures = measureMesh(points, test::trianglesOf({{0, 1, 2}, {0, 2, 1}}));
   EXPECT_EQ(measures.volume, 0.0);
   EXPECT_NEAR(measures.area, 9.0, 1e-14);
   EXPECT_LT((measures.centroid - Eigen::Vector3d(1.0, 1.0, 0.0)).norm(), 1e-15);
@@ -213,14 +206,14 @@ TEST(MeshMeasures, SameForAnyNumberOfThreadsAndAsTheFunctionsForOneMeasure) {
 TEST(MeshMeasures, BadInputIsInvalidInput) {
   EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), -1), InvalidInput);
   EXPECT_THROW(measureMesh(Positions(3, 0), Triangles(3, 0), 1025), InvalidInput);
-  const Mesh mesh = tetrahedron();
+  const Mesh mesh = cornerTetrahedron();
   EXPECT_THROW(measureMesh(mesh.points.leftCols(3), mesh.triangles), InvalidInput);
-  EXPECT_THROW(measureMesh(mesh.points, make({{0, 1, -1}})), InvalidInput);
+  EXPECT_THROW(measureMesh(mesh.points, test::trianglesOf({{0, 1, -1}})), InvalidInput);
   EXPECT_THROW(areaWeightedNormals(mesh.points.leftCols(3), mesh.triangles), InvalidInput);
 }
 
 TEST(AreaWeightedNormals, AreTheSumsOfTheTriangles) {
-  const Mesh mesh = tetrahedron();
+  const Mesh mesh = cornerTetrahedron();
   const Positions normals = areaWeightedNormals(mesh.points, mesh.triangles);
   // The three triangles at the origin have the normals -z, -y and -x; the fourth has (1, 1, 1).
   EXPECT_EQ(Eigen::Vector3d(normals.col(0)), Eigen::Vector3d(-1.0, -1.0, -1.0));

@@ -3,6 +3,7 @@
 #include "helpers.h"
 #include "reference/mesh_topology.h"
 #include "spherical_param/errors.h"
+#include "triangle_lists.h"
 
 #include <gtest/gtest.h>
 
@@ -18,19 +19,8 @@
 namespace spherical_param {
 namespace {
 
-Triangles make(std::initializer_list<std::array<Index, 3>> list) {
-  Triangles triangles(3, static_cast<Eigen::Index>(list.size()));
-  Eigen::Index t = 0;
-  for (const auto& triangle : list)
-    triangles.col(t++) << triangle[0], triangle[1], triangle[2];
-  return triangles;
-}
-
-Triangles tetrahedron(Index first = 0) {
-  Triangles triangles = make({{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
-  triangles.array() += first;
-  return triangles;
-}
+using test::tetrahedron;
+using test::trianglesOf;
 
 Triangles joined(const Triangles& a, const Triangles& b) {
   Triangles result(3, a.cols() + b.cols());
@@ -108,15 +98,15 @@ TEST(MeshTopology, TwoTetrahedraAtAVertexAreNotVertexManifold) {
 }
 
 TEST(MeshTopology, FinMakesAnEdgeNonManifold) {
-  const MeshTopology topology = checkTopology(joined(tetrahedron(), make({{0, 1, 4}})), 5);
+  const MeshTopology topology = checkTopology(joined(tetrahedron(), trianglesOf({{0, 1, 4}})), 5);
   EXPECT_FALSE(topology.edge_manifold);
   const std::vector<std::array<Index, 2>> expected{{0, 1}};
   EXPECT_EQ(topology.faults.nonmanifold_edges, expected);
 }
 
 TEST(MeshTopology, RepeatedTriangleAndDegenerateTriangleAreFound) {
-  EXPECT_FALSE(checkTopology(joined(tetrahedron(), make({{0, 2, 1}})), 4).edge_manifold);
-  const MeshTopology topology = checkTopology(joined(tetrahedron(), make({{0, 0, 1}})), 4);
+  EXPECT_FALSE(checkTopology(joined(tetrahedron(), trianglesOf({{0, 2, 1}})), 4).edge_manifold);
+  const MeshTopology topology = checkTopology(joined(tetrahedron(), trianglesOf({{0, 0, 1}})), 4);
   EXPECT_FALSE(topology.isSphere());
   EXPECT_EQ(topology.faults.degenerate_triangles, std::vector<Index>{4});
 }
@@ -136,7 +126,7 @@ TEST(MeshTopology, EmptyMeshIsNotClosed) {
 
 TEST(MeshTopology, IndexOutOfRangeIsInvalidInput) {
   EXPECT_THROW(checkTopology(tetrahedron(), 3), InvalidInput);
-  EXPECT_THROW(checkTopology(make({{0, 1, -1}}), 3), InvalidInput);
+  EXPECT_THROW(checkTopology(trianglesOf({{0, 1, -1}}), 3), InvalidInput);
 }
 
 TEST(MeshTopology, ThreadsOutOfRangeAreInvalidInput) {

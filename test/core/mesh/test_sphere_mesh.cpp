@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "spherical_param/sphere_triangulation.h"
+#include "triangle_lists.h"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +16,7 @@ namespace spherical_param {
 namespace {
 
 using internal::SphereMesh;
-
-Triangles tetrahedron() {
-  return Triangles{{0, 0, 1, 2}, {2, 1, 2, 0}, {1, 3, 3, 3}};
-}
+using test::tetrahedron;
 
 /// Two hubs, 0 and 1, over and under a ring of `ring` vertices.
 Triangles bipyramid(Index ring) {

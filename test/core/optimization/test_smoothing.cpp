@@ -15,7 +15,8 @@
 namespace spherical_param::test {
 namespace {
 
-constexpr SmoothingMethod kMethods[] = {SmoothingMethod::Umbrella, SmoothingMethod::Biharmonic};
+constexpr SmoothingMethod kSmoothingMethods[] = {SmoothingMethod::Umbrella,
+                                                 SmoothingMethod::Biharmonic};
 
 SmoothingOptions optionsOf(SmoothingMethod method, int steps = 5, bool restore_volume = true) {
   SmoothingOptions options;
@@ -93,7 +94,7 @@ TEST(Smoothing, NoiseIsTakenOffAndOnlyTheUmbrellaShrinks) {
     const Eigen::ArrayXd radii = points.colwise().norm().transpose().array();
     return std::sqrt((radii - radii.mean()).square().mean());
   };
-  for (const SmoothingMethod method : kMethods) {
+  for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing smooth =
         smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 5, false));
     EXPECT_LT(roughness(smooth.points), 0.4 * roughness(mesh.points));
@@ -113,7 +114,7 @@ TEST(Smoothing, VolumeIsRestored) {
   const Tube tube = bentTube(12.0, 2.0, 12);
   for (const Mesh& mesh :
        {noisyMesh(300, 0.05, 2), Mesh{withNoise(tube.points, 0.05, 3), tube.triangles}})
-    for (const SmoothingMethod method : kMethods) {
+    for (const SmoothingMethod method : kSmoothingMethods) {
       const double volume = volumeOf(mesh.points, mesh.triangles);
       const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method));
       // Newton's method ends below 1e-12; the rest is the rounding of the sums.
@@ -127,7 +128,7 @@ TEST(Smoothing, ReportedDisplacementsAreThoseOfThePointsOfTriangles) {
   const Mesh mesh = noisyMesh(200, 0.1, 7);
   Positions stray(3, 2);
   stray << 0.5, 7.0, 0.25, 8.0, 0.125, 9.0;
-  for (const SmoothingMethod method : kMethods) {
+  for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing smooth =
         smoothSurface(horizontally(mesh.points, stray), mesh.triangles, optionsOf(method));
     EXPECT_EQ(smooth.points.rightCols(2), stray);
@@ -150,7 +151,7 @@ TEST(Smoothing, MovesWithRotationTranslationScaleAndReversal) {
   const Positions moved = (50.0 * rotation * mesh.points).colwise() + shift;
   Triangles reversed = mesh.triangles;
   reversed.row(1).swap(reversed.row(2));
-  for (const SmoothingMethod method : kMethods) {
+  for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing smooth = smoothSurface(mesh.points, mesh.triangles, optionsOf(method));
     const Smoothing other = smoothSurface(moved, mesh.triangles, optionsOf(method));
     // Coordinates of 2000 are rounded by 2e-13; the volume's restoration by no more.
@@ -167,7 +168,7 @@ TEST(Smoothing, SameBitsForAnyNumberOfThreads) {
   // Enough points for several threads, and not a multiple of the blocks.
   const Triangles triangles = torusTriangles(229, 220);
   const Positions points = spiralSphere(229 * 220);
-  for (const SmoothingMethod method : kMethods) {
+  for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing one = smoothSurface(points, triangles, optionsOf(method, 2), 1);
     const Smoothing several = smoothSurface(points, triangles, optionsOf(method, 2), 3);
     EXPECT_EQ(one.points, several.points);
@@ -185,7 +186,7 @@ TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesOrVolume) {
   const Positions same = Positions::Constant(3, 80, 0.3);
   Triangles two_sides(3, 2);
   two_sides << 0, 0, 1, 2, 2, 1;
-  for (const SmoothingMethod method : kMethods) {
+  for (const SmoothingMethod method : kSmoothingMethods) {
     const Smoothing none = smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 0));
     EXPECT_EQ(none.points, mesh.points);
     EXPECT_EQ(none.report.max_displacement, 0.0);

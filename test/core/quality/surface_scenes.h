@@ -74,7 +74,7 @@ inline Scene cutTorus(int rings, int ring, double tube_radius) {
 }
 
 /// Two spheres, joined by a tube of six triangles.
-inline Scene twoSpheres(Index n, Index m, double distance) {
+inline Scene joinedSpheres(Index n, Index m, double distance) {
   const Positions b = spiralSphere(m).colwise() + Eigen::Vector3d(distance, 0.0, 0.0);
   const Triangles of_a = hullOf(spiralSphere(n));
   const Triangles of_b = hullOf(spiralSphere(m)).array() + n;

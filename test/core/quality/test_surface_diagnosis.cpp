@@ -274,7 +274,7 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
 TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
   const Index n = 600;
   const Index m = 400;
-  const Scene scene = twoSpheres(n, m, 3.5);
+  const Scene scene = joinedSpheres(n, m, 3.5);
   ASSERT_TRUE(isSphereOverAll(scene.triangles, n + m));
   const SurfaceDiagnosis diagnosis = diagnose(scene);
   EXPECT_EQ(diagnosis.kind, SurfaceKind::SeveralParts);
@@ -299,7 +299,7 @@ TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
 
 TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
   for (const Scene& scene :
-       {openSphere(1000, 0.9), cutTorus(60, 24, 0.4), twoSpheres(600, 400, 3.5)}) {
+       {openSphere(1000, 0.9), cutTorus(60, 24, 0.4), joinedSpheres(600, 400, 3.5)}) {
     DiagnosisOptions options;
     options.max_vertices = 7;
     const SurfaceDiagnosis few = diagnose(scene, options);

@@ -13,9 +13,9 @@
 namespace spherical_param::tools {
 namespace {
 
-const std::vector<OptionInfo> options = {{"k", "N", "neighbours", false},
-                                         {"kind", "NAME", "of graph", true},
-                                         {"quiet", "", "print nothing", false}};
+const std::vector<OptionInfo> kOptions = {{"k", "N", "neighbours", false},
+                                          {"kind", "NAME", "of graph", true},
+                                          {"quiet", "", "print nothing", false}};
 
 TEST(CommandLine, TakesOptionsInEveryNotationAndOrder) {
   const std::vector<std::vector<std::string>> notations = {
@@ -25,20 +25,20 @@ TEST(CommandLine, TakesOptionsInEveryNotationAndOrder) {
       {"in", "--k=7", "out", "--quiet", "--kind=x"},
   };
   for (const std::vector<std::string>& words : notations) {
-    const CommandLine line(words, options);
+    const CommandLine line(words, kOptions);
     EXPECT_EQ(line.value("k", "none"), "7");
     EXPECT_EQ(line.value("kind", "none"), "x");
     EXPECT_TRUE(line.has("quiet"));
     EXPECT_EQ(line.others(), (std::vector<std::string>{"in", "out"}));
     EXPECT_FALSE(line.wantsHelp() || line.wantsVersion());
   }
-  EXPECT_EQ(CommandLine({"in"}, options).value("k", "none"), "none");
-  EXPECT_EQ(CommandLine({"-k", "-7"}, options).value("k", ""), "-7");
-  EXPECT_EQ(CommandLine({"-", "--", "-k"}, options).others(),
+  EXPECT_EQ(CommandLine({"in"}, kOptions).value("k", "none"), "none");
+  EXPECT_EQ(CommandLine({"-k", "-7"}, kOptions).value("k", ""), "-7");
+  EXPECT_EQ(CommandLine({"-", "--", "-k"}, kOptions).others(),
             (std::vector<std::string>{"-", "-k"}));
   for (const char* help : {"-h", "--h", "-help", "--help"})
-    EXPECT_TRUE(CommandLine({help}, options).wantsHelp());
-  EXPECT_TRUE(CommandLine({"--version"}, options).wantsVersion());
+    EXPECT_TRUE(CommandLine({help}, kOptions).wantsHelp());
+  EXPECT_TRUE(CommandLine({"--version"}, kOptions).wantsVersion());
 }
 
 TEST(CommandLine, RefusesWhatMakesNoSense) {
@@ -50,11 +50,11 @@ TEST(CommandLine, RefusesWhatMakesNoSense) {
                                              {"-quiet=1"},
                                              {"-k", "5", "-k", "6"},
                                              {"-x", "--", "-k"}})
-    EXPECT_THROW(CommandLine(words, options), UsageError) << testing::PrintToString(words);
+    EXPECT_THROW(CommandLine(words, kOptions), UsageError) << testing::PrintToString(words);
 }
 
 TEST(CommandLine, HelpListsEveryOptionThoseOfExpertsLast) {
-  const std::string help = describeOptions(options);
+  const std::string help = describeOptions(kOptions);
   std::size_t last = 0;
   for (const char* line :
        {"  -k N ", "  -quiet ", "  -version ", "\nExpert options:\n", "  -kind NAME "}) {
