@@ -25,6 +25,7 @@ using internal::EmbeddingObserver;
 using internal::EmbeddingRecorder;
 using internal::EmbeddingState;
 using internal::GraphHierarchy;
+using test::graphOfMesh;
 using test::spiralSphere;
 
 struct Observed : test::Setting {
