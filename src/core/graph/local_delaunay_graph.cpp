@@ -31,7 +31,7 @@ constexpr int kBridgesPerJoint = 3;
 /// Degree below which a point is repaired. Below 4 would be too generous: it brings back edges that
 /// one star alone saw, across gaps; a model then has 1,203 self-intersections instead of 0. With 0,
 /// a pair of elephants has 2,093,249 instead of 77,968.
-constexpr std::size_t kMinNeighbors = 3;
+constexpr std::size_t kMinDegree = 3;
 
 /// Voronoi edges shorter than this part of the cell's radius count as none: of four points on a
 /// circle, those across from each other are no neighbours, whatever the round-off. With 0 the graph
@@ -455,7 +455,7 @@ void joinWithoutPlane(const Positions& points, const Stars& stars,
 std::vector<Index> pointsOfLowDegree(const Graph& graph) {
   std::vector<Index> result;
   for (std::size_t i = 0; i < graph.size(); ++i)
-    if (graph.offsets[i + 1] - graph.offsets[i] < kMinNeighbors)
+    if (graph.offsets[i + 1] - graph.offsets[i] < kMinDegree)
       result.push_back(static_cast<Index>(i));
   return result;
 }
@@ -485,7 +485,7 @@ Index repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
   std::vector<Index> found;
   for (const Index i : poor) {
     found.clear();
-    while (found.size() < kMinNeighbors) {
+    while (found.size() < kMinDegree) {
       internal::ComponentTree::Pair pair;
       tree.nearestExcept(i, found, pair);
       if (pair.from < 0)
