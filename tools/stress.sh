@@ -16,7 +16,7 @@ case "${1:-}" in
 "") ;;
 --quick)
   quick=(--quick)
-  seconds=10
+  seconds=5
   seed=1
   ;;
 *)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Set-up and all tests. The last line counts tests and other steps together.
+# Set-up and tests. The last line counts tests and other steps together.
 #
-#   tools/test.sh            everything
+#   tools/test.sh            gcc build and its tests, formats, scripts, thread sanitizer
 #   tools/test.sh --quick    gcc build, its tests and clang-format only
 #
 # Logs are in build/test-logs.
@@ -40,25 +40,6 @@ scripts_parse() {
   done < <(files '*.py')
 }
 
-# The sources of library and tools as the clang build compiles them: several together, so that the
-# headers of others are read once for all. So the analyzer must look into included files, too. It has
-# a budget of paths: ten times as many take three times as long. The line that counts warnings in other
-# people's headers is left out, so that the end of the log shows the errors.
-tidy() {
-  sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/asan/compile_commands.json |
-    grep -v -e "^$PWD/test/" -e '/build/asan/test/' -e '/cmake_pch' |
-    xargs -n 1 -P "$jobs" clang-tidy -p build/asan --quiet --checks=-bugprone-suspicious-include \
-      --extra-arg=-Xclang --extra-arg=-analyzer-opt-analyze-headers --extra-arg=-Xclang \
-      --extra-arg=-analyzer-config --extra-arg=-Xclang --extra-arg=max-nodes=20000 2>&1 |
-    sed '/ warnings* generated\.$/d'
-}
-
-# sanitized <program> <filter>: tests of a program, a part of them on each processor.
-sanitized() {
-  seq 0 "$((jobs - 1))" | xargs -P "$jobs" -I '{}' env GTEST_TOTAL_SHARDS="$jobs" \
-    GTEST_SHARD_INDEX='{}' "$1" --gtest_brief=1 "--gtest_filter=$2"
-}
-
 check "set-up" tools/setup.sh || finish
 use_compiler_cache
 if check "gcc: build" build_release; then
@@ -67,26 +48,11 @@ fi
 check "clang-format" formatted || true
 if [ "$quick" = no ]; then
   check "scripts" scripts_parse || true
-  export UBSAN_OPTIONS=print_stacktrace=1
-  # Clang's OpenMP does not free what it has for each thread.
-  echo 'leak:libomp' >"$logs/leaks-of-others"
-  export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
-  # The core, the map, the PCL class, the seam to ROS and the readers; what tools do with files is
-  # tested above, and tools/stress.sh fuzzes.
-  programs=(test_core test_map test_pcl test_ros_seam test_cloud_reader
-    test_faults)
-  if check "clang, ASan and UBSan: build" configure_and_build asan "${programs[@]}" \
-    spherical_param_tools; then
-    check "clang-tidy" tidy || true
-    # Large clouds are for the release build: the same code runs on smaller ones in other tests.
-    for program in "${programs[@]}"; do
-      check "clang, ASan and UBSan: $program" sanitized "build/asan/bin/$program" '-*Large*' || true
-    done
-  fi
   programs=(test_concurrency test_reconstruction_worker)
   if check "TSan: build" configure_and_build tsan "${programs[@]}"; then
     for program in "${programs[@]}"; do
-      check "TSan: $program" sanitized "build/tsan/bin/$program" 'Concurrency*' || true
+      check "TSan: $program" "build/tsan/bin/$program" --gtest_brief=1 \
+        '--gtest_filter=Concurrency*' || true
     done
   fi
 fi

@@ -187,7 +187,7 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
   }
 }
 
-TEST(RosCloudMesh, LargestCloudIsMeshedAndZeroIsNoLimit) {
+TEST(RosCloudMesh, ACloudOfTheLimitIsMeshedAndZeroIsNoLimit) {
   for (const std::size_t limit : {0U, 100U}) {
     Settings settings;
     settings.max_points = limit;

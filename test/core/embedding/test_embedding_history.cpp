@@ -141,21 +141,21 @@ TEST(EmbeddingObserver, ExceptionsOfTheObserverArePassedOn) {
 }
 
 TEST(EmbeddingRecorder, KeepsAtMostTheLimitAndAlwaysBothEnds) {
-  const Graph graph = test::dentedCloud(6000).graph;
+  const Graph graph = test::dentedCloud(3000).graph;
   const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   std::vector<Seen> states;
   Observed options;
   options.observer = into(states);
   const Embedding embedding = embedByLevels(graph, hierarchy, options);
   for (const auto& [vertices, frames] : std::vector<std::pair<Index, int>>{
-           {1, 2}, {4, 3}, {150, 7}, {250, 40}, {700, 12}, {1500, 40}, {5999, 5}, {60000, 1000}}) {
+           {1, 2}, {4, 3}, {150, 7}, {250, 40}, {700, 12}, {1500, 40}, {2999, 5}, {60000, 1000}}) {
     EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, frames});
     options.observer = std::ref(recorder);
     embedByLevels(graph, hierarchy, options);
     const EmbeddingHistory history = recorder.take();
     EXPECT_LE(history.vertices.size(), static_cast<std::size_t>(vertices));
     EXPECT_GE(3 * history.vertices.size(),
-              static_cast<std::size_t>(std::min(vertices, Index{6000})));
+              static_cast<std::size_t>(std::min(vertices, Index{3000})));
     EXPECT_EQ(std::set<Index>(history.vertices.begin(), history.vertices.end()).size(),
               history.vertices.size());
     ASSERT_GE(history.frames.size(), 2U);
