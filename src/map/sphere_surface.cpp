@@ -65,24 +65,24 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
 
   const auto count = static_cast<std::size_t>(triangles.cols());
   const int workers = internal::threadCount(threads, count, internal::kParallelThreshold);
-  struct Sums {
+  struct Covering {
     double angle = 0.0;
     std::size_t flipped = 0;
     std::size_t first = 0;  ///< that is flipped, if one is
-    Sums& operator+=(const Sums& other) {
+    Covering& operator+=(const Covering& other) {
       first = flipped > 0 ? first : other.first;
       angle += other.angle;
       flipped += other.flipped;
       return *this;
     }
   };
-  const Sums sums =
-      internal::sumOfBlocks(count, workers, Sums(), [&](std::size_t begin, std::size_t end) {
-        Sums sum;
+  const Covering sums =
+      internal::sumOfBlocks(count, workers, Covering(), [&](std::size_t begin, std::size_t end) {
+        Covering sum;
         for (std::size_t i = begin; i < end; ++i) {
           const auto t = static_cast<Eigen::Index>(i);
           if (isFlipped(sphere, triangles, t))
-            sum += Sums{0.0, 1, i};
+            sum += Covering{0.0, 1, i};
           else
             sum.angle += solidAngle(sphere.col(triangles(0, t)), sphere.col(triangles(1, t)),
                                     sphere.col(triangles(2, t)));
