@@ -1,4 +1,4 @@
-"""The report: report.md with its marks <!-- TABLE --> and {FACT} filled, and a CSV file for each table."""
+"""The report: report.md.in with its marks <!-- TABLE --> and {FACT} filled, and a CSV file for each table."""
 
 import csv
 import dataclasses
@@ -62,10 +62,10 @@ class Report:
             self.tables[name] = Table(columns, rows)
 
     def write(self):
-        """Parts of report.md whose tables or facts are missing are left out."""
+        """Parts of report.md.in whose tables or facts are missing are left out."""
         for name, table in self.tables.items():
             table.write_csv(self.folder / f"{name}.csv")
-        text = pathlib.Path(__file__).with_name("report.md").read_text()
+        text = pathlib.Path(__file__).with_name("report.md.in").read_text()
         pages = []
         for section in re.split(r"^(?=## )", text, flags=re.MULTILINE):
             head, *parts = re.split(r"^(?=### )", section, flags=re.MULTILINE)
