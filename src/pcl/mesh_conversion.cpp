@@ -4,7 +4,9 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 
 namespace pcl {
 namespace detail {
@@ -17,6 +19,8 @@ pcl::PCLPointCloud2 cloudOf(const spherical_param::Positions& points,
     const auto column = static_cast<Eigen::Index>(i);
     cloud[i].getVector3fMap() = points.col(column).cast<float>();
     cloud[i].getNormalVector3fMap() = normals.col(column).cast<float>();
+    // The curvature and what fills its place: PCL leaves these bytes as they are, and copies them.
+    std::fill(std::begin(cloud[i].data_c), std::end(cloud[i].data_c), 0.0F);
   }
   pcl::PCLPointCloud2 result;
   pcl::toPCLPointCloud2(cloud, result);
