@@ -20,27 +20,19 @@ using Search = pcl::search::Search<PointXYZ>;
 
 class UserSearch : public Silent {};
 
-Search::Ptr makeFlannSearch() {
-  using Flann = pcl::search::FlannSearch<PointXYZ>;
-  return Search::Ptr(
-      new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeIndexCreator(15))));
-}
-
 /// Searches of PCL, which return indices of the cloud or positions in the subset.
-std::vector<std::function<Search::Ptr()>> searchesOfPcl() {
-  return {[] { return Search::Ptr(new pcl::search::KdTree<PointXYZ>(false)); },
-          [] { return Search::Ptr(new pcl::search::Octree<PointXYZ>(0.1)); },
-          [] { return Search::Ptr(new pcl::search::BruteForce<PointXYZ>()); }, makeFlannSearch};
+std::vector<Search::Ptr> searchesOfPcl() {
+  return {Search::Ptr(new pcl::search::KdTree<PointXYZ>(false)),
+          Search::Ptr(new pcl::search::Octree<PointXYZ>(0.1)),
+          Search::Ptr(new pcl::search::BruteForce<PointXYZ>())};
 }
 
 TEST_F(UserSearch, GivesTheMeshOfTheDefaultOne) {
   const HardCase hard;
-  const auto searches = searchesOfPcl();
-  for (std::size_t i = 0; i < searches.size(); ++i) {
-    SCOPED_TRACE(i);
+  for (const Search::Ptr& search : searchesOfPcl()) {
+    SCOPED_TRACE(search->getName());
     Reconstruction reconstruction;
     reconstruction.setInputCloud(hard.cloud);
-    const Search::Ptr search = searches[i]();
     reconstruction.setSearchMethod(search);
     EXPECT_EQ(meshed(reconstruction).size(), 2 * 396U - 4);
     EXPECT_EQ(search->getInputCloud(), hard.cloud) << "the search was not used";
@@ -57,9 +49,16 @@ TEST_F(UserSearch, GivesTheMeshOfTheDefaultOne) {
   }
 }
 
-TEST_F(UserSearch, MayBeApproximate) {
+TEST_F(UserSearch, MayBeThatOfFlannAlsoAnApproximateOne) {
   using Flann = pcl::search::FlannSearch<PointXYZ>;
+  const HardCase hard;
   Reconstruction reconstruction;
+  reconstruction.setInputCloud(hard.cloud);
+  reconstruction.setIndices(share(hard.indices));
+  // Each is used once: FlannSearch of PCL 1.13 frees the first cloud's array by the wrong operator.
+  reconstruction.setSearchMethod(Search::Ptr(
+      new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeIndexCreator(15)))));
+  EXPECT_EQ(trianglesOf(meshed(reconstruction)), hard.expected());
   reconstruction.setInputCloud(makeEllipsoid(600));
   reconstruction.setIndices(share(shuffledIndices(600)));
   reconstruction.setSearchMethod(Search::Ptr(
