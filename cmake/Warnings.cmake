@@ -3,7 +3,8 @@ function(spherical_param_compile_options target)
   # Contraction to fused multiply-add would make results differ between compilers, and the exact
   # predicates of the core wrong.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
-                                           -ffp-contract=off)
+                                           -ffp-contract=off
+                                           $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier>)
   if(SPHERICAL_PARAM_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
