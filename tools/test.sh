@@ -34,10 +34,9 @@ scripts_parse() {
       return 1
     }
   done
-  while read -r script; do
-    python3 -c 'import ast, sys; ast.parse(open(sys.argv[1]).read(), sys.argv[1])' "$script" ||
-      return 1
-  done < <(files '*.py')
+  files '*.py' | xargs python3 -c 'import ast, sys
+for script in sys.argv[1:]:
+    ast.parse(open(script).read(), script)'
 }
 
 check "set-up" tools/setup.sh || finish
