@@ -122,23 +122,29 @@ TEST(Retries, AreWorthItForASurfaceOrFewIntersections) {
 }
 
 TEST(Retries, AreMadeUntilNoTrianglesIntersectAndTheBestCounts) {
-  // A cluster far below the distance of the points is hard to mesh.
-  Positions cluster = 1e-8 * test::randomSphere(12, 3);
-  cluster.row(2).array() += 1.0;
-  const Positions points = test::horizontally(test::spiralSphere(400), cluster);
-  for (const int retries : {0, 2}) {
-    Options options;
-    options.retries = retries;
-    const Result result = test::mesh(points, options);
-    test::expectGuarantees(points, result);
-    EXPECT_EQ(result.runs.size() > 1U, retries > 0 && result.runs.front().self_intersections > 0);
-    EXPECT_LE(result.runs.size(), static_cast<std::size_t>(retries) + 1);
-    for (const RunReport& run : result.runs)
-      EXPECT_TRUE(&run == &result.runs.back() || run.self_intersections > 0);
-    EXPECT_TRUE(retries == 0 || result.runs.back().self_intersections == 0);
-    EXPECT_TRUE(result.runs.back().chosen);
-    EXPECT_EQ(result.optimization.energy, result.runs.back().energy);
+  int retried = 0;
+  for (const unsigned seed : {1U, 3U}) {
+    // A cluster far below the distance of the points is hard to mesh: which one is, goes by its
+    // last digits, and so by the compiler.
+    Positions cluster = 1e-8 * test::randomSphere(12, seed);
+    cluster.row(2).array() += 1.0;
+    const Positions points = test::horizontally(test::spiralSphere(400), cluster);
+    for (const int retries : {0, 2}) {
+      Options options;
+      options.retries = retries;
+      const Result result = test::mesh(points, options);
+      test::expectGuarantees(points, result);
+      EXPECT_EQ(result.runs.size() > 1U, retries > 0 && result.runs.front().self_intersections > 0);
+      EXPECT_LE(result.runs.size(), static_cast<std::size_t>(retries) + 1);
+      for (const RunReport& run : result.runs)
+        EXPECT_TRUE(&run == &result.runs.back() || run.self_intersections > 0);
+      EXPECT_TRUE(retries == 0 || result.runs.back().self_intersections == 0);
+      EXPECT_TRUE(result.runs.back().chosen);
+      EXPECT_EQ(result.optimization.energy, result.runs.back().energy);
+      retried += result.runs.size() > 1U ? 1 : 0;
+    }
   }
+  EXPECT_GT(retried, 0) << "nothing was shown: take other clusters";
 }
 
 TEST(Retries, AreNotMadeWhereTheCloudIsNoClosedSurface) {

@@ -54,11 +54,19 @@ TEST_F(UserSearch, MayBeThatOfFlannAlsoAnApproximateOne) {
   const HardCase hard;
   Reconstruction reconstruction;
   reconstruction.setInputCloud(hard.cloud);
-  reconstruction.setIndices(share(hard.indices));
-  // Each is used once: FlannSearch of PCL 1.13 frees the first cloud's array by the wrong operator.
-  reconstruction.setSearchMethod(Search::Ptr(
-      new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeIndexCreator(15)))));
-  EXPECT_EQ(trianglesOf(meshed(reconstruction)), hard.expected());
+  // One for each mesh: FlannSearch of PCL 1.13 frees its first cloud's array by the wrong operator.
+  const auto meshed_by_flann = [&](const pcl::IndicesPtr& indices) {
+    const Search::Ptr search(
+        new Flann(false, Flann::FlannIndexCreatorPtr(new Flann::KdTreeIndexCreator(15))));
+    reconstruction.setSearchMethod(search);
+    reconstruction.setIndices(indices);
+    const auto polygons = meshed(reconstruction);
+    EXPECT_EQ(search->getInputCloud(), hard.cloud) << "the search was not used";
+    return polygons;
+  };
+  EXPECT_EQ(meshed_by_flann(pcl::IndicesPtr()).size(), 2 * 396U - 4);
+  EXPECT_EQ(trianglesOf(meshed_by_flann(share(hard.indices))), hard.expected());
+  EXPECT_EQ(meshed_by_flann(share({29, 3, 1, 11})).size(), 4U);
   reconstruction.setInputCloud(makeEllipsoid(600));
   reconstruction.setIndices(share(shuffledIndices(600)));
   reconstruction.setSearchMethod(Search::Ptr(
