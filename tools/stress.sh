@@ -32,10 +32,7 @@ work="$PWD/build/stress"
 rm -rf "$work"
 mkdir -p "$work"
 : >"$work/rows"
-export UBSAN_OPTIONS=print_stacktrace=1
-# Clang's OpenMP does not free what it has for each thread.
-echo 'leak:libomp' >"$logs/leaks-of-others"
-export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
+sanitizer_options
 
 # part <step> <command>...: a step whose output has a row of the table.
 part() {

@@ -27,10 +27,7 @@ sanitized() {
     GTEST_SHARD_INDEX='{}' "$1" --gtest_brief=1 "--gtest_filter=$2"
 }
 
-export UBSAN_OPTIONS=print_stacktrace=1
-# Clang's OpenMP does not free what it has for each thread.
-echo 'leak:libomp' >"$logs/leaks-of-others"
-export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
+sanitizer_options
 check "set-up" tools/setup.sh || finish
 use_compiler_cache
 programs=(test_core test_map test_pcl test_ros_seam test_cloud_reader test_faults)
