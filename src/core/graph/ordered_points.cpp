@@ -154,10 +154,6 @@ OrderedPoints orderCheckedPoints(const Positions& points, int threads) {
   if (count < 4)
     throw InvalidInput("reconstruct: at least 4 distinct finite points are needed, but there are " +
                        std::to_string(count));
-  // As given: next to far larger ones, the least coordinates vanish when they are scaled.
-  if (areCoplanar(points))
-    throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
-                       "outside of it");
   return nodes;
 }
 

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "spherical_param/execution.h"
+#include "spherical_param/types.h"
+
+#include <array>
+#include <vector>
+
+namespace spherical_param {
+
+/// \addtogroup neighbor_graph
+/// @{
+
+/// An opening of the sampled surface: a wide face of its neighbour graph.
+struct Opening {
+  std::vector<Index> loop;  ///< nodes around it, in order; one that the face passes twice, twice
+  double boundary_length = 0.0;  ///< of the loop [unit of the input]
+  double area = 0.0;             ///< of a surface over it: length of its vector area [unit squared]
+  double spacing = 0.0;          ///< distance of the points at the loop, mean [unit of the input]
+  /// min(4 area / boundary_length, boundary_length / pi), the diameter of a disc [unit of the
+  /// input].
+  double width = 0.0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the loop
+  /// That it is one, in [0, 1]: 0 for a face of the least width that counts, of 3 spacings, 1 from
+  /// 9 spacings on.
+  double certainty = 0.0;
+  /// The loop lies in a plane: a flat face of the surface may have no points inside, and be none.
+  bool is_flat = false;
+  bool is_filled = false;  ///< of a Result: the mesh has triangles there
+};
+
+/// The openings of a sampled surface.
+struct Openings {
+  std::vector<Opening> openings;  ///< the longest boundary first
+  std::vector<double> spacing;    ///< n entries: median length of the edges of each node
+  /// Edges {lower, higher} of the graph that are none of the surface, ascending: those across an
+  /// opening, and those from its loop to another sheet.
+  std::vector<std::array<Index, 2>> false_edges;
+  /// The surface has one side only, like a band of Moebius: no orientation of the normals fits.
+  bool is_one_sided = false;
+};
+
+/// Finds the openings of a sampled surface in its neighbour graph, before there is any mesh.
+///
+/// Edges longer than 1.5 times the larger spacing of their ends are left out. The directions to the
+/// neighbours within two steps have a plane of least variance; its normals are oriented along edges
+/// between similar normals first (Hoppe et al. 1992). Of edges that cross, the longer one is left
+/// out, and so are edges that are steep to a plane and join different normals. In the order of the
+/// neighbours around the normals all faces of the graph are traced. One is an opening if it has at
+/// least 7 edges, is at least 3 spacings wide, and has corners of at least 117 degrees in the mean:
+/// those of narrow seams are sharp.
+///
+/// If the graph still has cycles when the openings are filled, edges between opposite normals join
+/// the two sides of a thin part: the openings are then sought without these, and what leaves fewer
+/// cycles is kept.
+///
+/// \param points 3 x n, finite.
+/// \param graph  n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.
+/// \param execution threads
+/// \return the openings, the same, bit by bit, for any number of threads.
+/// \throw InvalidInput for sizes that disagree.
+/// Cost: O(n).
+///
+/// Not guaranteed: openings of less than some 5 spacings are not seen, seams between sheets that
+/// nearly touch neither; a flat face of the surface without points inside is an opening, too.
+Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution = {});
+
+/// @}
+
+}  // namespace spherical_param

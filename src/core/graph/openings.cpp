@@ -1,0 +1,436 @@
+#include "spherical_param/openings.h"
+
+#include "filled_graph.h"
+#include "graph_checks.h"
+#include "graph_cycles.h"
+#include "parallel.h"
+#include "pi.h"
+#include "progress.h"
+#include "spherical_param/errors.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+/// Edges longer than this are not taken for edges of the surface [larger spacing of their ends].
+constexpr double kMaxLength = 1.5;
+/// What a face needs to be an opening: edges, width [spacing] and mean corner [rad].
+constexpr std::size_t kMinSteps = 7;
+constexpr double kMinWidth = 3.0;
+constexpr double kMinCorner = 0.65 * internal::kPi;
+/// Edges between sheets are steeper than this [sine], and join normals of a smaller cosine.
+constexpr double kMaxSheetSlope = 0.6;
+constexpr double kMinSheetCosine = 0.5;
+/// Opposite sheets have normals of a smaller cosine.
+constexpr double kMaxOppositeCosine = -0.5;
+/// Neighbours on one sheet for sure have normals of a larger cosine, but for the sign, and an edge
+/// that is less steep to both planes [sine].
+constexpr double kMinOneSheetCosine = 0.9;
+constexpr double kMaxOneSheetSlope = 0.3;
+/// Cycles of up to three times this number of points do not count.
+constexpr int kReach = 2;
+/// How far the moments of directions are taken about their mean, not about 0.
+constexpr double kCentered = 0.5;
+/// From this width on an opening is certain [spacing].
+constexpr double kCertainWidth = 9.0;
+/// Loops nearer to a plane are flat [spacing].
+constexpr double kMaxFlat = 0.01;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Median length of a node's edges.
+double spacingOf(const Graph& graph, std::size_t v, std::vector<double>& lengths) {
+  lengths.assign(graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v]),
+                 graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v + 1]));
+  if (lengths.empty())
+    return 0.0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+/// The short edges of the graph that do not cross each other; those of each node in the order
+/// around its normal.
+class Rotation {
+public:
+  Rotation(const Positions& points, const Graph& graph, const std::vector<double>& spacing,
+           bool separates_opposite, int threads)
+      : points_(points), separates_opposite_(separates_opposite), threads_(threads) {
+    keepEdges(graph.size(), graph.neighbors, graph.offsets, [&](Index v, Index w, std::size_t e) {
+      return graph.lengths[e] <= kMaxLength * std::max(spacing[at(v)], spacing[at(w)]);
+    });
+    findNormals();
+    orientNormals();
+    const std::vector<Index> neighbors = neighbors_;
+    const std::vector<std::size_t> offsets = offsets_;
+    const std::vector<std::uint8_t> crosses = longerOfCrossing();
+    keepEdges(graph.size(), neighbors, offsets, [&](Index v, Index w, std::size_t e) {
+      return crosses[e] == 0 && !leavesSheet(v, w);
+    });
+    sortAround();
+  }
+
+  /// Whether an edge joins two sheets: it is steep to one of them, and their normals differ.
+  bool leavesSheet(Index v, Index w) const {
+    const Eigen::Vector3d d = direction(v, w);
+    if (separates_opposite_ && normals_.col(v).dot(normals_.col(w)) < kMaxOppositeCosine)
+      return true;
+    return std::abs(normals_.col(v).dot(normals_.col(w))) < kMinSheetCosine &&
+           std::max(std::abs(d.dot(normals_.col(v))), std::abs(d.dot(normals_.col(w)))) >
+               kMaxSheetSlope;
+  }
+
+  /// Whether neighbours on one sheet have normals to opposite sides.
+  bool isOneSided() const {
+    for (std::size_t v = 0; v + 1 < offsets_.size(); ++v)
+      for (std::size_t e = offsets_[v]; e < offsets_[v + 1]; ++e)
+        if (isTwisted(static_cast<Index>(v), neighbors_[e]))
+          return true;
+    return false;
+  }
+
+  /// The loops of all faces with at least kMinSteps edges whose mean corner is large enough, with
+  /// the face on the left seen from where the normals point.
+  std::vector<std::vector<Index>> wideFaces() const {
+    std::vector<std::vector<Index>> faces;
+    std::vector<std::uint8_t> is_seen(neighbors_.size(), 0);
+    std::vector<Index> loop;
+    for (std::size_t v = 0; v + 1 < offsets_.size(); ++v)
+      for (std::size_t e = offsets_[v]; e < offsets_[v + 1]; ++e) {
+        if (is_seen[e] != 0)
+          continue;
+        loop.clear();
+        double corners = 0.0;
+        auto from = static_cast<Index>(v);
+        for (std::size_t edge = e; is_seen[edge] == 0;) {
+          is_seen[edge] = 1;
+          const Index to = neighbors_[edge];
+          loop.push_back(from);
+          const std::size_t back = entryOf(to, from);
+          edge = back > offsets_[at(to)] ? back - 1 : offsets_[at(to) + 1] - 1;
+          corners += cornerBetween(edge, back);
+          from = to;
+        }
+        if (loop.size() >= kMinSteps && corners >= kMinCorner * static_cast<double>(loop.size()))
+          faces.push_back(loop);
+      }
+    return faces;
+  }
+
+private:
+  /// Makes the edges those of some others that meet a condition.
+  template <typename Condition>
+  void keepEdges(std::size_t n, const std::vector<Index>& neighbors,
+                 const std::vector<std::size_t>& offsets, const Condition& meets) {
+    neighbors_.clear();
+    offsets_.assign(1, 0);
+    for (std::size_t v = 0; v < n; ++v) {
+      for (std::size_t e = offsets[v]; e < offsets[v + 1]; ++e)
+        if (meets(static_cast<Index>(v), neighbors[e], e))
+          neighbors_.push_back(neighbors[e]);
+      offsets_.push_back(neighbors_.size());
+    }
+  }
+
+  bool areJoined(Index v, Index w) const {
+    const auto begin = neighbors_.begin() + static_cast<std::ptrdiff_t>(offsets_[at(v)]);
+    const auto end = neighbors_.begin() + static_cast<std::ptrdiff_t>(offsets_[at(v) + 1]);
+    return std::find(begin, end, w) != end;
+  }
+
+  /// For each edge, 1 if it crosses a shorter one: the diagonals of four points that are all
+  /// neighbours. Of two as long as each other, the one of the higher node counts as longer.
+  std::vector<std::uint8_t> longerOfCrossing() const {
+    std::vector<std::uint8_t> crosses(neighbors_.size(), 0);
+    std::vector<std::vector<Index>> scratch(static_cast<std::size_t>(threads_));
+    internal::forEachItem(offsets_.size() - 1, threads_, [&](std::size_t thread, std::size_t i) {
+      const auto v = static_cast<Index>(i);
+      std::vector<Index>& common = scratch[thread];
+      for (std::size_t e = offsets_[i]; e < offsets_[i + 1]; ++e) {
+        const Index w = neighbors_[e];
+        common.clear();
+        for (std::size_t f = offsets_[i]; f < offsets_[i + 1]; ++f)
+          if (neighbors_[f] != w && areJoined(neighbors_[f], w))
+            common.push_back(neighbors_[f]);
+        // In an order that is the same from both ends.
+        std::sort(common.begin(), common.end());
+        for (std::size_t a = 0; a < common.size(); ++a)
+          for (std::size_t b = a + 1; b < common.size(); ++b)
+            if (areJoined(common[a], common[b]) && isLonger(v, w, common[a], common[b]) &&
+                doCross(std::min(v, w), std::max(v, w), common[a], common[b]))
+              crosses[e] = 1;
+      }
+    });
+    return crosses;
+  }
+
+  bool isTwisted(Index v, Index w) const {
+    const Eigen::Vector3d d = direction(v, w);
+    return normals_.col(v).dot(normals_.col(w)) < -kMinOneSheetCosine &&
+           std::abs(d.dot(normals_.col(v))) < kMaxOneSheetSlope &&
+           std::abs(d.dot(normals_.col(w))) < kMaxOneSheetSlope;
+  }
+
+  bool isLonger(Index v, Index w, Index a, Index b) const {
+    const double length = (points_.col(v) - points_.col(w)).squaredNorm();
+    const double other = (points_.col(a) - points_.col(b)).squaredNorm();
+    return length != other ? length > other : std::max(v, w) > std::max(a, b);
+  }
+
+  /// Whether two edges cross, seen along the normal of v.
+  bool doCross(Index v, Index w, Index a, Index b) const {
+    const Eigen::Vector3d normal = normals_.col(v);
+    const auto side = [&](Index from, Index to, Index of) {
+      const Eigen::Vector3d edge = points_.col(to) - points_.col(from);
+      return normal.dot(edge.cross(Eigen::Vector3d(points_.col(of) - points_.col(from)))) > 0.0;
+    };
+    return side(v, w, a) != side(v, w, b) && side(a, b, v) != side(a, b, w);
+  }
+
+  Eigen::Vector3d direction(Index v, Index w) const {
+    return (points_.col(w) - points_.col(v)).stableNormalized();
+  }
+
+  void findNormals() {
+    const std::size_t n = offsets_.size() - 1;
+    normals_.resize(3, static_cast<Eigen::Index>(n));
+    internal::forEachItem(n, threads_, [&](std::size_t, std::size_t i) {
+      const auto v = static_cast<Index>(i);
+      Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      double count = 0.0;
+      const auto add = [&](Index w) {
+        const Eigen::Vector3d d = direction(v, w);
+        moments += d * d.transpose();
+        sum += d;
+        count += 1.0;
+      };
+      for (std::size_t e = offsets_[i]; e < offsets_[i + 1]; ++e) {
+        const Index w = neighbors_[e];
+        add(w);
+        for (std::size_t f = offsets_[at(w)]; f < offsets_[at(w) + 1]; ++f)
+          if (neighbors_[f] != v)
+            add(neighbors_[f]);
+      }
+      // On a sharp edge the moments alone would decide for one of its two planes.
+      if (count > 0.0)
+        moments -= kCentered / count * sum * sum.transpose();
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+      solver.computeDirect(moments);
+      normals_.col(v) = solver.eigenvectors().col(0);
+    });
+  }
+
+  /// Turns the normals of each component to one side: along edges between the most similar normals
+  /// first, by union and find with signs.
+  void orientNormals() {
+    constexpr int buckets = 256;
+    const std::size_t n = offsets_.size() - 1;
+    std::vector<std::vector<std::pair<Index, Index>>> edges(buckets);
+    for (std::size_t v = 0; v < n; ++v)
+      for (std::size_t e = offsets_[v]; e < offsets_[v + 1]; ++e) {
+        const Index w = neighbors_[e];
+        if (at(w) < v)
+          continue;
+        const double cosine =
+            std::abs(normals_.col(static_cast<Eigen::Index>(v)).dot(normals_.col(w)));
+        const auto bucket = static_cast<std::size_t>(
+            std::clamp(static_cast<int>((1.0 - cosine) * buckets), 0, buckets - 1));
+        edges[bucket].emplace_back(static_cast<Index>(v), w);
+      }
+    std::vector<Index> parent(n);
+    std::vector<std::int8_t> sign(n, 1);  // of the normal, relative to its parent's
+    for (std::size_t v = 0; v < n; ++v)
+      parent[v] = static_cast<Index>(v);
+    const auto find = [&](Index v) {
+      int s = 1;
+      while (parent[at(v)] != v) {
+        const Index up = parent[at(v)];
+        // The path is halved.
+        sign[at(v)] =
+            static_cast<std::int8_t>(sign[at(v)] * (parent[at(up)] == up ? 1 : sign[at(up)]));
+        parent[at(v)] = parent[at(up)];
+        s *= sign[at(v)];
+        v = parent[at(v)];
+      }
+      return std::pair(v, s);
+    };
+    for (const auto& bucket : edges)
+      for (const auto& [v, w] : bucket) {
+        const auto [root_v, sign_v] = find(v);
+        const auto [root_w, sign_w] = find(w);
+        if (root_v == root_w)
+          continue;
+        const int same = normals_.col(v).dot(normals_.col(w)) < 0.0 ? -1 : 1;
+        const Index low = std::min(root_v, root_w);
+        const Index high = std::max(root_v, root_w);
+        parent[at(high)] = low;
+        sign[at(high)] = static_cast<std::int8_t>(sign_v * sign_w * same);
+      }
+    for (std::size_t v = 0; v < n; ++v)
+      if (find(static_cast<Index>(v)).second < 0)
+        normals_.col(static_cast<Eigen::Index>(v)) *= -1.0;
+  }
+
+  /// Sorts the neighbours of each node counter-clockwise.
+  void sortAround() {
+    const std::size_t n = offsets_.size() - 1;
+    angles_.resize(neighbors_.size());
+    std::vector<std::vector<std::pair<double, Index>>> scratch(static_cast<std::size_t>(threads_));
+    internal::forEachItem(n, threads_, [&](std::size_t thread, std::size_t v) {
+      auto& around = scratch[thread];
+      around.clear();
+      const Eigen::Vector3d normal = normals_.col(static_cast<Eigen::Index>(v));
+      const Eigen::Vector3d x = normal.unitOrthogonal();
+      const Eigen::Vector3d y = normal.cross(x);
+      for (std::size_t e = offsets_[v]; e < offsets_[v + 1]; ++e) {
+        const Eigen::Vector3d d = direction(static_cast<Index>(v), neighbors_[e]);
+        around.emplace_back(std::atan2(y.dot(d), x.dot(d)), neighbors_[e]);
+      }
+      std::sort(around.begin(), around.end());
+      for (std::size_t k = 0; k < around.size(); ++k) {
+        angles_[offsets_[v] + k] = around[k].first;
+        neighbors_[offsets_[v] + k] = around[k].second;
+      }
+    });
+  }
+
+  /// Where v names w.
+  std::size_t entryOf(Index v, Index w) const {
+    std::size_t e = offsets_[at(v)];
+    while (neighbors_[e] != w)
+      ++e;
+    return e;
+  }
+
+  /// The angle counter-clockwise from one edge of a node to another, a full turn if they are one.
+  double cornerBetween(std::size_t from, std::size_t to) const {
+    const double angle = angles_[to] - angles_[from];
+    return angle > 0.0 ? angle : angle + 2.0 * internal::kPi;
+  }
+
+  const Positions& points_;
+  bool separates_opposite_;
+  int threads_;
+  std::vector<std::size_t> offsets_{0};
+  std::vector<Index> neighbors_;
+  std::vector<double> angles_;
+  Positions normals_;
+};
+
+/// Sizes of what a loop encloses.
+Opening measured(const Positions& points, const std::vector<double>& spacing,
+                 std::vector<Index> loop) {
+  Opening opening;
+  opening.loop = std::move(loop);
+  const auto m = static_cast<double>(opening.loop.size());
+  for (const Index v : opening.loop) {
+    opening.center += points.col(v) / m;
+    opening.spacing += spacing[at(v)] / m;
+  }
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+    const Eigen::Vector3d p = points.col(opening.loop[i]) - opening.center;
+    const Eigen::Vector3d q =
+        points.col(opening.loop[i + 1 < opening.loop.size() ? i + 1 : 0]) - opening.center;
+    opening.boundary_length += (q - p).norm();
+    area += p.cross(q) / 2.0;
+    moments += p * p.transpose() / m;
+  }
+  opening.area = area.norm();
+  opening.width = std::min(4.0 * opening.area / opening.boundary_length,
+                           opening.boundary_length / internal::kPi);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
+  opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < kMaxFlat * opening.spacing;
+  opening.certainty = std::clamp(
+      (opening.width / opening.spacing - kMinWidth) / (kCertainWidth - kMinWidth), 0.0, 1.0);
+  return opening;
+}
+
+/// The edges of a graph across openings, and from a loop to another sheet.
+std::vector<std::array<Index, 2>> falseEdges(const Graph& graph, const Rotation& rotation,
+                                             const Openings& found) {
+  std::vector<Index> loop_of(graph.size(), -1);
+  for (std::size_t i = 0; i < found.openings.size(); ++i)
+    for (const Index v : found.openings[i].loop)
+      loop_of[at(v)] = static_cast<Index>(i);
+  std::vector<std::array<Index, 2>> edges;
+  for (std::size_t v = 0; v < graph.size(); ++v)
+    for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {
+      const Index w = graph.neighbors[e];
+      if (at(w) < v || (loop_of[v] < 0 && loop_of[at(w)] < 0))
+        continue;
+      const bool is_across =
+          loop_of[v] == loop_of[at(w)] &&
+          graph.lengths[e] > kMaxLength * std::max(found.spacing[v], found.spacing[at(w)]);
+      if (is_across || rotation.leavesSheet(static_cast<Index>(v), w))
+        edges.push_back({static_cast<Index>(v), w});
+    }
+  return edges;
+}
+
+/// The openings that are seen with edges between opposite sheets, or without.
+Openings openingsOf(const Positions& points, const Graph& graph, const std::vector<double>& spacing,
+                    bool separates_opposite, int threads) {
+  Openings result;
+  result.spacing = spacing;
+  const Rotation rotation(points, graph, spacing, separates_opposite, threads);
+  for (std::vector<Index>& loop : rotation.wideFaces()) {
+    Opening opening = measured(points, spacing, std::move(loop));
+    if (opening.width >= kMinWidth * opening.spacing)
+      result.openings.push_back(std::move(opening));
+  }
+  result.is_one_sided = rotation.isOneSided();
+  result.false_edges = falseEdges(graph, rotation, result);
+  std::stable_sort(
+      result.openings.begin(), result.openings.end(),
+      [](const Opening& a, const Opening& b) { return a.boundary_length > b.boundary_length; });
+  return result;
+}
+
+/// Cycles of the graph that are left when the openings are filled: none if these are all that there
+/// are, and the surface has no handles.
+std::optional<int> cyclesLeft(const Positions& points, const Graph& graph, const Openings& found) {
+  return internal::countCycles(internal::fillOpenings(points, graph, found).graph, kReach);
+}
+
+}  // namespace
+
+Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution) {
+  internal::checkGraph("findOpenings", graph);
+  if (static_cast<std::size_t>(points.cols()) != graph.size())
+    throw InvalidInput("findOpenings: " + std::to_string(points.cols()) +
+                       " points for a graph of " + std::to_string(graph.size()) +
+                       " nodes; give the graph of the points");
+  const int threads =
+      internal::threadCount(execution.threads, graph.size(), internal::kShortPassThreshold);
+  std::vector<double> spacing(graph.size());
+  std::vector<std::vector<double>> scratch(static_cast<std::size_t>(threads));
+  internal::forEachItem(graph.size(), threads, [&](std::size_t thread, std::size_t v) {
+    spacing[v] = spacingOf(graph, v, scratch[thread]);
+  });
+  Openings found = openingsOf(points, graph, spacing, false, threads);
+  if (found.openings.empty())
+    return found;
+  const std::optional<int> cycles = cyclesLeft(points, graph, found);
+  if (cycles == 0)
+    return found;
+  Openings other = openingsOf(points, graph, spacing, true, threads);
+  const std::optional<int> other_cycles = cyclesLeft(points, graph, other);
+  return other_cycles && (!cycles || *other_cycles < *cycles) ? other : found;
+}
+
+}  // namespace spherical_param

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "helpers.h"
+
+#include <functional>
+#include <map>
+#include <set>
+#include <vector>
+
+/// Clouds of surfaces with openings, and checks of their meshes.
+namespace spherical_param::test {
+
+/// The points that meet a condition.
+inline Positions pointsWhere(const Positions& points,
+                             const std::function<bool(const Eigen::Vector3d&)>& condition) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (condition(points.col(i)))
+      kept.push_back(i);
+  return points(Eigen::all, kept);
+}
+
+/// A sphere of about n points without discs around the points of a sparse spiral.
+///
+/// \param radius of the discs [radius of the sphere].
+inline Positions sphereWithHoles(Index n, Index holes, double radius) {
+  const Positions centers = spiralSphere(holes);
+  return pointsWhere(spiralSphere(n), [&](const Eigen::Vector3d& point) {
+    return (centers.colwise() - point).colwise().norm().minCoeff() > radius;
+  });
+}
+
+inline Positions hemisphere(Index n) {
+  return pointsWhere(spiralSphere(2 * n), [](const Eigen::Vector3d& p) { return p.z() < 0.0; });
+}
+
+/// A tube of radius 1 without ends: rings of points, each turned by half a step.
+inline Positions tube(int rings, int around) {
+  Positions points(3, rings * around);
+  const double step = 2.0 * kPi / around;
+  for (int r = 0; r < rings; ++r)
+    for (int a = 0; a < around; ++a)
+      points.col(r * around + a) << std::cos(step * (a + 0.5 * r)), std::sin(step * (a + 0.5 * r)),
+          step * r;
+  return points;
+}
+
+/// Random points of the square [0, side]^2 at z = 0, a unit apart.
+inline Positions flatPatch(int side) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> jitter(0.0, 0.3);
+  Positions points(3, side * side);
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y)
+      points.col(x * side + y) << x + jitter(random), y + jitter(random), 0.0;
+  return points;
+}
+
+/// The boundary of a mesh, found edge by edge from the triangles alone: each vertex on it and the
+/// next one, with the surface on the left. A vertex that is twice on it has -2.
+inline std::map<Index, Index> boundaryOf(const Triangles& triangles) {
+  std::set<std::pair<Index, Index>> sides;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k)
+      sides.emplace(triangles(k, t), triangles((k + 1) % 3, t));
+  std::map<Index, Index> next;
+  for (const auto& [v, w] : sides)
+    if (sides.count({w, v}) == 0)
+      next[v] = next.count(v) == 0 ? w : -2;
+  return next;
+}
+
+}  // namespace spherical_param::test

@@ -1,0 +1,121 @@
+#include "spherical_param/openings.h"
+
+#include "graph_helpers.h"
+#include "open_shapes.h"
+#include "spherical_param/errors.h"
+
+#include <Eigen/Geometry>
+
+namespace spherical_param {
+namespace {
+
+using test::flatPatch;
+using test::hemisphere;
+using test::pointsWhere;
+using test::sphereWithHoles;
+using test::spiralSphere;
+using test::tube;
+
+Graph graphOf(const Positions& points) {
+  return buildNeighborGraph(points, test::bruteForceNeighbors(points, 24)).graph;
+}
+
+std::vector<Opening> openingsOf(const Positions& points) {
+  return findOpenings(points, graphOf(points)).openings;
+}
+
+TEST(Openings, AreNoneOfClosedSurfacesHoweverTheyAreSampled) {
+  EXPECT_TRUE(openingsOf(spiralSphere(1500)).empty());
+  EXPECT_TRUE(openingsOf(test::randomSphere(1500, 1)).empty());
+  EXPECT_TRUE(openingsOf(test::cubeGrid(14)).empty());
+}
+
+TEST(Openings, AreAsManyAsThereAre) {
+  EXPECT_EQ(openingsOf(hemisphere(800)).size(), 1U);
+  EXPECT_EQ(openingsOf(tube(20, 40)).size(), 2U);
+  for (const Index holes : {1, 2, 20})
+    EXPECT_EQ(openingsOf(sphereWithHoles(4000, holes, 0.2)).size(),
+              static_cast<std::size_t>(holes));
+  // More than half of the sphere.
+  EXPECT_EQ(openingsOf(pointsWhere(spiralSphere(3000),
+                                   [](const Eigen::Vector3d& p) { return p.z() < -0.3; }))
+                .size(),
+            1U);
+}
+
+TEST(Openings, HaveTheSizesOfTheHole) {
+  const Positions points = tube(20, 40);
+  for (const Opening& opening : openingsOf(points)) {
+    EXPECT_EQ(opening.loop.size(), 40U);
+    EXPECT_NEAR(opening.boundary_length, 2.0 * test::kPi, 0.01);
+    EXPECT_NEAR(opening.area, test::kPi, 0.02);
+    EXPECT_NEAR(opening.width, 2.0, 0.02);
+    EXPECT_NEAR(opening.spacing, 2.0 * test::kPi / 40, 0.03);
+    EXPECT_LT(opening.center.head<2>().norm(), 1e-9);
+    EXPECT_EQ(opening.certainty, 1.0);
+    EXPECT_TRUE(opening.is_flat);
+    EXPECT_FALSE(opening.is_filled);
+  }
+  EXPECT_FALSE(openingsOf(sphereWithHoles(2000, 1, 0.5)).front().is_flat);
+}
+
+TEST(Openings, CountFromThreeSpacingsOn) {
+  // 3,000 points are 0.065 apart.
+  std::vector<double> certainties;
+  for (const double radius : {0.05, 0.15, 0.25, 0.4})
+    for (const Opening& opening : openingsOf(sphereWithHoles(3000, 1, radius)))
+      certainties.push_back(opening.certainty);
+  ASSERT_EQ(certainties.size(), 3U);  // all but the least
+  EXPECT_LT(certainties[0], 0.7);
+  EXPECT_LT(certainties[0], certainties[1]);
+  EXPECT_EQ(certainties[2], 1.0);
+}
+
+TEST(Openings, OfAPlanePatchAreItsRimAndItsHoles) {
+  const Positions patch = pointsWhere(flatPatch(40), [](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;
+  });
+  const std::vector<Opening> openings = openingsOf(patch);
+  ASSERT_EQ(openings.size(), 2U);
+  EXPECT_NEAR(openings[0].area, 39.0 * 39.0, 50.0);
+  EXPECT_NEAR(openings[1].area, 36.0 * test::kPi, 25.0);
+}
+
+TEST(Openings, AreTheSameMovedTurnedAndScaled) {
+  const Positions points = sphereWithHoles(2000, 4, 0.3);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  const Positions moved = (512.0 * (turn * points)).colwise() + Eigen::Vector3d(7.0, -3.0, 11.0);
+  const auto sizes = [](const std::vector<Opening>& openings) {
+    std::vector<std::size_t> edges;
+    for (const Opening& opening : openings)
+      edges.push_back(opening.loop.size());
+    std::sort(edges.begin(), edges.end());
+    return edges;
+  };
+  EXPECT_EQ(sizes(openingsOf(points)).size(), 4U);
+  EXPECT_EQ(sizes(openingsOf(points)), sizes(openingsOf(moved)));
+}
+
+TEST(Openings, DoNotDependOnTheThreads) {
+  const Positions points = sphereWithHoles(20000, 3, 0.3);
+  const Graph graph = buildNeighborGraph(points, findNearestNeighbors(points, 24)).graph;
+  Execution one;
+  one.threads = 1;
+  Execution four;
+  four.threads = 4;
+  const Openings a = findOpenings(points, graph, one);
+  const Openings b = findOpenings(points, graph, four);
+  ASSERT_EQ(a.openings.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(a.openings[i].loop, b.openings[i].loop);
+  EXPECT_EQ(a.false_edges, b.false_edges);
+}
+
+TEST(Openings, NeedTheGraphOfThePoints) {
+  const Positions points = spiralSphere(100);
+  EXPECT_THROW(findOpenings(points.leftCols(99), graphOf(points)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace spherical_param
