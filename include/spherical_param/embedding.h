@@ -91,6 +91,9 @@ struct EmbeddingOptions {
   /// Starts of Multilevel on the coarsest level, of which the one of least energy is kept; 1 to
   /// 100.
   int starts = 2;
+  /// Multilevel judges a collapse by the centroid of the nodes, weighted by area (the mean squared
+  /// length of their edges), not all alike: for nodes that are spread unevenly on purpose.
+  bool centroid_by_area = false;
   /// What is kept of how the embedding unfolds; nothing by default. It costs about the memory of
   /// its frames and, with Multilevel, the time of the coarsest level.
   HistoryLimits history;

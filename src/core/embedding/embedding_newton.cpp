@@ -1,5 +1,7 @@
 #include "embedding_newton.h"
 
+#include "collapse.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -105,7 +107,8 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
       options.progress(report.iterations, residual.absolute);
     const bool converged =
         residual.absolute <= options.tolerance && residual.relative <= options.relative_tolerance;
-    const bool collapses = current.directions.rowwise().mean().norm() > options.longest_mean;
+    const bool collapses =
+        centroidOf(current.directions, options.masses).norm() > options.longest_mean;
     if (converged || collapses || report.iterations >= options.max_iterations)
       break;
 

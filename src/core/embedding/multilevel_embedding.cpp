@@ -52,6 +52,23 @@ constexpr double kMaxStartCentroid = 0.99;
 constexpr std::size_t kMaxStartSize = 100000;
 /// A start is solved in about as much work as this number of passes over the nodes.
 constexpr int kMaxStartPasses = 200;
+
+/// The share of each node of each level in the area of the surface.
+std::vector<Eigen::VectorXd> areasOf(const Graph& graph, const GraphHierarchy& hierarchy) {
+  std::vector<Eigen::VectorXd> areas(1, Eigen::VectorXd(static_cast<Eigen::Index>(graph.size())));
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    double squares = 0.0;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+      squares += graph.lengths[e] * graph.lengths[e];
+    const auto degree = static_cast<double>(graph.offsets[i + 1] - graph.offsets[i]);
+    areas.back()[static_cast<Eigen::Index>(i)] = squares / std::max(degree, 1.0);
+  }
+  areas.back() /= areas.back().sum();
+  for (const HierarchyLevel& level : hierarchy.levels)
+    areas.emplace_back(level.prolongation.transpose() * areas.back());
+  return areas;
+}
+
 /// The work on all levels; level 0 is the graph itself.
 class Solver {
 public:
@@ -60,7 +77,10 @@ public:
       : graph_(graph), hierarchy_(hierarchy), options_(options), observer_(observer),
         threads_(execution.threads), weights_(options.weights, options.exponent),
         adaptive_weights_(EdgeWeights::Adaptive, options.exponent),
-        report_(reportOf(execution, "embedding")) {}
+        report_(reportOf(execution, "embedding")),
+        masses_(options.centroid_by_area ? areasOf(graph, hierarchy)
+                                         : std::vector<Eigen::VectorXd>(hierarchy.levels.size() + 1)) {
+  }
 
   Embedding run() {
     levels().resize(hierarchy_.levels.size() + 1);
@@ -187,7 +207,7 @@ private:
     if (result_.report.added_barrier)
       energy.addBarrier(start.u);
     smooth(l, adaptive_weights_, kStartSweeps, {}, start.u);
-    minimize(energy, std::nullopt, preconditioner, progress, start.u, start.report);
+    minimize(l, energy, std::nullopt, preconditioner, progress, start.u, start.report);
     start.value = energy.value(start.u);
   }
 
@@ -232,7 +252,7 @@ private:
       for (std::size_t i = 0; i < starts.size(); ++i) {
         Start& start = starts[i];
         ++result_.report.starts;
-        if (isCollapsed(start.u) || !std::isfinite(start.value)) {
+        if (isCollapsed(start.u, masses_[l]) || !std::isfinite(start.value)) {
           ++result_.report.collapsed_starts;
         } else if (start.value < least) {
           least = start.value;
@@ -308,15 +328,17 @@ private:
   }
 
   /// Newton's method on a level, until it is solved fully and to the tolerance, if there is one.
-  static NewtonReport minimize(const EmbeddingEnergy& energy, std::optional<double> tolerance,
-                               MultigridPreconditioner& preconditioner,
-                               const std::function<void(int, double)>& progress, Positions& u,
-                               LevelReport& report) {
+  NewtonReport minimize(std::size_t l, const EmbeddingEnergy& energy,
+                        std::optional<double> tolerance,
+                        MultigridPreconditioner& preconditioner,
+                        const std::function<void(int, double)>& progress, Positions& u,
+                        LevelReport& report) const {
     NewtonOptions options;
     options.relative_tolerance = kSolvedTolerance;
     options.tolerance = tolerance.value_or(1.0);
     if (!energy.hasBarrier())
       options.longest_mean = kMaxStartCentroid;
+    options.masses = masses_[l];
     options.progress = progress;
     NewtonReport newton = minimizeByNewton(energy, preconditioner, options, u);
     report.newton_iterations += newton.iterations;
@@ -333,14 +355,14 @@ private:
       observe(l, EmbeddingStep::Newton, iteration, residual, u);
     };
     MultigridPreconditioner preconditioner = preconditionerOf(l);
-    return minimize(energy, tolerance, preconditioner, progress, u, levels()[l]);
+    return minimize(l, energy, tolerance, preconditioner, progress, u, levels()[l]);
   }
 
   /// Solves a level from an embedding that is not collapsed; adds a barrier if it becomes so.
   NewtonReport solveUncollapsed(std::size_t l, std::optional<double> tolerance, Positions& u) {
     Positions solved = u;
     NewtonReport newton = solve(l, energyAt(l, u), tolerance, solved);
-    if (isCollapsed(solved) && !result_.report.added_barrier) {
+    if (isCollapsed(solved, masses_[l]) && !result_.report.added_barrier) {
       result_.report.added_barrier = true;
       solved = u;
       newton = solve(l, energyAt(l, u), tolerance, solved);
@@ -364,8 +386,8 @@ private:
     if (options_.tolerance)
       report.stop_reason =
           report.residual <= *options_.tolerance ? StopReason::Converged : StopReason::Stagnated;
-    report.centroid_norm = u.rowwise().mean().norm();
-    if (isCollapsed(u))
+    report.centroid_norm = centroidOf(u, masses_[0]).norm();
+    if (isCollapsed(u, masses_[0]))
       report.stop_reason = StopReason::Collapsed;
     observe(0, EmbeddingStep::End, 0, report.residual, u);
     result_.directions = std::move(u);
@@ -379,6 +401,8 @@ private:
   EdgeWeightLaw weights_;
   EdgeWeightLaw adaptive_weights_;  ///< of the starts, whatever was chosen
   FractionReport report_;
+  /// Of the centroid of each level; empty: all nodes alike.
+  std::vector<Eigen::VectorXd> masses_;
   Embedding result_;
   Index best_center_ = 0;  ///< of the start that solveStarts() kept last
 };
