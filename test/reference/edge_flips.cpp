@@ -55,7 +55,7 @@ private:
     return internal::RawFacet(points_.col(a), points_.col(b), points_.col(c)).facet();
   }
   double edge(Index v, Index w, const internal::Facet& f, const internal::Facet& g) const {
-    return terms_.edge(v, w, points_.col(v), points_.col(w), f.normal, g.normal);
+    return terms_.edge(v, w, points_.col(v), points_.col(w), f, g);
   }
   double cost(const internal::Facet& f) const { return terms_.cost(f.radius); }
 

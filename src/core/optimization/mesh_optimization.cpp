@@ -2,6 +2,7 @@
 
 #include "graph_checks.h"
 #include "mesh_optimizer.h"
+#include "open_mesh.h"
 #include "optimization_constants.h"
 #include "option_checks.h"
 #include "parallel.h"
@@ -53,11 +54,11 @@ void checkInput(const Positions& points, const Triangles& triangles, const Graph
 
 /// The optimiser of a mesh, after checks of the input.
 MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangles,
-                               const Graph& graph, int threads,
-                               const internal::FractionReport& report) {
+                               const Graph& graph, const internal::OpenPlaces* openings,
+                               int threads, const internal::FractionReport& report) {
   checkInput(points, triangles, graph);
   internal::reportFraction(report, 0.0);
-  MeshOptimizer optimizer(points, triangles, graph, threads, report);
+  MeshOptimizer optimizer(points, triangles, graph, threads, report, openings);
   if (!optimizer.mesh().isSphere(threads))
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points");
@@ -67,11 +68,12 @@ MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangl
 class Optimization {
 public:
   Optimization(const Positions& points, const Triangles& triangles, const Graph& graph,
-               const OptimizationOptions& options, std::uint32_t seed, const Execution& execution)
+               const internal::OpenPlaces* openings, const OptimizationOptions& options,
+               std::uint32_t seed, const Execution& execution)
       : graph_(graph), options_(options), threads_(execution.threads),
         report_(internal::reportOf(execution, "optimization")), given_(&points), points_(&points),
         random_(seed), budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
-        optimizer_(checkedOptimizer(points, triangles, graph, threads_, report_)) {}
+        optimizer_(checkedOptimizer(points, triangles, graph, openings, threads_, report_)) {}
 
   MeshOptimization run() {
     switch (options_.method) {
@@ -366,8 +368,15 @@ private:
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
                               const Graph& graph, const OptimizationOptions& options,
                               std::uint32_t seed, const Execution& execution) {
-  internal::checkOptions(options);
-  return Optimization(points, triangles, graph, options, seed, execution).run();
+  return internal::optimizeMesh(points, triangles, graph, nullptr, options, seed, execution);
+}
+
+MeshOptimization internal::optimizeMesh(const Positions& points, const Triangles& triangles,
+                                        const Graph& graph, const OpenPlaces* openings,
+                                        const OptimizationOptions& options, std::uint32_t seed,
+                                        const Execution& execution) {
+  checkOptions(options);
+  return Optimization(points, triangles, graph, openings, options, seed, execution).run();
 }
 
 }  // namespace spherical_param

@@ -33,8 +33,9 @@ double medianOf(std::vector<double>& values) {
 }  // namespace
 
 MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles,
-                             const Graph& graph, int threads, const FractionReport& report)
-    : points_(&points), graph_(graph),
+                             const Graph& graph, int threads, const FractionReport& report,
+                             const OpenPlaces* openings)
+    : points_(&points), graph_(graph), openings_(openings),
       threads_(
           threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
       mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
@@ -70,6 +71,7 @@ void MeshOptimizer::reset(const Triangles& triangles) {
 
 void MeshOptimizer::setEnergy(const SurfaceEnergy& energy) {
   terms_ = energy;
+  terms_.openings = openings_;
   energy_ = recomputedEnergy();
 }
 
@@ -511,7 +513,7 @@ std::vector<Index> MeshOptimizer::filter(std::size_t count, const Condition& mee
 std::vector<std::pair<Index, Index>> MeshOptimizer::edgesBelow(double cosine) const {
   const auto is_below = [&](Index t, int k) {
     const Index other = mesh_.neighbor(t, k);
-    return t < other && facetOf(t).normal.dot(facetOf(other).normal) < cosine;
+    return t < other && Facet::cosine(facetOf(t), facetOf(other)) < cosine;
   };
   std::vector<std::pair<Index, Index>> edges;
   for (const Index t : filter(facets_.size(), [&](Index i) {
@@ -527,7 +529,7 @@ bool MeshOptimizer::isRough(Index v, double cosine) const {
   bool is_sharp = false;
   mesh_.forEachAround(v, [&](Index t, int corner) {
     const Index next = mesh_.neighbor(t, (corner + 1) % 3);
-    is_sharp = is_sharp || facetOf(t).normal.dot(facetOf(next).normal) < cosine;
+    is_sharp = is_sharp || Facet::cosine(facetOf(t), facetOf(next)) < cosine;
   });
   if (is_sharp)
     return true;
@@ -578,7 +580,7 @@ void MeshOptimizer::gatherCosines(Index v, std::vector<double>& cosines) const {
   cosines.clear();
   mesh_.forEachAround(v, [&](Index t, int corner) {
     for (const int k : {corner, (corner + 1) % 3})
-      cosines.push_back(facetOf(t).normal.dot(facetOf(mesh_.neighbor(t, k)).normal));
+      cosines.push_back(Facet::cosine(facetOf(t), facetOf(mesh_.neighbor(t, k))));
   });
 }
 
@@ -701,9 +703,26 @@ std::vector<std::uint8_t> MeshOptimizer::plainFans(const FractionReport& report)
   return fans;
 }
 
+Triangles MeshOptimizer::trianglesAt(const std::vector<Index>& places) const {
+  Triangles triangles(3, static_cast<Eigen::Index>(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      triangles(k, static_cast<Eigen::Index>(i)) = mesh_.vertex(places[i], k);
+  return triangles;
+}
+
 std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const FractionReport& report) const {
   const std::vector<std::uint8_t> fans = plainFans(report);
-  return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_, report);
+  if (openings_ == nullptr)
+    return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_, report);
+  const std::vector<Index> surface =
+      filter(facets_.size(), [&](Index t) { return !facetOf(t).isOpen(); });
+  auto pairs = findSelfIntersections(*points_, trianglesAt(surface), fans, threads_, report);
+  for (auto& [t, u] : pairs) {
+    t = surface[at(t)];
+    u = surface[at(u)];
+  }
+  return pairs;
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {
@@ -716,6 +735,8 @@ std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertice
       if (seen_triangles_[at(t)] == pass_)
         return;
       seen_triangles_[at(t)] = pass_;
+      if (facetOf(t).isOpen())
+        return;
       triangles.push_back(t);
       for (int k = 0; k < 3; ++k) {
         const Index corner = mesh_.vertex(t, k);

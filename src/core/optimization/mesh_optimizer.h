@@ -18,10 +18,13 @@ namespace spherical_param::internal {
 /// rolled back, to the last index and bit. The running total of the energy is kept.
 class MeshOptimizer {
 public:
+  /// \param openings of the surface; nullptr: it is closed.
+  ///
   /// All but the triangles and the report, which is called with the fraction that is done, must
   /// outlive this. setEnergy() must come first.
   MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
-                int threads, const FractionReport& report = {});
+                int threads, const FractionReport& report = {},
+                const OpenPlaces* openings = nullptr);
 
   const SphereMesh& mesh() const { return mesh_; }
 
@@ -78,7 +81,8 @@ public:
   /// n entries: the median of the angles at a vertex's edges and those opposite to it [rad].
   std::vector<double> medianAngles() const;
 
-  /// All pairs of triangles that intersect, by their places in the mesh; none may be free.
+  /// All pairs of triangles that intersect, by their places in the mesh; none may be free. Open
+  /// triangles do not count.
   std::vector<std::array<Index, 2>> intersections(const FractionReport& report = {}) const;
   /// For each vertex, 1 if the triangles around it are evidently such that no two of them
   /// intersect: seen along an axis, they go around it once.
@@ -103,7 +107,10 @@ private:
 
   const Facet& facetOf(Index t) const { return facets_[static_cast<std::size_t>(t)]; }
   RawFacet rawFacet(Index a, Index b, Index c) const {
-    return RawFacet(points_->col(a), points_->col(b), points_->col(c));
+    RawFacet facet(points_->col(a), points_->col(b), points_->col(c));
+    if (openings_ != nullptr && openings_->isOpen(a, b, c))
+      facet.open();
+    return facet;
   }
   Facet facet(Index a, Index b, Index c) const { return rawFacet(a, b, c).facet(); }
   double cost(const Facet& facet) const { return terms_.cost(facet.radius); }
@@ -112,6 +119,7 @@ private:
   bool isNearChange(Index t, std::uint8_t change) const;
   void unmark(std::uint8_t change);
   bool isPlainFan(Index v) const;
+  Triangles trianglesAt(const std::vector<Index>& places) const;
   /// Of the angles of medianAngles().
   void gatherCosines(Index v, std::vector<double>& cosines) const;
   void updateUsualAngles(double factor, double least);
@@ -121,7 +129,7 @@ private:
   std::vector<Index> filter(std::size_t count, const Condition& meets,
                             const FractionReport& report = {}) const;
   double edge(Index v, Index w, const Facet& f, const Facet& g) const {
-    return terms_.edge(v, w, points_->col(v), points_->col(w), f.normal, g.normal);
+    return terms_.edge(v, w, points_->col(v), points_->col(w), f, g);
   }
 
   /// What the energy falls by if a side is flipped, or no more than `floor` if that is so.
@@ -148,6 +156,7 @@ private:
 
   const Positions* points_;
   const Graph& graph_;
+  const OpenPlaces* openings_;
   const int threads_;
   SphereMesh mesh_;
   SurfaceEnergy terms_;

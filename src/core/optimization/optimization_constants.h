@@ -37,6 +37,19 @@ constexpr double kMaxEvenSampling = 0.3;
 constexpr double kTypicalAngleFactor = 5.0;
 constexpr double kMinTypicalAngle = 0.17453292519943295;
 
+// --- Openings ------------------------------------------------------------------------------------
+
+/// A triangle near a loop is over the opening if a side is longer than this [larger spacing of its
+/// ends].
+constexpr double kMaxSurfaceEdge = 1.6;
+/// Of open triangles: part of mu R, and of the price of an edge between two of them.
+constexpr double kOpenTriangle = 0.5;
+constexpr double kOpenEdge = 0.5;
+/// Price of an edge between an open triangle and the surface that is in no loop [length of the
+/// edge]: the first, and the second times mu. Too low makes holes, too high folds ears.
+constexpr double kRimPrice = 0.8;
+constexpr double kRimPriceOfMu = 2.0;
+
 // --- Gains ---------------------------------------------------------------------------------------
 
 /// Changes of the energy below this are rounding [mean length of the graph's edges]. With 0,

@@ -1,20 +1,24 @@
 #include "smoothed_mesh.h"
 
-#include "spherical_param/self_intersection.h"
+#include "open_mesh.h"
 
 #include <utility>
 
 namespace spherical_param::internal {
 
 SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                        const SmoothingOptions& options, OptimizationMethod method,
-                        std::uint32_t seed, const Execution& execution) {
+                        const OpenPlaces* openings, const SmoothingOptions& options,
+                        OptimizationMethod method, std::uint32_t seed, const Execution& execution) {
   Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
   std::size_t& count = result.report.self_intersections;
-  count = findSelfIntersections(result.points, triangles, execution).size();
+  OptimizationOptions none;
+  none.method = OptimizationMethod::None;
+  count = optimizeMesh(result.points, triangles, graph, openings, none, seed, execution)
+              .self_intersections.size();
   if (count > 0 && method == OptimizationMethod::Full) {
-    MeshOptimization outcome = optimizeMesh(result.points, triangles, graph, {}, seed, execution);
+    MeshOptimization outcome =
+        optimizeMesh(result.points, triangles, graph, openings, {}, seed, execution);
     result.triangles = std::move(outcome.triangles);
     count = outcome.self_intersections.size();
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "open_places.h"
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/smoothing.h"
 #include "spherical_param/types.h"
@@ -21,11 +22,12 @@ struct SmoothedMesh {
 /// 49,997.
 ///
 /// \param graph     of the points.
+/// \param openings  of the surface; nullptr: it is closed.
 /// \param method    of the optimisation.
 /// \param seed      of the optimisation.
 /// \param execution threads, progress
 SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                        const SmoothingOptions& options, OptimizationMethod method,
-                        std::uint32_t seed, const Execution& execution);
+                        const OpenPlaces* openings, const SmoothingOptions& options,
+                        OptimizationMethod method, std::uint32_t seed, const Execution& execution);
 
 }  // namespace spherical_param::internal

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "open_places.h"
+#include "optimization_constants.h"
 #include "pi.h"
 #include "spherical_param/types.h"
 
@@ -14,7 +16,15 @@ namespace spherical_param::internal {
 /// What the energy needs to know of a triangle.
 struct Facet {
   Eigen::Vector3d normal;  ///< of unit length; 0 for a triangle without area
-  double radius;           ///< min(R, 4 * longest side), with the circumradius R
+  double radius;           ///< min(R, 4 * longest side), with the circumradius R; < 0: open
+
+  /// Whether the triangle is over an opening of the surface.
+  bool isOpen() const { return radius < 0.0; }
+
+  /// Cosine of the angle between two normals; at an open triangle nothing is bent.
+  static double cosine(const Facet& a, const Facet& b) {
+    return a.isOpen() || b.isOpen() ? 1.0 : a.normal.dot(b.normal);
+  }
 };
 
 /// A facet whose normal is not yet brought to unit length: often its radius is all that is asked.
@@ -35,6 +45,9 @@ struct RawFacet {
     if (twice_area > 0.0)
       radius = std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), radius);
   }
+
+  /// Takes it for an open triangle.
+  void open() { radius *= -optimization_constants::kOpenTriangle; }
 
   Facet facet() const {
     if (!(twice_area > 0.0))
@@ -60,6 +73,9 @@ inline double fastAcos(double x) {
 
 /// Energy of a triangle mesh on points: the sum over its edges of length * bend, and over its
 /// triangles of mu * min(R, 4 * longest side), with the circumradius R. No term is negative.
+///
+/// A triangle over an opening counts half of that and does not bend; its edges have a price, unless
+/// they are in the loop around the opening.
 struct SurfaceEnergy {
   /// What an edge counts by the angle between the normals of its triangles [rad].
   enum class Bend {
@@ -73,6 +89,9 @@ struct SurfaceEnergy {
   /// Of Bend::Excess: n entries, the angle that is usual at each vertex; must outlive this.
   const double* usual_angle = nullptr;
 
+  /// Of a surface with openings: where they are; must outlive this.
+  const OpenPlaces* openings = nullptr;
+
   /// Of Bend::Excess: an edge whose normals have at least this cosine adds nothing for sure. From
   /// flatFrom(), or above 1.
   double flat_cosine = 2.0;
@@ -84,16 +103,19 @@ struct SurfaceEnergy {
   }
 
   bool operator==(const SurfaceEnergy& other) const {
-    return bend == other.bend && mu == other.mu && usual_angle == other.usual_angle;
+    return bend == other.bend && mu == other.mu && usual_angle == other.usual_angle &&
+           openings == other.openings;
   }
 
   /// What a triangle adds.
-  double cost(double radius) const { return mu * radius; }
+  double cost(double radius) const { return mu * std::abs(radius); }
 
-  /// What the edge from vertex v at p to vertex w at q adds, with the normals of its triangles.
+  /// What the edge from vertex v at p to vertex w at q adds, with its triangles.
   double edge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-              const Eigen::Vector3d& normal, const Eigen::Vector3d& other) const {
-    const double cosine = normal.dot(other);
+              const Facet& facet, const Facet& other) const {
+    if (facet.isOpen() || other.isOpen())
+      return openEdge(v, w, p, q, facet.isOpen() && other.isOpen());
+    const double cosine = facet.normal.dot(other.normal);
     if (cosine >= flat_cosine)
       return 0.0;
     const double length = (p - q).norm();
@@ -107,6 +129,17 @@ struct SurfaceEnergy {
       break;
     }
     return length * std::max(0.0, angle - (usual_angle[v] + usual_angle[w]) / 2.0);
+  }
+
+private:
+  /// What an edge of an open triangle adds.
+  double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
+                  bool are_both_open) const {
+    namespace tuned = optimization_constants;
+    if (openings->isRim(v, w))
+      return 0.0;
+    const double price = (tuned::kRimPrice + tuned::kRimPriceOfMu * mu) * (p - q).norm();
+    return are_both_open ? tuned::kOpenEdge * price : price;
   }
 };
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "open_places.h"
+#include "spherical_param/mesh_optimization.h"
+#include "spherical_param/types.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// optimizeMesh() of a surface with openings: triangles over them do not bend and do not intersect.
+///
+/// \param openings nullptr: the surface is closed.
+MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
+                              const Graph& graph, const OpenPlaces* openings,
+                              const OptimizationOptions& options, std::uint32_t seed,
+                              const Execution& execution);
+
+/// A closed mesh with openings.
+struct OpenMesh {
+  Triangles triangles;                ///< the closed mesh; changed over the openings alone
+  std::vector<std::uint8_t> is_open;  ///< for each triangle, 1 if it is over an opening
+};
+
+/// Decides which triangles of a closed mesh are over openings, so that the others are a manifold
+/// with boundary over all vertices: connected open triangles count if they are next to a loop;
+/// where two openings meet in one vertex, the narrower gap is closed there by a triangle.
+///
+/// \param points    3 x n.
+/// \param triangles a closed manifold of genus 0 over the points.
+/// \param openings  of the surface.
+OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings);
+
+/// The triangles of an open mesh that are on the surface, in their order.
+Triangles surfaceOf(const OpenMesh& mesh);
+
+/// The boundary of a manifold: closed loops of vertices, with the surface on the left; the one of
+/// most vertices first, each from its lowest vertex.
+///
+/// \param triangles    3 x m, a consistently oriented manifold with boundary.
+/// \param vertex_count vertices are [0, vertex_count).
+std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles, std::size_t vertex_count);
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,56 @@
+#include "open_places.h"
+
+#include "optimization_constants.h"
+
+#include <algorithm>
+
+namespace spherical_param::internal {
+namespace {
+
+namespace tuned = optimization_constants;
+
+/// Steps from a loop of the graph to where triangles may be open.
+constexpr int kNearSteps = 2;
+
+}  // namespace
+
+OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings)
+    : points_(points), is_near_(graph.size(), 0), spacing_(openings.spacing) {
+  std::vector<Index> ring;
+  const auto add = [&](Index v) {
+    if (is_near_[static_cast<std::size_t>(v)] == 0)
+      ring.push_back(v);
+    is_near_[static_cast<std::size_t>(v)] = 1;
+  };
+  for (const Opening& opening : openings.openings)
+    for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+      const Index v = opening.loop[i];
+      const Index w = opening.loop[i + 1 < opening.loop.size() ? i + 1 : 0];
+      rim_edges_.push_back({std::min(v, w), std::max(v, w)});
+      add(v);
+    }
+  std::sort(rim_edges_.begin(), rim_edges_.end());
+  rim_edges_.erase(std::unique(rim_edges_.begin(), rim_edges_.end()), rim_edges_.end());
+  for (int step = 0; step < kNearSteps; ++step) {
+    const std::vector<Index> last = std::move(ring);
+    ring.clear();
+    for (const Index v : last) {
+      const auto i = static_cast<std::size_t>(v);
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+        add(graph.neighbors[e]);
+    }
+  }
+}
+
+bool OpenPlaces::isLong(Index a, Index b) const {
+  const double longest = tuned::kMaxSurfaceEdge * std::max(spacing_[static_cast<std::size_t>(a)],
+                                                           spacing_[static_cast<std::size_t>(b)]);
+  return (points_.col(a) - points_.col(b)).squaredNorm() > longest * longest;
+}
+
+bool OpenPlaces::isRim(Index a, Index b) const {
+  const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
+  return std::binary_search(rim_edges_.begin(), rim_edges_.end(), edge);
+}
+
+}  // namespace spherical_param::internal

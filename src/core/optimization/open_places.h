@@ -1,0 +1,44 @@
+#pragma once
+
+#include "spherical_param/openings.h"
+#include "spherical_param/types.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Where a mesh of all points is over an opening of the surface: a question of three vertices alone,
+/// whatever the rest of the mesh.
+class OpenPlaces {
+public:
+  /// \param points   3 x n, must outlive this.
+  /// \param graph    n nodes, in which the openings were found.
+  /// \param openings those over which the mesh is open.
+  OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings);
+
+  bool areAny() const { return !rim_edges_.empty(); }
+
+  /// Whether a triangle is over an opening: its vertices are at loops, or at most two steps from
+  /// them, and a side is longer than those of the surface.
+  bool isOpen(Index a, Index b, Index c) const {
+    return is_near_[static_cast<std::size_t>(a)] != 0 &&
+           is_near_[static_cast<std::size_t>(b)] != 0 &&
+           is_near_[static_cast<std::size_t>(c)] != 0 && (isLong(a, b) || isLong(b, c) || isLong(c, a));
+  }
+
+  /// Whether an edge is in a loop around an opening.
+  bool isRim(Index a, Index b) const;
+
+private:
+  bool isLong(Index a, Index b) const;
+
+  const Positions& points_;
+  std::vector<std::uint8_t> is_near_;
+  std::vector<double> spacing_;
+  std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
+};
+
+}  // namespace spherical_param::internal

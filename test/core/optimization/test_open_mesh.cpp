@@ -1,0 +1,98 @@
+#include "open_mesh.h"
+
+#include "open_shapes.h"
+#include "spherical_param/mesh_topology.h"
+
+namespace spherical_param {
+namespace {
+
+using internal::OpenMesh;
+using internal::OpenPlaces;
+
+/// A double pyramid over a ring of n points at z = 0, with tips n and n + 1.
+struct DoublePyramid {
+  explicit DoublePyramid(Index n) : points(3, n + 2), triangles(3, 2 * n) {
+    for (Index i = 0; i < n; ++i) {
+      const double angle = 2.0 * test::kPi * i / n;
+      points.col(i) << std::cos(angle), std::sin(angle), 0.0;
+      triangles.col(2 * i) << i, (i + 1) % n, n;
+      triangles.col(2 * i + 1) << (i + 1) % n, i, n + 1;
+    }
+    points.col(n) << 0.0, 0.0, 0.5;
+    points.col(n + 1) << 0.0, 0.0, -0.5;
+    graph.offsets.assign(static_cast<std::size_t>(n) + 3, 0);
+    openings.spacing.assign(static_cast<std::size_t>(n) + 2, 0.6);
+  }
+
+  OpenMesh open(std::vector<std::vector<Index>> loops) {
+    for (std::vector<Index>& loop : loops) {
+      Opening opening;
+      opening.loop = std::move(loop);
+      openings.openings.push_back(opening);
+    }
+    return internal::openMesh(points, triangles, OpenPlaces(points, graph, openings));
+  }
+
+  Positions points;
+  Triangles triangles;
+  Graph graph;
+  Openings openings;
+};
+
+TEST(OpenMesh, IsClosedWithoutOpenings) {
+  DoublePyramid pyramid(8);
+  const OpenMesh mesh = pyramid.open({});
+  EXPECT_EQ(internal::surfaceOf(mesh), pyramid.triangles);
+  EXPECT_TRUE(internal::boundaryLoops(mesh.triangles, 10).empty());
+}
+
+TEST(OpenMesh, LeavesOutWhatALoopLeadsToAndKeepsEveryVertex) {
+  // The loop is one triangle of the upper side: its sides at the tip are long.
+  DoublePyramid pyramid(8);
+  const OpenMesh mesh = pyramid.open({{0, 1, 8}});
+  const Triangles surface = internal::surfaceOf(mesh);
+  EXPECT_EQ(surface.cols(), 15);
+  const auto loops = internal::boundaryLoops(surface, 10);
+  ASSERT_EQ(loops.size(), 1U);
+  EXPECT_EQ(loops[0], (std::vector<Index>{0, 8, 1}));
+}
+
+TEST(OpenMesh, IsAManifoldWhereTwoOpeningsMeet) {
+  // Two triangles at the tip, with surface between them.
+  DoublePyramid pyramid(8);
+  const OpenMesh mesh = pyramid.open({{0, 1, 8}, {4, 5, 8}});
+  const Triangles surface = internal::surfaceOf(mesh);
+  const MeshTopology topology = checkTopology(surface, 10);
+  EXPECT_TRUE(topology.manifold());
+  EXPECT_TRUE(topology.oriented);
+  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+  EXPECT_EQ(surface.cols(), 15);
+}
+
+TEST(OpenMesh, KeepsAVertexAmongOpenTriangles) {
+  // All around the tip is open.
+  DoublePyramid pyramid(8);
+  const OpenMesh mesh = pyramid.open({{0, 1, 2, 3, 4, 5, 6, 7, 8}});
+  const MeshTopology topology = checkTopology(internal::surfaceOf(mesh), 10);
+  EXPECT_TRUE(topology.manifold());
+  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+}
+
+TEST(OpenMesh, BoundaryLoopsAreThoseOfAnIndependentWalk) {
+  DoublePyramid pyramid(12);
+  Triangles surface(3, 22);
+  surface << pyramid.triangles.leftCols(4), pyramid.triangles.middleCols(5, 8),
+      pyramid.triangles.rightCols(10);
+  const std::map<Index, Index> next = test::boundaryOf(surface);
+  std::size_t vertices = 0;
+  for (const std::vector<Index>& loop : internal::boundaryLoops(surface, 14)) {
+    EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      EXPECT_EQ(next.at(loop[i]), loop[(i + 1) % loop.size()]);
+    vertices += loop.size();
+  }
+  EXPECT_EQ(vertices, next.size());
+}
+
+}  // namespace
+}  // namespace spherical_param
