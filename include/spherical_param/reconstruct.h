@@ -6,6 +6,7 @@
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/neighbor_graph.h"
+#include "spherical_param/openings.h"
 #include "spherical_param/smoothing.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/surface_diagnosis.h"
@@ -22,6 +23,13 @@ namespace spherical_param {
 /// \addtogroup pipeline
 /// @{
 
+/// What becomes of the openings of the sampled surface.
+enum class SurfaceMode {
+  Closed,  ///< they are filled: the mesh is a closed surface, whatever the cloud shows
+  Open,    ///< the mesh leaves them open
+  Auto,    ///< it leaves those open that are certain
+};
+
 /// Parameters of reconstruct(), nested by stage. The defaults need no tuning. The paper's own
 /// method is GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative and
 /// TriangulationMethod::Qhull, with OptimizationMethod::None. optionTable() lists those
@@ -34,6 +42,13 @@ struct Options : Execution {
   /// Smoothing moves Result::smoothed, never the points of the mesh; the mesh is then optimised on
   /// the smoothed points.
   SmoothingOptions smoothing;
+
+  /// What becomes of openings, which are found by local Delaunay neighbourhoods alone.
+  SurfaceMode surface = SurfaceMode::Closed;
+  /// Openings of up to this number of edges are filled, whatever `surface` says; 0 and up.
+  int fill_holes = 0;
+  /// The same by the area of the opening [squared unit of the input]; [0, 1e15].
+  double fill_holes_area = 0.0;
 
   /// Retries at most while the mesh intersects itself, if the cloud looks like a closed surface or
   /// few triangles intersect: with other graphs, another seed, the radial start, then further
@@ -59,10 +74,18 @@ struct RunReport {
   bool chosen = false;                 ///< the least (self_intersections, energy)
 };
 
-/// A closed genus-0 mesh through all points, the map to the sphere, and their quality.
+/// A mesh through all points, the map to the sphere, and their quality. It is closed and of genus
+/// 0, or that without the triangles over openings.
 struct Result {
-  Triangles triangles;  ///< 3 x (2v - 4), indices of vertices, counter-clockwise from outside
-  Positions sphere;     ///< 3 x v, unit vectors: the embedding of each vertex
+  /// 3 x m, indices of vertices, counter-clockwise from outside; m = 2v - 4 of a closed mesh.
+  Triangles triangles;
+  /// The boundary: closed loops of vertices that are joined by edges of the mesh, the last to the
+  /// first, with the surface on the left; the one of most vertices first, each from its lowest
+  /// vertex. Empty of a closed mesh.
+  std::vector<std::vector<Index>> boundary;
+  /// The openings of the surface that were found, open or filled; none with SurfaceMode::Closed.
+  std::vector<Opening> openings;
+  Positions sphere;  ///< 3 x v, unit vectors: the embedding of each vertex
 
   std::vector<Index> vertex_of_input;  ///< n entries: vertex of each input point
   std::vector<Index> input_of_vertex;  ///< v entries: first input point at that position
@@ -94,6 +117,8 @@ struct Result {
 
   /// Number of distinct points. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
+  /// Whether the mesh is closed. \return true if it has no boundary
+  bool isClosed() const { return boundary.empty(); }
   /// Points that were merged into an earlier one. \return n - v
   std::size_t duplicates() const { return vertex_of_input.size() - input_of_vertex.size(); }
 };

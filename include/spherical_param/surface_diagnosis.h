@@ -17,7 +17,7 @@ namespace spherical_param {
 /// What a cloud shows, judged by its mesh and its neighbour graph.
 enum class SurfaceKind {
   ClosedGenus0,  ///< nothing speaks against a closed surface without handles, in one piece
-  Open,          ///< the surface has openings, which the mesh fills
+  Open,          ///< the surface has openings, which the mesh fills or leaves open
   Handles,       ///< the surface has handles, which the mesh cuts
   SeveralParts,  ///< there are several surfaces, which the mesh joins
   Unclear,       ///< the mesh leaves the graph in too many places: noise, or the mesh is folded
@@ -81,6 +81,8 @@ struct SurfaceDiagnosis {
   std::vector<FilledHole> filled_holes;          ///< by falling area
   std::vector<CollapsedHandle> handles;          ///< by falling number of edges
   std::vector<PartBridge> bridges;               ///< by falling number of points
+  bool is_one_sided = false;                     ///< found with openings alone: the mesh tears it
+  std::size_t boundaries = 0;  ///< loops around openings that the mesh leaves open
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph, in [0,
   /// 1].
   double edges_outside_graph = 0.0;
@@ -110,7 +112,7 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 /// itself falls into the parts that were joined by bridges.
 ///
 /// \param points    3 x n, finite; extent about 1, or at least such that areas are numbers.
-/// \param triangles 3 x m, a closed manifold over the points.
+/// \param triangles 3 x m, a manifold over the points: closed, or with openings that are left open.
 /// \param graph     n nodes, lengths in the unit of the points. The thresholds were measured on
 ///                  local Delaunay neighbourhoods and hold for the 8 nearest neighbours as well; of
 ///                  a graph with a mean degree above 12, the 8 shortest edges of each point are

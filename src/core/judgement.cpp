@@ -1,5 +1,6 @@
 #include "judgement.h"
 
+#include "open_mesh.h"
 #include "progress.h"
 #include "spherical_param/self_intersection.h"
 
@@ -8,27 +9,54 @@
 
 namespace spherical_param::internal {
 
-SurfaceDiagnosis diagnose(const Positions& points, const Candidate& mesh,
-                          const NeighborGraph& graph, const Options& options) {
-  DiagnosisOptions diagnosis;
-  diagnosis.mark_triangles = options.details;
-  return diagnoseSurface(points, mesh.triangles(), graph.graph, graph.report.bridges, diagnosis,
-                         options.threads);
+Triangles surfaceOf(const Positions& points, const OpenSurface& openings, Candidate& mesh) {
+  if (!openings.isOpen())
+    return mesh.triangles();
+  OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
+  Triangles surface = surfaceOf(open);
+  mesh.triangles() = std::move(open.triangles);
+  return surface;
 }
 
-Result judge(const Positions& points, BestOfRuns best, const Options& options) {
+SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
+                          const NeighborGraph& graph, const Options& options) {
+  DiagnosisOptions of_diagnosis;
+  of_diagnosis.mark_triangles = options.details;
+  SurfaceDiagnosis diagnosis = diagnoseSurface(points, mesh, graph.graph, graph.report.bridges,
+                                               of_diagnosis, options.threads);
+  if (boundaries > 0) {
+    diagnosis.boundaries = boundaries;
+    if (diagnosis.kind == SurfaceKind::ClosedGenus0)
+      diagnosis.kind = SurfaceKind::Open;
+    diagnosis.summary = summaryOf(diagnosis);
+  }
+  return diagnosis;
+}
+
+Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openings,
+             const Options& options) {
   const FractionReport report = reportOf(options, "quality");
   Candidate& mesh = best.mesh;
   Result result;
-  result.diagnosis = diagnose(points, mesh, best.graph(), options);
+  result.triangles = surfaceOf(points, openings, mesh);
+  result.openings = openings.found();
+  if (openings.isOpen())
+    result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
+  result.diagnosis =
+      diagnose(points, result.triangles, result.boundary.size(), best.graph(), options);
+  if (openings.isOneSided()) {
+    result.diagnosis.is_one_sided = true;
+    result.diagnosis.kind = SurfaceKind::Unclear;
+    result.diagnosis.summary = summaryOf(result.diagnosis);
+  }
   reportFraction(report, 0.5);
-  result.measures = measureMesh(points, mesh.triangles(), options.threads);
+  result.measures = measureMesh(points, result.triangles, options.threads);
   reportFraction(report, 0.6);
   result.topology =
-      checkTopology(mesh.triangles(), static_cast<std::size_t>(points.cols()), options.threads);
+      checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
   reportFraction(report, 0.8);
-  result.self_intersections = mesh.isSmoothed()
-                                  ? findSelfIntersections(points, mesh.triangles(), options)
+  result.self_intersections = mesh.isSmoothed() || openings.isOpen()
+                                  ? findSelfIntersections(points, result.triangles, options)
                                   : std::move(mesh.optimization.self_intersections);
   if (options.details) {
     result.vertex_residuals =
@@ -41,7 +69,6 @@ Result judge(const Positions& points, BestOfRuns best, const Options& options) {
   }
   result.runs = std::move(best.runs);
   result.smoothing = mesh.smoothed.report;
-  result.triangles = mesh.triangles();
   result.smoothed = std::move(mesh.smoothed.points);
   result.sphere = std::move(mesh.embedding.directions);
   result.history = std::move(mesh.embedding.history);

@@ -16,6 +16,8 @@ namespace spherical_param {
 namespace {
 
 constexpr double kMaxInt = std::numeric_limits<int>::max();
+/// Where numbers still count.
+constexpr double kMaxArea = 1e15;
 constexpr double kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 
 template <typename T>
@@ -181,6 +183,27 @@ std::vector<OptionRow> meshRows() {
   };
 }
 
+std::vector<OptionRow> surfaceRows() {
+  return {
+      usedWith({{"graph", "delaunay"}},
+               choice<SurfaceMode>(
+                   "surface", "surface",
+                   "what becomes of openings: filled, left open, or that if certain", Everybody,
+                   {{"closed", SurfaceMode::Closed},
+                    {"open", SurfaceMode::Open},
+                    {"auto", SurfaceMode::Auto}},
+                   [](Options & o) -> auto& { return o.surface; })),
+      usedWith({{"graph", "delaunay"}},
+               number(
+                   "fill_holes", "fill_holes", "openings of up to this number of edges are filled",
+                   Everybody, 0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
+      usedWith({{"graph", "delaunay"}},
+               number(
+                   "fill_holes_area", "fill_holes_area", "openings of up to this area are filled",
+                   Expert, 0, kMaxArea, [](Options & o) -> auto& { return o.fill_holes_area; })),
+  };
+}
+
 std::vector<OptionRow> runRows() {
   return {
       usedWith({{"optimization", "full"}},
@@ -199,7 +222,7 @@ std::vector<OptionRow> runRows() {
 
 std::vector<OptionRow> makeTable() {
   std::vector<OptionRow> table;
-  for (const auto& rows : {graphRows(), embeddingRows(), meshRows(), runRows()})
+  for (const auto& rows : {graphRows(), embeddingRows(), meshRows(), surfaceRows(), runRows()})
     table.insert(table.end(), rows.begin(), rows.end());
   return table;
 }

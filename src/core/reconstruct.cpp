@@ -3,6 +3,8 @@
 #include "caller_neighbors.h"
 #include "exact_predicates.h"
 #include "judgement.h"
+#include "open_mesh.h"
+#include "open_surface.h"
 #include "ordered_points.h"
 #include "result_units.h"
 #include "retries.h"
@@ -11,7 +13,9 @@
 #include "warnings.h"
 
 #include <chrono>
+#include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 namespace spherical_param {
@@ -20,6 +24,7 @@ namespace {
 using internal::BestOfRuns;
 using internal::Candidate;
 using internal::Neighbors;
+using internal::OpenSurface;
 using internal::OrderedPoints;
 using internal::Plan;
 using internal::StageClock;
@@ -38,6 +43,19 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
     frame.sphere = -frame.sphere;
 }
 
+/// Whether the mesh is closed and of genus 0, or that with openings, over all vertices.
+bool isAsPromised(const Result& result) {
+  const MeshTopology& topology = result.topology;
+  return result.isClosed()
+             ? topology.isSphere()
+             : topology.manifold() && topology.oriented && topology.faults.unused_vertices.empty();
+}
+
+[[noreturn]] void refuseFlat() {
+  throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
+                     "outside of it, and an open one the surface mode 'open'");
+}
+
 NeighborGraph buildGraph(const OrderedPoints& nodes, const FindNeighbors& find_neighbors,
                          const Options& options, StageClock& clock) {
   const Neighbors neighbors =
@@ -49,48 +67,59 @@ NeighborGraph buildGraph(const OrderedPoints& nodes, const FindNeighbors& find_n
 }
 
 /// The method: embed the graph, triangulate the sphere, optimise the mesh on the points.
-Candidate meshGraph(const Positions& points, NeighborGraph graph, const Options& options,
-                    StageClock& clock) {
+Candidate meshGraph(const Positions& points, NeighborGraph graph, const OpenSurface& surface,
+                    const Options& options, StageClock& clock) {
   Candidate mesh;
   mesh.graph = std::move(graph);
-  mesh.embedding = clock.time("embedding", [&] {
-    return embed(mesh.graph.graph, points, options.embedding, options.seed, options);
-  });
+  mesh.embedding =
+      clock.time("embedding", [&] { return surface.embedded(points, mesh.graph.graph, options); });
   SphereTriangulation triangulation = clock.time("triangulation", [&] {
     return triangulateSphere(mesh.embedding.directions, options.triangulation, options);
   });
   mesh.triangulation = triangulation.report;
   orientOutward(points, triangulation.triangles, mesh.embedding);
   mesh.optimization = clock.time("optimization", [&] {
-    return optimizeMesh(points, triangulation.triangles, mesh.graph.graph, options.optimization,
-                        options.seed, options);
+    return internal::optimizeMesh(points, triangulation.triangles, mesh.graph.graph,
+                                  surface.places(), options.optimization, options.seed, options);
   });
   if (options.smoothing.steps > 0)
     mesh.smoothed = clock.time("smoothing", [&] {
       return internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph,
-                                  options.smoothing, options.optimization.method, options.seed,
-                                  options);
+                                  surface.places(), options.smoothing, options.optimization.method,
+                                  options.seed, options);
     });
   orientOutward(points, mesh.triangles(), mesh.embedding);
   return mesh;
 }
 
 /// Runs the method once, and again only where the first mesh is bad although the cloud is not.
-BestOfRuns runWithRetries(const OrderedPoints& nodes, const FindNeighbors& find_neighbors,
-                          const Options& options, StageClock& clock) {
+///
+/// \param is_flat all points are in one plane.
+Result runWithRetries(const OrderedPoints& nodes, bool is_flat, const FindNeighbors& find_neighbors,
+                      const Options& options, StageClock& clock) {
   BestOfRuns best;
+  std::optional<OpenSurface> surface(std::in_place);
   for (int run = 0; run <= options.retries; ++run) {
     const Plan plan = internal::planOf(run, options);
     NeighborGraph graph = buildGraph(nodes, find_neighbors, plan.options, clock);
+    if (run == 0 && internal::seeksOpenings(options))
+      clock.time("openings", [&] {
+        surface.emplace(nodes.points, graph.graph, is_flat, std::ldexp(1.0, nodes.exponent),
+                        options);
+        return surface->isOpen();
+      });
+    if (is_flat && !surface->isOpen())
+      refuseFlat();
     const auto begin = std::chrono::steady_clock::now();
-    Candidate mesh = meshGraph(nodes.points, std::move(graph), plan.options, clock);
+    Candidate mesh = meshGraph(nodes.points, std::move(graph), *surface, plan.options, clock);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     best.add(plan.description, std::move(mesh), seconds.count());
     if (best.mesh.isGood() ||
-        (run == 0 && !internal::isWorthRetrying(nodes.points, best.mesh, options)))
+        (run == 0 && !internal::isWorthRetrying(nodes.points, best.mesh, *surface, options)))
       break;
   }
-  return best;
+  return clock.time(
+      "quality", [&] { return internal::judge(nodes.points, std::move(best), *surface, options); });
 }
 
 Result run(const Positions& points, const Options& all, const FindNeighbors& find_neighbors) {
@@ -99,15 +128,14 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
   const Options options = clock.optionsOfStages();
   OrderedPoints nodes = clock.time(
       "neighbors", [&] { return internal::orderCheckedPoints(points, options.threads); });
-  BestOfRuns best = runWithRetries(nodes, find_neighbors, options, clock);
-  Result result = clock.time("quality", [&] {
-    Result judged = internal::judge(nodes.points, std::move(best), options);
-    internal::toInput(nodes, judged);
-    return judged;
-  });
-  if (!result.topology.isSphere())
-    throw ComputeError("reconstruct: the mesh is not a closed genus-0 manifold; please report "
-                       "this cloud as a defect of the library");
+  const bool is_flat = areCoplanar(points);
+  if (is_flat && !internal::seeksOpenings(options))
+    refuseFlat();
+  Result result = runWithRetries(nodes, is_flat, find_neighbors, options, clock);
+  internal::toInput(nodes, result);
+  if (!isAsPromised(result))
+    throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "
+                       "as a defect of the library");
   result.stages = clock.take();
   result.warnings = internal::warningsOf(options, result);
   return result;

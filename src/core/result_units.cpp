@@ -41,6 +41,13 @@ void scaleBack(int exponent, Result& result) {
   }
   for (Bridge& bridge : result.graph.bridges)
     scale(bridge.length);
+  for (Opening& opening : result.openings) {
+    scale(opening.boundary_length);
+    scale(opening.area, 2);
+    scale(opening.spacing);
+    scale(opening.width);
+    scale_all(opening.center);
+  }
   for (FilledHole& hole : result.diagnosis.filled_holes) {
     scale(hole.area, 2);
     scale(hole.boundary_length);
@@ -87,12 +94,21 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
     bridge.to = vertex(bridge.to);
   }
   renumber_all(result.graph.without_tangent_plane);
+  const auto renumber_loop = [&](std::vector<Index>& loop) {
+    std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
+    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
+  };
+  for (Opening& opening : result.openings)
+    renumber_loop(opening.loop);
+  for (std::vector<Index>& loop : result.boundary)
+    renumber_loop(loop);
+  std::sort(result.boundary.begin(), result.boundary.end(), [](const auto& a, const auto& b) {
+    return a.size() != b.size() ? a.size() > b.size() : a < b;
+  });
   for (FilledHole& hole : result.diagnosis.filled_holes) {
     renumber_all(hole.vertices);
-    for (std::vector<Index>& loop : hole.loops) {
-      std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
-      std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-    }
+    for (std::vector<Index>& loop : hole.loops)
+      renumber_loop(loop);
   }
   for (CollapsedHandle& handle : result.diagnosis.handles)
     renumber_all(handle.vertices);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "open_surface.h"
 #include "smoothed_mesh.h"
 #include "spherical_param/reconstruct.h"
 
@@ -59,7 +60,8 @@ struct BestOfRuns {
 };
 
 /// Whether retries may find a better mesh: the mesh is bad, and either the cloud looks like a
-/// closed surface or few triangles intersect.
-bool isWorthRetrying(const Positions& points, const Candidate& mesh, const Options& options);
+/// closed surface, or one with the openings that are left open, or few triangles intersect.
+bool isWorthRetrying(const Positions& points, Candidate& mesh, const OpenSurface& surface,
+                     const Options& options);
 
 }  // namespace spherical_param::internal

@@ -58,7 +58,8 @@ std::vector<std::string> warningsOf(const Options& options, const Result& result
          " points coincide with others on the sphere: long thin parts shrink below the "
          "rounding of numbers there, and their mesh is arbitrary.");
   if (!result.diagnosis.looksClosedGenus0())
-    warn(result.diagnosis.summary + " The mesh is a closed surface without handles even so.");
+    warn(result.diagnosis.summary +
+         (result.isClosed() ? " The mesh is a closed surface without handles even so." : ""));
   if (result.diagnosis.edges_outside_graph > kMaxEdgesOutside &&
       options.optimization.method == OptimizationMethod::None)
     warn(percent(result.diagnosis.edges_outside_graph) +

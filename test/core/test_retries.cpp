@@ -105,7 +105,7 @@ TEST(Retries, AreWorthItForASurfaceOrFewIntersections) {
   mesh.optimization.triangles = triangulateSphere(points).triangles;
   const auto is_worth = [&](std::size_t intersections, const Options& options = {}) {
     mesh.optimization.self_intersections.resize(intersections);
-    return internal::isWorthRetrying(points, mesh, options);
+    return internal::isWorthRetrying(points, mesh, internal::OpenSurface(), options);
   };
   EXPECT_FALSE(is_worth(0));
   EXPECT_TRUE(is_worth(100));

@@ -867,6 +867,10 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
         counted(handle.edges, "pair") + " of neighbours torn apart within " + number(handle.size) +
         " " + place(handle.center));
   }
+  if (diagnosis.is_one_sided)
+    add("a surface with one side only, like a band of Moebius, which the mesh tears");
+  if (diagnosis.boundaries > 0)
+    add("a surface with " + counted(diagnosis.boundaries, "opening") + ", left open");
   const std::size_t openings = diagnosis.openings();
   if (openings > 0) {
     const auto hole =

@@ -1,0 +1,88 @@
+#include "open_surface.h"
+
+#include "filled_graph.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+/// From this certainty on SurfaceMode::Auto trusts in an opening: of 6 spacings. The closed models
+/// have none above 4.7.
+constexpr double kCertain = 0.5;
+
+/// Whether an opening is wide enough to be taken for one.
+bool isTrusted(const Opening& opening, const Options& options) {
+  return options.surface == SurfaceMode::Open || opening.certainty >= kCertain;
+}
+
+/// Whether the mesh has triangles over an opening.
+bool isFilled(const Opening& opening, bool is_cloud_flat, double unit, const Options& options) {
+  if (is_cloud_flat)
+    return false;
+  return !isTrusted(opening, options) ||
+         (options.surface == SurfaceMode::Auto && opening.is_flat) ||
+         opening.loop.size() <= static_cast<std::size_t>(options.fill_holes) ||
+         opening.area * unit * unit <= options.fill_holes_area;
+}
+
+/// Leaves out the vertices from `count` on.
+void dropVertices(Index count, EmbeddingHistory& history) {
+  std::vector<Eigen::Index> kept;
+  std::vector<Index> vertices;
+  for (std::size_t i = 0; i < history.vertices.size(); ++i)
+    if (history.vertices[i] < count) {
+      kept.push_back(static_cast<Eigen::Index>(i));
+      vertices.push_back(history.vertices[i]);
+    }
+  history.vertices = std::move(vertices);
+  for (HistoryFrame& frame : history.frames)
+    frame.sphere = Positions(frame.sphere(Eigen::all, kept));
+}
+
+}  // namespace
+
+OpenSurface::OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
+                         const Options& options) {
+  if (!seeksOpenings(options))
+    return;
+  Openings found = findOpenings(points, graph, options);
+  Openings open;
+  open.spacing = found.spacing;
+  for (Opening& opening : found.openings) {
+    opening.is_filled = isFilled(opening, is_flat, unit, options);
+    if (!opening.is_filled)
+      open.openings.push_back(opening);
+  }
+  if (!open.openings.empty())
+    places_.emplace(points, graph, open);
+  found_ = found.openings;
+  found.openings.erase(std::remove_if(found.openings.begin(), found.openings.end(),
+                                      [&](const Opening& opening) {
+                                        return opening.is_filled && !isTrusted(opening, options);
+                                      }),
+                       found.openings.end());
+  embedded_ = std::move(found);
+}
+
+bool seeksOpenings(const Options& options) {
+  return options.surface != SurfaceMode::Closed &&
+         options.graph.method == GraphMethod::LocalDelaunay;
+}
+
+Embedding OpenSurface::embedded(const Positions& points, const Graph& graph,
+                                const Options& options) const {
+  if (embedded_.openings.empty())
+    return embed(graph, points, options.embedding, options.seed, options);
+  const FilledGraph filled = fillOpenings(points, graph, embedded_);
+  EmbeddingOptions by_area = options.embedding;
+  by_area.centroid_by_area = true;
+  Embedding embedding = embed(filled.graph, filled.points, by_area, options.seed, options);
+  embedding.directions = Positions(embedding.directions.leftCols(points.cols()));
+  dropVertices(static_cast<Index>(points.cols()), embedding.history);
+  return embedding;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "open_places.h"
+#include "spherical_param/reconstruct.h"
+
+#include <optional>
+
+namespace spherical_param::internal {
+
+/// Whether openings are sought: only local Delaunay neighbourhoods show them.
+bool seeksOpenings(const Options& options);
+
+/// The openings of a cloud, found once for all runs, and which of them the mesh leaves open.
+class OpenSurface {
+public:
+  /// \param points nodes, must outlive this.
+  /// \param graph   of the first run.
+  /// \param is_flat all points are in one plane: none of the openings can be filled.
+  /// \param unit    of the nodes' coordinates [unit of the input].
+  OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
+              const Options& options);
+
+  OpenSurface() = default;  // of a closed surface
+  OpenSurface(const OpenSurface& other) = delete;
+  OpenSurface& operator=(const OpenSurface& other) = delete;
+
+  bool isOpen() const { return places_.has_value(); }
+  /// nullptr: the mesh is closed.
+  const OpenPlaces* places() const { return places_ ? &*places_ : nullptr; }
+  bool isOneSided() const { return embedded_.is_one_sided; }
+  /// All that were found.
+  const std::vector<Opening>& found() const { return found_; }
+
+  /// embed() of the graph of any run, with virtual nodes in the openings.
+  Embedding embedded(const Positions& points, const Graph& graph, const Options& options) const;
+
+private:
+  std::vector<Opening> found_;
+  Openings embedded_;  ///< those that virtual nodes fill
+  std::optional<OpenPlaces> places_;
+};
+
+}  // namespace spherical_param::internal

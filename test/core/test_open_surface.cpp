@@ -1,0 +1,210 @@
+#include "open_surface.h"
+
+#include "open_shapes.h"
+#include "reconstructions.h"
+#include "spherical_param/errors.h"
+
+namespace spherical_param {
+namespace {
+
+using test::sphereWithHoles;
+
+Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
+  Options options;
+  options.surface = mode;
+  return options;
+}
+
+/// A manifold over all vertices whose boundary is as an independent walk finds it.
+void expectSound(const Result& result, std::size_t boundaries) {
+  EXPECT_TRUE(result.topology.manifold());
+  EXPECT_TRUE(result.topology.oriented);
+  EXPECT_TRUE(result.topology.faults.unused_vertices.empty());
+  EXPECT_EQ(result.topology.components, 1U);
+  EXPECT_EQ(result.topology.euler_characteristic, 2 - static_cast<long long>(boundaries));
+  EXPECT_TRUE(result.self_intersections.empty());
+  EXPECT_EQ(result.boundary.size(), boundaries);
+  EXPECT_EQ(result.isClosed(), boundaries == 0);
+  EXPECT_EQ(result.diagnosis.boundaries, boundaries);
+  const std::map<Index, Index> next = test::boundaryOf(result.triangles);
+  std::size_t vertices = 0;
+  for (const std::vector<Index>& loop : result.boundary) {
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      EXPECT_EQ(next.at(loop[i]), loop[(i + 1) % loop.size()]);
+    vertices += loop.size();
+  }
+  EXPECT_EQ(vertices, next.size());
+}
+
+TEST(OpenSurface, HasTheOpeningsOfTheCloud) {
+  expectSound(reconstruct(test::hemisphere(700), leftOpen()), 1);
+  expectSound(reconstruct(test::tube(20, 40), leftOpen()), 2);
+  for (const Index holes : {1, 2, 20})
+    expectSound(reconstruct(sphereWithHoles(4000, holes, 0.2), leftOpen()),
+                static_cast<std::size_t>(holes));
+  // An opening of more than half of the sphere.
+  expectSound(reconstruct(test::pointsWhere(test::spiralSphere(3000),
+                                            [](const Eigen::Vector3d& p) { return p.z() < -0.4; }),
+                          leftOpen()),
+              1);
+  expectSound(reconstruct(test::spiralSphere(600), leftOpen()), 0);
+}
+
+TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
+  // Discs around two points that are a little less apart than the discs are wide.
+  for (const double radius : {0.27, 0.29, 0.31}) {
+    const Eigen::Vector3d a(0.0, 0.0, 1.0);
+    const Eigen::Vector3d b = Eigen::Vector3d(0.6, 0.0, 0.8).normalized();
+    const Result result =
+        reconstruct(test::pointsWhere(test::spiralSphere(3000),
+                                      [&](const Eigen::Vector3d& p) {
+                                        return std::min((p - a).norm(), (p - b).norm()) > radius;
+                                      }),
+                    leftOpen());
+    expectSound(result, result.boundary.size());
+    EXPECT_GE(result.boundary.size(), 1U);
+    EXPECT_LE(result.boundary.size(), 2U);
+  }
+}
+
+TEST(OpenSurface, OfAFlatPatchIsThePatch) {
+  const Positions patch = test::pointsWhere(test::flatPatch(40), [](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;
+  });
+  EXPECT_THROW(reconstruct(patch), InvalidInput);
+  for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
+    const Result result = reconstruct(patch, leftOpen(mode));
+    expectSound(result, 2);
+    double rim = 0.0;  // twice the area that the boundary encloses
+    for (const auto& loop : result.boundary)
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const auto v = result.input_of_vertex[static_cast<std::size_t>(loop[i])];
+        const auto w =
+            result.input_of_vertex[static_cast<std::size_t>(loop[(i + 1) % loop.size()])];
+        rim += patch(0, v) * patch(1, w) - patch(1, v) * patch(0, w);
+      }
+    EXPECT_NEAR(result.measures.area, std::abs(rim) / 2.0, 1e-9);
+  }
+  // Of a line there is no surface.
+  Positions line = Positions::Zero(3, 50);
+  line.row(0).setLinSpaced(0.0, 1.0);
+  EXPECT_THROW(reconstruct(line, leftOpen()), InvalidInput);
+}
+
+TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
+  const Positions points = test::randomSphere(1500, 3);
+  const Result closed = reconstruct(points);
+  EXPECT_TRUE(closed.openings.empty());
+  for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto})
+    EXPECT_EQ(reconstruct(points, leftOpen(mode)).triangles, closed.triangles);
+}
+
+TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
+  const Result small = reconstruct(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
+  expectSound(small, 0);
+  ASSERT_EQ(small.openings.size(), 1U);
+  EXPECT_TRUE(small.openings[0].is_filled);
+  expectSound(reconstruct(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 1);
+  // A tube without ends may be one with flat ends.
+  const Result tube = reconstruct(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
+  expectSound(tube, 0);
+  EXPECT_EQ(tube.openings.size(), 2U);
+}
+
+TEST(OpenSurface, HolesAreFilledUpToASize) {
+  Positions points = sphereWithHoles(4000, 2, 0.2);
+  points = test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.y() > -0.8; });
+  const Result open = reconstruct(points, leftOpen());
+  ASSERT_EQ(open.openings.size(), 3U);
+  const Opening& second = open.openings[1];
+  Options by_edges = leftOpen();
+  by_edges.fill_holes = static_cast<int>(second.loop.size());
+  expectSound(reconstruct(points, by_edges), 1);
+  Options by_area = leftOpen();
+  by_area.fill_holes_area = 1.01 * second.area;
+  expectSound(reconstruct(points, by_area), 1);
+  by_area.fill_holes_area = 10.0;
+  expectSound(reconstruct(points, by_area), 0);
+}
+
+TEST(OpenSurface, ThePapersGraphShowsNoOpenings) {
+  Options paper = test::paper();
+  paper.embedding.max_iterations = 20;
+  const Positions points = test::hemisphere(300);
+  const Result closed = reconstruct(points, paper);
+  paper.surface = SurfaceMode::Auto;
+  EXPECT_EQ(reconstruct(points, paper).triangles, closed.triangles);
+  EXPECT_TRUE(closed.isClosed());
+}
+
+TEST(OpenSurface, DoesNotDependOnOrderPlaceAndThreads) {
+  const Positions points = sphereWithHoles(2500, 3, 0.3);
+  const Result result = reconstruct(points, leftOpen());
+  Options two = leftOpen();
+  two.threads = 2;
+  EXPECT_EQ(reconstruct(points, two).triangles, result.triangles);
+  EXPECT_EQ(reconstruct(points, two).boundary, result.boundary);
+  const Result scaled = reconstruct(64.0 * points, leftOpen());
+  EXPECT_EQ(scaled.triangles, result.triangles);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(scaled.openings[i].width, 64.0 * result.openings[i].width);
+    EXPECT_EQ(scaled.openings[i].area, 4096.0 * result.openings[i].area);
+  }
+  const Result reversed = reconstruct(points.rowwise().reverse(), leftOpen());
+  std::set<std::set<Index>> triangles;
+  std::set<std::set<Index>> turned;
+  const auto last = static_cast<Index>(points.cols()) - 1;
+  for (Eigen::Index t = 0; t < result.triangles.cols(); ++t) {
+    const auto corners = result.triangles.col(t);
+    triangles.insert({corners[0], corners[1], corners[2]});
+  }
+  for (Eigen::Index t = 0; t < reversed.triangles.cols(); ++t) {
+    const auto corners = reversed.triangles.col(t);
+    turned.insert({last - corners[0], last - corners[1], last - corners[2]});
+  }
+  EXPECT_EQ(triangles, turned);
+}
+
+TEST(OpenSurface, IsSmoothedWithItsOpenings) {
+  Options options = leftOpen();
+  options.smoothing.steps = 3;
+  const Result result = reconstruct(sphereWithHoles(2000, 2, 0.4), options);
+  expectSound(result, 2);
+  EXPECT_EQ(result.smoothed.cols(), result.sphere.cols());
+  EXPECT_EQ(result.smoothing.self_intersections, 0U);
+}
+
+TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
+  // A torus with a hole, and a Moebius band.
+  Positions torus(3, 80 * 30);
+  Positions band(3, 160 * 12);
+  for (int i = 0; i < 80; ++i)
+    for (int j = 0; j < 30; ++j) {
+      const double u = 2.0 * test::kPi * (i + 0.5 * (j % 2)) / 80;
+      const double v = 2.0 * test::kPi * j / 30;
+      torus.col(i * 30 + j) << (2.5 + std::cos(v)) * std::cos(u), (2.5 + std::cos(v)) * std::sin(u),
+          std::sin(v);
+    }
+  for (int i = 0; i < 160; ++i)
+    for (int j = 0; j < 12; ++j) {
+      const double u = 2.0 * test::kPi * (i + 0.5 * (j % 2)) / 160;
+      const double v = 0.1 * (j - 5.5);
+      const double radius = 2.5 + v * std::cos(u / 2.0);
+      band.col(i * 12 + j) << radius * std::cos(u), radius * std::sin(u), v * std::sin(u / 2.0);
+    }
+  const Positions holed = test::pointsWhere(torus, [](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
+  });
+  for (const Positions& points : {holed, band}) {
+    Options options = leftOpen();
+    options.retries = 0;
+    const Result result = reconstruct(points, options);
+    EXPECT_TRUE(result.topology.manifold());
+    EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
+    EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);
+    EXPECT_FALSE(result.warnings.empty());
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param
