@@ -320,6 +320,23 @@ Json loopsToJson(const CloudReconstruction& cloud, const std::vector<std::vector
   return json;
 }
 
+Json openingsToJson(const CloudReconstruction& cloud) {
+  Json json = Json::array();
+  for (const spherical_param::Opening& opening : cloud.result.openings) {
+    json.push_back({{"filled", opening.is_filled},
+                    {"certainty", opening.certainty},
+                    {"flat", opening.is_flat},
+                    {"location", toJson(opening.center)},
+                    {"size", opening.width},
+                    {"spacing", opening.spacing},
+                    {"area", opening.area},
+                    {"boundary_length", opening.boundary_length},
+                    {"edges", opening.loop.size()},
+                    {"loop", inputIndices(cloud, opening.loop)}});
+  }
+  return json;
+}
+
 Json diagnosisToJson(const CloudReconstruction& cloud) {
   const spherical_param::SurfaceDiagnosis& diagnosis = cloud.result.diagnosis;
   Json json;
@@ -404,6 +421,8 @@ Json report(const Settings& settings, const CloudReconstruction& cloud) {
   json["self_intersecting_pairs"] = selfIntersectionsToJson(cloud);
   json["measures"] = measuresToJson(result.measures);
   json["diagnosis"] = diagnosisToJson(cloud);
+  json["openings"] = openingsToJson(cloud);
+  json["boundary"] = loopsToJson(cloud, result.boundary);
   json["edges_outside_graph"] = result.diagnosis.edges_outside_graph;
   json["converged"] = result.embedding.converged();
   json["stop_reason"] = nameOf(result.embedding.stop_reason, stop_reason_names);
@@ -515,6 +534,20 @@ std::string appearance(const spherical_param::SurfaceDiagnosis& diagnosis) {
   return oneLine(begins ? diagnosis.summary.substr(beginning.size()) : diagnosis.summary);
 }
 
+void printOpenings(const spherical_param::Result& result, Console& console) {
+  if (result.openings.empty()) {
+    return;
+  }
+  const auto filled = static_cast<std::size_t>(
+      std::count_if(result.openings.begin(), result.openings.end(),
+                    [](const spherical_param::Opening& opening) { return opening.is_filled; }));
+  console.entry("openings", std::to_string(result.openings.size() - filled) + " left open, " +
+                                std::to_string(filled) + " filled");
+  for (const std::vector<Index>& loop : result.boundary) {
+    console.entry("boundary", counted(loop.size(), "edge"));
+  }
+}
+
 void printRuns(const std::vector<spherical_param::RunReport>& runs, Console& console) {
   // One run alone is described by the other lines.
   for (std::size_t i = 0; runs.size() > 1 && i < runs.size(); ++i) {
@@ -583,6 +616,7 @@ void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Co
                     std::to_string(result.triangulation.coincident) + " coincident)");
   console.entry("triangles", std::to_string(result.triangles.cols()));
   console.entry("closed", yesOrNo(result.topology.closed));
+  printOpenings(result, console);
   console.entry("manifold", yesOrNo(result.topology.manifold()));
   console.entry("oriented", yesOrNo(result.topology.oriented));
   console.entry("genus",

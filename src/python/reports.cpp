@@ -84,10 +84,18 @@ py::dict toDict(const SurfaceDiagnosis& diagnosis) {
   return py::dict("kind"_a = nameOf(diagnosis.kind), "summary"_a = diagnosis.summary,
                   "genus"_a = diagnosis.genus ? py::cast(*diagnosis.genus) : py::none(),
                   "looks_closed_genus0"_a = diagnosis.looksClosedGenus0(),
-                  "openings"_a = diagnosis.openings(), "filled_holes"_a = filled_holes,
+                  "openings"_a = diagnosis.openings(), "boundaries"_a = diagnosis.boundaries,
+                  "is_one_sided"_a = diagnosis.is_one_sided, "filled_holes"_a = filled_holes,
                   "handles"_a = handles, "bridges"_a = bridges,
                   "edges_outside_graph"_a = diagnosis.edges_outside_graph,
                   "triangle_marks"_a = orNone(diagnosis.triangle_marks));
+}
+
+py::dict toDict(const Opening& opening) {
+  return py::dict("loop"_a = toArray(opening.loop), "boundary_length"_a = opening.boundary_length,
+                  "area"_a = opening.area, "spacing"_a = opening.spacing, "width"_a = opening.width,
+                  "center"_a = toArray(opening.center), "certainty"_a = opening.certainty,
+                  "is_flat"_a = opening.is_flat, "is_filled"_a = opening.is_filled);
 }
 
 py::dict toDict(const GraphReport& graph) {
@@ -172,6 +180,10 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
                 "self_intersections"_a = toArray(result.self_intersections),
                 "smoothed"_a =
                     result.smoothed.cols() > 0 ? py::object(toArray(result.smoothed)) : py::none());
+  dict["boundary"] =
+      listOf(result.boundary, [](const std::vector<Index>& loop) { return toArray(loop); });
+  dict["openings"] =
+      listOf(result.openings, [](const Opening& opening) { return toDict(opening); });
   dict["topology"] = toDict(result.topology);
   dict["measures"] = toDict(result.measures);
   dict["diagnosis"] = toDict(result.diagnosis);

@@ -97,6 +97,22 @@ class Mesh(unittest.TestCase):
         for error in (sp.InvalidInput, sp.ComputeError, sp.Cancelled):
             self.assertIs(type(pickle.loads(pickle.dumps(error("cause; remedy")))), error)
 
+    def test_openings_are_left_open_if_asked(self):
+        points = shapes.directions(2000)
+        points = points[points[:, 2] < 0.3]
+        mesh = sp.reconstruct(points, surface="open")
+        self.assertFalse(mesh.topology.closed)
+        self.assertTrue(mesh.topology.manifold)
+        sides = {(t[i], t[(i + 1) % 3]) for t in mesh.triangles.tolist() for i in range(3)}
+        rim = {(a, b) for a, b in sides if (b, a) not in sides}
+        walked = {edge for loop in mesh.boundary for edge in zip(loop, np.roll(loop, -1))}
+        self.assertEqual(walked, rim)
+        opening = mesh.openings[0]
+        self.assertFalse(opening.is_filled)
+        np.testing.assert_allclose(opening.center, [0, 0, 0.3], atol=0.1)
+        self.assertEqual(mesh.diagnosis.boundaries, len(mesh.boundary))
+        self.assertEqual(sp.reconstruct(points).boundary, ())
+
     def test_surfaces_that_are_no_spheres_are_diagnosed(self):
         points = shapes.directions(1000)
         points = points[points[:, 2] < 0.3]

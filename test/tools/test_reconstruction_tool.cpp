@@ -118,7 +118,7 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"array",
        "/residuals /stages /warnings /self_intersecting_pairs /graph/bridges "
        "/graph/without_tangent_plane /embedding/levels /diagnosis/filled_holes /diagnosis/handles "
-       "/diagnosis/bridges"},
+       "/diagnosis/bridges /openings /boundary"},
       {"null", "/outliers /smoothing /options/tolerance /options/max_iterations "
                "/options/stagnation_window /options/outliers /options/sphere"}};
   const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {
@@ -151,6 +151,31 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   for (const json& stage : report["stages"])
     stages += stage["name"].get<std::string>() + " ";
   EXPECT_EQ(stages, "read neighbors graph embedding triangulation optimization quality write ");
+}
+
+TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
+  const Positions all = ellipsoid(2000);
+  const auto count = 1500;  // the spiral goes from one end to the other
+  write("open.ply", plyOf(all.leftCols(count)));
+  const json open = reportOf({"open.ply", "out.ply", "-surface", "open"});
+  EXPECT_EQ(open["closed"], false);
+  EXPECT_EQ(open["manifold"], true);
+  EXPECT_EQ(open["self_intersections"], 0);
+  ASSERT_EQ(open["boundary"].size(), 1U);
+  ASSERT_EQ(open["openings"].size(), 1U);
+  EXPECT_EQ(open["openings"][0]["filled"], false);
+  EXPECT_EQ(open["diagnosis"]["kind"], "open");
+  // V - E + F = 1.
+  const std::size_t edges = open["boundary"][0].size();
+  EXPECT_EQ(mesh("out.ply").triangles.cols(), 2 * count - 2 - static_cast<Eigen::Index>(edges));
+  for (const json& vertex : open["boundary"][0])
+    EXPECT_GT(vertex.get<int>(), count - 200);
+  const RunResult text = tool({"open.ply", "out.ply", "-surface", "open"});
+  EXPECT_NE(text.output.find("1 left open, 0 filled"), std::string::npos);
+  const json filled = reportOf({"open.ply", "out.ply", "-surface", "open", "-fill_holes", "1000"});
+  EXPECT_EQ(filled["closed"], true);
+  EXPECT_EQ(filled["openings"][0]["filled"], true);
+  EXPECT_EQ(reportOf({"open.ply", "out.ply"})["openings"].size(), 0U);
 }
 
 TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {

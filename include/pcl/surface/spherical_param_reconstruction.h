@@ -81,11 +81,30 @@ public:
   using EdgeWeights = spherical_param::EdgeWeights;
   /** \brief How far the mesh is optimised on the points. */
   using OptimizationMethod = spherical_param::OptimizationMethod;
+  /** \brief What becomes of openings of the surface. */
+  using SurfaceMode = spherical_param::SurfaceMode;
   /** \brief Receives the progress of the work; returning false cancels it. */
   using ProgressCallback = std::function<bool(const spherical_param::Progress&)>;
 
   SphericalParamReconstruction();
   ~SphericalParamReconstruction() override = default;
+
+  /** \brief Set what becomes of openings of the surface.
+   * \param[in] mode default SurfaceMode::Closed: they are filled. Open leaves them open; Auto those
+   * alone that are certain.
+   * \note The openings, and how certain they are, are in getResult(), and so is the boundary of a
+   * mesh that is left open. */
+  inline void setSurface(SurfaceMode mode) { options_.surface = mode; }
+  /** \brief Get what becomes of openings of the surface.
+   * \return the mode */
+  inline SurfaceMode getSurface() const { return options_.surface; }
+
+  /** \brief Set up to which size openings are filled although the surface is left open.
+   * \param[in] edges of the loop around an opening; default 0, none */
+  inline void setFillHoles(int edges) { options_.fill_holes = edges; }
+  /** \brief Get up to which size openings are filled.
+   * \return the number of edges around them */
+  inline int getFillHoles() const { return options_.fill_holes; }
 
   /** \brief Set how points become neighbours.
    * \param[in] method default GraphMethod::LocalDelaunay

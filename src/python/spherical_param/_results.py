@@ -41,6 +41,21 @@ class Measures:
 
 
 @dataclass(frozen=True, eq=False)
+class Opening:
+    """An opening of the sampled surface: a wide face of the neighbour graph."""
+
+    loop: IndexArray  #: (l,) vertices around it, in order; one that it passes twice, twice
+    boundary_length: float  #: of the loop [unit of the input]
+    area: float  #: [squared unit of the input]
+    spacing: float  #: distance of the points at the loop [unit of the input]
+    width: float  #: of the disc that area and loop make [unit of the input]
+    center: FloatArray  #: (3,) mean of the loop
+    certainty: float  #: that it is one, from 0 at 3 spacings of width to 1 at 9
+    is_flat: bool  #: the loop lies in a plane: perhaps a flat face without points
+    is_filled: bool  #: the mesh has triangles there
+
+
+@dataclass(frozen=True, eq=False)
 class FilledHole:
     """Triangles over a place that is wide, and without points: probably an opening."""
 
@@ -87,6 +102,8 @@ class Diagnosis:
     summary: str  #: one sentence
     looks_closed_genus0: bool
     openings: int  #: filled holes that are a trace of nothing else
+    is_one_sided: bool  #: like a band of Moebius; found with openings alone
+    boundaries: int  #: loops around openings that the mesh leaves open
     filled_holes: tuple[FilledHole, ...]  #: by falling area
     handles: tuple[Handle, ...]  #: by falling number of edges
     bridges: tuple[PartBridge, ...]  #: by falling number of points
@@ -237,7 +254,7 @@ class History:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(MeshExport):
-    """A closed genus-0 mesh through all points, its map to the sphere, and their quality.
+    """A genus-0 mesh through all points, closed or with openings, its map to the sphere, and their quality.
 
     Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
     ``input_of_vertex`` carry anything that points have, such as colours, to the vertices and back:
@@ -246,8 +263,11 @@ class Result(MeshExport):
     """
 
     vertices: FloatArray  #: (v, 3) the points[input_of_vertex] [unit of the input]
-    triangles: IndexArray  #: (2v - 4, 3) counter-clockwise seen from outside
+    triangles: IndexArray  #: (m, 3) counter-clockwise seen from outside; m = 2v - 4 if closed
     sphere: FloatArray  #: (v, 3) unit vectors: the embedding of each vertex
+    boundary: tuple[IndexArray, ...]
+    """(l,) each: closed loops of vertices, with the surface on the left; empty of a closed mesh"""
+    openings: tuple[Opening, ...]  #: of the surface, filled or not; none with ``surface="closed"``
     vertex_of_input: IndexArray  #: (n,) vertex of each input point; -1: not finite, ignored
     input_of_vertex: IndexArray  #: (v,) first input point at that position
     duplicates: int  #: points that repeat an earlier one
@@ -285,6 +305,8 @@ class Result(MeshExport):
 
 
 def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
+    fields["boundary"] = tuple(fields["boundary"])
+    fields["openings"] = tuple(Opening(**opening) for opening in fields["openings"])
     diagnosis = fields["diagnosis"]
     diagnosis["filled_holes"] = tuple(FilledHole(**hole) for hole in diagnosis["filled_holes"])
     diagnosis["handles"] = tuple(Handle(**handle) for handle in diagnosis["handles"])
