@@ -36,7 +36,8 @@ struct Openings {
   /// Edges {lower, higher} of the graph that are none of the surface, ascending: those across an
   /// opening, and those from its loop to another sheet.
   std::vector<std::array<Index, 2>> false_edges;
-  /// The surface has one side only, like a band of Moebius: no orientation of the normals fits.
+  /// The surface has openings, and one side only, like a band of Moebius: no orientation of the
+  /// normals fits.
   bool is_one_sided = false;
 };
 

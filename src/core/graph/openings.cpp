@@ -37,6 +37,8 @@ constexpr double kMaxOppositeCosine = -0.5;
 /// that is less steep to both planes [sine].
 constexpr double kMinOneSheetCosine = 0.9;
 constexpr double kMaxOneSheetSlope = 0.3;
+/// The least number of such neighbours across which a surface has one side only.
+constexpr std::size_t kMinTwisted = 10;
 /// Cycles of up to three times this number of points do not count.
 constexpr int kReach = 2;
 /// How far the moments of directions are taken about their mean, not about 0.
@@ -92,13 +94,14 @@ public:
                kMaxSheetSlope;
   }
 
-  /// Whether neighbours on one sheet have normals to opposite sides.
-  bool isOneSided() const {
+  /// Edges between neighbours on one sheet that have normals to opposite sides.
+  std::size_t countTwisted() const {
+    std::size_t count = 0;
     for (std::size_t v = 0; v + 1 < offsets_.size(); ++v)
       for (std::size_t e = offsets_[v]; e < offsets_[v + 1]; ++e)
-        if (isTwisted(static_cast<Index>(v), neighbors_[e]))
-          return true;
-    return false;
+        if (at(neighbors_[e]) > v && isTwisted(static_cast<Index>(v), neighbors_[e]))
+          ++count;
+    return count;
   }
 
   /// The loops of all faces with at least kMinSteps edges whose mean corner is large enough, with
@@ -393,7 +396,7 @@ Openings openingsOf(const Positions& points, const Graph& graph, const std::vect
     if (opening.width >= kMinWidth * opening.spacing)
       result.openings.push_back(std::move(opening));
   }
-  result.is_one_sided = rotation.isOneSided();
+  result.is_one_sided = !result.openings.empty() && rotation.countTwisted() >= kMinTwisted;
   result.false_edges = falseEdges(graph, rotation, result);
   std::stable_sort(
       result.openings.begin(), result.openings.end(),
@@ -430,6 +433,8 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Executi
     return found;
   Openings other = openingsOf(points, graph, spacing, true, threads);
   const std::optional<int> other_cycles = cyclesLeft(points, graph, other);
+  // Edges between opposite sheets look like a twist, too.
+  found.is_one_sided = other.is_one_sided = found.is_one_sided && other.is_one_sided;
   return other_cycles && (!cycles || *other_cycles < *cycles) ? other : found;
 }
 
