@@ -79,8 +79,7 @@ bool isWorthRetrying(const Positions& points, Candidate& mesh, const OpenSurface
   const std::size_t boundaries = surface.isOpen() ? 1 : 0;
   const SurfaceDiagnosis diagnosis =
       diagnose(points, surfaceOf(points, surface, mesh), boundaries, mesh.graph, options);
-  return diagnosis.looksClosedGenus0() ||
-         (boundaries > 0 && diagnosis.kind == SurfaceKind::Open);
+  return diagnosis.looksClosedGenus0() || (boundaries > 0 && diagnosis.kind == SurfaceKind::Open);
 }
 
 }  // namespace spherical_param::internal

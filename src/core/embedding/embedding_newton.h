@@ -13,8 +13,8 @@ struct NewtonOptions {
   int max_iterations = 100;
   double tolerance = 0.0;           ///< mean length of the tangential Laplacian [radius]
   double relative_tolerance = 1.0;  ///< the same in units of each node's mean edge
-  /// Where the centroid is farther from the origin, nothing keeps the rest from collapsing: the work
-  /// ends. 1: never.
+  /// Where the centroid is farther from the origin, nothing keeps the rest from collapsing: the
+  /// work ends. 1: never.
   double longest_mean = 1.0;
   Eigen::VectorXd masses;  ///< of that centroid, \see centroidOf(); empty: all alike
   /// Called with (iteration, residual) before each step; throws to end the work.

@@ -78,9 +78,9 @@ public:
         threads_(execution.threads), weights_(options.weights, options.exponent),
         adaptive_weights_(EdgeWeights::Adaptive, options.exponent),
         report_(reportOf(execution, "embedding")),
-        masses_(options.centroid_by_area ? areasOf(graph, hierarchy)
-                                         : std::vector<Eigen::VectorXd>(hierarchy.levels.size() + 1)) {
-  }
+        masses_(options.centroid_by_area
+                    ? areasOf(graph, hierarchy)
+                    : std::vector<Eigen::VectorXd>(hierarchy.levels.size() + 1)) {}
 
   Embedding run() {
     levels().resize(hierarchy_.levels.size() + 1);
@@ -329,8 +329,7 @@ private:
 
   /// Newton's method on a level, until it is solved fully and to the tolerance, if there is one.
   NewtonReport minimize(std::size_t l, const EmbeddingEnergy& energy,
-                        std::optional<double> tolerance,
-                        MultigridPreconditioner& preconditioner,
+                        std::optional<double> tolerance, MultigridPreconditioner& preconditioner,
                         const std::function<void(int, double)>& progress, Positions& u,
                         LevelReport& report) const {
     NewtonOptions options;

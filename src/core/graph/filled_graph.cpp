@@ -76,8 +76,8 @@ public:
   }
 
 private:
-  /// The loop of an opening as a circle. Its radius is between those of the discs of its area and of
-  /// its length.
+  /// The loop of an opening as a circle. Its radius is between those of the discs of its area and
+  /// of its length.
   Ring rimOf(const Opening& opening) {
     Ring ring;
     ring.nodes = opening.loop;
@@ -85,7 +85,8 @@ private:
     double length = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       ring.angles.push_back(2.0 * kPi * length / opening.boundary_length);
-      length += (points_.col(ring.nodes[(i + 1) % ring.size()]) - points_.col(ring.nodes[i])).norm();
+      length +=
+          (points_.col(ring.nodes[(i + 1) % ring.size()]) - points_.col(ring.nodes[i])).norm();
     }
     return ring;
   }

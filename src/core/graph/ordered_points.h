@@ -27,8 +27,8 @@ OrderedPoints orderPoints(const Positions& points, int threads);
 
 /// The same for points that a mesh can be made of.
 ///
-/// \throw InvalidInput for a coordinate that is not finite or too large, or fewer than four distinct
-/// points.
+/// \throw InvalidInput for a coordinate that is not finite or too large, or fewer than four
+/// distinct points.
 OrderedPoints orderCheckedPoints(const Positions& points, int threads);
 
 /// The node of each input point.

@@ -16,7 +16,8 @@ class Opener {
 public:
   Opener(const Positions& points, const Triangles& triangles, const OpenPlaces& openings)
       : points_(points), openings_(openings),
-        mesh_(triangles, static_cast<std::size_t>(points.cols())), is_open_(entry(mesh_.size()), 0) {
+        mesh_(triangles, static_cast<std::size_t>(points.cols())),
+        is_open_(entry(mesh_.size()), 0) {
     for (Index t = 0; t < mesh_.size(); ++t)
       is_open_[entry(t)] =
           openings.isOpen(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)) ? 1 : 0;
@@ -112,9 +113,8 @@ private:
     if (runs.size() == 1)
       return closed({smallestOf(runs.front())});
     const auto narrowest =
-        std::min_element(runs.begin(), runs.end(), [&](const Run& a, const Run& b) {
-          return widthAt(v, a) < widthAt(v, b);
-        });
+        std::min_element(runs.begin(), runs.end(),
+                         [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
     return closed(trimmed(v, *narrowest));
   }
 

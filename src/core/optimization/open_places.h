@@ -10,8 +10,8 @@
 
 namespace spherical_param::internal {
 
-/// Where a mesh of all points is over an opening of the surface: a question of three vertices alone,
-/// whatever the rest of the mesh.
+/// Where a mesh of all points is over an opening of the surface: a question of three vertices
+/// alone, whatever the rest of the mesh.
 class OpenPlaces {
 public:
   /// \param points   3 x n, must outlive this.
@@ -26,7 +26,8 @@ public:
   bool isOpen(Index a, Index b, Index c) const {
     return is_near_[static_cast<std::size_t>(a)] != 0 &&
            is_near_[static_cast<std::size_t>(b)] != 0 &&
-           is_near_[static_cast<std::size_t>(c)] != 0 && (isLong(a, b) || isLong(b, c) || isLong(c, a));
+           is_near_[static_cast<std::size_t>(c)] != 0 &&
+           (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
   /// Whether an edge is in a loop around an opening.
