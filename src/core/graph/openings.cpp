@@ -3,9 +3,9 @@
 #include "filled_graph.h"
 #include "graph_checks.h"
 #include "graph_cycles.h"
+#include "node_spacing.h"
 #include "parallel.h"
 #include "pi.h"
-#include "progress.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Eigenvalues>
@@ -50,17 +50,6 @@ constexpr double kMaxFlat = 0.01;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
-}
-
-/// Median length of a node's edges.
-double spacingOf(const Graph& graph, std::size_t v, std::vector<double>& lengths) {
-  lengths.assign(graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v]),
-                 graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v + 1]));
-  if (lengths.empty())
-    return 0.0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
 }
 
 /// The short edges of the graph that do not cross each other; those of each node in the order
@@ -423,7 +412,7 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Executi
   std::vector<double> spacing(graph.size());
   std::vector<std::vector<double>> scratch(static_cast<std::size_t>(threads));
   internal::forEachItem(graph.size(), threads, [&](std::size_t thread, std::size_t v) {
-    spacing[v] = spacingOf(graph, v, scratch[thread]);
+    spacing[v] = internal::nodeSpacing(graph, v, scratch[thread]);
   });
   Openings found = openingsOf(points, graph, spacing, false, threads);
   if (found.openings.empty())

@@ -5,6 +5,7 @@
 #include "corner_table.h"
 #include "graph_checks.h"
 #include "graph_cycles.h"
+#include "node_spacing.h"
 #include "parallel.h"
 #include "pi.h"
 #include "union_find.h"
@@ -184,17 +185,10 @@ public:
     return all;
   }
 
-  /// Distance of the points around v: the median of its edges in the graph, which a few long ones
-  /// across an opening do not change.
+  /// Distance of the points around v in the graph.
   double spacing(Index v) const {
-    std::vector<double> lengths(
-        graph_.lengths.begin() + static_cast<std::ptrdiff_t>(graph_.offsets[at(v)]),
-        graph_.lengths.begin() + static_cast<std::ptrdiff_t>(graph_.offsets[at(v) + 1]));
-    if (lengths.empty())
-      return 0.0;
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    return *middle;
+    std::vector<double> lengths;
+    return internal::nodeSpacing(graph_, at(v), lengths);
   }
 
 private:

@@ -254,7 +254,7 @@ class History:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(MeshExport):
-    """A genus-0 mesh through all points, closed or with openings, its map to the sphere, and their quality.
+    """A genus-0 mesh through all points, closed or open, its map to the sphere, and their quality.
 
     Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
     ``input_of_vertex`` carry anything that points have, such as colours, to the vertices and back:

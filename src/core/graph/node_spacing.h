@@ -1,0 +1,25 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Distance of the points around a node: the median length of its edges, which a few long ones
+/// across an opening do not change; 0 without edges.
+///
+/// \param lengths working memory.
+inline double nodeSpacing(const Graph& graph, std::size_t node, std::vector<double>& lengths) {
+  lengths.assign(graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[node]),
+                 graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[node + 1]));
+  if (lengths.empty())
+    return 0.0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+}  // namespace spherical_param::internal
