@@ -53,7 +53,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
      "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
     {"A failure, unless the scan is a closed surface and nothing else is wrong",
      "scan.ply mesh.ply -strict"},
-    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers 4 -smoothing 5"},
+    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers auto -smoothing 5"},
 };
 
 std::string helpText() {
@@ -344,6 +344,10 @@ Json diagnosisToJson(const CloudReconstruction& cloud) {
   json["looks_closed_genus0"] = diagnosis.looksClosedGenus0();
   json["summary"] = diagnosis.summary;
   json["genus"] = diagnosis.genus ? Json(*diagnosis.genus) : Json(nullptr);
+  json["outliers"] = Json::array();
+  for (const Index point : cloud.result.outliers) {
+    json["outliers"].push_back(cloud.meshed[static_cast<std::size_t>(point)]);
+  }
   json["filled_holes"] = Json::array();
   for (const spherical_param::FilledHole& hole : diagnosis.filled_holes) {
     json["filled_holes"].push_back({{"cause", nameOf(hole.cause, surface_names)},
@@ -393,8 +397,9 @@ Json outliersToJson(const Settings& settings, const std::optional<OutlierRemoval
   if (!outliers) {
     return nullptr;
   }
-  return {{"sigma", *settings.reconstruction.outlier_sigma},
-          {"threshold", outliers->threshold},
+  const std::optional<double>& sigma = settings.reconstruction.outliers->sigma;
+  return {{"sigma", sigma ? Json(*sigma) : Json(nullptr)},
+          {"threshold", outliers->threshold ? Json(*outliers->threshold) : Json(nullptr)},
           {"count", outliers->points.size()},
           {"indices", outliers->points}};
 }

@@ -48,6 +48,12 @@ struct Bridge {
   double length;  ///< distance of the two points [unit of the input]
 };
 
+/// A point that belongs to no surface. \see findStrayPoints
+struct StrayPoint {
+  Index point;      ///< its number
+  double distance;  ///< to the nearest surface [mean distance of neighbours there]
+};
+
 /// What it took to connect a neighbour graph.
 struct GraphReport {
   std::size_t edges = 0;        ///< undirected edges, bridges included
@@ -62,6 +68,7 @@ struct GraphReport {
   Index searched_again = 0;  ///< points for which more neighbours were searched
   Index uncertified = 0;     ///< points with a tangent plane whose cell is not certified even so
   Index weak = 0;            ///< points of which fewer than three edges were agreed on, repaired
+  std::vector<StrayPoint> stray_points;  ///< ascending; nodes of the graph, as all others are
 };
 
 /// A connected neighbour graph.

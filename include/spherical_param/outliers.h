@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_param/execution.h"
+#include "spherical_param/neighbor_graph.h"
 #include "spherical_param/types.h"
 
 #include <vector>
@@ -9,6 +10,32 @@ namespace spherical_param {
 
 /// \addtogroup outliers
 /// @{
+
+/// Finds stray points: single ones, small clusters, nets of them, and points between sheets.
+///
+/// The graph is that of local Delaunay neighbourhoods before anything is repaired or joined: points
+/// are neighbours if each is in the star of the other. A stray point has no neighbours, or others
+/// like it. The pieces of this graph are surfaces, but for
+///
+///   - clusters: pieces of fewer than 32 points,
+///   - nets: pieces of which no 32 points form a sheet (are joined by edges with triangles on both
+///     sides) and whose median distance of neighbours is above 5 times that of the surface beside.
+///
+/// A point of a cluster or a net is stray if it is farther from the nearest surface than the mean
+/// distance of neighbours there and 8 times the roughness, and in no star of a point of a surface.
+/// The roughness is the root mean square distance of some 12 points there from their plane.
+///
+/// \param points 3 x n, finite. Of points at one position all are stray or none.
+/// \param execution threads, progress
+/// \return the stray points, ascending, the same, bit by bit, for any number of threads. None if no
+///         piece has 32 points, or all are one piece.
+/// \throw InvalidInput for coordinates that are not finite, or options out of range; Cancelled.
+/// Cost: that of a neighbour graph; of reconstruct(), which tells Result::outliers in this way, no
+/// more than a search for each point that is on no surface.
+///
+/// No guarantees: a point as near to a surface as its own are to each other may be noise, and one
+/// that far from the rim of an opening continues the surface.
+std::vector<StrayPoint> findStrayPoints(const Positions& points, const Execution& execution = {});
 
 /// Parameters of findOutliers().
 struct OutlierOptions {
@@ -74,7 +101,9 @@ struct Outliers {
 Outliers findOutliers(const Positions& points, const NeighborLists& lists,
                       const OutlierOptions& options = {}, const Execution& execution = {});
 
-/// The same with neighbours that are found here: twice as many of each point as OutlierOptions::k.
+/// The same with neighbours that are found here, twice as many of each point as OutlierOptions::k,
+/// among the points that are not stray: those of a net have each other for neighbours, and those
+/// between two sheets are in the plane of both. The score of a stray point is StrayPoint::distance.
 ///
 /// \param points 3 x n, finite. Of points at one position all are outliers or none.
 /// \param options, execution as above.

@@ -100,6 +100,10 @@ struct Result {
   /// Options::details asks for it.
   std::vector<double> vertex_residuals;
 
+  /// Input points, ascending, that look like outliers; they are vertices even so, one entry for
+  /// each. Empty for the graph of nearest neighbours. \see findStrayPoints
+  std::vector<Index> outliers;
+
   MeshTopology topology;       ///< checked on `triangles`
   MeshMeasures measures;       ///< of the mesh on the input's points
   SurfaceDiagnosis diagnosis;  ///< does the cloud look like a closed genus-0 surface?

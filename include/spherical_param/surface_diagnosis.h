@@ -89,7 +89,8 @@ struct SurfaceDiagnosis {
   /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
   /// none where that was not needed, as neighbours are nowhere torn apart, or unknown.
   std::optional<int> genus;
-  std::string summary;  ///< one sentence
+  std::size_t outliers = 0;  ///< vertices that belong to no surface; set by reconstruct()
+  std::string summary;       ///< one sentence
   /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless
   /// DiagnosisOptions::mark_triangles asks for it.
   std::vector<std::uint8_t> triangle_marks;

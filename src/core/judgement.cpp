@@ -49,6 +49,9 @@ Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openin
     result.diagnosis.kind = SurfaceKind::Unclear;
     result.diagnosis.summary = summaryOf(result.diagnosis);
   }
+  for (const StrayPoint& stray : best.graph().report.stray_points)
+    result.outliers.push_back(stray.point);
+  result.diagnosis.outliers = result.outliers.size();
   reportFraction(report, 0.5);
   result.measures = measureMesh(points, result.triangles, options.threads);
   reportFraction(report, 0.6);

@@ -105,6 +105,11 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
   std::sort(result.boundary.begin(), result.boundary.end(), [](const auto& a, const auto& b) {
     return a.size() != b.size() ? a.size() > b.size() : a < b;
   });
+  renumber_all(result.outliers);
+  for (StrayPoint& stray : result.graph.stray_points)
+    stray.point = vertex(stray.point);
+  std::sort(result.graph.stray_points.begin(), result.graph.stray_points.end(),
+            [](const StrayPoint& a, const StrayPoint& b) { return a.point < b.point; });
   for (FilledHole& hole : result.diagnosis.filled_holes) {
     renumber_all(hole.vertices);
     for (std::vector<Index>& loop : hole.loops)
@@ -123,6 +128,8 @@ void toInput(OrderedPoints& nodes, Result& result) {
   renumber(nodes.vertex_of_node, result);
   result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
   result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
+  for (Index& vertex : result.outliers)
+    vertex = result.input_of_vertex[static_cast<std::size_t>(vertex)];
 }
 
 }  // namespace spherical_param::internal

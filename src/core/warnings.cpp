@@ -29,6 +29,12 @@ std::vector<std::string> warningsOf(const Options& options, const Result& result
   if (result.duplicates() > 0)
     warn(std::to_string(result.duplicates()) +
          " points repeat an earlier point exactly; each place became one vertex.");
+  if (!result.outliers.empty())
+    warn(std::to_string(result.outliers.size()) +
+         (result.outliers.size() == 1 ? " point looks like an outlier"
+                                      : " points look like outliers") +
+         ", far from any surface, and became spikes or bridges of the mesh; leave outliers out "
+         "(automatically) if they do not belong to the object.");
   if (result.graph.components > 1)
     warn("The neighbour graph was in " + std::to_string(result.graph.components) +
          " pieces, joined by their shortest bridges: the cloud may show several objects, or "

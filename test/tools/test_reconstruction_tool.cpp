@@ -118,7 +118,7 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"array",
        "/residuals /stages /warnings /self_intersecting_pairs /graph/bridges "
        "/graph/without_tangent_plane /embedding/levels /diagnosis/filled_holes /diagnosis/handles "
-       "/diagnosis/bridges /openings /boundary"},
+       "/diagnosis/bridges /diagnosis/outliers /openings /boundary"},
       {"null", "/outliers /smoothing /options/tolerance /options/max_iterations "
                "/options/stagnation_window /options/outliers /options/sphere"}};
   const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {

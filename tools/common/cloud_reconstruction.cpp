@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace spherical_param::tools {
 namespace {
@@ -31,16 +32,29 @@ std::vector<Index> finitePoints(const PointData& data) {
   return finite;
 }
 
+/// Finds the points that are left out, by their positions in the list of meshed points.
+OutlierRemoval outliersOf(const Positions& points, const ReconstructionSettings& settings) {
+  OutlierRemoval found;
+  if (settings.outliers->sigma) {
+    OutlierOptions options;
+    options.sigma = *settings.outliers->sigma;
+    Outliers outliers = findOutliers(points, options, settings.options);
+    found.threshold = outliers.threshold;
+    found.points = std::move(outliers.indices);
+  } else {
+    for (const StrayPoint& stray : findStrayPoints(points, settings.options)) {
+      found.points.push_back(stray.point);
+    }
+  }
+  return found;
+}
+
 /// Takes the outliers out of the points that will be meshed.
 void removeOutliers(const ReconstructionSettings& settings, CloudReconstruction& cloud) {
-  OutlierOptions options;
-  options.sigma = *settings.outlier_sigma;
-  const Outliers found =
-      findOutliers(positionsOf(cloud.data, cloud.meshed), options, settings.options);
-  cloud.outliers = OutlierRemoval{found.threshold, {}};
+  cloud.outliers = outliersOf(positionsOf(cloud.data, cloud.meshed), settings);
   std::vector<Index>& outliers = cloud.outliers->points;
-  for (const Index i : found.indices) {
-    outliers.push_back(cloud.meshed[static_cast<std::size_t>(i)]);
+  for (Index& i : outliers) {
+    i = cloud.meshed[static_cast<std::size_t>(i)];
   }
   std::vector<Index> rest;
   std::set_difference(cloud.meshed.begin(), cloud.meshed.end(), outliers.begin(), outliers.end(),
@@ -75,7 +89,7 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   cloud.stages.push_back({"read", console.end(std::to_string(count) + " points")});
   cloud.meshed = finitePoints(cloud.data);
   cloud.ignored = count - cloud.meshed.size();
-  if (settings.outlier_sigma) {
+  if (settings.outliers) {
     console.begin("outliers");
     runLibrary("cannot look for outliers in " + inQuotes(path), "leave -outliers out",
                [&] { removeOutliers(settings, cloud); });

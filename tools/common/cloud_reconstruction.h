@@ -15,8 +15,8 @@ namespace spherical_param::tools {
 
 /// Points of a file that do not belong to the surface of the others.
 struct OutlierRemoval {
-  double threshold = 0.0;     ///< of the scores
-  std::vector<Index> points;  ///< numbers in the file, ascending
+  std::optional<double> threshold;  ///< of the scores, if there are any
+  std::vector<Index> points;        ///< numbers in the file, ascending
 };
 
 /// The cloud of a file and the mesh that was made of it. Points are numbered as in the file, from

@@ -111,9 +111,10 @@ std::vector<OptionInfo> reconstructionOptions() {
          row.help + "; " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
          row.expert});
   }
-  lines.push_back(
-      {"outliers", "SIGMA",
-       "leave out points that lie this number of standard deviations off, 0 to 1000 (off)", false});
+  lines.push_back({"outliers", "auto|SIGMA",
+                   "leave out stray points, or those that lie this number of standard deviations "
+                   "off, 0 to 1000 (off)",
+                   false});
   lines.push_back(
       {"strict", "", "end with exit code 1 after a warning; all files are written", false});
   return lines;
@@ -122,8 +123,11 @@ std::vector<OptionInfo> reconstructionOptions() {
 ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line) {
   ReconstructionSettings settings;
   if (command_line.has("outliers")) {
-    settings.outlier_sigma =
-        parseReal("outliers", command_line.value("outliers", ""), {0.0, 1000.0, true});
+    const std::string choice = command_line.value("outliers", "");
+    settings.outliers.emplace();
+    if (choice != "auto") {
+      settings.outliers->sigma = parseReal("outliers", choice, {0.0, 1000.0, true});
+    }
   }
   settings.options = parseOptions(command_line);
   settings.strict = command_line.has("strict");
@@ -137,8 +141,9 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
       console.entry(row.name, spherical_param::textOf(value));
     }
   }
-  if (settings.outlier_sigma) {
-    console.entry("outliers", formatted(*settings.outlier_sigma, 6));
+  if (settings.outliers) {
+    const std::optional<double>& sigma = settings.outliers->sigma;
+    console.entry("outliers", sigma ? formatted(*sigma, 6) : "auto");
   }
   if (settings.strict) {
     console.entry("strict", "warnings are a failure");
@@ -151,7 +156,9 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
     json[row.name] =
         failedCondition(row, settings.options) ? Json(nullptr) : jsonOf(row.get(settings.options));
   }
-  json["outliers"] = settings.outlier_sigma ? Json(*settings.outlier_sigma) : Json(nullptr);
+  json["outliers"] = !settings.outliers         ? Json(nullptr)
+                     : settings.outliers->sigma ? Json(*settings.outliers->sigma)
+                                                : Json("auto");
   json["strict"] = settings.strict;
   return json;
 }

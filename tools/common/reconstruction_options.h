@@ -12,11 +12,17 @@
 
 namespace spherical_param::tools {
 
+/// Which points are left out.
+struct OutlierChoice {
+  /// OutlierOptions::sigma of findOutliers(); nothing: `auto`, those of findStrayPoints().
+  std::optional<double> sigma;
+};
+
 /// How a cloud is to be meshed.
 struct ReconstructionSettings {
-  std::optional<double> outlier_sigma;  ///< nothing: outliers are not looked for
-  Options options;                      ///< the number of threads is never 0
-  bool strict = false;                  ///< warnings are a failure, see requireNoWarnings()
+  std::optional<OutlierChoice> outliers;  ///< nothing: they are meshed
+  Options options;                        ///< the number of threads is never 0
+  bool strict = false;                    ///< warnings are a failure, see requireNoWarnings()
 };
 
 /// The lines of the options of the reconstruction: those of the library's table, and a few more.

@@ -103,6 +103,7 @@ function showTables(data) {
     ['Points not finite', report.ignored_points],
     ['Duplicates', report.duplicates],
     ['Outliers left out', report.outliers?.count],
+    ['Outliers in the mesh', report.diagnosis?.outliers?.length || undefined],
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],
     ['Edges outside the graph', report.edges_outside_graph],

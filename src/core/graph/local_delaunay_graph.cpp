@@ -7,6 +7,7 @@
 #include "power_of_two.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
+#include "stray_points.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -421,6 +422,16 @@ Graph agreedEdges(const Positions& points, const Stars& stars, int threads,
   return graph;
 }
 
+/// For each point whether it is in the star of one of the given ones.
+std::vector<char> inStarsOf(const std::vector<char>& given, const Stars& stars) {
+  std::vector<char> result(stars.size(), 0);
+  for (std::size_t i = 0; i < stars.size(); ++i)
+    if (given[i] != 0)
+      for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e)
+        result[static_cast<std::size_t>(stars.nodes[e])] = 1;
+  return result;
+}
+
 Bridge edgeBetween(const Positions& points, Index i, Index j) {
   return {std::min(i, j), std::max(i, j), internal::edgeLength(points, i, j)};
 }
@@ -570,6 +581,9 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   }
 
   result.graph = agreedEdges(points, stars, threads, report);
+  result.report.stray_points =
+      strayPoints(points, result.graph,
+                  [&](const std::vector<char>& given) { return inStarsOf(given, stars); });
   if (agreement == StarAgreement::Either)
     joinAllOfStars(points, stars, result.graph);
   else

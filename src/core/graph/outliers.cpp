@@ -1,10 +1,12 @@
 #include "spherical_param/outliers.h"
 
+#include "caller_neighbors.h"
 #include "neighbor_lists.h"
 #include "ordered_points.h"
 #include "parallel.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/neighbor_graph.h"
 #include "spherical_param/neighbor_search.h"
 
 #include <Eigen/Eigenvalues>
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -27,8 +30,8 @@ constexpr double kMaxDistanceRatio = 2.0;
 /// Neighbours whose spread across is less than this fraction of that along are on a line.
 constexpr double kMinSpreadRatio = 1e-6;
 
-[[noreturn]] void fail(const std::string& what) {
-  throw InvalidInput("findOutliers: " + what);
+[[noreturn]] void fail(const std::string& what, const std::string& function = "findOutliers") {
+  throw InvalidInput(function + ": " + what);
 }
 
 void checkOptions(const OutlierOptions& options) {
@@ -42,10 +45,10 @@ void checkOptions(const OutlierOptions& options) {
          " is out of range; use a finite value that is not negative");
 }
 
-void checkFinite(const Positions& points) {
+void checkFinite(const std::string& function, const Positions& points) {
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (!points.col(i).allFinite())
-      fail("point " + std::to_string(i) + " is not finite; remove such points first");
+      fail("point " + std::to_string(i) + " is not finite; remove such points first", function);
 }
 
 /// A neighbour of a point; ordered by how crowded it is there, then by how near it is.
@@ -178,7 +181,7 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   checkOptions(options);
   const auto n = static_cast<std::size_t>(points.cols());
   internal::checkNeighborLists("findOutliers", lists, n);
-  checkFinite(points);
+  checkFinite("findOutliers", points);
 
   Outliers result;
   Scoring scoring(points, lists, options, execution);
@@ -225,11 +228,74 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   return result;
 }
 
+namespace {
+
+/// The stray points of nodes and neighbour lists of them. \see findStrayPoints
+std::vector<StrayPoint> strayNodes(const Positions& nodes, const NeighborLists& lists,
+                                   const NeighborSearch& search, const Execution& execution) {
+  return buildNeighborGraph(nodes, lists, {}, search, execution).report.stray_points;
+}
+
+/// The columns of a matrix that are not among the stray points, and their numbers.
+Positions othersOf(const Positions& nodes, const std::vector<StrayPoint>& stray,
+                   std::vector<Index>& numbers) {
+  auto next = stray.begin();
+  for (Index i = 0; i < static_cast<Index>(nodes.cols()); ++i)
+    if (next != stray.end() && next->point == i)
+      ++next;
+    else
+      numbers.push_back(i);
+  Positions others(3, static_cast<Eigen::Index>(numbers.size()));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    others.col(static_cast<Eigen::Index>(i)) = nodes.col(numbers[i]);
+  return others;
+}
+
+/// The outliers among distinct points: the others are compared without the stray ones, and these
+/// are outliers if their distance is above the threshold of the others.
+Outliers findAmongNodes(const Positions& nodes, const OutlierOptions& options,
+                        const Execution& execution) {
+  const int count = std::min(options.k, std::numeric_limits<int>::max() / 2) * 2;
+  std::vector<Index> numbers(static_cast<std::size_t>(nodes.cols()));
+  std::iota(numbers.begin(), numbers.end(), Index{0});
+  const NeighborSearch search = makeNeighborSearch(nodes, execution);
+  const NeighborLists lists = search(numbers, count);
+  Execution preparation = execution;  // to the caller one stage, whatever is done in it
+  if (execution.progress)
+    preparation.progress = [&](const Progress& progress) {
+      return execution.progress({"neighbors", progress.fraction});
+    };
+  const std::vector<StrayPoint> stray = strayNodes(nodes, lists, search, preparation);
+  if (stray.empty()) {
+    internal::reportFraction(internal::reportOf(preparation, "neighbors"), 1.0);
+    return findOutliers(nodes, lists, options, execution);
+  }
+  numbers.clear();
+  const Positions others = othersOf(nodes, stray, numbers);
+  Outliers result =
+      findOutliers(others, findNearestNeighbors(others, count, execution), options, execution);
+  std::vector<double> scores(static_cast<std::size_t>(nodes.cols()));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    scores[static_cast<std::size_t>(numbers[i])] = result.scores[i];
+  for (Index& i : result.indices)
+    i = numbers[static_cast<std::size_t>(i)];
+  for (const StrayPoint& each : stray) {
+    scores[static_cast<std::size_t>(each.point)] = each.distance;
+    if (each.distance > result.threshold)
+      result.indices.push_back(each.point);
+  }
+  std::sort(result.indices.begin(), result.indices.end());
+  result.scores = std::move(scores);
+  return result;
+}
+
+}  // namespace
+
 Outliers findOutliers(const Positions& points, const OutlierOptions& options,
                       const Execution& execution) {
   checkOptions(options);
   internal::checkThreads(execution.threads);
-  checkFinite(points);
+  checkFinite("findOutliers", points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
   const auto n = static_cast<std::size_t>(points.cols());
   if (nodes.input_of_node.size() < kMinPositions) {
@@ -237,9 +303,7 @@ Outliers findOutliers(const Positions& points, const OutlierOptions& options,
     none.scores.assign(n, 0.0);
     return none;
   }
-  const int count = std::min(options.k, std::numeric_limits<int>::max() / 2) * 2;
-  Outliers result = findOutliers(nodes.points, findNearestNeighbors(nodes.points, count, execution),
-                                 options, execution);
+  Outliers result = findAmongNodes(nodes.points, options, execution);
 
   const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
   std::vector<char> is_outlier(nodes.input_of_node.size(), 0);
@@ -255,6 +319,28 @@ Outliers findOutliers(const Positions& points, const OutlierOptions& options,
   }
   result.scores = std::move(scores);
   return result;
+}
+
+std::vector<StrayPoint> findStrayPoints(const Positions& points, const Execution& execution) {
+  internal::checkThreads(execution.threads);
+  checkFinite("findStrayPoints", points);
+  const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
+  if (nodes.input_of_node.size() < kMinPositions)
+    return {};
+  const internal::Neighbors neighbors =
+      internal::nearestNeighbors(nodes, neighborsToSearch({}), execution);
+  std::vector<double> distances(nodes.input_of_node.size(), 0.0);
+  for (const StrayPoint& each :
+       strayNodes(nodes.points, neighbors.lists, neighbors.search, execution))
+    distances[static_cast<std::size_t>(each.point)] = each.distance;
+  const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
+  std::vector<StrayPoint> stray;
+  for (std::size_t i = 0; i < node_of_input.size(); ++i) {
+    const double distance = distances[static_cast<std::size_t>(node_of_input[i])];
+    if (distance > 0.0)
+      stray.push_back({static_cast<Index>(i), distance});
+  }
+  return stray;
 }
 
 }  // namespace spherical_param

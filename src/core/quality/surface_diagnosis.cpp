@@ -879,7 +879,11 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
                                    number(hole->boundary_length) + " long, ") +
         place(hole->center));
   }
-  return text.empty() ? "Looks like a closed genus-0 surface." : text + ".";
+  if (text.empty())
+    text = "Looks like a closed genus-0 surface";
+  if (diagnosis.outliers > 0)
+    text += ", with " + counted(diagnosis.outliers, "outlier");
+  return text + ".";
 }
 
 namespace {
