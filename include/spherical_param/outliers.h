@@ -22,7 +22,7 @@ namespace spherical_param {
 ///     sides) and whose median distance of neighbours is above 5 times that of the surface beside.
 ///
 /// A point of a cluster or a net is stray if it is farther from the nearest surface than the mean
-/// distance of neighbours there and 8 times the roughness, and in no star of a point of a surface.
+/// distance of neighbours there and 6 times the roughness, and in no star of a point of a surface.
 /// The roughness is the root mean square distance of some 12 points there from their plane.
 ///
 /// \param points 3 x n, finite. Of points at one position all are stray or none.

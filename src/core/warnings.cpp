@@ -33,8 +33,7 @@ std::vector<std::string> warningsOf(const Options& options, const Result& result
     warn(std::to_string(result.outliers.size()) +
          (result.outliers.size() == 1 ? " point looks like an outlier"
                                       : " points look like outliers") +
-         ", far from any surface, and became spikes or bridges of the mesh; leave outliers out "
-         "(automatically) if they do not belong to the object.");
+         ", far from any surface, and became spikes of the mesh; leave them out (outliers auto).");
   if (result.graph.components > 1)
     warn("The neighbour graph was in " + std::to_string(result.graph.components) +
          " pieces, joined by their shortest bridges: the cloud may show several objects, or "

@@ -74,6 +74,8 @@ Result onNodes() {
   r.runs.resize(2);
   r.graph.bridges = {{0, 3, 1.0}};
   r.graph.without_tangent_plane = {0, 3};
+  r.graph.stray_points = {{0, 5.0}, {1, 6.0}};
+  r.outliers = {0, 1};
   r.diagnosis.filled_holes.resize(1);
   r.diagnosis.filled_holes[0].vertices = {0, 1, 2};
   r.diagnosis.filled_holes[0].loops = {{0, 1, 2}};
@@ -117,6 +119,10 @@ TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.graph.bridges[0].from, 2);
   EXPECT_EQ(result.graph.bridges[0].to, 1);
   EXPECT_EQ(result.graph.without_tangent_plane, (Indices{1, 2}));
+  EXPECT_EQ(result.graph.stray_points[0].point, 0);
+  EXPECT_EQ(result.graph.stray_points[0].distance, 6.0);
+  EXPECT_EQ(result.graph.stray_points[1].point, 2);
+  EXPECT_EQ(result.outliers, (Indices{0, 2}));
   EXPECT_EQ(result.diagnosis.filled_holes[0].vertices, (Indices{0, 2, 3}));
   EXPECT_EQ(result.diagnosis.filled_holes[0].loops[0], (Indices{0, 3, 2}));  // turned, not sorted
   EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));

@@ -44,6 +44,11 @@ TEST(Warnings, EachFindingHasItsOwn) {
   expectWarnings({
       {"", [](Result&) {}},
       {"7 points repeat", [](Result& r) { r.vertex_of_input.resize(kPoints + 7); }},
+      {"1 point looks like an outlier", [](Result& r) { r.outliers = {3}; }},
+      {"2 points look like outliers",
+       [](Result& r) {
+         r.outliers = {3, 4};
+       }},
       {"2 pieces", [](Result& r) { r.graph.components = 2; }},
       {"11 points have no trustworthy",
        [](Result& r) { r.graph.without_tangent_plane.resize(11); }},

@@ -240,8 +240,13 @@ TEST(OutliersOfACloud, AreThoseOfTwiceKNeighboursRepeatedPointsAllOrNone) {
   EXPECT_EQ(found.indices,
             (std::vector<Index>{0, 1, 2, 3, 4, 5, 1506, 1507, 1508, 1509, 1510, 1511}));
   ASSERT_EQ(found.scores.size(), 1532U);
-  for (std::size_t i = 0; i < 1532; ++i)
-    EXPECT_NEAR(found.scores[i], expected.scores[i < 1506 ? i : i - 1506], 1e-9);
+  for (std::size_t i = 0; i < 1532; ++i) {
+    const std::size_t first = i < 1506 ? i : i - 1506;
+    if (first < 6)  // stray points: their distance instead
+      EXPECT_GT(found.scores[i], expected.scores[first]);
+    else
+      EXPECT_NEAR(found.scores[i], expected.scores[first], 1e-9);
+  }
 }
 
 TEST(OutliersOfACloud, FewerThanFourPositionsHaveNone) {
