@@ -86,6 +86,24 @@ TEST_F(ReconstructionTool, DuplicatesAndPointsThatAreNotFiniteAreLeftOutAndCount
   EXPECT_EQ(mesh("out.ply").points(), points);
 }
 
+TEST_F(ReconstructionTool, StrayPointsAreListedAndLeftOutByAuto) {
+  ASSERT_EQ(run(SCAN_TOOL, {"ellipsoid", "plain.xyz", "-points", "800"}).exit_code, 0);
+  write("stray.xyz", "nan 0 0\n9 9 9\n" + content("plain.xyz") + "-9 9 0\n");
+  const json found = reportOf({"stray.xyz", "out.ply"});
+  EXPECT_EQ(found["diagnosis"]["outliers"], json({1, 802}));
+  EXPECT_NE(found["warnings"].dump().find("2 points look like outliers"), std::string::npos);
+  EXPECT_NE(found["diagnosis"]["summary"].dump().find("with 2 outliers"), std::string::npos);
+  EXPECT_TRUE(found["outliers"].is_null());
+  EXPECT_EQ(found["vertices"], 802);
+  const json without = reportOf({"stray.xyz", "out.ply", "-outliers", "auto"});
+  EXPECT_EQ(without["outliers"]["indices"], json({1, 802}));
+  EXPECT_TRUE(without["outliers"]["sigma"].is_null());
+  EXPECT_TRUE(without["outliers"]["threshold"].is_null());
+  EXPECT_EQ(without["options"]["outliers"], "auto");
+  EXPECT_TRUE(without["diagnosis"]["outliers"].empty());
+  EXPECT_EQ(without["vertices"], 800);
+}
+
 TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   const std::vector<std::pair<std::string, std::string>> keys = {
       {"number_integer",
