@@ -14,7 +14,7 @@ namespace spherical_param_ros {
 /// How clouds are meshed, and how they wait for it.
 struct Settings {
   spherical_param::Options options;  ///< `progress` is ignored
-  /// OutlierOptions::sigma; unset: outliers are not looked for.
+  /// OutlierOptions::sigma, or kAuto: stray points; unset: outliers are not looked for.
   std::optional<double> outliers;
   /// Larger clouds are refused, so that no cloud takes all memory; 0: none is.
   std::size_t max_points = 5000000;
@@ -28,6 +28,9 @@ using Value = std::variant<bool, std::int64_t, double, std::string>;
 
 /// The value of an optional parameter that is not set.
 inline constexpr int kUnset = -1;
+
+/// The value of `outliers` for stray points: findStrayPoints().
+inline constexpr int kAuto = -2;
 
 /// A parameter, for declarations and documentation.
 struct ParameterInfo {

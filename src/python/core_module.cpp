@@ -27,6 +27,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -131,15 +132,29 @@ py::dict reconstructPoints(const DoubleArray& array, const py::dict& values, boo
   }
 }
 
-py::dict findOutlierPoints(const DoubleArray& array, double sigma, int k, int threads,
-                           const py::object& progress) {
+/// The stray points, with their distances for scores.
+Outliers strayPoints(const Positions& points, const Execution& execution) {
+  Outliers result;
+  result.scores.assign(static_cast<std::size_t>(points.cols()), 0.0);
+  for (const StrayPoint& stray : findStrayPoints(points, execution)) {
+    result.indices.push_back(stray.point);
+    result.scores[static_cast<std::size_t>(stray.point)] = stray.distance;
+  }
+  return result;
+}
+
+/// \param sigma none: stray points
+py::dict findOutlierPoints(const DoubleArray& array, const std::optional<double>& sigma, int k,
+                           int threads, const py::object& progress) {
   OutlierOptions options;
-  options.sigma = sigma;
+  options.sigma = sigma.value_or(options.sigma);
   options.k = k;
   Listener listener(progress);
   const FinitePoints finite(array);
-  const Outliers found = listener.run(
-      [&] { return findOutliers(finite.points, options, listener.execution(threads)); });
+  const Outliers found = listener.run([&] {
+    return sigma ? findOutliers(finite.points, options, listener.execution(threads))
+                 : strayPoints(finite.points, listener.execution(threads));
+  });
   std::vector<Index> indices;
   for (const Index point : found.indices)
     indices.push_back(finite.rows[static_cast<std::size_t>(point)]);

@@ -168,13 +168,16 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
   std::vector<Index> vertex_of_input(points_given, -1);
   for (std::size_t i = 0; i < input_of_kept.size(); ++i)
     vertex_of_input[static_cast<std::size_t>(input_of_kept[i])] = result.vertex_of_input[i];
+  std::vector<Index> outliers;
+  for (const Index point : result.outliers)
+    outliers.push_back(input_of_kept[static_cast<std::size_t>(point)]);
   std::vector<Index> input_of_vertex(result.input_of_vertex.size());
   std::transform(result.input_of_vertex.begin(), result.input_of_vertex.end(),
                  input_of_vertex.begin(),
                  [&](Index kept) { return input_of_kept[static_cast<std::size_t>(kept)]; });
   py::dict dict("triangles"_a = toArray(result.triangles), "sphere"_a = toArray(result.sphere),
                 "vertex_of_input"_a = toArray(vertex_of_input),
-                "input_of_vertex"_a = toArray(input_of_vertex),
+                "input_of_vertex"_a = toArray(input_of_vertex), "outliers"_a = toArray(outliers),
                 "duplicates"_a = result.duplicates(),
                 "ignored"_a = points_given - input_of_kept.size(),
                 "self_intersections"_a = toArray(result.self_intersections),

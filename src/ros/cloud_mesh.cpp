@@ -139,14 +139,26 @@ Points finitePoints(const pcl::PCLPointCloud2& cloud) {
   return points;
 }
 
+/// \param sigma of the settings
+std::vector<Index> outliersOf(const Positions& points, double sigma,
+                              const spherical_param::Execution& execution) {
+  if (sigma != kAuto) {
+    spherical_param::OutlierOptions options;
+    options.sigma = sigma;
+    return spherical_param::findOutliers(points, options, execution).indices;
+  }
+  std::vector<Index> stray;
+  for (const spherical_param::StrayPoint& each :
+       spherical_param::findStrayPoints(points, execution))
+    stray.push_back(each.point);
+  return stray;
+}
+
 /// Removes outliers. \return their number \throw BadCloud, Cancelled
 std::size_t removeOutliers(Points& points, double sigma,
                            const spherical_param::Execution& execution) {
   constexpr std::size_t min_points = 4;
-  spherical_param::OutlierOptions options;
-  options.sigma = sigma;
-  const std::vector<Index> outliers =
-      spherical_param::findOutliers(points.positions, options, execution).indices;
+  const std::vector<Index> outliers = outliersOf(points.positions, sigma, execution);
   if (outliers.empty())
     return 0;
   const std::size_t count = points.of_record.size();

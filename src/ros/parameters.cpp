@@ -89,11 +89,11 @@ Parameter integer(const std::string& name, const std::string& description, int m
 
 Parameter outliers() {
   const std::string name = "outliers";
-  const std::string range = "a number from 0 to 1000, or -1: off";
+  const std::string range = "a number from 0 to 1000, or -1: off, or -2: automatic";
   return {{name,
-           "leave out points that many deviations off the others; " + range,
+           "leave out points that many deviations off the others, or stray ones; " + range,
            double{kUnset},
-           double{kUnset},
+           double{kAuto},
            1000.0,
            {}},
           [](const Settings& settings) { return Value(settings.outliers.value_or(kUnset)); },
@@ -102,8 +102,8 @@ Parameter outliers() {
             const auto* real = std::get_if<double>(&value);
             const double number = integer != nullptr ? static_cast<double>(*integer)
                                   : real != nullptr  ? *real
-                                                     : -2.0;
-            if (number != kUnset && !(number >= 0.0 && number <= 1000.0))
+                                                     : std::numeric_limits<double>::quiet_NaN();
+            if (number != kUnset && number != kAuto && !(number >= 0.0 && number <= 1000.0))
               refuse(name, value, range);
             settings.outliers = number == kUnset ? std::optional<double>() : number;
           }};

@@ -249,6 +249,12 @@ class Outliers(unittest.TestCase):
         self.assertTrue((outliers.scores[1:2001] <= outliers.threshold).all())
         self.assertTrue((outliers.scores[2001:] > outliers.threshold).all())
         self.assertEqual(len(sp.find_outliers(cloud, sigma=1000).indices), 0)
+        stray = sp.find_outliers(cloud, sigma="auto")
+        np.testing.assert_array_equal(stray.indices, outliers.indices)
+        self.assertTrue((stray.scores[2001:] > 2).all())
+        self.assertTrue((stray.scores[1:2001] == 0).all())
+        np.testing.assert_array_equal(sp.reconstruct(cloud).outliers, [2001, 2002, 2003])
+        self.assertEqual(len(sp.reconstruct(cloud[stray.inliers]).outliers), 0)
         for wrong in ({"sigma": -1}, {"sigma": "4"}, {"k": 2}, {"threads": -1}):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
                 sp.find_outliers(cloud, **wrong)

@@ -187,6 +187,18 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
   }
 }
 
+TEST(RosCloudMesh, StrayPointsAreLeftOutAutomatically) {
+  pcl::PCLPointCloud2 cloud = ellipsoid(1500);
+  setPoint(cloud, 100, 20.0, 0.0, 0.0);
+  Settings settings;
+  EXPECT_NE(meshed(cloud, settings).message.find("1 outlier"), std::string::npos);
+  settings.outliers = kAuto;
+  const Outcome outcome = meshed(cloud, settings);
+  EXPECT_EQ(outcome.outliers, 1U);
+  EXPECT_EQ(outcome.mesh->vertices.size(), 1499U);
+  EXPECT_EQ(outcome.message.find("outlier"), std::string::npos);
+}
+
 TEST(RosCloudMesh, ACloudOfTheLimitIsMeshedAndZeroIsNoLimit) {
   for (const std::size_t limit : {0U, 100U}) {
     Settings settings;

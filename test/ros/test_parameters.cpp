@@ -76,6 +76,8 @@ TEST(RosParameters, AnIntegerWillDoForANumberAndMinusOneUnsets) {
   EXPECT_EQ(settings.options.embedding.exponent, 4.0);
   setParameter(settings, "outliers", 4);
   EXPECT_EQ(settings.outliers, 4.0);
+  setParameter(settings, "outliers", kAuto);
+  EXPECT_EQ(settings.outliers, double{kAuto});
   for (const Value& unset : {Value(std::int64_t{kUnset}), Value(-1.0)})
     for (const char* name : {"k", "tolerance", "outliers"}) {
       setParameter(settings, name, name == std::string("k") ? 3 : 1);
@@ -93,6 +95,7 @@ TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
                         {"damping", true},
                         {"outliers", 1000.5},
                         {"outliers", -0.5},
+                        {"outliers", -3.0},
                         {"outliers", nan},
                         {"outliers", std::string("many")},
                         {"max_points", -1},

@@ -18,7 +18,7 @@ def reconstruct(
 def find_outliers(
     points: NDArray[np.float64],
     *,
-    sigma: float,
+    sigma: Optional[float],
     k: int,
     threads: int,
     progress: Optional[Callable[[str, float], object]],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional, SupportsFloat, SupportsIndex
+from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,7 @@ class Outliers:
 
     indices: IndexArray  #: (o,) rows of the outliers, ascending, copies of them included
     scores: FloatArray  #: (n,) how far each point is off its neighbours' surface; nan: not finite
-    threshold: float  #: scores above are outliers
+    threshold: float  #: scores above are outliers; 0 with "auto"
     rounds: int  #: passes over the points
 
     @property
@@ -36,10 +36,14 @@ class Outliers:
         )
 
 
+def _is_auto(sigma: Union[SupportsFloat, str]) -> bool:
+    return isinstance(sigma, str) and sigma == "auto"
+
+
 def find_outliers(
     points: ArrayLike,
     *,
-    sigma: SupportsFloat = 4.0,
+    sigma: Union[SupportsFloat, Literal["auto"]] = 4.0,
     k: SupportsIndex = 16,
     threads: SupportsIndex = 0,
     progress: Optional[ProgressFunction] = None,
@@ -53,14 +57,17 @@ def find_outliers(
     ----------
     points : array-like, (n, 3)
         As for ``reconstruct``.
-    sigma : float, 0 to 1000
-        Outliers are farther off than the mean by this number of standard deviations.
+    sigma : float, 0 to 1000, or "auto"
+        Outliers are farther off than the mean by this number of standard deviations. "auto": stray
+        points, small clusters of them and points between sheets, in spacings of the nearest
+        surface; points of a surface are hardly ever among them.
     k : int, 3 and up
         Neighbours of each point that make its surface.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
     progress : callable(stage, fraction)
-        As for ``reconstruct``; the stages are "neighbors" and "outliers".
+        As for ``reconstruct``; the stages are "neighbors" and "outliers", with "auto"
+        "neighbors" and "graph".
 
     Raises
     ------
@@ -74,7 +81,7 @@ def find_outliers(
     return Outliers(
         **_core.find_outliers(
             arguments.positions("points", points),
-            sigma=arguments.real("sigma", sigma),
+            sigma=None if _is_auto(sigma) else arguments.real("sigma", sigma),
             k=arguments.integer("k", k, 3),
             threads=arguments.thread_count(threads),
             progress=arguments.progress_function(progress),

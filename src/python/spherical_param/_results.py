@@ -270,6 +270,7 @@ class Result(MeshExport):
     openings: tuple[Opening, ...]  #: of the surface, filled or not; none with ``surface="closed"``
     vertex_of_input: IndexArray  #: (n,) vertex of each input point; -1: not finite, ignored
     input_of_vertex: IndexArray  #: (v,) first input point at that position
+    outliers: IndexArray  #: points that belong to no surface but are vertices; see find_outliers
     duplicates: int  #: points that repeat an earlier one
     ignored: int  #: points that are not finite
     self_intersections: IndexArray  #: (s, 2) pairs of triangles that intersect, exactly found
