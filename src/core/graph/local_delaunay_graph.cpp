@@ -4,6 +4,7 @@
 #include "graph_building.h"
 #include "neighbor_lists.h"
 #include "parallel.h"
+#include "part_numbers.h"
 #include "power_of_two.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
@@ -554,6 +555,23 @@ void connect(const Positions& points, const Stars& stars, const internal::Fracti
   result.report.bridges.insert(result.report.bridges.end(), bridges.begin(), bridges.end());
 }
 
+/// The stars of all points; what is wrong with them is added to the report.
+Stars starsOf(const Positions& points, const NeighborLists& lists, const NeighborSearch& search,
+              int threads, const internal::FractionReport& progress, GraphReport& report) {
+  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
+  Stars stars(static_cast<std::size_t>(points.cols()));
+  findStars(points, {}, lists, threads, scratch, progress, stars);
+  if (search)
+    report.searched_again = searchForMore(points, search, threads, scratch, progress, stars);
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    if (!stars.kind[i].tangent_plane)
+      report.without_tangent_plane.push_back(static_cast<Index>(i));
+    else if (!stars.kind[i].certified)
+      ++report.uncertified;
+  }
+  return stars;
+}
+
 }  // namespace
 
 namespace internal {
@@ -568,18 +586,7 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
     return result;
 
   const FractionReport report = reportOf(execution, "graph");
-  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
-  Stars stars(n);
-  findStars(points, {}, lists, threads, scratch, report, stars);
-  if (search)
-    result.report.searched_again = searchForMore(points, search, threads, scratch, report, stars);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!stars.kind[i].tangent_plane)
-      result.report.without_tangent_plane.push_back(static_cast<Index>(i));
-    else if (!stars.kind[i].certified)
-      ++result.report.uncertified;
-  }
-
+  const Stars stars = starsOf(points, lists, search, threads, report, result.report);
   result.graph = agreedEdges(points, stars, threads, report);
   result.report.stray_points =
       strayPoints(points, result.graph,
@@ -591,6 +598,17 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   result.report.weak = repairWeak(points, stars, result.graph);
   connect(points, stars, report, result);
   return result;
+}
+
+std::vector<Index> partsOfGraph(const Positions& points, const NeighborLists& lists, int min_points,
+                                const NeighborSearch& search, const Execution& execution) {
+  const int threads =
+      threadCount(execution.threads, static_cast<std::size_t>(points.cols()), kParallelThreshold);
+  const FractionReport report = reportOf(execution, "graph");
+  GraphReport unused;
+  const Stars stars = starsOf(points, lists, search, threads, report, unused);
+  return partOfNodes(points, agreedEdges(points, stars, threads, report), min_points,
+                     [&](const std::vector<char>& given) { return inStarsOf(given, stars); });
 }
 
 }  // namespace internal

@@ -9,4 +9,8 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
                                       StarAgreement agreement, const NeighborSearch& search,
                                       const Execution& execution);
 
+/// The part of each node, or -1, as findParts() defines them. \see partOfNodes
+std::vector<Index> partsOfGraph(const Positions& points, const NeighborLists& lists, int min_points,
+                                const NeighborSearch& search, const Execution& execution);
+
 }  // namespace spherical_param::internal

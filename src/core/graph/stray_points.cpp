@@ -1,12 +1,9 @@
 #include "stray_points.h"
 
-#include "component_tree.h"
 #include "graph_building.h"
-
-#include <Eigen/Eigenvalues>
+#include "surface_distance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace spherical_param::internal {
@@ -20,12 +17,6 @@ constexpr std::size_t kMinSurface = 32;
 /// A piece that is coarser than the surface beside it by this factor, and holds no sheet, is a net
 /// of stray points. Walls in a depth image have 0.5 to 0.9, nets 14 to 20.
 constexpr double kMaxCoarseness = 5.0;
-/// A point may be noise if it is within a spacing, and this number of times the roughness, of the
-/// surface. The noisy models lose no point; of 3,181 stray points that are farther than a spacing
-/// 58 are missed, with 8 93, and 171 with 2.5 spacings whatever the roughness.
-constexpr double kMaxRoughnesses = 6.0;
-/// Points of a surface that show its roughness.
-constexpr std::size_t kPatch = 12;
 
 std::size_t slot(Index i) {
   return static_cast<std::size_t>(i);
@@ -36,14 +27,6 @@ std::vector<std::size_t> setSizes(const std::vector<Index>& representative) {
   for (const Index set : representative)
     ++sizes[slot(set)];
   return sizes;
-}
-
-/// Mean length of the edges at a node that has some.
-double spacingAt(const Graph& graph, Index i) {
-  double sum = 0.0;
-  for (std::size_t e = graph.offsets[slot(i)]; e < graph.offsets[slot(i) + 1]; ++e)
-    sum += graph.lengths[e];
-  return sum / static_cast<double>(graph.offsets[slot(i) + 1] - graph.offsets[slot(i)]);
 }
 
 /// Whether an edge has triangles on both sides: its ends have two neighbours in common.
@@ -82,61 +65,6 @@ void markSheets(const Graph& agreed, const std::vector<Index>& piece,
     if (sheet_sizes[i] >= kMinSurface)
       is_surface[slot(piece[i])] = 1;
 }
-
-/// Root mean square distance of a node and those around it, kPatch at least, from their plane.
-double roughnessAt(const Positions& points, const Graph& graph, Index i) {
-  std::vector<Index> patch{i};
-  for (std::size_t done = 0; done < patch.size() && patch.size() < kPatch;) {
-    const std::size_t ring_end = patch.size();
-    for (; done < ring_end; ++done)
-      for (std::size_t e = graph.offsets[slot(patch[done])];
-           e < graph.offsets[slot(patch[done]) + 1]; ++e)
-        if (std::find(patch.begin(), patch.end(), graph.neighbors[e]) == patch.end())
-          patch.push_back(graph.neighbors[e]);
-  }
-  Eigen::Matrix3Xd offsets(3, static_cast<Eigen::Index>(patch.size()));
-  for (std::size_t k = 0; k < patch.size(); ++k)
-    offsets.col(static_cast<Eigen::Index>(k)) = points.col(patch[k]) - points.col(i);
-  offsets.colwise() -= offsets.rowwise().mean().eval();
-  const Eigen::Matrix3d covariance =
-      offsets * offsets.transpose() / static_cast<double>(patch.size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(axes.eigenvalues()[0], 0.0));
-}
-
-/// Distances to points that are on a surface.
-class SurfaceDistance {
-public:
-  SurfaceDistance(const Positions& points, const Graph& agreed)
-      : points_(points), agreed_(agreed), tree_(points) {}
-
-  void setSurfaces(const std::vector<char>& on_surface) {
-    tree_.setComponents({on_surface.begin(), on_surface.end()});
-  }
-  /// The point on a surface that is nearest to point i, which is on none.
-  Index nearest(Index i) const {
-    ComponentTree::Pair pair;
-    tree_.nearestOther(i, {}, pair);
-    return pair.from == i ? pair.to : pair.from;
-  }
-  /// The distance of point i to the surface in spacings there, if that is too far for noise; or 0.
-  double beyondNoise(Index i) const {
-    const Index j = nearest(i);
-    const double distance = edgeLength(points_, i, j);
-    const double spacing = spacingAt(agreed_, j);
-    const double noise = spacing + kMaxRoughnesses * roughnessAt(points_, agreed_, j);
-    return distance > noise ? distance / spacing : 0.0;
-  }
-  /// How many times coarser the piece is at point i than the nearest surface.
-  double coarseness(Index i) const {
-    return spacingAt(agreed_, i) / spacingAt(agreed_, nearest(i));
-  }
-
-private:
-  const Positions& points_;
-  const Graph& agreed_;
-  ComponentTree tree_;
-};
 
 /// Marks the other large pieces that are no coarser than the surface beside them.
 void markFinePieces(const SurfaceDistance& distance, const std::vector<Index>& piece,

@@ -1,0 +1,72 @@
+#include "spherical_param/parts.h"
+
+#include "caller_neighbors.h"
+#include "local_delaunay_graph.h"
+#include "ordered_points.h"
+#include "parallel.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/neighbor_graph.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace spherical_param {
+namespace {
+
+/// A surface that encloses a volume has that many points.
+constexpr int kFewestPoints = 4;
+
+void checkArguments(const Positions& points, int min_points) {
+  if (min_points < kFewestPoints)
+    throw InvalidInput("findParts: min_points = " + std::to_string(min_points) +
+                       " is out of range; use 4 or more");
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (!points.col(i).allFinite())
+      throw InvalidInput("findParts: point " + std::to_string(i) +
+                         " is not finite; remove such points first");
+}
+
+Part partOf(const Positions& points, std::vector<Index> indices) {
+  const Positions own = points(Eigen::all, indices);
+  return {std::move(indices), own.rowwise().minCoeff(), own.rowwise().maxCoeff()};
+}
+
+}  // namespace
+
+Parts findParts(const Positions& points, int min_points, const Execution& execution) {
+  checkArguments(points, min_points);
+  internal::checkThreads(execution.threads);
+  const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
+  const std::size_t count = nodes.input_of_node.size();
+  const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
+  Parts result;
+  if (count < static_cast<std::size_t>(min_points)) {
+    result.left_out.resize(node_of_input.size());
+    std::iota(result.left_out.begin(), result.left_out.end(), Index{0});
+    return result;
+  }
+  const internal::Neighbors neighbors =
+      internal::nearestNeighbors(nodes, neighborsToSearch({}), execution);
+  const std::vector<Index> part_of_node = internal::partsOfGraph(
+      nodes.points, neighbors.lists, min_points, neighbors.search, execution);
+
+  std::vector<std::vector<Index>> points_of(count);
+  for (std::size_t i = 0; i < node_of_input.size(); ++i) {
+    const Index part = part_of_node[static_cast<std::size_t>(node_of_input[i])];
+    (part < 0 ? result.left_out : points_of[static_cast<std::size_t>(part)])
+        .push_back(static_cast<Index>(i));
+  }
+  for (std::vector<Index>& indices : points_of)
+    if (!indices.empty())
+      result.parts.push_back(partOf(points, std::move(indices)));
+  std::sort(result.parts.begin(), result.parts.end(), [](const Part& a, const Part& b) {
+    return a.points.size() != b.points.size() ? a.points.size() > b.points.size()
+                                              : a.points.front() < b.points.front();
+  });
+  return result;
+}
+
+}  // namespace spherical_param
