@@ -404,7 +404,7 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
   const auto count = static_cast<std::size_t>(morph.result.first.cols());
   if (morph.hasColors()) {
     vertices.colors.resize(count);
-    vertices.has_alpha = clouds[0].cloud.data.has_alpha || clouds[1].cloud.data.has_alpha;
+    vertices.has_alpha = clouds[0].cloud.data->has_alpha || clouds[1].cloud.data->has_alpha;
   }
   for (std::size_t frame = 0; frame < settings.frames.size(); ++frame) {
     const double t = timeOf(settings, frame);

@@ -34,6 +34,7 @@ using spherical_param::EdgeWeights;
 using spherical_param::GraphMethod;
 using spherical_param::Index;
 using spherical_param::OptimizationMethod;
+using spherical_param::PartsMode;
 using spherical_param::SmoothingMethod;
 using spherical_param::StopReason;
 using spherical_param::SurfaceKind;
@@ -100,6 +101,48 @@ const Names<StopReason> stop_reason_names = {
     {"unfinished", StopReason::Unfinished},
 };
 
+/// In names of files, the number of the part.
+const std::string number_mark = "%03d";
+
+bool isNumbered(const std::string& name) {
+  return name.find(number_mark) != std::string::npos;
+}
+
+/// The name of a file of a part; one without a mark is that of all parts.
+std::string numbered(const std::string& name, std::size_t part) {
+  const std::size_t mark = name.find(number_mark);
+  if (mark == std::string::npos) {
+    return name;
+  }
+  std::array<char, 32> number{};
+  std::snprintf(number.data(), number.size(), "%03zu", part);
+  return name.substr(0, mark) + number.data() + name.substr(mark + number_mark.size());
+}
+
+/// The settings of a part, with the names of its files.
+Settings settingsOf(Settings settings, std::size_t part) {
+  for (std::string* name : {&settings.output, &settings.sphere, &settings.page}) {
+    *name = numbered(*name, part);
+  }
+  return settings;
+}
+
+/// \throw UsageError for names without the numbers that they need, or with some that they do not.
+void checkNumbers(const Settings& settings) {
+  const bool makes_parts = settings.reconstruction.parts == PartsMode::Each;
+  if (isNumbered(settings.output) && !makes_parts) {
+    throw UsageError(inQuotes(settings.output) + " is for several parts, but one mesh is made",
+                     "give -parts each, or a name without " + number_mark);
+  }
+  const bool has_numbers = isNumbered(settings.output);
+  for (const std::string& name : {settings.sphere, settings.page}) {
+    if (makes_parts && !name.empty() && !(isNumbered(name) && has_numbers)) {
+      throw UsageError(inQuotes(name) + " can show one part alone",
+                       "give names with " + number_mark + " to it and to the output");
+    }
+  }
+}
+
 Settings parseSettings(const CommandLine& command_line) {
   Settings settings;
   std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
@@ -112,6 +155,7 @@ Settings parseSettings(const CommandLine& command_line) {
   settings.report = parseOutputOptions(command_line);
   settings.reconstruction = parseReconstructionOptions(command_line);
   settings.page = parseHtmlReport(command_line);
+  checkNumbers(settings);
   if (!settings.page.empty()) {
     keepForHtmlReport(settings.reconstruction);
     settings.command = repeatedCommand(tool_name, command_line, option_table,
@@ -404,16 +448,28 @@ Json outliersToJson(const Settings& settings, const std::optional<OutlierRemoval
           {"indices", outliers->points}};
 }
 
-Json report(const Settings& settings, const CloudReconstruction& cloud) {
-  const spherical_param::Result& result = cloud.result;
+/// What was made of the cloud before it was meshed.
+Json cloudToJson(const Settings& settings, const CloudReconstruction& cloud) {
   Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
   json["output"] = settings.output;
   json["options"] = optionsToJson(settings);
-  json["points"] = cloud.data.points.size();
+  json["points"] = cloud.data->points.size();
   json["ignored_points"] = cloud.ignored;
   json["outliers"] = outliersToJson(settings, cloud.outliers);
+  json["left_out"] = cloud.parts ? Json(cloud.parts->left_out) : Json(nullptr);
+  return json;
+}
+
+Json partToJson(const spherical_param::Part& part) {
+  return {{"points", part.points.size()},
+          {"box", {{"min", toJson(part.box_min)}, {"max", toJson(part.box_max)}}}};
+}
+
+/// Adds what was made of a cloud, or of a part of one.
+void addMesh(const Settings& settings, const CloudReconstruction& cloud, Json& json) {
+  const spherical_param::Result& result = cloud.result;
   json["duplicates"] = result.duplicates();
   json["vertices"] = result.vertexCount();
   json["triangles"] = result.triangles.cols();
@@ -448,6 +504,35 @@ Json report(const Settings& settings, const CloudReconstruction& cloud) {
   json["stages"] = toJson(cloud.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
   json["warnings"] = warningsOf(cloud);
+}
+
+Json report(const Settings& settings, const CloudReconstruction& cloud) {
+  Json json = cloudToJson(settings, cloud);
+  json["parts"] = nullptr;
+  if (cloud.parts) {
+    json["parts"] = Json::array();
+    for (const spherical_param::Part& part : cloud.parts->parts) {
+      json["parts"].push_back(partToJson(part));
+    }
+  }
+  addMesh(settings, cloud, json);
+  return json;
+}
+
+/// The report on all parts, each with what report() says of one mesh.
+Json reportOnParts(const Settings& settings, const PartsReconstruction& reconstruction) {
+  const CloudReconstruction& cloud = reconstruction.cloud;
+  Json json = cloudToJson(settings, cloud);
+  json["parts"] = Json::array();
+  for (std::size_t i = 0; i < reconstruction.parts.size(); ++i) {
+    Json part = partToJson(cloud.parts->parts[i]);
+    part["output"] = numbered(settings.output, i);
+    addMesh(settings, reconstruction.parts[i], part);
+    json["parts"].push_back(std::move(part));
+  }
+  json["stages"] = toJson(cloud.stages);
+  json["peak_memory_bytes"] = peakMemoryToJson();
+  json["warnings"] = warningsOf(reconstruction);
   return json;
 }
 
@@ -594,14 +679,25 @@ std::string convergence(const Settings& settings, const CloudReconstruction& clo
          (hasBarrier(settings, embedding) ? ", the pull of a barrier is left)" : ")");
 }
 
-void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
-  const spherical_param::Result& result = cloud.result;
-  printHierarchy(result.embedding.levels, console);
-  printPhases(result.optimization.phases, console);
-  console.entry("points", std::to_string(cloud.data.points.size()));
+/// What was made of the cloud before it was meshed.
+void printCloud(const CloudReconstruction& cloud, Console& console) {
+  console.entry("points", std::to_string(cloud.data->points.size()));
   if (cloud.outliers) {
     console.entry("outliers", std::to_string(cloud.outliers->points.size()) + " left out");
   }
+  if (cloud.parts) {
+    console.entry("parts", std::to_string(cloud.parts->parts.size()) + ", " +
+                               counted(cloud.parts->left_out.size(), "point") + " in none");
+  }
+}
+
+void printTables(const CloudReconstruction& cloud, Console& console) {
+  printHierarchy(cloud.result.embedding.levels, console);
+  printPhases(cloud.result.optimization.phases, console);
+}
+
+void printMesh(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
+  const spherical_param::Result& result = cloud.result;
   console.entry("used", std::to_string(result.vertexCount()) + " (" +
                             std::to_string(result.duplicates()) + " duplicate, " +
                             std::to_string(cloud.ignored) + " not finite)");
@@ -641,34 +737,48 @@ void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Co
   }
 }
 
-void run(const std::vector<std::string>& words) {
-  const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
-    return;
+void printVerdict(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
+  printTables(cloud, console);
+  printCloud(cloud, console);
+  printMesh(settings, cloud, console);
+}
+
+/// Prints what was made of each part, then of all.
+void printParts(const Settings& settings, const PartsReconstruction& reconstruction,
+                Console& console) {
+  const CloudReconstruction& cloud = reconstruction.cloud;
+  for (std::size_t i = 0; i < reconstruction.parts.size(); ++i) {
+    const spherical_param::Part& part = cloud.parts->parts[i];
+    console.heading("\n" + oneLine(numbered(settings.output, i)) + ", part " +
+                    std::to_string(i + 1) + ":");
+    printTables(reconstruction.parts[i], console);
+    console.entry("points", std::to_string(part.points.size()) + " in " + listed(part.box_min) +
+                                " to " + listed(part.box_max));
+    printMesh(settings, reconstruction.parts[i], console);
   }
-  const Settings settings = parseSettings(command_line);
-  checkOutputs({settings.input}, outputsOf(settings));
+  console.heading("\n" + oneLine(settings.input) + ":");
+  printCloud(cloud, console);
+  for (const std::string& warning : warningsOf(reconstruction)) {
+    console.entry("warning", oneLine(warning));
+  }
+}
 
-  Console console(settings.report.printsText());
-  printParameters(settings, console);
-  CloudReconstruction cloud;
-  reconstructCloud(settings.input, settings.reconstruction, console, cloud);
-
+/// Writes the mesh, the sphere and the page of a cloud, or of a part of one.
+void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& console,
+                std::vector<std::unique_ptr<OutputFile>>& files) {
   console.begin("write");
   // The mesh, and the sphere if it is wanted, are halves of one stage.
   const double fraction_of_file = settings.sphere.empty() ? 1.0 : 0.5;
-  std::vector<std::unique_ptr<OutputFile>> files;
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), meshOf(cloud), settings.output_format, settings.report.encoding,
             [&](double fraction) { console.update(fraction_of_file * fraction); });
+  files.back()->finish();
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
     writeMesh(*files.back(), sphereOf(cloud, cloud.result.sphere), settings.sphere_format,
               settings.report.encoding,
               [&](double fraction) { console.update(0.5 + 0.5 * fraction); });
-  }
-  for (const auto& file : files) {
-    file->finish();
+    files.back()->finish();
   }
   cloud.stages.push_back({"write", console.end("")});
   if (!settings.page.empty()) {
@@ -680,10 +790,73 @@ void run(const std::vector<std::string>& words) {
     files.back()->finish();
     cloud.stages.push_back({"report", console.end("")});
   }
+}
+
+/// Writes the surfaces of all parts to one file.
+void writeJoined(const Settings& settings, PartsReconstruction& reconstruction, Console& console,
+                 std::vector<std::unique_ptr<OutputFile>>& files) {
+  const JoinedMesh joined(reconstruction.parts);
+  console.begin("write");
+  files.push_back(std::make_unique<OutputFile>(settings.output));
+  writeMesh(*files.back(), joined.view(), settings.output_format, settings.report.encoding,
+            [&](double fraction) { console.update(fraction); });
+  files.back()->finish();
+  reconstruction.cloud.stages.push_back({"write", console.end("")});
+}
+
+void runOnCloud(const Settings& settings, Console& console) {
+  CloudReconstruction cloud;
+  reconstructCloud(settings.input, settings.reconstruction, console, cloud);
+  std::vector<std::unique_ptr<OutputFile>> files;
+  writeFiles(settings, cloud, console, files);
   publish(
       settings.report, files, console, [&] { return report(settings, cloud); },
       [&] { printVerdict(settings, cloud, console); });
   requireNoWarnings(settings.reconstruction, {{settings.input, warningsOf(cloud)}});
+}
+
+void runOnParts(const Settings& settings, Console& console) {
+  PartsReconstruction reconstruction;
+  reconstructParts(settings.input, settings.reconstruction, console, reconstruction);
+  std::vector<CloudReconstruction>& parts = reconstruction.parts;
+  std::vector<std::unique_ptr<OutputFile>> files;
+  console.heading("");
+  if (isNumbered(settings.output)) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Settings of_part = settingsOf(settings, i);
+      checkOutputs({settings.input}, outputsOf(of_part));
+      writeFiles(of_part, parts[i], console, files);
+    }
+  } else {
+    writeJoined(settings, reconstruction, console, files);
+  }
+  publish(
+      settings.report, files, console, [&] { return reportOnParts(settings, reconstruction); },
+      [&] { printParts(settings, reconstruction, console); });
+  std::vector<std::pair<std::string, std::vector<std::string>>> warnings = {
+      {settings.input, warningsOf(reconstruction)}};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    warnings.emplace_back("part " + std::to_string(i + 1), warningsOf(parts[i]));
+  }
+  requireNoWarnings(settings.reconstruction, warnings);
+}
+
+void run(const std::vector<std::string>& words) {
+  const CommandLine command_line(words, option_table);
+  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+    return;
+  }
+  const Settings settings = parseSettings(command_line);
+  const bool makes_parts = settings.reconstruction.parts == PartsMode::Each;
+  checkOutputs({settings.input}, outputsOf(makes_parts ? settingsOf(settings, 0) : settings));
+
+  Console console(settings.report.printsText());
+  printParameters(settings, console);
+  if (makes_parts) {
+    runOnParts(settings, console);
+  } else {
+    runOnCloud(settings, console);
+  }
 }
 
 }  // namespace

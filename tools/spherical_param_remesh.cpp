@@ -614,7 +614,7 @@ PointData toVertices(const Output& output, const MappedCloud& mapped) {
   vertices.points = toPoints(output.mesh.points);
   vertices.normals = toNormals(output.mesh.normals);
   vertices.colors = output.colors;
-  vertices.has_alpha = mapped.cloud.data.has_alpha;
+  vertices.has_alpha = mapped.cloud.data->has_alpha;
   return vertices;
 }
 

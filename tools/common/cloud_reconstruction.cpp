@@ -51,7 +51,7 @@ OutlierRemoval outliersOf(const Positions& points, const ReconstructionSettings&
 
 /// Takes the outliers out of the points that will be meshed.
 void removeOutliers(const ReconstructionSettings& settings, CloudReconstruction& cloud) {
-  cloud.outliers = outliersOf(positionsOf(cloud.data, cloud.meshed), settings);
+  cloud.outliers = outliersOf(positionsOf(*cloud.data, cloud.meshed), settings);
   std::vector<Index>& outliers = cloud.outliers->points;
   for (Index& i : outliers) {
     i = cloud.meshed[static_cast<std::size_t>(i)];
@@ -81,13 +81,41 @@ void StageProgress::finish() {
   }
 }
 
-void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
-                      Console& console, CloudReconstruction& cloud) {
+namespace {
+
+/// Takes the points apart that will be meshed.
+void findPartsOf(const ReconstructionSettings& settings, CloudReconstruction& cloud) {
+  Parts parts =
+      findParts(positionsOf(*cloud.data, cloud.meshed), settings.min_points, settings.options);
+  const auto number = [&](Index& point) { point = cloud.meshed[static_cast<std::size_t>(point)]; };
+  for (Part& part : parts.parts) {
+    std::for_each(part.points.begin(), part.points.end(), number);
+  }
+  std::for_each(parts.left_out.begin(), parts.left_out.end(), number);
+  cloud.parts = std::move(parts);
+}
+
+/// What was left out of the cloud, for the message of a failure.
+std::string leftOut(const CloudReconstruction& cloud) {
+  std::string text;
+  if (cloud.ignored > 0) {
+    text += " (without " + counted(cloud.ignored, "point") + " that are not finite)";
+  }
+  if (cloud.outliers && !cloud.outliers->points.empty()) {
+    text += " (without " + counted(cloud.outliers->points.size(), "outlier") + ")";
+  }
+  return text;
+}
+
+/// Reads a cloud and finds what will be meshed of it.
+void prepareCloud(const std::string& path, const ReconstructionSettings& settings, Console& console,
+                  CloudReconstruction& cloud) {
   console.begin("read");
-  cloud.data = readCloud(path, [&console](double fraction) { console.update(fraction); });
-  const std::size_t count = cloud.data.points.size();
+  cloud.data = std::make_shared<PointData>(
+      readCloud(path, [&console](double fraction) { console.update(fraction); }));
+  const std::size_t count = cloud.data->points.size();
   cloud.stages.push_back({"read", console.end(std::to_string(count) + " points")});
-  cloud.meshed = finitePoints(cloud.data);
+  cloud.meshed = finitePoints(*cloud.data);
   cloud.ignored = count - cloud.meshed.size();
   if (settings.outliers) {
     console.begin("outliers");
@@ -96,26 +124,84 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
     cloud.stages.push_back(
         {"outliers", console.end(counted(cloud.outliers->points.size(), "point") + " left out")});
   }
+  if (settings.parts == PartsMode::All) {
+    return;
+  }
+  console.begin("parts");
+  runLibrary("cannot find the parts of " + inQuotes(path), "leave -parts out",
+             [&] { findPartsOf(settings, cloud); });
+  const std::size_t parts = cloud.parts->parts.size();
+  cloud.stages.push_back(
+      {"parts", console.end(counted(parts, "part") + ", " +
+                            counted(cloud.parts->left_out.size(), "point") + " left out")});
+  if (parts == 0) {
+    throw Failure("no part of " + inQuotes(path) + leftOut(cloud) + " has " +
+                      counted(static_cast<std::size_t>(settings.min_points), "point"),
+                  "give a lower -min-points, or leave -parts out");
+  }
+}
 
-  StageProgress progress(console);
+/// Meshes the points that were chosen. \throw InvalidInput, ComputeError
+void meshChosen(const ReconstructionSettings& settings, StageProgress& progress,
+                CloudReconstruction& cloud) {
   Options options = settings.options;
   options.progress = [&progress](const Progress& reported) { return progress(reported); };
-  std::string left_out;
-  if (cloud.ignored > 0) {
-    left_out += " (without " + counted(cloud.ignored, "point") + " that are not finite)";
-  }
-  if (cloud.outliers && !cloud.outliers->points.empty()) {
-    left_out += " (without " + counted(cloud.outliers->points.size(), "outlier") + ")";
-  }
-  runLibrary("cannot mesh " + inQuotes(path) + left_out,
-             "check that the file holds the cloud you mean",
-             [&] { cloud.result = reconstruct(positionsOf(cloud.data, cloud.meshed), options); });
+  cloud.result = reconstruct(positionsOf(*cloud.data, cloud.meshed), options);
   progress.finish();
   cloud.stages.insert(cloud.stages.end(), cloud.result.stages.begin(), cloud.result.stages.end());
   cloud.point_of_vertex.reserve(cloud.result.vertexCount());
   for (const Index input : cloud.result.input_of_vertex) {
     cloud.point_of_vertex.push_back(cloud.meshed[static_cast<std::size_t>(input)]);
   }
+}
+
+}  // namespace
+
+void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
+                      Console& console, CloudReconstruction& cloud) {
+  prepareCloud(path, settings, console, cloud);
+  if (cloud.parts) {
+    cloud.meshed = cloud.parts->parts.front().points;
+  }
+  StageProgress progress(console);
+  runLibrary("cannot mesh " + inQuotes(path) + leftOut(cloud),
+             "check that the file holds the cloud you mean",
+             [&] { meshChosen(settings, progress, cloud); });
+}
+
+void reconstructParts(const std::string& path, const ReconstructionSettings& settings,
+                      Console& console, PartsReconstruction& result) {
+  CloudReconstruction& cloud = result.cloud;
+  prepareCloud(path, settings, console, cloud);
+  std::vector<Part>& found = cloud.parts->parts;
+  std::vector<Part> meshed;
+  StageProgress progress(console);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::string name = "part " + std::to_string(i + 1) + " of " +
+                             std::to_string(found.size()) + " (" +
+                             counted(found[i].points.size(), "point") + ")";
+    console.heading("\n" + name);
+    CloudReconstruction part;
+    part.data = cloud.data;
+    part.meshed = found[i].points;
+    try {
+      runLibrary("cannot mesh " + name, "", [&] { meshChosen(settings, progress, part); });
+    } catch (const Failure& failure) {
+      progress.finish();
+      result.failures.emplace_back(failure.what());
+      cloud.parts->left_out.insert(cloud.parts->left_out.end(), part.meshed.begin(),
+                                   part.meshed.end());
+      continue;
+    }
+    result.parts.push_back(std::move(part));
+    meshed.push_back(std::move(found[i]));
+  }
+  if (meshed.empty()) {
+    throw Failure("no part of " + inQuotes(path) + " can be meshed; " + result.failures.front(),
+                  "check that the file holds the cloud you mean");
+  }
+  found = std::move(meshed);
+  std::sort(cloud.parts->left_out.begin(), cloud.parts->left_out.end());
 }
 
 std::vector<std::string> warningsOf(const CloudReconstruction& cloud) {
@@ -129,21 +215,62 @@ std::vector<std::string> warningsOf(const CloudReconstruction& cloud) {
   return warnings;
 }
 
+std::vector<std::string> warningsOf(const PartsReconstruction& reconstruction) {
+  std::vector<std::string> warnings = warningsOf(reconstruction.cloud);
+  for (const std::string& failure : reconstruction.failures) {
+    warnings.push_back(failure + ".");
+  }
+  return warnings;
+}
+
 Positions vertexPositions(const CloudReconstruction& cloud) {
   return cloud.result.smoothed.cols() > 0 ? cloud.result.smoothed
-                                          : positionsOf(cloud.data, cloud.point_of_vertex);
+                                          : positionsOf(*cloud.data, cloud.point_of_vertex);
 }
 
 MeshView meshOf(const CloudReconstruction& cloud) {
-  MeshView mesh(cloud.data, cloud.point_of_vertex, cloud.result.triangles);
+  MeshView mesh(*cloud.data, cloud.point_of_vertex, cloud.result.triangles);
   if (cloud.result.smoothed.cols() > 0) {
     mesh.moveTo(cloud.result.smoothed);
   }
   return mesh;
 }
 
+JoinedMesh::JoinedMesh(const std::vector<CloudReconstruction>& parts) {
+  Eigen::Index triangles = 0;
+  Eigen::Index places = 0;
+  for (const CloudReconstruction& part : parts) {
+    triangles += part.result.triangles.cols();
+    places += part.result.smoothed.cols();
+  }
+  data_ = parts.front().data;
+  triangles_.resize(3, triangles);
+  places_.resize(3, places);
+  triangles = 0;
+  for (const CloudReconstruction& part : parts) {
+    const Eigen::Index first = static_cast<Eigen::Index>(point_of_vertex_.size());
+    const Result& result = part.result;
+    triangles_.middleCols(triangles, result.triangles.cols()) =
+        result.triangles.array() + static_cast<Index>(first);
+    triangles += result.triangles.cols();
+    if (places > 0) {
+      places_.middleCols(first, result.smoothed.cols()) = result.smoothed;
+    }
+    point_of_vertex_.insert(point_of_vertex_.end(), part.point_of_vertex.begin(),
+                            part.point_of_vertex.end());
+  }
+}
+
+MeshView JoinedMesh::view() const {
+  MeshView mesh(*data_, point_of_vertex_, triangles_);
+  if (places_.cols() > 0) {
+    mesh.moveTo(places_);
+  }
+  return mesh;
+}
+
 MeshView sphereOf(const CloudReconstruction& cloud, const Positions& sphere) {
-  MeshView view(cloud.data, cloud.point_of_vertex, cloud.result.triangles);
+  MeshView view(*cloud.data, cloud.point_of_vertex, cloud.result.triangles);
   view.leaveOutNormals();
   view.moveTo(sphere);
   return view;

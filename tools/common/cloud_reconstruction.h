@@ -4,9 +4,11 @@
 #include "common/mesh_view.h"
 #include "common/point_data.h"
 #include "common/reconstruction_options.h"
+#include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,19 +24,32 @@ struct OutlierRemoval {
 /// The cloud of a file and the mesh that was made of it. Points are numbered as in the file, from
 /// 0.
 struct CloudReconstruction {
-  PointData data;                          ///< all of the file
+  std::shared_ptr<const PointData> data;   ///< all of the file
   std::size_t ignored = 0;                 ///< points with coordinates that are not finite
   std::optional<OutlierRemoval> outliers;  ///< nothing: they were not looked for
+  std::optional<Parts> parts;              ///< nothing: they were not looked for
   std::vector<Index> meshed;               ///< points that were meshed, ascending
   Result result;                           ///< its input points are `meshed`
   std::vector<Index> point_of_vertex;      ///< the point of each vertex
   std::vector<StageTime> stages;           ///< that of reading first
 };
 
-/// Reads a cloud, leaves out outliers if that is wanted, and meshes the rest, with all stages on
-/// the console. \throw UsageError, Failure
+/// Reads a cloud, leaves out outliers and all but the largest part if that is wanted, and meshes
+/// the rest, with all stages on the console. \throw UsageError, Failure
 void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, CloudReconstruction& cloud);
+
+/// A cloud whose parts were meshed each by itself.
+struct PartsReconstruction {
+  CloudReconstruction cloud;               ///< what comes before the meshes; without one
+  std::vector<CloudReconstruction> parts;  ///< those that could be meshed, the largest first
+  /// Of the parts that could not, one sentence each; their points are among those left out.
+  std::vector<std::string> failures;
+};
+
+/// The same for PartsMode::Each. \throw UsageError, Failure; also if no part could be meshed.
+void reconstructParts(const std::string& path, const ReconstructionSettings& settings,
+                      Console& console, PartsReconstruction& result);
 
 /// Progress of the library on the console: each stage begins when the one before ends.
 class StageProgress {
@@ -52,11 +67,28 @@ private:
 /// The warnings on the cloud and its mesh, one sentence each.
 std::vector<std::string> warningsOf(const CloudReconstruction& cloud);
 
+/// The warnings on the cloud, without those on the meshes of its parts.
+std::vector<std::string> warningsOf(const PartsReconstruction& reconstruction);
+
 /// The positions of the vertices: smoothed, if that was asked for [unit of the file].
 Positions vertexPositions(const CloudReconstruction& cloud);
 
 /// The mesh that is written. Points that are no vertices are left out. The cloud must outlive it.
 MeshView meshOf(const CloudReconstruction& cloud);
+
+/// The surfaces of all parts as one mesh.
+class JoinedMesh {
+public:
+  explicit JoinedMesh(const std::vector<CloudReconstruction>& parts);
+  /// This must outlive the view.
+  MeshView view() const;
+
+private:
+  std::shared_ptr<const PointData> data_;
+  std::vector<Index> point_of_vertex_;
+  Triangles triangles_;
+  Positions places_;  ///< empty without smoothing
+};
 
 /// The vertices on a sphere, 3 x v: that of the result, or another that outlives the view. They
 /// keep their colours, but not the normals of the input, which mean nothing there.

@@ -213,10 +213,10 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
   const auto input = [&](Index vertex) {
     return static_cast<std::size_t>(cloud.point_of_vertex[static_cast<std::size_t>(vertex)]);
   };
-  if (!cloud.data.colors.empty()) {
+  if (!cloud.data->colors.empty()) {
     std::vector<std::uint8_t> colors;
     for (const Index vertex : mesh.vertices) {
-      const Color& color = cloud.data.colors[input(vertex)];
+      const Color& color = cloud.data->colors[input(vertex)];
       colors.insert(colors.end(), color.begin(), color.begin() + 3);
     }
     arrays.add("colors", 3, colors);
@@ -225,7 +225,7 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
   if (cloud.result.smoothed.cols() != 0) {
     Positions points(3, mesh.positions.cols());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      points.col(static_cast<Eigen::Index>(i)) = cloud.data.position(input(mesh.vertices[i]));
+      points.col(static_cast<Eigen::Index>(i)) = cloud.data->position(input(mesh.vertices[i]));
     }
     arrays.addPoints("cloud", points, boxOf(points));
   }
@@ -235,7 +235,7 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
     Positions points(3, static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
       points.col(static_cast<Eigen::Index>(i)) =
-          cloud.data.position(static_cast<std::size_t>(cloud.outliers->points[i * all / count]));
+          cloud.data->position(static_cast<std::size_t>(cloud.outliers->points[i * all / count]));
     }
     // One far off comes to the side of a box around the mesh, where it can be seen.
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);

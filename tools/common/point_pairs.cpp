@@ -49,7 +49,7 @@ private:
     if (!number) {
       fail(line, "words like " + inQuotes(word));
     }
-    const std::size_t count = cloud.data.points.size();
+    const std::size_t count = cloud.data->points.size();
     if (*number < 0 || static_cast<std::uint64_t>(*number) >= count) {
       throw Failure(inQuotes(path_) + ", line " + std::to_string(line) + ": there is no point " +
                         inQuotes(word) + " in a cloud of " + std::to_string(count),
@@ -73,7 +73,7 @@ private:
     double least = std::numeric_limits<double>::infinity();
     for (const Index index : cloud.point_of_vertex) {
       const double distance =
-          (cloud.data.position(static_cast<std::size_t>(index)) - place).squaredNorm();
+          (cloud.data->position(static_cast<std::size_t>(index)) - place).squaredNorm();
       if (distance < least) {
         least = distance;
         nearest = index;

@@ -32,12 +32,12 @@ std::string listed(const DistortionStatistics& statistics, const DistortionStati
 
 std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
   std::vector<Color> colors;
-  if (cloud.data.colors.empty()) {
+  if (cloud.data->colors.empty()) {
     return colors;
   }
   colors.reserve(cloud.point_of_vertex.size());
   for (const Index point : cloud.point_of_vertex) {
-    colors.push_back(cloud.data.colors[static_cast<std::size_t>(point)]);
+    colors.push_back(cloud.data->colors[static_cast<std::size_t>(point)]);
   }
   return colors;
 }
@@ -60,6 +60,10 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
   ProductSettings settings;
   settings.map = defaults;
   settings.reconstruction = parseReconstructionOptions(command_line);
+  if (settings.reconstruction.parts == PartsMode::Each) {
+    throw UsageError("option -parts: this tool makes one surface",
+                     "give -parts largest, or mesh each part to a file of its own before");
+  }
   settings.map.threads = settings.reconstruction.options.threads;
   if (command_line.has("area-weight")) {
     settings.map.area_weight =
@@ -111,7 +115,7 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
 }
 
 void addMapToJson(const MappedCloud& mapped, Json& json) {
-  json["input_points"] = mapped.cloud.data.points.size();
+  json["input_points"] = mapped.cloud.data->points.size();
   json["vertices"] = mapped.points.cols();
   json["mesh_triangles"] = mapped.triangles().cols();
   json["mesh_self_intersections"] = mapped.cloud.result.self_intersections.size();
@@ -122,7 +126,7 @@ void addMapToJson(const MappedCloud& mapped, Json& json) {
 
 void printMap(const MappedCloud& mapped, Console& console) {
   const SphereMap& map = mapped.map;
-  console.entry("input points", std::to_string(mapped.cloud.data.points.size()));
+  console.entry("input points", std::to_string(mapped.cloud.data->points.size()));
   console.entry("vertices", std::to_string(mapped.points.cols()));
   console.entry("mesh",
                 std::to_string(mapped.triangles().cols()) + " triangles, " +

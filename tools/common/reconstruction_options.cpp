@@ -1,6 +1,7 @@
 #include "common/reconstruction_options.h"
 
 #include "common/errors.h"
+#include "common/names.h"
 #include "common/numbers.h"
 #include "common/text.h"
 #include "spherical_param/option_table.h"
@@ -16,6 +17,12 @@
 
 namespace spherical_param::tools {
 namespace {
+
+const Names<PartsMode> parts_names = {
+    {"all", PartsMode::All},
+    {"largest", PartsMode::Largest},
+    {"each", PartsMode::Each},
+};
 
 /// The condition of an option that does not hold, if any: the other option and the value it needs.
 std::optional<std::pair<std::string, std::string>> failedCondition(const OptionRow& row,
@@ -115,6 +122,14 @@ std::vector<OptionInfo> reconstructionOptions() {
                    "leave out stray points, or those that lie this number of standard deviations "
                    "off, 0 to 1000 (off)",
                    false});
+  lines.push_back({"parts", "NAME",
+                   "which parts of the cloud are meshed; all (as one surface), largest or each "
+                   "(by itself; a file each if the output's name holds %03d) (all)",
+                   false});
+  lines.push_back({"min-points", "N",
+                   "parts of fewer points are left out; 4 to 1000000000 (" +
+                       std::to_string(ReconstructionSettings().min_points) + ")",
+                   false});
   lines.push_back(
       {"strict", "", "end with exit code 1 after a warning; all files are written", false});
   return lines;
@@ -130,6 +145,15 @@ ReconstructionSettings parseReconstructionOptions(const CommandLine& command_lin
     }
   }
   settings.options = parseOptions(command_line);
+  settings.parts = parseName("parts", command_line.value("parts", "all"), parts_names);
+  if (command_line.has("min-points")) {
+    if (settings.parts == PartsMode::All) {
+      throw UsageError("option -min-points does nothing with -parts all",
+                       "leave -min-points out, or give -parts largest or -parts each");
+    }
+    settings.min_points = static_cast<int>(
+        parseInteger("min-points", command_line.value("min-points", ""), {4, 1000000000}));
+  }
   settings.strict = command_line.has("strict");
   return settings;
 }
@@ -145,6 +169,10 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
     const std::optional<double>& sigma = settings.outliers->sigma;
     console.entry("outliers", sigma ? formatted(*sigma, 6) : "auto");
   }
+  if (settings.parts != PartsMode::All) {
+    console.entry("parts", nameOf(settings.parts, parts_names) + ", of at least " +
+                               counted(static_cast<std::size_t>(settings.min_points), "point"));
+  }
   if (settings.strict) {
     console.entry("strict", "warnings are a failure");
   }
@@ -159,6 +187,8 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   json["outliers"] = !settings.outliers         ? Json(nullptr)
                      : settings.outliers->sigma ? Json(*settings.outliers->sigma)
                                                 : Json("auto");
+  json["parts"] = nameOf(settings.parts, parts_names);
+  json["min_points"] = settings.parts == PartsMode::All ? Json(nullptr) : Json(settings.min_points);
   json["strict"] = settings.strict;
   return json;
 }

@@ -3,6 +3,7 @@
 #include "common/command_line.h"
 #include "common/console.h"
 #include "common/json_report.h"
+#include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <optional>
@@ -22,6 +23,8 @@ struct OutlierChoice {
 struct ReconstructionSettings {
   std::optional<OutlierChoice> outliers;  ///< nothing: they are meshed
   Options options;                        ///< the number of threads is never 0
+  PartsMode parts = PartsMode::All;       ///< which are meshed
+  int min_points = 50;                    ///< of a part, unless all are meshed together
   bool strict = false;                    ///< warnings are a failure, see requireNoWarnings()
 };
 

@@ -56,7 +56,8 @@ Shown show(const Positions& points, ReconstructionSettings settings = flipsAlone
            Index outliers = 0, std::size_t max_triangles = kMaxReportTriangles) {
   Shown shown;
   CloudReconstruction& cloud = *shown.cloud;
-  cloud.data.points = toPoints(points);
+  auto data = std::make_shared<PointData>();
+  data->points = toPoints(points);
   cloud.meshed.resize(static_cast<std::size_t>(points.cols() - outliers));
   std::iota(cloud.meshed.begin(), cloud.meshed.end(), 0);
   if (outliers > 0) {
@@ -64,11 +65,12 @@ Shown show(const Positions& points, ReconstructionSettings settings = flipsAlone
     for (Index i = 0; i < points.cols(); ++i) {
       if (i >= points.cols() - outliers)
         cloud.outliers->points.push_back(i);
-      cloud.data.colors.push_back({static_cast<std::uint8_t>(i % 251),
-                                   static_cast<std::uint8_t>(i / 251),
-                                   static_cast<std::uint8_t>(255 - i % 13), 255});
+      data->colors.push_back({static_cast<std::uint8_t>(i % 251),
+                              static_cast<std::uint8_t>(i / 251),
+                              static_cast<std::uint8_t>(255 - i % 13), 255});
     }
   }
+  cloud.data = data;
   keepForHtmlReport(settings);
   cloud.result = reconstruct(points.leftCols(points.cols() - outliers), settings.options);
   cloud.point_of_vertex = cloud.result.input_of_vertex;
@@ -214,7 +216,7 @@ TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   const Shown shown = show(test::horizontally(scanned(Shape::Head, 1500), far), settings, 6);
   expectShown(shown);
   const Page& page = shown.page;
-  const PointData& data = shown.cloud->data;
+  const PointData& data = *shown.cloud->data;
   for (std::size_t row = 0; row < shown.mesh.vertices.size(); ++row) {
     const auto index = static_cast<std::size_t>(shown.mesh.vertices[row]);
     const auto column = static_cast<Eigen::Index>(row);

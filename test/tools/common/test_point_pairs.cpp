@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +17,9 @@ namespace {
 /// Points at x = 0, 1, ...; of these the second is not meshed, and the last repeats the first.
 CloudReconstruction cloudOf(int count) {
   CloudReconstruction cloud;
+  auto data = std::make_shared<PointData>();
   for (int i = 0; i < count; ++i) {
-    cloud.data.points.push_back({i + 1 < count ? static_cast<double>(i) : 0.0, 0.0, 0.0});
+    data->points.push_back({i + 1 < count ? static_cast<double>(i) : 0.0, 0.0, 0.0});
     if (i == 1)
       continue;
     cloud.meshed.push_back(i);
@@ -27,6 +29,7 @@ CloudReconstruction cloudOf(int count) {
     if (!repeats)
       cloud.point_of_vertex.push_back(i);
   }
+  cloud.data = data;
   return cloud;
 }
 
