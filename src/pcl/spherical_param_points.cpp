@@ -111,31 +111,51 @@ void rejectIndex(std::size_t entry, pcl::index_t index, std::size_t points) {
                      " points; indices must be from 0 to the number of points less one");
 }
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfVertices(const Positions& vertices,
-                                                    const std::vector<Index>& vertex_of_used,
-                                                    const pcl::Indices& used_points,
-                                                    std::size_t points) {
+pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfNothing(std::size_t points) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   cloud->resize(points);
   std::fill(cloud->begin(), cloud->end(), pcl::PointXYZ(nan, nan, nan));
-  cloud->is_dense = used_points.size() == points;
-  for (std::size_t i = 0; i < used_points.size(); ++i)
-    (*cloud)[static_cast<std::size_t>(used_points[i])].getVector3fMap() =
-        vertices.col(vertex_of_used[i]).cast<float>();
   return cloud;
 }
 
-std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangles,
-                                      const pcl::Indices& point_of_vertex) {
-  std::vector<pcl::Vertices> polygons(static_cast<std::size_t>(triangles.cols()));
-  for (std::size_t t = 0; t < polygons.size(); ++t) {
-    const auto triangle = triangles.col(static_cast<Eigen::Index>(t));
-    polygons[t].vertices = {point_of_vertex[static_cast<std::size_t>(triangle[0])],
-                            point_of_vertex[static_cast<std::size_t>(triangle[1])],
-                            point_of_vertex[static_cast<std::size_t>(triangle[2])]};
+void placeVertices(const Positions& vertices, const std::vector<Index>& vertex_of_used,
+                   const pcl::Indices& used_points, pcl::PointCloud<pcl::PointXYZ>& cloud) {
+  for (std::size_t i = 0; i < used_points.size(); ++i)
+    cloud[static_cast<std::size_t>(used_points[i])].getVector3fMap() =
+        vertices.col(vertex_of_used[i]).cast<float>();
+}
+
+void appendPolygons(const spherical_param::Triangles& triangles,
+                    const pcl::Indices& point_of_vertex, std::vector<pcl::Vertices>& polygons) {
+  const auto point = [&](Index vertex) {
+    return point_of_vertex[static_cast<std::size_t>(vertex)];
+  };
+  polygons.reserve(polygons.size() + static_cast<std::size_t>(triangles.cols()));
+  for (const auto triangle : triangles.colwise()) {
+    polygons.emplace_back();
+    polygons.back().vertices = {point(triangle[0]), point(triangle[1]), point(triangle[2])};
   }
-  return polygons;
+}
+
+Positions pointsAt(const Positions& points, const std::vector<Index>& chosen) {
+  return points(Eigen::all, chosen);
+}
+
+std::vector<spherical_param::Part> choosePoints(const Positions& points,
+                                                spherical_param::PartsMode mode, int min_points,
+                                                const Options& options) {
+  spherical_param::checkOptions(options);
+  spherical_param::Execution execution = options;
+  execution.progress = guardProgress(options.progress);
+  std::vector<spherical_param::Part> parts =
+      spherical_param::findParts(points, min_points, execution).parts;
+  if (parts.empty())
+    throw InvalidInput("no part of the cloud has " + std::to_string(min_points) +
+                       " points; set a smaller size with setMinPartSize(), or PartsMode::All");
+  if (mode == spherical_param::PartsMode::Largest)
+    parts.resize(1);
+  return parts;
 }
 
 }  // namespace detail

@@ -5,6 +5,7 @@
 #include <pcl/point_types.h>
 #include <pcl/surface/reconstruction.h>
 
+#include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <array>
@@ -83,6 +84,8 @@ public:
   using OptimizationMethod = spherical_param::OptimizationMethod;
   /** \brief What becomes of openings of the surface. */
   using SurfaceMode = spherical_param::SurfaceMode;
+  /** \brief Which parts of the cloud are meshed. */
+  using PartsMode = spherical_param::PartsMode;
   /** \brief Receives the progress of the work; returning false cancels it. */
   using ProgressCallback = std::function<bool(const spherical_param::Progress&)>;
 
@@ -105,6 +108,24 @@ public:
   /** \brief Get up to which size openings are filled.
    * \return the number of edges around them */
   inline int getFillHoles() const { return options_.fill_holes; }
+
+  /** \brief Set which parts of the cloud are meshed.
+   * \param[in] mode default PartsMode::All: all together, as one surface. Largest meshes that of
+   * most points; Each meshes all, each as if it were alone, to polygons of one mesh.
+   * \note \see spherical_param::findParts() for what a part is. With Each, a part that cannot be
+   * meshed, as its points are in one plane, say, is left out with a warning (PCL_WARN). */
+  inline void setParts(PartsMode mode) { parts_mode_ = mode; }
+  /** \brief Get which parts of the cloud are meshed.
+   * \return the mode */
+  inline PartsMode getParts() const { return parts_mode_; }
+
+  /** \brief Set how many distinct points a part has at least; smaller ones are left out. Nothing
+   * is with PartsMode::All.
+   * \param[in] points 4 and up; default 50 */
+  inline void setMinPartSize(int points) { min_part_size_ = points; }
+  /** \brief Get how many distinct points a part has at least.
+   * \return their number */
+  inline int getMinPartSize() const { return min_part_size_; }
 
   /** \brief Set how points become neighbours.
    * \param[in] method default GraphMethod::LocalDelaunay
@@ -254,20 +275,31 @@ public:
    * triangles take 24 bytes a point, polygons 112 and more. */
   void reconstruct();
 
+  /** \brief Get the number of parts that the last reconstruct() meshed.
+   * \return 1, or with PartsMode::Each their number; 1 after a failure as well */
+  inline std::size_t getPartCount() const { return parts_.size(); }
+
   /** \brief Get the result of the last reconstruct(); a default-constructed one after a failure.
    * Its "inputs" are the points getUsedIndices() lists; its vertices are the points that
    * getVertexIndices() lists. Volume, area, centroid and inertia of the mesh are in `measures`.
+   * \param[in] part below getPartCount(), the largest first; here and below
    * \return the result, which the next reconstruct() replaces */
-  inline const spherical_param::Result& getResult() const { return result_; }
+  inline const spherical_param::Result& getResult(std::size_t part = 0) const {
+    return parts_.at(part).result;
+  }
 
   /** \brief Get the indices into the input cloud of the points that were meshed: those of
-   * setIndices() (or all), without repetitions and without points that are not finite.
+   * setIndices() (or all), without repetitions and without points that are not finite, of the part.
    * \return their indices, in the order of the input */
-  inline const pcl::Indices& getUsedIndices() const { return used_indices_; }
+  inline const pcl::Indices& getUsedIndices(std::size_t part = 0) const {
+    return parts_.at(part).used_indices;
+  }
 
   /** \brief Get the index into the input cloud of each vertex of getResult().
    * \return one index for each vertex */
-  inline const pcl::Indices& getVertexIndices() const { return vertex_indices_; }
+  inline const pcl::Indices& getVertexIndices(std::size_t part = 0) const {
+    return parts_.at(part).vertex_indices;
+  }
 
   /** \brief Get the number of points that were skipped because they are not finite.
    * \return their number */
@@ -289,20 +321,22 @@ public:
    * \return a new cloud of the size of the input, or an empty one */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSmoothedPoints() const;
 
-  /** \brief Get the pairs of triangles of the mesh that intersect, as indices of polygons of the
-   * last reconstruct(), {lower, higher}, ascending. Measured on the points of the input, in exact
-   * arithmetic.
-   * \note On noisy points some are often left; see setSmoothing().
-   * \return the pairs; none is what a clean scan should give */
-  inline const std::vector<std::array<spherical_param::Index, 2>>& getSelfIntersections() const {
-    return result_.self_intersections;
+  /** \brief Get the pairs of triangles of the mesh that intersect, as indices of triangles of
+   * getResult(), with one part those of the polygons, {lower, higher}, ascending. Measured on the
+   * points of the input, in exact arithmetic. \note On noisy points some are often left; see
+   * setSmoothing(). \return the pairs; none is what a clean scan should give */
+  inline const std::vector<std::array<spherical_param::Index, 2>>&
+  getSelfIntersections(std::size_t part = 0) const {
+    return getResult(part).self_intersections;
   }
 
   /** \brief Get what speaks against a closed surface without handles, in one piece, and where. Its
    * indices are vertices, which getVertexIndices() maps to the cloud.
    * \note The mesh is a sphere whatever the cloud shows; the diagnosis says whether it should be.
    * \return what was found, with one sentence in `summary` */
-  inline const spherical_param::SurfaceDiagnosis& getDiagnosis() const { return result_.diagnosis; }
+  inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
+    return getResult(part).diagnosis;
+  }
 
   /** \brief Get the cause and the remedy of the last failure; empty after a success.
    * \return one sentence */
@@ -329,8 +363,24 @@ protected:
   void performReconstruction(std::vector<pcl::Vertices>& polygons) override;
 
 private:
+  /** \brief What was made of some of the points. */
+  struct MeshedPart {
+    spherical_param::Result result;
+    pcl::Indices used_indices;
+    pcl::Indices vertex_indices;
+  };
+
+  /** \brief Makes a cloud of the size of the input from the places of vertices. */
+  pcl::PointCloud<pcl::PointXYZ>::Ptr
+  cloudOf(spherical_param::Positions spherical_param::Result::*places) const;
+
   /** \brief Fills the results. */
   void meshPoints();
+
+  /** \brief Meshes some points.
+   * \param[in] used_indices of the points
+   * \param[in] points 3 x used_indices.size() */
+  MeshedPart meshPart(pcl::Indices used_indices, const spherical_param::Positions& points);
 
   /** \brief Clears the results, does the work and, if that fails, clears results and output and
    * says why. */
@@ -341,14 +391,15 @@ private:
   /** \brief Throws InvalidInput for a cloud or indices that initCompute() must not see. */
   void checkInput() const;
 
-  /** \brief Fills used_indices_ and counts ignored_points_.
-   * \return the used points, 3 x used_indices_.size() */
-  spherical_param::Positions collectPoints();
+  /** \brief Finds the points that can be used, and counts ignored_points_.
+   * \param[out] used_indices of these points
+   * \return the points, 3 x used_indices.size() */
+  spherical_param::Positions collectPoints(pcl::Indices& used_indices);
 
   spherical_param::Options options_;
-  spherical_param::Result result_;
-  pcl::Indices used_indices_;
-  pcl::Indices vertex_indices_;
+  PartsMode parts_mode_ = PartsMode::All;
+  int min_part_size_ = 50;
+  std::vector<MeshedPart> parts_{1};
   std::size_t input_size_ = 0;
   std::size_t ignored_points_ = 0;
   std::string error_message_;

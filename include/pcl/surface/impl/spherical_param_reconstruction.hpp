@@ -29,17 +29,30 @@ PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t h
 [[noreturn]] PCL_EXPORTS void rejectIndex(std::size_t entry, pcl::index_t index,
                                           std::size_t points);
 
-/** \brief Makes a cloud from the positions of vertices, 3 x v; NaN where a point is no
- * vertex.
- * \param[in] vertex_of_used the vertex of each of the used points */
-PCL_EXPORTS pcl::PointCloud<pcl::PointXYZ>::Ptr
-cloudOfVertices(const spherical_param::Positions& vertices,
-                const std::vector<spherical_param::Index>& vertex_of_used,
-                const pcl::Indices& used_points, std::size_t points);
+/** \brief Makes a cloud of NaN. */
+PCL_EXPORTS pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfNothing(std::size_t points);
 
-/** \brief Triangles of vertices as polygons of points. */
-PCL_EXPORTS std::vector<pcl::Vertices> polygonsOf(const spherical_param::Triangles& triangles,
-                                                  const pcl::Indices& point_of_vertex);
+/** \brief Gives the used points of a cloud the positions of vertices, 3 x v.
+ * \param[in] vertex_of_used the vertex of each of the used points */
+PCL_EXPORTS void placeVertices(const spherical_param::Positions& vertices,
+                               const std::vector<spherical_param::Index>& vertex_of_used,
+                               const pcl::Indices& used_points,
+                               pcl::PointCloud<pcl::PointXYZ>& cloud);
+
+/** \brief Appends triangles of vertices as polygons of points. */
+PCL_EXPORTS void appendPolygons(const spherical_param::Triangles& triangles,
+                                const pcl::Indices& point_of_vertex,
+                                std::vector<pcl::Vertices>& polygons);
+
+/** \brief Some of the points. */
+PCL_EXPORTS spherical_param::Positions pointsAt(const spherical_param::Positions& points,
+                                                const std::vector<spherical_param::Index>& chosen);
+
+/** \brief The parts of a cloud that are meshed; numbers of the points.
+ * \param[in] options their progress callback may throw */
+PCL_EXPORTS std::vector<spherical_param::Part>
+choosePoints(const spherical_param::Positions& points, spherical_param::PartsMode mode,
+             int min_points, const spherical_param::Options& options);
 
 /** \brief Meshes points with the core.
  * \param[in] options their progress callback may throw
@@ -90,17 +103,29 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  return detail::cloudOfVertices(result_.sphere, result_.vertex_of_input, used_indices_,
-                                 input_size_);
+  return cloudOf(&spherical_param::Result::sphere);
 }
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSmoothedPoints() const {
-  if (result_.smoothed.cols() == 0)
-    return pcl::PointCloud<pcl::PointXYZ>::Ptr(new pcl::PointCloud<pcl::PointXYZ>);
-  return detail::cloudOfVertices(result_.smoothed, result_.vertex_of_input, used_indices_,
-                                 input_size_);
+  if (parts_.front().result.smoothed.cols() == 0)
+    return detail::cloudOfNothing(0);
+  return cloudOf(&spherical_param::Result::smoothed);
+}
+
+template <typename PointInT>
+pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::cloudOf(
+    spherical_param::Positions spherical_param::Result::*places) const {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = detail::cloudOfNothing(input_size_);
+  std::size_t used = 0;
+  for (const MeshedPart& part : parts_) {
+    detail::placeVertices(part.result.*places, part.result.vertex_of_input, part.used_indices,
+                          *cloud);
+    used += part.used_indices.size();
+  }
+  cloud->is_dense = used == input_size_;
+  return cloud;
 }
 
 template <typename PointInT>
@@ -113,22 +138,57 @@ template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(
     std::vector<pcl::Vertices>& polygons) {
   meshPoints();
-  polygons = detail::polygonsOf(result_.triangles, vertex_indices_);
+  polygons.clear();
+  for (const MeshedPart& part : parts_)
+    detail::appendPolygons(part.result.triangles, part.vertex_indices, polygons);
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::meshPoints() {
-  const spherical_param::Positions points = collectPoints();
+  pcl::Indices used_indices;
+  const spherical_param::Positions points = collectPoints(used_indices);
+  input_size_ = input_->size();
+  if (parts_mode_ == PartsMode::All) {
+    parts_.front() = meshPart(std::move(used_indices), points);
+    return;
+  }
+  std::vector<MeshedPart> meshed;
+  std::exception_ptr failure;
+  for (const spherical_param::Part& part :
+       detail::choosePoints(points, parts_mode_, min_part_size_, options_)) {
+    pcl::Indices of_part;
+    of_part.reserve(part.points.size());
+    for (const spherical_param::Index point : part.points)
+      of_part.push_back(used_indices[static_cast<std::size_t>(point)]);
+    try {
+      meshed.push_back(meshPart(std::move(of_part), detail::pointsAt(points, part.points)));
+    } catch (const spherical_param::InvalidInput& error) {
+      failure = failure ? failure : std::current_exception();
+      PCL_WARN("[pcl::SphericalParamReconstruction::reconstruct] a part of %zu points is left out: "
+               "%s\n",
+               part.points.size(), error.what());
+    }
+  }
+  if (meshed.empty())
+    std::rethrow_exception(failure);
+  parts_ = std::move(meshed);
+}
+
+template <typename PointInT>
+typename SphericalParamReconstruction<PointInT>::MeshedPart
+SphericalParamReconstruction<PointInT>::meshPart(pcl::Indices used_indices,
+                                                 const spherical_param::Positions& points) {
+  MeshedPart part;
+  part.used_indices = std::move(used_indices);
   std::optional<detail::UserSearch> search;
   if (tree_ && points.cols() > 0)
-    search = detail::useSearch<PointInT>(*tree_, input_, used_indices_, points);
-  result_ =
+    search = detail::useSearch<PointInT>(*tree_, input_, part.used_indices, points);
+  part.result =
       detail::reconstructPoints(points, options_, ignored_points_, search ? &*search : nullptr);
-
-  vertex_indices_.reserve(result_.input_of_vertex.size());
-  for (const spherical_param::Index point : result_.input_of_vertex)
-    vertex_indices_.push_back(used_indices_[static_cast<std::size_t>(point)]);
-  input_size_ = input_->size();
+  part.vertex_indices.reserve(part.result.input_of_vertex.size());
+  for (const spherical_param::Index point : part.result.input_of_vertex)
+    part.vertex_indices.push_back(part.used_indices[static_cast<std::size_t>(point)]);
+  return part;
 }
 
 template <typename PointInT>
@@ -168,10 +228,7 @@ void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& wo
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::clearResults() {
-  result_ = spherical_param::Result();
-  // Unlike clear(), this gives the memory back.
-  used_indices_ = pcl::Indices();
-  vertex_indices_ = pcl::Indices();
+  parts_ = std::vector<MeshedPart>(1);
   input_size_ = 0;
   ignored_points_ = 0;
   error_message_.clear();
@@ -188,9 +245,10 @@ void SphericalParamReconstruction<PointInT>::checkInput() const {
 }
 
 template <typename PointInT>
-spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints() {
+spherical_param::Positions
+SphericalParamReconstruction<PointInT>::collectPoints(pcl::Indices& used_indices) {
   std::vector<bool> seen(input_->size(), false);
-  used_indices_.reserve(indices_->size());
+  used_indices.reserve(indices_->size());
   for (std::size_t i = 0; i < indices_->size(); ++i) {
     const pcl::index_t index = (*indices_)[i];
     if (index < 0 || static_cast<std::size_t>(index) >= input_->size())
@@ -201,15 +259,15 @@ spherical_param::Positions SphericalParamReconstruction<PointInT>::collectPoints
     seen[position] = true;
     const PointInT& point = (*input_)[position];
     if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z))
-      used_indices_.push_back(index);
+      used_indices.push_back(index);
     else
       ++ignored_points_;
   }
-  used_indices_.shrink_to_fit();
+  used_indices.shrink_to_fit();
 
-  spherical_param::Positions points(3, static_cast<Eigen::Index>(used_indices_.size()));
-  for (std::size_t i = 0; i < used_indices_.size(); ++i) {
-    const PointInT& point = (*input_)[static_cast<std::size_t>(used_indices_[i])];
+  spherical_param::Positions points(3, static_cast<Eigen::Index>(used_indices.size()));
+  for (std::size_t i = 0; i < used_indices.size(); ++i) {
+    const PointInT& point = (*input_)[static_cast<std::size_t>(used_indices[i])];
     points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(
         static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z));
   }

@@ -1,0 +1,125 @@
+// -parts and -min-points, used as a user does.
+
+#include "tool_test.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using nlohmann::json;
+using spherical_param::Positions;
+using tool_test::ellipsoid;
+using tool_test::linesOf;
+using tool_test::RunResult;
+using Words = std::vector<std::string>;
+
+/// 200 points of one ellipsoid, 300 of another and 60 of a plane, far from each other.
+class PartsOption : public tool_test::ToolTest {
+protected:
+  void SetUp() override {
+    std::string text;
+    for (const Positions& part : {small, large})
+      for (Eigen::Index i = 0; i < part.cols(); ++i)
+        text += linesOf(part.col(i));
+    write("two.xyz", text);
+    for (int i = 0; i < 60; ++i)
+      text += linesOf(Eigen::Vector3d(0.3 * (i % 10), 0.3 * (i / 10), 20.0));
+    write("three.xyz", text);
+  }
+  RunResult tool(const Words& arguments) const { return run(RECONSTRUCTION_TOOL, arguments, {}); }
+
+  const Positions small = ellipsoid(200);
+  const Positions large = ellipsoid(300).colwise() + Eigen::Vector3d(9.0, 0.0, 0.0);
+};
+
+TEST_F(PartsOption, EachMeshesEachPartToAFileOfItsOwnAsIfItWereAlone) {
+  const RunResult result = tool({"two.xyz", "out_%03d.ply", "-parts", "each", "-sphere",
+                                 "sphere_%03d.ply", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(mesh("out_000.ply").points(), large);
+  EXPECT_EQ(mesh("out_001.ply").points(), small);
+  EXPECT_TRUE(mesh("out_000.ply").isSphere());
+  EXPECT_EQ(mesh("sphere_001.ply").triangles, mesh("out_001.ply").triangles);
+  std::string alone;
+  for (Eigen::Index i = 0; i < large.cols(); ++i)
+    alone += linesOf(large.col(i));
+  write("alone.xyz", alone);
+  ASSERT_EQ(tool({"alone.xyz", "alone.ply"}).exit_code, 0);
+  EXPECT_EQ(content("out_000.ply"), content("alone.ply"));
+
+  const json report = json::parse(content("report.json"));
+  EXPECT_EQ(report["points"], 500);
+  EXPECT_EQ(report["left_out"], json::array());
+  ASSERT_EQ(report["parts"].size(), 2U);
+  const json& part = report["parts"][0];
+  EXPECT_EQ(part["points"], 300);
+  EXPECT_EQ(part["output"], "out_000.ply");
+  EXPECT_EQ(part["triangles"], 596);
+  EXPECT_EQ(part["diagnosis"]["kind"], "closed genus 0");
+  EXPECT_GT(part["box"]["min"][0], 7.0);
+}
+
+TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
+  const RunResult result = tool({"three.xyz", "out.ply", "-parts", "each", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const tool_test::MeshFile out = mesh("out.ply");
+  EXPECT_EQ(out.triangles.cols(), 596 + 396);
+  EXPECT_EQ(out.points().leftCols(300), large);
+  EXPECT_EQ(out.points().rightCols(200), small);
+  EXPECT_EQ(out.triangles.rightCols(396).minCoeff(), 300);
+  const json report = json::parse(content("report.json"));
+  EXPECT_EQ(report["parts"].size(), 2U);
+  EXPECT_EQ(report["left_out"].size(), 60U);
+  EXPECT_NE(report["warnings"].dump().find("cannot mesh part 3 of 3 (60 points)"),
+            std::string::npos);
+  EXPECT_EQ(tool({"three.xyz", "out.ply", "-parts", "each", "-strict"}).exit_code, 1);
+  ASSERT_EQ(tool({"three.xyz", "open.ply", "-parts", "each", "-surface", "open"}).exit_code, 0);
+  EXPECT_EQ(mesh("open.ply").points().cols(), 560);
+}
+
+TEST_F(PartsOption, LargestLeavesOutTheOthersInEveryTool) {
+  const RunResult result =
+      tool({"two.xyz", "out.ply", "-parts", "largest", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(mesh("out.ply").points(), large);
+  const json report = json::parse(content("report.json"));
+  EXPECT_EQ(report["vertices"], 300);
+  EXPECT_EQ(report["parts"].size(), 2U);
+  EXPECT_EQ(report["parts"][1]["points"], 200);
+  EXPECT_EQ(run(REMESH_TOOL, {"two.xyz", "even.ply", "-parts", "largest"}, {}).exit_code, 0);
+  EXPECT_EQ(run(REMESH_TOOL, {"two.xyz", "even.ply", "-parts", "each"}, {}).exit_code, 2);
+}
+
+TEST_F(PartsOption, OfFewerPointsAreLeftOut) {
+  const RunResult result = tool(
+      {"three.xyz", "out.ply", "-parts", "each", "-min-points", "201", "-json", "report.json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(mesh("out.ply").points(), large);
+  EXPECT_EQ(json::parse(content("report.json"))["left_out"].size(), 260U);
+}
+
+TEST_F(PartsOption, MistakesEndTheToolWithoutAFile) {
+  const std::vector<std::pair<Words, std::string>> mistakes = {
+      {{"out.ply", "-parts", "some"}, "is unknown"},
+      {{"out.ply", "-min-points", "60"}, "does nothing with -parts all"},
+      {{"out.ply", "-parts", "each", "-min-points", "3"}, "-min-points"},
+      {{"out_%03d.ply"}, "is for several parts"},
+      {{"out.ply", "-parts", "each", "-sphere", "s.ply"}, "can show one part alone"},
+      {{"out.ply", "-parts", "each", "-sphere", "s%03d.ply"}, "can show one part alone"},
+      {{"out.ply", "-parts", "largest", "-min-points", "301"}, "no part of"},
+  };
+  for (const auto& [words, message] : mistakes) {
+    Words arguments = {"two.xyz"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const RunResult result = tool(arguments);
+    EXPECT_NE(result.exit_code, 0) << message;
+    EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+    EXPECT_FALSE(exists("out.ply")) << message;
+  }
+}
+
+}  // namespace
