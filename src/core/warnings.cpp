@@ -38,8 +38,7 @@ std::vector<std::string> warningsOf(const Options& options, const Result& result
     warn("The neighbour graph was in " + std::to_string(result.graph.components) +
          " pieces, joined by their shortest bridges: the cloud may show several objects, or "
          "parts farther apart than their points; mesh each by itself (parts each), or the largest "
-         "alone "
-         "(parts largest), if it does.");
+         "alone (parts largest), if it does.");
   const auto vertices = static_cast<double>(result.vertexCount());
   if (static_cast<double>(result.graph.without_tangent_plane.size()) > kManyPoints * vertices)
     warn(std::to_string(result.graph.without_tangent_plane.size()) +

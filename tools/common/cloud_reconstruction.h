@@ -24,7 +24,8 @@ struct OutlierRemoval {
 /// The cloud of a file and the mesh that was made of it. Points are numbered as in the file, from
 /// 0.
 struct CloudReconstruction {
-  std::shared_ptr<const PointData> data;   ///< all of the file
+  /// All of the file; never null.
+  std::shared_ptr<const PointData> data = std::make_shared<PointData>();
   std::size_t ignored = 0;                 ///< points with coordinates that are not finite
   std::optional<OutlierRemoval> outliers;  ///< nothing: they were not looked for
   std::optional<Parts> parts;              ///< nothing: they were not looked for
