@@ -282,7 +282,7 @@ public:
   /** \brief Get the result of the last reconstruct(); a default-constructed one after a failure.
    * Its "inputs" are the points getUsedIndices() lists; its vertices are the points that
    * getVertexIndices() lists. Volume, area, centroid and inertia of the mesh are in `measures`.
-   * \param[in] part below getPartCount(), the largest first; here and below
+   * \param[in] part below getPartCount(), the largest first
    * \return the result, which the next reconstruct() replaces */
   inline const spherical_param::Result& getResult(std::size_t part = 0) const {
     return parts_.at(part).result;
@@ -290,12 +290,14 @@ public:
 
   /** \brief Get the indices into the input cloud of the points that were meshed: those of
    * setIndices() (or all), without repetitions and without points that are not finite, of the part.
+   * \param[in] part below getPartCount()
    * \return their indices, in the order of the input */
   inline const pcl::Indices& getUsedIndices(std::size_t part = 0) const {
     return parts_.at(part).used_indices;
   }
 
   /** \brief Get the index into the input cloud of each vertex of getResult().
+   * \param[in] part below getPartCount()
    * \return one index for each vertex */
   inline const pcl::Indices& getVertexIndices(std::size_t part = 0) const {
     return parts_.at(part).vertex_indices;
@@ -318,6 +320,7 @@ public:
    * that were skipped or not in the indices are NaN. Empty without smoothing and after a failure.
    * \note In double precision, by vertex, they are getResult().smoothed; how far they moved is in
    * getResult().smoothing.
+   * \param[in] part below getPartCount()
    * \return a new cloud of the size of the input, or an empty one */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSmoothedPoints() const;
 
@@ -332,6 +335,7 @@ public:
 
   /** \brief Get what speaks against a closed surface without handles, in one piece, and where. Its
    * indices are vertices, which getVertexIndices() maps to the cloud.
+   * \param[in] part below getPartCount()
    * \note The mesh is a sphere whatever the cloud shows; the diagnosis says whether it should be.
    * \return what was found, with one sentence in `summary` */
   inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
