@@ -320,14 +320,15 @@ public:
    * that were skipped or not in the indices are NaN. Empty without smoothing and after a failure.
    * \note In double precision, by vertex, they are getResult().smoothed; how far they moved is in
    * getResult().smoothing.
-   * \param[in] part below getPartCount()
    * \return a new cloud of the size of the input, or an empty one */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSmoothedPoints() const;
 
   /** \brief Get the pairs of triangles of the mesh that intersect, as indices of triangles of
    * getResult(), with one part those of the polygons, {lower, higher}, ascending. Measured on the
-   * points of the input, in exact arithmetic. \note On noisy points some are often left; see
-   * setSmoothing(). \return the pairs; none is what a clean scan should give */
+   * points of the input, in exact arithmetic.
+   * \note On noisy points some are often left; see setSmoothing().
+   * \param[in] part below getPartCount()
+   * \return the pairs; none is what a clean scan should give */
   inline const std::vector<std::array<spherical_param::Index, 2>>&
   getSelfIntersections(std::size_t part = 0) const {
     return getResult(part).self_intersections;
