@@ -138,10 +138,6 @@ void appendPolygons(const spherical_param::Triangles& triangles,
   }
 }
 
-Positions pointsAt(const Positions& points, const std::vector<Index>& chosen) {
-  return points(Eigen::all, chosen);
-}
-
 std::vector<spherical_param::Part> choosePoints(const Positions& points,
                                                 spherical_param::PartsMode mode, int min_points,
                                                 const Options& options) {

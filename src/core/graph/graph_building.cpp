@@ -144,6 +144,13 @@ Index countSets(const std::vector<Index>& representative) {
   return count;
 }
 
+std::vector<std::size_t> setSizes(const std::vector<Index>& representative) {
+  std::vector<std::size_t> sizes(representative.size(), 0);
+  for (const Index set : representative)
+    ++sizes[static_cast<std::size_t>(set)];
+  return sizes;
+}
+
 std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
                                     int bridges_per_joint) {
   const auto n = static_cast<std::size_t>(points.cols());

@@ -23,6 +23,9 @@ std::vector<Index> representatives(UnionFind& sets, std::size_t n);
 /// Number of disjoint sets, by their representatives.
 Index countSets(const std::vector<Index>& representative);
 
+/// Number of elements of each set, at its representative; 0 elsewhere.
+std::vector<std::size_t> setSizes(const std::vector<Index>& representative);
+
 /// Minimum spanning tree of the components by their closest pairs of points (Boruvka 1926): in each
 /// round every component but the largest finds its shortest edge to another one.
 ///

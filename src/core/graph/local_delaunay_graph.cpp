@@ -4,11 +4,9 @@
 #include "graph_building.h"
 #include "neighbor_lists.h"
 #include "parallel.h"
-#include "part_numbers.h"
 #include "power_of_two.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
-#include "stray_points.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -17,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -600,15 +599,16 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   return result;
 }
 
-std::vector<Index> partsOfGraph(const Positions& points, const NeighborLists& lists, int min_points,
-                                const NeighborSearch& search, const Execution& execution) {
+AgreedGraph agreedGraph(const Positions& points, const NeighborLists& lists,
+                        const NeighborSearch& search, const Execution& execution) {
   const int threads =
       threadCount(execution.threads, static_cast<std::size_t>(points.cols()), kParallelThreshold);
   const FractionReport report = reportOf(execution, "graph");
   GraphReport unused;
-  const Stars stars = starsOf(points, lists, search, threads, report, unused);
-  return partOfNodes(points, agreedEdges(points, stars, threads, report), min_points,
-                     [&](const std::vector<char>& given) { return inStarsOf(given, stars); });
+  const auto stars =
+      std::make_shared<const Stars>(starsOf(points, lists, search, threads, report, unused));
+  return {agreedEdges(points, *stars, threads, report),
+          [stars](const std::vector<char>& given) { return inStarsOf(given, *stars); }};
 }
 
 }  // namespace internal

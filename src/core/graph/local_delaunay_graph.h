@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_param/neighbor_graph.h"
+#include "stray_points.h"
 
 namespace spherical_param::internal {
 
@@ -9,8 +10,14 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
                                       StarAgreement agreement, const NeighborSearch& search,
                                       const Execution& execution);
 
-/// The part of each node, or -1, as findParts() defines them. \see partOfNodes
-std::vector<Index> partsOfGraph(const Positions& points, const NeighborLists& lists, int min_points,
-                                const NeighborSearch& search, const Execution& execution);
+/// The edges on which both stars agree, before anything is repaired or joined.
+struct AgreedGraph {
+  Graph graph;
+  InStarsOf in_stars_of;
+};
+
+/// \param points 3 x n, n >= 1.
+AgreedGraph agreedGraph(const Positions& points, const NeighborLists& lists,
+                        const NeighborSearch& search, const Execution& execution);
 
 }  // namespace spherical_param::internal

@@ -138,6 +138,13 @@ std::vector<Index> nodesOfInput(const OrderedPoints& nodes) {
   return result;
 }
 
+void checkFinite(const std::string& function, const Positions& points) {
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (!points.col(i).allFinite())
+      throw InvalidInput(function + ": point " + std::to_string(i) +
+                         " is not finite; remove such points first");
+}
+
 OrderedPoints orderCheckedPoints(const Positions& points, int threads) {
   if (points.cols() > kMaxPoints)
     throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +

@@ -3,6 +3,7 @@
 #include "spherical_param/point_set.h"
 #include "spherical_param/types.h"
 
+#include <string>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -30,6 +31,9 @@ OrderedPoints orderPoints(const Positions& points, int threads);
 /// \throw InvalidInput for a coordinate that is not finite or too large, or fewer than four
 /// distinct points.
 OrderedPoints orderCheckedPoints(const Positions& points, int threads);
+
+/// \throw InvalidInput in the name of a function for a point that is not finite.
+void checkFinite(const std::string& function, const Positions& points);
 
 /// The node of each input point.
 std::vector<Index> nodesOfInput(const OrderedPoints& nodes);

@@ -1,6 +1,7 @@
 #include "spherical_param/outliers.h"
 
 #include "caller_neighbors.h"
+#include "local_delaunay_graph.h"
 #include "neighbor_lists.h"
 #include "ordered_points.h"
 #include "parallel.h"
@@ -8,6 +9,7 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/neighbor_graph.h"
 #include "spherical_param/neighbor_search.h"
+#include "stray_points.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -30,8 +32,8 @@ constexpr double kMaxDistanceRatio = 2.0;
 /// Neighbours whose spread across is less than this fraction of that along are on a line.
 constexpr double kMinSpreadRatio = 1e-6;
 
-[[noreturn]] void fail(const std::string& what, const std::string& function = "findOutliers") {
-  throw InvalidInput(function + ": " + what);
+[[noreturn]] void fail(const std::string& what) {
+  throw InvalidInput("findOutliers: " + what);
 }
 
 void checkOptions(const OutlierOptions& options) {
@@ -43,12 +45,6 @@ void checkOptions(const OutlierOptions& options) {
   if (!(options.least_score >= 0.0 && std::isfinite(options.least_score)))
     fail("least_score = " + std::to_string(options.least_score) +
          " is out of range; use a finite value that is not negative");
-}
-
-void checkFinite(const std::string& function, const Positions& points) {
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (!points.col(i).allFinite())
-      fail("point " + std::to_string(i) + " is not finite; remove such points first", function);
 }
 
 /// A neighbour of a point; ordered by how crowded it is there, then by how near it is.
@@ -181,7 +177,7 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   checkOptions(options);
   const auto n = static_cast<std::size_t>(points.cols());
   internal::checkNeighborLists("findOutliers", lists, n);
-  checkFinite("findOutliers", points);
+  internal::checkFinite("findOutliers", points);
 
   Outliers result;
   Scoring scoring(points, lists, options, execution);
@@ -233,7 +229,8 @@ namespace {
 /// The stray points of nodes and neighbour lists of them. \see findStrayPoints
 std::vector<StrayPoint> strayNodes(const Positions& nodes, const NeighborLists& lists,
                                    const NeighborSearch& search, const Execution& execution) {
-  return buildNeighborGraph(nodes, lists, {}, search, execution).report.stray_points;
+  const internal::AgreedGraph agreed = internal::agreedGraph(nodes, lists, search, execution);
+  return internal::strayPoints(nodes, agreed.graph, agreed.in_stars_of);
 }
 
 /// The columns of a matrix that are not among the stray points, and their numbers.
@@ -295,7 +292,7 @@ Outliers findOutliers(const Positions& points, const OutlierOptions& options,
                       const Execution& execution) {
   checkOptions(options);
   internal::checkThreads(execution.threads);
-  checkFinite("findOutliers", points);
+  internal::checkFinite("findOutliers", points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
   const auto n = static_cast<std::size_t>(points.cols());
   if (nodes.input_of_node.size() < kMinPositions) {
@@ -323,7 +320,7 @@ Outliers findOutliers(const Positions& points, const OutlierOptions& options,
 
 std::vector<StrayPoint> findStrayPoints(const Positions& points, const Execution& execution) {
   internal::checkThreads(execution.threads);
-  checkFinite("findStrayPoints", points);
+  internal::checkFinite("findStrayPoints", points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
   if (nodes.input_of_node.size() < kMinPositions)
     return {};

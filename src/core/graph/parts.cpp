@@ -1,11 +1,13 @@
 #include "spherical_param/parts.h"
 
 #include "caller_neighbors.h"
+#include "graph_building.h"
 #include "local_delaunay_graph.h"
 #include "ordered_points.h"
 #include "parallel.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/neighbor_graph.h"
+#include "surface_distance.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -23,10 +25,36 @@ void checkArguments(const Positions& points, int min_points) {
   if (min_points < kFewestPoints)
     throw InvalidInput("findParts: min_points = " + std::to_string(min_points) +
                        " is out of range; use 4 or more");
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (!points.col(i).allFinite())
-      throw InvalidInput("findParts: point " + std::to_string(i) +
-                         " is not finite; remove such points first");
+  internal::checkFinite("findParts", points);
+}
+
+/// The part of each node: the lowest node of its component; -1: none.
+std::vector<Index> partOfNodes(const Positions& points, const internal::AgreedGraph& agreed,
+                               std::size_t min_points) {
+  internal::UnionFind components = internal::connectedComponents(agreed.graph);
+  std::vector<Index> part = internal::representatives(components, agreed.graph.size());
+  const std::vector<std::size_t> sizes = internal::setSizes(part);
+  std::vector<char> in_part(part.size());
+  std::transform(part.begin(), part.end(), in_part.begin(), [&](Index component) {
+    return sizes[static_cast<std::size_t>(component)] >= min_points ? 1 : 0;
+  });
+  const auto in_parts = std::count(in_part.begin(), in_part.end(), 1);
+  if (in_parts == 0)
+    std::fill(part.begin(), part.end(), Index{-1});
+  if (in_parts == 0 || in_parts == static_cast<std::ptrdiff_t>(part.size()))
+    return part;
+
+  internal::SurfaceDistance distance(points, agreed.graph);
+  distance.setSurfaces(in_part);
+  const std::vector<char> in_star = agreed.in_stars_of(in_part);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (in_part[i] != 0)
+      continue;
+    const auto node = static_cast<Index>(i);
+    const bool is_beside = in_star[i] != 0 || distance.beyondNoise(node) == 0.0;
+    part[i] = is_beside ? part[static_cast<std::size_t>(distance.nearest(node))] : -1;
+  }
+  return part;
 }
 
 Part partOf(const Positions& points, std::vector<Index> indices) {
@@ -50,8 +78,10 @@ Parts findParts(const Positions& points, int min_points, const Execution& execut
   }
   const internal::Neighbors neighbors =
       internal::nearestNeighbors(nodes, neighborsToSearch({}), execution);
-  const std::vector<Index> part_of_node = internal::partsOfGraph(
-      nodes.points, neighbors.lists, min_points, neighbors.search, execution);
+  const std::vector<Index> part_of_node =
+      partOfNodes(nodes.points,
+                  internal::agreedGraph(nodes.points, neighbors.lists, neighbors.search, execution),
+                  static_cast<std::size_t>(min_points));
 
   std::vector<std::vector<Index>> points_of(count);
   for (std::size_t i = 0; i < node_of_input.size(); ++i) {

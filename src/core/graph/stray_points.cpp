@@ -22,13 +22,6 @@ std::size_t slot(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-std::vector<std::size_t> setSizes(const std::vector<Index>& representative) {
-  std::vector<std::size_t> sizes(representative.size(), 0);
-  for (const Index set : representative)
-    ++sizes[slot(set)];
-  return sizes;
-}
-
 /// Whether an edge has triangles on both sides: its ends have two neighbours in common.
 bool isInSheet(const Graph& graph, Index i, Index j) {
   const auto row = [&](std::vector<std::size_t>::size_type k) {

@@ -44,10 +44,6 @@ PCL_EXPORTS void appendPolygons(const spherical_param::Triangles& triangles,
                                 const pcl::Indices& point_of_vertex,
                                 std::vector<pcl::Vertices>& polygons);
 
-/** \brief Some of the points. */
-PCL_EXPORTS spherical_param::Positions pointsAt(const spherical_param::Positions& points,
-                                                const std::vector<spherical_param::Index>& chosen);
-
 /** \brief The parts of a cloud that are meshed; numbers of the points.
  * \param[in] options their progress callback may throw */
 PCL_EXPORTS std::vector<spherical_param::Part>
@@ -161,7 +157,7 @@ void SphericalParamReconstruction<PointInT>::meshPoints() {
     for (const spherical_param::Index point : part.points)
       of_part.push_back(used_indices[static_cast<std::size_t>(point)]);
     try {
-      meshed.push_back(meshPart(std::move(of_part), detail::pointsAt(points, part.points)));
+      meshed.push_back(meshPart(std::move(of_part), points(Eigen::all, part.points)));
     } catch (const spherical_param::InvalidInput& error) {
       failure = failure ? failure : std::current_exception();
       PCL_WARN("[pcl::SphericalParamReconstruction::reconstruct] a part of %zu points is left out: "
