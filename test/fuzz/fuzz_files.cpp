@@ -121,7 +121,7 @@ void readAsPointPairs(const std::string& path) {
     for (std::size_t side = 0; side < 2; ++side) {
       const CloudReconstruction& cloud = side == 0 ? first : second;
       require(pair.points[side] >= 0 &&
-                  pair.points[side] < static_cast<int>(cloud.data.points.size()),
+                  pair.points[side] < static_cast<int>(cloud.data->points.size()),
               "a pair is of points");
       require(pair.vertices[side] >= -1 &&
                   pair.vertices[side] < static_cast<int>(cloud.result.vertexCount()),

@@ -48,7 +48,7 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
     alone.setInputCloud(beside(makeEllipsoid(300)));
     const Triangles of_large = trianglesOf(meshed(alone));
     EXPECT_EQ(reconstruction.getResult(0).triangles, of_large);
-    EXPECT_EQ(reconstruction.getVertexIndices(0)[of_large(0, 0)],
+    EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_large(0, 0))),
               polygons.front().vertices.front());
     EXPECT_EQ(reconstruction.getResult(1).triangles, trianglesOf(meshed(makeEllipsoid(200))));
     EXPECT_TRUE(reconstruction.getDiagnosis(1).looksClosedGenus0());
