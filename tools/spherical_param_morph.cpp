@@ -336,9 +336,9 @@ void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& cloud
   }
   console.begin("morph");
   const SphereSurface first(clouds[0].points, clouds[0].triangles(), clouds[0].map.sphere,
-                            {settings.fit, settings.threads()});
+                            {settings.fit, settings.threads(), clouds[0].map.caps});
   const SphereSurface second(clouds[1].points, clouds[1].triangles(), clouds[1].map.sphere,
-                             {settings.fit, settings.threads()});
+                             {settings.fit, settings.threads(), clouds[1].map.caps});
   morph.result = spherical_param::morphSurfaces(first, second, options);
   std::vector<std::string> reasons(morph.pairs.size());
   for (std::size_t i = 0; i < morph.pairs.size(); ++i) {

@@ -377,13 +377,11 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
   } else {
     const GridSphere grid = gridOf(settings, wanted);
     output.frequency = grid.frequency;
+    output.mesh = spherical_param::resampleSurface(surface, grid);
     if (settings.series) {
       output.mesh.points = spherical_param::evaluateSphericalHarmonics(
-          *output.harmonics, grid.directions, settings.threads());
-      output.mesh.directions = grid.directions;
-      output.mesh.triangles = grid.triangles;
-    } else {
-      output.mesh = spherical_param::resampleSurface(surface, grid);
+          *output.harmonics, output.mesh.directions, settings.threads());
+      output.mesh.normals.resize(3, 0);
     }
   }
 }
@@ -404,7 +402,7 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
     };
     output.self_intersections =
         spherical_param::findSelfIntersections(mesh.points, mesh.triangles, execution);
-    if (!settings.reads_image) {
+    if (!settings.reads_image && output.topology.closed) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
       output.distance = distanceFromMesh(mapped.points, mapped.map.sphere, surface);
@@ -418,9 +416,14 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   mapCloud(settings.input, settings.product, console, mapped);
   console.begin("surface");
   const SphereSurface surface(mapped.points, mapped.triangles(), mapped.map.sphere,
-                              {settings.fit, settings.threads()});
+                              {settings.fit, settings.threads(), mapped.map.caps});
   output.stages = mapped.cloud.stages;
   output.stages.push_back({"surface", console.end("")});
+  if (settings.writes_image && surface.isOpen()) {
+    throw Failure("cannot write " + inQuotes(settings.output) +
+                      ": a geometry image has no openings, and the surface has",
+                  "give -surface closed, or the name of a mesh as output");
+  }
   if (settings.needsHarmonics()) {
     console.begin("harmonics");
     output.harmonics =

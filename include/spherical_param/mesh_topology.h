@@ -46,6 +46,12 @@ struct MeshTopology {
     return closed && manifold() && oriented && components == 1 && genus == 0 &&
            faults.unused_vertices.empty();
   }
+  /// A manifold with boundary, consistently oriented, in one piece over all vertices.
+  /// \return whether it is one
+  bool isOpenSurface() const {
+    return triangles > 0 && !closed && manifold() && oriented && components == 1 &&
+           faults.unused_vertices.empty();
+  }
 };
 
 /// Examines a mesh by its indices alone.

@@ -11,6 +11,19 @@ namespace spherical_param {
 /// \addtogroup outliers
 /// @{
 
+/// Points that do not belong to the surface of the others.
+struct Outliers {
+  std::vector<Index> indices;  ///< the outliers, ascending
+  /// n entries: how far each point is off the surface of its neighbours, relative to the mean
+  /// distances there; that of an outlier as of the round in which it was found.
+  std::vector<double> scores;
+  int rounds = 0;  ///< passes over the points; the last one finds none
+  /// Mean of the scores, each counted as 1 at most, of the points that are not outliers.
+  double mean = 0.0;
+  double standard_deviation = 0.0;  ///< of the same scores
+  double threshold = 0.0;  ///< what they are compared to: no point but the outliers is above it
+};
+
 /// Finds stray points: single ones, small clusters, nets of them, and points between sheets.
 ///
 /// The graph is that of local Delaunay neighbourhoods before anything is repaired or joined: points
@@ -27,15 +40,16 @@ namespace spherical_param {
 ///
 /// \param points 3 x n, finite. Of points at one position all are stray or none.
 /// \param execution threads, progress
-/// \return the stray points, ascending, the same, bit by bit, for any number of threads. None if no
-///         piece has 32 points, or all are one piece.
+/// \return the stray points, the same, bit by bit, for any number of threads; the score of one is
+///         StrayPoint::distance, that of others 0. None if no piece has 32 points, or all are one
+///         piece.
 /// \throw InvalidInput for coordinates that are not finite, or options out of range; Cancelled.
 /// Cost: that of a neighbour graph; of reconstruct(), which tells Result::outliers in this way, no
 /// more than a search for each point that is on no surface.
 ///
 /// No guarantees: a point as near to a surface as its own are to each other may be noise, and one
 /// that far from the rim of an opening continues the surface.
-std::vector<StrayPoint> findStrayPoints(const Positions& points, const Execution& execution = {});
+Outliers findStrayPoints(const Positions& points, const Execution& execution = {});
 
 /// Parameters of findOutliers().
 struct OutlierOptions {
@@ -46,19 +60,6 @@ struct OutlierOptions {
   /// Nothing nearer to the surface of its neighbours than this is an outlier [fraction of their
   /// mean distances]; >= 0. Points of a surface, even those at sharp corners, hardly reach 1.
   double least_score = 1.0;
-};
-
-/// Points that do not belong to the surface of the others.
-struct Outliers {
-  std::vector<Index> indices;  ///< the outliers, ascending
-  /// n entries: how far each point is off the surface of its neighbours, relative to the mean
-  /// distances there; that of an outlier as of the round in which it was found.
-  std::vector<double> scores;
-  int rounds = 0;  ///< passes over the points; the last one finds none
-  /// Mean of the scores, each counted as 1 at most, of the points that are not outliers.
-  double mean = 0.0;
-  double standard_deviation = 0.0;  ///< of the same scores
-  double threshold = 0.0;  ///< what they are compared to: no point but the outliers is above it
 };
 
 /// Finds points that are too far from the average of their neighbours (Zwicker and Gotsman 2004,

@@ -1,5 +1,6 @@
 #include "judgement.h"
 
+#include "boundary_loops.h"
 #include "open_mesh.h"
 #include "progress.h"
 #include "spherical_param/self_intersection.h"

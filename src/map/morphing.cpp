@@ -1,5 +1,6 @@
 #include "spherical_param/map/morphing.h"
 
+#include "caps.h"
 #include "corner_table.h"
 #include "exact_predicates.h"
 #include "option_checks.h"
@@ -7,6 +8,7 @@
 #include "progress.h"
 #include "rotation_search.h"
 #include "space_filling_curve.h"
+#include "sphere_locator.h"
 #include "sphere_overlay.h"
 #include "sphere_warp.h"
 #include "spherical_param/errors.h"
@@ -15,9 +17,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -164,6 +168,93 @@ void joinVertices(const SphereSurface& first, const Triangles& triangles, Positi
       is_taken[static_cast<std::size_t>(other)] = 1;
     }
   }
+}
+
+/// Whether a direction of the first sphere is in an opening of either surface.
+class OpenPart {
+public:
+  /// \param sphere of the second surface, as it is on the first; must outlive this.
+  OpenPart(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
+           int threads)
+      : first_(first), second_(second), locator_(sphere, second.triangles(), threads) {}
+
+  bool holds(const Eigen::Vector3d& direction) const {
+    return first_.isCap(first_.locate(direction).triangle) ||
+           second_.isCap(locator_.locate(direction).triangle);
+  }
+
+private:
+  const SphereSurface& first_;
+  const SphereSurface& second_;
+  internal::SphereLocator locator_;
+};
+
+/// Gives places on the boundary a triangle of the mesh, where they have one of a cap.
+void leaveCaps(const SphereSurface& surface, std::vector<SphereLocation>& places) {
+  if (!surface.isOpen())
+    return;
+  const Triangles& triangles = surface.triangles();
+  const CornerTable corners = cornersOf(triangles, surface.points().cols());
+  for (SphereLocation& place : places) {
+    if (!surface.isCap(place.triangle))
+      continue;
+    std::array<Index, 3> order = {0, 1, 2};
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return place.weights[a] > place.weights[b]; });
+    const Index nearest = triangles(order[0], place.triangle);
+    const Index next = triangles(order[1], place.triangle);
+    SphereLocation on_mesh;
+    on_mesh.triangle = -1;
+    double fraction = 0.0;  // towards `next`
+    corners.forEachCorner(nearest, [&](Index t, Index k) {
+      if (surface.isCap(t))
+        return;
+      const Index after = internal::nextCorner(k);
+      const Index before = internal::previousCorner(k);
+      const Index other = triangles(after, t) == next ? after : before;
+      const bool has_both = triangles(other, t) == next;
+      if (on_mesh.triangle >= 0 && !has_both)
+        return;
+      fraction = has_both
+                     ? place.weights[order[1]] / (place.weights[order[0]] + place.weights[order[1]])
+                     : 0.0;
+      on_mesh.triangle = t;
+      on_mesh.weights.setZero();
+      on_mesh.weights[k] = 1.0 - fraction;
+      on_mesh.weights[other] += fraction;
+    });
+    if (on_mesh.triangle >= 0)
+      place = on_mesh;
+  }
+}
+
+/// Leaves out the triangles over openings of either surface, and what only they use.
+void cutOpenings(const OpenPart& open, MorphResult& morph) {
+  Triangles triangles(3, morph.triangles.cols());
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < morph.triangles.cols(); ++t) {
+    const auto corner = [&](Eigen::Index k) -> Eigen::Vector3d {
+      return morph.sphere.col(morph.triangles(k, t));
+    };
+    if (!open.holds(corner(0) + corner(1) + corner(2)))
+      triangles.col(kept++) = morph.triangles.col(t);
+  }
+  triangles.conservativeResize(3, kept);
+  const std::vector<Index> used = internal::compact(triangles, morph.sphere.cols());
+  const auto keep = [&](Positions& positions) {
+    positions = Positions(positions(Eigen::all, used));
+  };
+  const auto keep_places = [&](std::vector<SphereLocation>& places) {
+    std::vector<SphereLocation> all = std::exchange(places, {});
+    for (const Index v : used)
+      places.push_back(all[static_cast<std::size_t>(v)]);
+  };
+  morph.triangles = std::move(triangles);
+  keep(morph.first);
+  keep(morph.second);
+  keep(morph.sphere);
+  keep_places(morph.first_places);
+  keep_places(morph.second_places);
 }
 
 /// Positions at places of a surface; of the vertices as they are.
@@ -323,6 +414,9 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   const std::vector<Eigen::Vector3d> places =
       honouredPairs(choice, landmarks, warp, partner, morph.impossible);
 
+  std::optional<OpenPart> open;
+  if (first.isOpen() || second.isOpen())
+    open.emplace(first, second, sphere, options.threads);
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);
     internal::reportFraction(report, 0.0);
@@ -337,8 +431,17 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     morph.second = positionsAt(second, morph.second_places, options.threads);
     morph.triangles = triangulateFaces(overlay, morph, inverseArea(first), inverseArea(second));
     morph.sphere = std::move(overlay.directions);
+    if (open)
+      cutOpenings(*open, morph);
   } else {
     GridSphere grid = gridWithPairs(options, places);
+    if (open) {
+      internal::OpenSphere cut =
+          internal::cutOpenings(grid.directions, grid.triangles,
+                                [&](const Eigen::Vector3d& u) { return open->holds(u); });
+      grid.directions = std::move(cut.directions);
+      grid.triangles = std::move(cut.triangles);
+    }
     morph.triangles = std::move(grid.triangles);
     morph.sphere = std::move(grid.directions);
     sampleBoth(first, second, sphere, morph);
@@ -346,6 +449,8 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     morph.first = positionsAt(first, morph.first_places, options.threads);
     morph.second = positionsAt(second, morph.second_places, options.threads);
   }
+  leaveCaps(first, morph.first_places);
+  leaveCaps(second, morph.second_places);
   internal::reportFraction(report, 1.0);
   return morph;
 }

@@ -267,7 +267,8 @@ std::vector<double> sumsOfAreas(const SphereSurface& surface) {
   const Triangles& triangles = surface.triangles();
   std::vector<double> sums{0.0};
   sums.reserve(static_cast<std::size_t>(triangles.cols()) + 1);
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+  // Caps are the last triangles.
+  for (Eigen::Index t = 0; t < triangles.cols() && !surface.isCap(static_cast<Index>(t)); ++t) {
     const Vector3d a = points.col(triangles(0, t));
     const Vector3d normal =
         (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
@@ -433,9 +434,19 @@ SphereMapOptions mapOptionsForResampling() {
 }
 
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid) {
-  SurfaceSamples samples = surface.evaluate(grid.directions);
-  return {std::move(samples.positions), std::move(samples.normals), grid.directions,
-          grid.triangles};
+  ResampledMesh mesh{{}, {}, grid.directions, grid.triangles};
+  if (surface.isOpen()) {
+    internal::OpenSphere open =
+        internal::cutOpenings(grid.directions, grid.triangles, [&](const Vector3d& direction) {
+          return surface.isCap(surface.locate(direction).triangle);
+        });
+    mesh.directions = std::move(open.directions);
+    mesh.triangles = std::move(open.triangles);
+  }
+  SurfaceSamples samples = surface.evaluate(mesh.directions);
+  mesh.points = std::move(samples.positions);
+  mesh.normals = std::move(samples.normals);
+  return mesh;
 }
 
 IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
@@ -449,6 +460,9 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
   const int workers = internal::threadCount(
       threads, static_cast<std::size_t>(mesh.triangles.cols()), internal::kShortPassThreshold);
+  if (checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), workers)
+          .isOpenSurface())
+    return result;
   FlippableMesh flippable(mesh, workers);
   if (!flippable.isSphere(workers))
     throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "

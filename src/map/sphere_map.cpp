@@ -1,5 +1,6 @@
 #include "spherical_param/map/sphere_map.h"
 
+#include "caps.h"
 #include "exact_predicates.h"
 #include "map_hierarchy.h"
 #include "map_relaxation.h"
@@ -17,6 +18,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,8 +44,10 @@ void checkOptions(const SphereMapOptions& options) {
                        " is out of range; use 0 to " + std::to_string(most_sweeps));
 }
 
-void checkMesh(const Positions& points, const Triangles& triangles, const Positions& start,
-               int threads) {
+/// Throws for a mesh that cannot be mapped; caps its openings.
+/// \return what is mapped, if that is not the mesh itself
+std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Triangles& triangles,
+                                              const Positions& start, int threads) {
   const std::string caller = "computeSphereMap: ";
   if (points.cols() < 4)
     throw InvalidInput(caller + std::to_string(points.cols()) +
@@ -64,14 +68,19 @@ void checkMesh(const Positions& points, const Triangles& triangles, const Positi
     if (!(std::abs(start.col(v).norm() - 1.0) <= tolerance))
       throw InvalidInput(caller + "the start of vertex " + std::to_string(v) + " has length " +
                          std::to_string(start.col(v).norm()) + "; normalise it");
-  const MeshTopology topology =
+  MeshTopology topology =
       checkTopology(triangles, static_cast<std::size_t>(points.cols()), threads);
   if (topology.isSphere())
-    return;
+    return std::nullopt;
+  if (topology.isOpenSurface()) {
+    internal::CappedMesh capped = internal::capOpenings(points, triangles);
+    topology =
+        checkTopology(capped.triangles, static_cast<std::size_t>(capped.points.cols()), threads);
+    if (topology.isSphere())
+      return capped;
+  }
   std::string fault = "it is no topological sphere";
-  if (!topology.closed)
-    fault = "it is not closed";
-  else if (!topology.manifold())
+  if (!topology.manifold())
     fault = "it is not manifold";
   else if (!topology.oriented)
     fault = "its triangles are not oriented consistently";
@@ -83,7 +92,7 @@ void checkMesh(const Positions& points, const Triangles& triangles, const Positi
   else if (topology.genus)
     fault = "its genus is " + std::to_string(*topology.genus);
   throw InvalidInput(caller + "the mesh does not map to a sphere: " + fault +
-                     "; give a closed manifold mesh of genus 0 in one piece, each vertex used");
+                     "; give a manifold mesh of genus 0 in one piece, each vertex used");
 }
 
 /// Buffers of a thread.
@@ -301,27 +310,30 @@ private:
 SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
                            const Positions& start, const SphereMapOptions& options) {
   checkOptions(options);
-  checkMesh(points, triangles, start, options.threads);
+  const std::optional<internal::CappedMesh> capped =
+      checkMesh(points, triangles, start, options.threads);
   const internal::FractionReport report = internal::reportOf(options, "map");
   internal::reportFraction(report, 0.0);
   const MapHierarchy hierarchy =
-      internal::buildMapHierarchy(points, triangles, options.threads, report);
+      internal::buildMapHierarchy(capped ? capped->points : points,
+                                  capped ? capped->triangles : triangles, options.threads, report);
   SphereMap map;
   const Positions refined = Refinement(hierarchy, options).run(map.levels, report);
-  Positions sphere(3, points.cols());
+  Positions sphere(3, refined.cols());
   for (std::size_t i = 0; i < hierarchy.order.size(); ++i)
     sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));
   const Positions unit_start = start.colwise().normalized();
   map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
   internal::reportFraction(report, 0.0);
   const Eigen::Matrix3d rotation = rotationTo(unit_start, sphere, points, triangles);
-  map.sphere = (rotation * sphere).colwise().normalized();
-  map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);
-  if (map.distortion.flipped_triangles > 0) {
-    // By the rounding of the rotation alone.
-    map.sphere = sphere;
+  const auto take = [&](const Positions& all) {
+    map.sphere = all.leftCols(points.cols());
+    map.caps = all.rightCols(all.cols() - points.cols());
     map.distortion = measureMapDistortion(points, triangles, map.sphere, options.threads);
-  }
+  };
+  take((rotation * sphere).colwise().normalized());
+  if (map.distortion.flipped_triangles > 0)
+    take(sphere);  // flipped by the rounding of the rotation alone
   internal::reportFraction(report, 1.0);
   return map;
 }

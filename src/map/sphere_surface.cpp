@@ -1,5 +1,6 @@
 #include "spherical_param/map/sphere_surface.h"
 
+#include "caps.h"
 #include "corner_table.h"
 #include "exact_predicates.h"
 #include "option_checks.h"
@@ -60,8 +61,9 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
       sphere, [](const Vector3d& u) { return std::abs(u.squaredNorm() - 1.0) <= tolerance; },
       "SphereSurface: vertex", "is not of unit length on the sphere; normalise the sphere first");
   if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), threads).isSphere())
-    throw InvalidInput("SphereSurface: the triangles must be a closed, manifold, consistently "
-                       "oriented mesh of genus 0 over all points; see checkTopology()");
+    throw InvalidInput("SphereSurface: the triangles must be a manifold, consistently oriented "
+                       "mesh of genus 0 over all points, with the caps of SphereMap if it has "
+                       "openings; see checkTopology()");
 
   const auto count = static_cast<std::size_t>(triangles.cols());
   const int workers = internal::threadCount(threads, count, internal::kParallelThreshold);
@@ -101,7 +103,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
                        " times; make a map that is one to one by computeSphereMap()");
 }
 
-double areaOf(const Positions& points, const Triangles& triangles, int threads) {
+double areaOf(const Positions& points, const Eigen::Ref<const Triangles>& triangles, int threads) {
   const auto count = static_cast<std::size_t>(triangles.cols());
   return internal::sumOfBlocks(
       count, internal::threadCount(threads, count, internal::kShortPassThreshold), 0.0,
@@ -120,18 +122,21 @@ double areaOf(const Positions& points, const Triangles& triangles, int threads) 
 }  // namespace
 
 struct SphereSurface::Data {
-  Data(const Positions& points_in, const Triangles& triangles_in, const Positions& sphere_in,
-       const SphereSurfaceOptions& options_in)
-      : options(options_in), points(points_in), triangles(triangles_in), sphere(sphere_in),
-        area(areaOf(points, triangles, options.threads)),
-        locator(sphere, triangles, options.threads) {
+  /// \param mesh_triangles of the triangles are those of the mesh, the others those of caps.
+  Data(Positions points_in, Triangles triangles_in, Positions sphere_in,
+       Eigen::Index mesh_triangles_in, const SphereSurfaceOptions& options)
+      : thread_limit(options.threads), points(std::move(points_in)),
+        triangles(std::move(triangles_in)), sphere(std::move(sphere_in)),
+        mesh_triangles(mesh_triangles_in),
+        area(areaOf(points, triangles.leftCols(mesh_triangles), thread_limit)),
+        locator(sphere, triangles, thread_limit) {
     const auto count = static_cast<std::size_t>(points.cols());
-    const int threads =
-        internal::threadCount(options.threads, count, internal::kShortPassThreshold);
-    const internal::CornerTable corners(triangles, count, threads);
-    normals = internal::vertexNormals(points, triangles, sphere, corners, options.threads);
+    const int threads = internal::threadCount(thread_limit, count, internal::kShortPassThreshold);
+    // Caps have no say in what the surface is like at their loops.
+    const internal::CornerTable corners(triangles.leftCols(mesh_triangles), count, threads);
+    normals = internal::vertexNormals(points, triangles, sphere, corners, thread_limit);
     if (options.fit == SurfaceFit::Smooth)
-      quadrics.emplace(points, triangles, normals, corners, options.threads);
+      quadrics.emplace(points, triangles, normals, corners, thread_limit);
   }
 
   /// \param location with a triangle of the mesh.
@@ -166,10 +171,11 @@ struct SphereSurface::Data {
     return normals.col(triangles(nearest, location.triangle));
   }
 
-  SphereSurfaceOptions options;
+  int thread_limit;  ///< SphereSurfaceOptions::threads
   Positions points;
   Triangles triangles;
   Positions sphere;
+  Eigen::Index mesh_triangles;
   Positions normals;  ///< of the vertices
   double area;
   internal::SphereLocator locator;
@@ -179,8 +185,22 @@ struct SphereSurface::Data {
 SphereSurface::SphereSurface(const Positions& points, const Triangles& triangles,
                              const Positions& sphere, const SphereSurfaceOptions& options) {
   internal::checkEnum("SphereSurface: fit", options.fit, SurfaceFit::Smooth);
-  checkInput(points, triangles, sphere, options.threads);
-  data_ = std::make_unique<const Data>(points, triangles, sphere, options);
+  if (options.caps.cols() == 0) {
+    checkInput(points, triangles, sphere, options.threads);
+    data_ = std::make_unique<const Data>(points, triangles, sphere, triangles.cols(), options);
+    return;
+  }
+  internal::checkTriangles("SphereSurface", triangles, points.cols());
+  if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), options.threads)
+           .isOpenSurface())
+    throw InvalidInput("SphereSurface: there are caps, but the triangles are no consistently "
+                       "oriented manifold with boundary over all points; give the mesh of the map");
+  internal::CappedMesh capped = internal::capOpenings(points, triangles);
+  Positions all(3, sphere.cols() + options.caps.cols());
+  all << sphere, options.caps;
+  checkInput(capped.points, capped.triangles, all, options.threads);
+  data_ = std::make_unique<const Data>(std::move(capped.points), std::move(capped.triangles),
+                                       std::move(all), triangles.cols(), options);
 }
 
 SphereSurface::~SphereSurface() = default;
@@ -201,6 +221,14 @@ const Positions& SphereSurface::sphere() const {
 
 double SphereSurface::area() const {
   return data_->area;
+}
+
+bool SphereSurface::isOpen() const {
+  return data_->mesh_triangles < data_->triangles.cols();
+}
+
+bool SphereSurface::isCap(Index triangle) const {
+  return triangle >= data_->mesh_triangles;
 }
 
 namespace {
@@ -246,7 +274,7 @@ SurfaceSamples SphereSurface::evaluate(const Positions& directions) const {
   samples.normals.resize(3, directions.cols());
   samples.locations.resize(count);
   internal::forEachItem(
-      count, internal::threadCount(data_->options.threads, count, internal::kParallelThreshold),
+      count, internal::threadCount(data_->thread_limit, count, internal::kParallelThreshold),
       [&](std::size_t, std::size_t i) {
         const auto column = static_cast<Eigen::Index>(i);
         const internal::SphereHit hit = data_->locator.locate(directions.col(column));

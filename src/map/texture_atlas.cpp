@@ -323,10 +323,11 @@ void checkOptions(const TextureAtlasOptions& options, const std::string& functio
 
 void checkMesh(const Triangles& triangles, const Positions& sphere) {
   const std::string function = "makeTextureAtlas";
-  if (!checkTopology(triangles, static_cast<std::size_t>(sphere.cols())).isSphere())
+  const MeshTopology topology = checkTopology(triangles, static_cast<std::size_t>(sphere.cols()));
+  if (!topology.isSphere() && !topology.isOpenSurface())
     throw InvalidInput(function +
-                       ": the triangles are no closed, oriented sphere over all vertices; give a "
-                       "mesh as reconstruct() makes it");
+                       ": the triangles are no oriented manifold of genus 0 over all vertices; "
+                       "give a mesh as reconstruct() makes it");
   constexpr double tolerance = 1e-6;  // that of single precision, and no more
   for (Eigen::Index v = 0; v < sphere.cols(); ++v)
     if (!(std::abs(sphere.col(v).norm() - 1.0) <= tolerance))

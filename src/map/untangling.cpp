@@ -1,3 +1,4 @@
+#include "boundary_loops.h"
 #include "corner_table.h"
 #include "exact_predicates.h"
 #include "parallel.h"
@@ -11,6 +12,7 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -32,7 +34,13 @@ public:
   Sliding(const SphereSurface& surface, ResampledMesh& mesh, int threads)
       : surface_(surface), mesh_(mesh), threads_(threads),
         corners_(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), threads),
-        moved_(static_cast<std::size_t>(mesh.points.cols()), false) {}
+        moved_(static_cast<std::size_t>(mesh.points.cols()), false), is_fixed_(moved_) {
+    if (surface.isOpen())
+      for (const std::vector<Index>& loop :
+           internal::boundaryLoops(mesh.triangles, is_fixed_.size()))
+        for (const Index v : loop)
+          is_fixed_[static_cast<std::size_t>(v)] = true;
+  }
 
   UntanglingReport run() {
     Execution options;
@@ -104,6 +112,8 @@ private:
   /// Moves a vertex towards its neighbours on the sphere, towards those that are far in space most,
   /// as far as no triangle is flipped.
   void slide(Index v) {
+    if (is_fixed_[static_cast<std::size_t>(v)])
+      return;
     Vector3d sum = Vector3d::Zero();
     double weights = 0.0;
     corners_.forEachCorner(v, [&](Index t, Index k) {
@@ -146,6 +156,7 @@ private:
   int threads_;
   internal::CornerTable corners_;
   std::vector<bool> moved_;
+  std::vector<bool> is_fixed_;  ///< on the boundary
 };
 
 }  // namespace

@@ -94,7 +94,7 @@ std::vector<pcl::PolygonMesh> morph(const MorphShape& first, const MorphShape& s
   morph_options.pairs = vertices.pairs;
   const auto surface_of = [&](const MappedMesh& mesh) {
     return spherical_param::SphereSurface(mesh.points, mesh.triangles, mesh.map.sphere,
-                                          {options.fit, execution.threads});
+                                          {options.fit, execution.threads, mesh.map.caps});
   };
   const spherical_param::MorphResult result = spherical_param::morphSurfaces(
       surface_of(first.mesh), surface_of(second.mesh), morph_options);

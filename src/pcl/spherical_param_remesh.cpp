@@ -20,7 +20,7 @@ pcl::PolygonMesh remesh(const MappedMesh& mesh, const SphericalParamRemeshOption
   const std::size_t wanted =
       options.points > 0 ? options.points : static_cast<std::size_t>(mesh.points.cols());
   const spherical_param::SphereSurface surface(mesh.points, mesh.triangles, mesh.map.sphere,
-                                               {options.fit, threads});
+                                               {options.fit, threads, mesh.map.caps});
   spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
       surface, spherical_param::makeGridSphere(
                    options.grid, spherical_param::gridFrequency(options.grid, wanted)));

@@ -13,6 +13,7 @@
 #include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/option_table.h"
 #include "spherical_param/outliers.h"
+#include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
@@ -132,17 +133,6 @@ py::dict reconstructPoints(const DoubleArray& array, const py::dict& values, boo
   }
 }
 
-/// The stray points, with their distances for scores.
-Outliers strayPoints(const Positions& points, const Execution& execution) {
-  Outliers result;
-  result.scores.assign(static_cast<std::size_t>(points.cols()), 0.0);
-  for (const StrayPoint& stray : findStrayPoints(points, execution)) {
-    result.indices.push_back(stray.point);
-    result.scores[static_cast<std::size_t>(stray.point)] = stray.distance;
-  }
-  return result;
-}
-
 /// \param sigma none: stray points
 py::dict findOutlierPoints(const DoubleArray& array, const std::optional<double>& sigma, int k,
                            int threads, const py::object& progress) {
@@ -153,7 +143,7 @@ py::dict findOutlierPoints(const DoubleArray& array, const std::optional<double>
   const FinitePoints finite(array);
   const Outliers found = listener.run([&] {
     return sigma ? findOutliers(finite.points, options, listener.execution(threads))
-                 : strayPoints(finite.points, listener.execution(threads));
+                 : findStrayPoints(finite.points, listener.execution(threads));
   });
   std::vector<Index> indices;
   for (const Index point : found.indices)
@@ -163,6 +153,22 @@ py::dict findOutlierPoints(const DoubleArray& array, const std::optional<double>
     scores[static_cast<std::size_t>(finite.rows[i])] = found.scores[i];
   return py::dict("indices"_a = toArray(indices), "scores"_a = toArray(scores),
                   "threshold"_a = found.threshold, "rounds"_a = found.rounds);
+}
+
+py::list findPartsOfPoints(const DoubleArray& array, int min_points, int threads,
+                           const py::object& progress) {
+  Listener listener(progress);
+  const FinitePoints finite(array);
+  const Parts found = listener.run(
+      [&] { return findParts(finite.points, min_points, listener.execution(threads)); });
+  py::list parts;
+  for (const Part& part : found.parts) {
+    std::vector<Index> rows;
+    for (const Index point : part.points)
+      rows.push_back(finite.rows[static_cast<std::size_t>(point)]);
+    parts.append(toArray(rows));
+  }
+  return parts;
 }
 
 py::dict mapToSphere(const DoubleArray& points, const IndexArray& triangles,
@@ -264,8 +270,8 @@ Remeshed spreadEvenly(const SphereSurface& surface, std::size_t points, std::uin
 }
 
 py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
-                       const DoubleArray& sphere, const std::string& grid, std::size_t count,
-                       const std::string& fit, std::uint32_t seed, int threads,
+                       const DoubleArray& sphere, const DoubleArray& caps, const std::string& grid,
+                       std::size_t count, const std::string& fit, std::uint32_t seed, int threads,
                        const py::object& progress) {
   const bool is_even = grid == "even";
   constexpr Names<SphereGrid, 3> grid_names = {{
@@ -279,9 +285,10 @@ py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
   const Positions vertices = toPositions(points);
   const Triangles mesh = toTriangles(triangles);
   const Positions directions = toPositions(sphere);
+  const Positions in_openings = toPositions(caps);
   const Remeshed remeshed = listener.run([&] {
     listener.step("surface", 0.0);
-    const SphereSurface surface(vertices, mesh, directions, {surface_fit, threads});
+    const SphereSurface surface(vertices, mesh, directions, {surface_fit, threads, in_openings});
     listener.step("surface", 1.0);
     listener.step("resample", 0.0);
     return is_even ? spreadEvenly(surface, count, seed, listener)
@@ -361,12 +368,15 @@ PYBIND11_MODULE(_core, module) {
              "progress"_a);
   module.def("find_outliers", &findOutlierPoints, points, py::kw_only(), "sigma"_a, "k"_a,
              "threads"_a, "progress"_a);
+  module.def("find_parts", &findPartsOfPoints, points, py::kw_only(), "min_points"_a, "threads"_a,
+             "progress"_a);
   module.def("sphere_map", &mapToSphere, points, triangles, sphere, py::kw_only(), "area_weight"_a,
              "sweeps"_a, "threads"_a, "progress"_a);
   module.def("measure_map_distortion", &measureDistortion, points, triangles, sphere, py::kw_only(),
              "threads"_a);
-  module.def("remesh", &remeshSurface, points, triangles, sphere, py::kw_only(), "grid"_a,
-             "count"_a, "fit"_a, "seed"_a, "threads"_a, "progress"_a);
+  module.def("remesh", &remeshSurface, points, triangles, sphere, py::kw_only(),
+             py::arg("caps").noconvert(), "grid"_a, "count"_a, "fit"_a, "seed"_a, "threads"_a,
+             "progress"_a);
   module.def("texture_coordinates", &textureAtlas, triangles, sphere, py::kw_only(), "chart"_a,
              "margin"_a);
 }

@@ -215,8 +215,8 @@ py::dict toDict(const MapDistortion& distortion) {
 }
 
 py::dict toDict(const SphereMap& map) {
-  return py::dict("sphere"_a = toArray(map.sphere), "distortion"_a = toDict(map.distortion),
-                  "before"_a = toDict(map.before),
+  return py::dict("sphere"_a = toArray(map.sphere), "caps"_a = toArray(map.caps),
+                  "distortion"_a = toDict(map.distortion), "before"_a = toDict(map.before),
                   "levels"_a = listOf(map.levels, [](const SphereMapLevel& level) {
                     return py::dict("vertices"_a = level.vertices, "sweeps"_a = level.sweeps,
                                     "energy"_a = level.energy);

@@ -142,16 +142,11 @@ Points finitePoints(const pcl::PCLPointCloud2& cloud) {
 /// \param sigma of the settings
 std::vector<Index> outliersOf(const Positions& points, double sigma,
                               const spherical_param::Execution& execution) {
-  if (sigma != kAuto) {
-    spherical_param::OutlierOptions options;
-    options.sigma = sigma;
-    return spherical_param::findOutliers(points, options, execution).indices;
-  }
-  std::vector<Index> stray;
-  for (const spherical_param::StrayPoint& each :
-       spherical_param::findStrayPoints(points, execution))
-    stray.push_back(each.point);
-  return stray;
+  if (sigma == kAuto)
+    return spherical_param::findStrayPoints(points, execution).indices;
+  spherical_param::OutlierOptions options;
+  options.sigma = sigma;
+  return spherical_param::findOutliers(points, options, execution).indices;
 }
 
 /// Removes outliers. \return their number \throw BadCloud, Cancelled

@@ -2,14 +2,18 @@
 
 #include "exact_predicates.h"
 #include "helpers.h"
+#include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <vector>
 
 /// Meshes with a map to the sphere that the tests of the map share.
 namespace spherical_param::test {
@@ -23,8 +27,10 @@ struct Mapped {
   Triangles triangles;
   Positions sphere;
 
+  Positions caps = {};
+
   SphereSurface surface(SurfaceFit fit = SurfaceFit::Linear, int threads = 0) const {
-    return {points, triangles, sphere, {fit, threads}};
+    return {points, triangles, sphere, {fit, threads, caps}};
   }
 };
 
@@ -52,6 +58,40 @@ inline Mapped bumpy(const Positions& sphere) {
   return mappedOver(sphere, [](const Vector3d& u) {
     return Vector3d((2.0 + 0.3 * std::sin(3.0 * u.x()) * std::cos(2.0 * u.y())) * u);
   });
+}
+
+/// A mesh without the triangles that have a corner within some distance of a center on the sphere,
+/// mapped by computeSphereMap().
+inline Mapped withOpenings(const Mapped& mesh, const Positions& centers, double radius) {
+  std::vector<Eigen::Index> kept;
+  std::vector<Index> numbers(static_cast<std::size_t>(mesh.points.cols()), -1);
+  for (Eigen::Index v = 0; v < mesh.points.cols(); ++v)
+    if ((centers.colwise() - mesh.sphere.col(v)).colwise().norm().minCoeff() > radius) {
+      numbers[static_cast<std::size_t>(v)] = static_cast<Index>(kept.size());
+      kept.push_back(v);
+    }
+  std::vector<Index> corners;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    std::array<Index, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k)
+      triangle[k] =
+          numbers[static_cast<std::size_t>(mesh.triangles(static_cast<Eigen::Index>(k), t))];
+    if (*std::min_element(triangle.begin(), triangle.end()) >= 0)
+      corners.insert(corners.end(), triangle.begin(), triangle.end());
+  }
+  Mapped open{
+      mesh.points(Eigen::all, kept),
+      Eigen::Map<const Triangles>(corners.data(), 3, static_cast<Eigen::Index>(corners.size() / 3)),
+      mesh.sphere(Eigen::all, kept)};
+  const SphereMap map = computeSphereMap(open.points, open.triangles, open.sphere);
+  open.sphere = map.sphere;
+  open.caps = map.caps;
+  return open;
+}
+
+/// A bumpy shape of about n vertices with three openings.
+inline Mapped openBumpy(Index n) {
+  return withOpenings(bumpy(spiralSphere(n)), spiralSphere(3), 0.4);
 }
 
 /// The 4 f^2 + 2 grid points on an octahedron whose edges have f parts: vertices and edges on the

@@ -164,7 +164,7 @@ TEST(TextureAtlas, RefusesMapsThatAreNotOneToOne) {
   const auto refuses = [](const Triangles& triangles, const Positions& sphere) {
     EXPECT_THROW(makeTextureAtlas(triangles, sphere), InvalidInput);
   };
-  refuses(mesh.triangles.leftCols(mesh.triangles.cols() - 1), mesh.sphere);
+  refuses(mesh.triangles.leftCols(20), mesh.sphere);
   refuses(mesh.triangles.colwise().reverse(), mesh.sphere);
   refuses(mesh.triangles, 2.0 * mesh.sphere);
   refuses(mesh.triangles, mesh.sphere.leftCols(49));

@@ -1,4 +1,4 @@
-"""What reconstruct() and find_outliers() make of arrays and options."""
+"""What reconstruct(), find_outliers() and find_parts() make of arrays and options."""
 
 import inspect
 import pickle
@@ -258,6 +258,21 @@ class Outliers(unittest.TestCase):
         for wrong in ({"sigma": -1}, {"sigma": "4"}, {"k": 2}, {"threads": -1}):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
                 sp.find_outliers(cloud, **wrong)
+
+    def test_find_parts_names_the_rows_of_each_surface(self):
+        large = shapes.ellipsoid(400)
+        small = shapes.ellipsoid(200) + [9.0, 0.0, 0.0]
+        cloud = np.concatenate([[[np.nan] * 3], small, large, [[50.0, 0.0, 0.0]]])
+        parts = sp.find_parts(cloud)
+        self.assertEqual(len(parts), 2)
+        np.testing.assert_array_equal(parts[0], np.arange(201, 601))
+        np.testing.assert_array_equal(parts[1], np.arange(1, 201))
+        alone = sp.reconstruct(cloud[parts[1]])
+        self.assertEqual(alone.triangles.tobytes(), sp.reconstruct(small).triangles.tobytes())
+        self.assertEqual(len(sp.find_parts(cloud, min_points=201)), 1)
+        for wrong in ({"min_points": 3}, {"threads": -1}):
+            with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
+                sp.find_parts(cloud, **wrong)
 
 
 if __name__ == "__main__":

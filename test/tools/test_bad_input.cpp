@@ -160,7 +160,7 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   const std::string nothing = " does nothing with ";
   expectOptionsRefused(
       mesh_tool, {"in.xyz", "out.ply"},
-      {{{"-max_iterations", "5"}, "-max_iterations" + nothing + "-embedding multilevel"},
+      {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-embedding multilevel"},
        {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"},
        {{"-retries", "5", "-optimization", "flips"}, "-retries" + nothing}});
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},

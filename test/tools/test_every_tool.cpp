@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <csignal>
 #include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -78,7 +79,7 @@ TEST_F(EveryTool, HelpListsEveryOptionAndHelpAndVersionSucceed) {
     Words options = tool.further_options;
     for (const spherical_param::OptionRow& row : spherical_param::optionTable())
       if (row.name.rfind("history", 0) != 0)  // -report sets it
-        options.push_back(row.name);
+        options.push_back(std::regex_replace(row.name, std::regex("_"), "-"));
     for (const std::string& option : options)
       EXPECT_NE(help.output.find("\n  -" + option + " "), std::string::npos) << option;
     EXPECT_EQ(help.output.find("-history"), std::string::npos);

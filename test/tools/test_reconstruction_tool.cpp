@@ -190,7 +190,7 @@ TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
     EXPECT_GT(vertex.get<int>(), count - 200);
   const RunResult text = tool({"open.ply", "out.ply", "-surface", "open"});
   EXPECT_NE(text.output.find("1 left open, 0 filled"), std::string::npos);
-  const json filled = reportOf({"open.ply", "out.ply", "-surface", "open", "-fill_holes", "1000"});
+  const json filled = reportOf({"open.ply", "out.ply", "-surface", "open", "-fill-holes", "1000"});
   EXPECT_EQ(filled["closed"], true);
   EXPECT_EQ(filled["openings"][0]["filled"], true);
   EXPECT_EQ(reportOf({"open.ply", "out.ply"})["openings"].size(), 0U);
@@ -198,7 +198,7 @@ TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
 
 TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
   const json paper =
-      reportOf({"in.ply", "out.ply", "-graph", "knn", "--embedding=iterative", "-max_iterations=3",
+      reportOf({"in.ply", "out.ply", "-graph", "knn", "--embedding=iterative", "-max-iterations=3",
                 "-triangulation", "qhull", "-optimization", "none", "-weights", "inverse"});
   EXPECT_EQ(paper["iterations"], 3);
   EXPECT_EQ(paper["stop_reason"], "iteration limit");

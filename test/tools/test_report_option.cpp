@@ -129,7 +129,7 @@ TEST_F(ReportOption, ItsCommandRepeatsTheRun) {
   write("-it's in.ply", content("in.ply"));
   for (const Words& options :
        {Words{"-seed", "3", "-outliers", "9"},
-        Words{"-embedding", "iterative", "-optimization", "none", "-max_iterations", "20"}}) {
+        Words{"-embedding", "iterative", "-optimization", "none", "-max-iterations", "20"}}) {
     Words words = {"-report", "page.html", "-quiet"};
     words.insert(words.end(), options.begin(), options.end());
     words.insert(words.end(), {"--", "-it's in.ply", "out.ply"});

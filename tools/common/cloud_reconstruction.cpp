@@ -42,9 +42,7 @@ OutlierRemoval outliersOf(const Positions& points, const ReconstructionSettings&
     found.threshold = outliers.threshold;
     found.points = std::move(outliers.indices);
   } else {
-    for (const StrayPoint& stray : findStrayPoints(points, settings.options)) {
-      found.points.push_back(stray.point);
-    }
+    found.points = findStrayPoints(points, settings.options).indices;
   }
   return found;
 }

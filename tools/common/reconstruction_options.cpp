@@ -34,6 +34,13 @@ std::optional<std::pair<std::string, std::string>> failedCondition(const OptionR
   return failed == row.used_with.end() ? std::nullopt : std::optional(*failed);
 }
 
+/// The name of an option on the command line, where words are joined by dashes.
+std::string flagOf(const OptionRow& row) {
+  std::string flag = row.name;
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
 OptionValue parseValue(const OptionRow& row, const std::string& text) {
   const auto value_of = [](const auto& parsed) {
     return parsed ? OptionValue(*parsed) : OptionValue();
@@ -50,8 +57,8 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
       // Reported below, in the words of the command line.
     }
   }
-  throw UsageError("option -" + row.name + ": " + inQuotes(text) + " is not allowed",
-                   "give -" + row.name + " " + rangeOf(row));
+  throw UsageError("option -" + flagOf(row) + ": " + inQuotes(text) + " is not allowed",
+                   "give -" + flagOf(row) + " " + rangeOf(row));
 }
 
 /// The rows of the table that tools have. Only the page of -report shows a history, and sets how
@@ -69,17 +76,17 @@ std::vector<OptionRow> toolRows() {
 Options parseOptions(const CommandLine& command_line) {
   Options options;
   for (const OptionRow& row : toolRows()) {
-    if (command_line.has(row.name)) {
-      setOption(options, row.name, parseValue(row, command_line.value(row.name, "")));
+    if (command_line.has(flagOf(row))) {
+      setOption(options, row.name, parseValue(row, command_line.value(flagOf(row), "")));
     }
   }
   for (const OptionRow& row : toolRows()) {
     const auto failed = failedCondition(row, options);
-    if (failed && command_line.has(row.name)) {
+    if (failed && command_line.has(flagOf(row))) {
       const auto& [other, needed] = *failed;
-      throw UsageError("option -" + row.name + " does nothing with -" + other + " " +
+      throw UsageError("option -" + flagOf(row) + " does nothing with -" + other + " " +
                            optionText(options, other),
-                       "leave -" + row.name + " out, or give -" + other + " " + needed);
+                       "leave -" + flagOf(row) + " out, or give -" + other + " " + needed);
     }
   }
 #ifdef _OPENMP
@@ -114,7 +121,7 @@ std::vector<OptionInfo> reconstructionOptions() {
   for (const OptionRow& row : toolRows()) {
     const std::string argument = !row.choices.empty() ? "NAME" : row.is_integer ? "N" : "X";
     lines.push_back(
-        {row.name, argument,
+        {flagOf(row), argument,
          row.help + "; " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
          row.expert});
   }
@@ -162,7 +169,7 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
   for (const OptionRow& row : toolRows()) {
     const OptionValue value = row.get(settings.options);
     if (value.index() != 0 && !failedCondition(row, settings.options)) {
-      console.entry(row.name, spherical_param::textOf(value));
+      console.entry(flagOf(row), spherical_param::textOf(value));
     }
   }
   if (settings.outliers) {

@@ -50,7 +50,7 @@ struct ImpossiblePair {
 
 /// Two shapes on one mesh.
 struct MorphResult {
-  Triangles triangles;  ///< 3 x (2w - 4): closed, manifold, genus 0, outward
+  Triangles triangles;  ///< 3 x m: manifold, genus 0, outward; closed if both surfaces are
   Positions first;      ///< 3 x w, the first shape at the vertices [its unit]
   Positions second;     ///< 3 x w, the second shape at the vertices [its unit]
   Positions sphere;     ///< 3 x w, unit vectors: directions on the first sphere
@@ -66,8 +66,8 @@ struct MorphResult {
   double worst_pair = 0.0;
 };
 
-/// Puts two closed genus-0 surfaces on one mesh, by their maps to the sphere (Zwicker and Gotsman
-/// 2004, section 5).
+/// Puts two genus-0 surfaces on one mesh, by their maps to the sphere (Zwicker and Gotsman 2004,
+/// section 5). What is an opening of either one is an opening of the mesh.
 ///
 /// Pairs are honoured by a smooth one-to-one motion of the sphere: landmarks move along arcs,
 /// carrying their surroundings with them. A pair is impossible if its vertices are out of range,

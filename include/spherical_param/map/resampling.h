@@ -65,12 +65,15 @@ struct ResampledMesh {
 /// \return area_weight 0.5, 40 sweeps; the rest by default.
 SphereMapOptions mapOptionsForResampling();
 
-/// The surface at the vertices of a triangulated sphere: closed, manifold, genus 0, and a map to
-/// the sphere that is one to one.
+/// The surface at the vertices of a triangulated sphere: manifold, genus 0, and a map to the sphere
+/// that is one to one.
+///
+/// Openings of the surface stay open: vertices of the grid next to a boundary are moved to it, and
+/// others in openings are left out.
 ///
 /// \param surface with its map.
 /// \param grid    that of makeGridSphere(), or any other.
-/// \return the mesh, with the triangles of the grid.
+/// \return the mesh, with the triangles of the grid; of a closed surface with all of them.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
 /// What untangle() did.
@@ -83,7 +86,7 @@ struct UntanglingReport {
 
 /// Slides vertices along the surface, until triangles do not intersect: where they are long and
 /// thin, they cut across folds of the surface. The mesh keeps its triangles, and its map to the
-/// sphere stays one to one; where nothing intersects, nothing changes.
+/// sphere stays one to one; where nothing intersects, nothing changes. Vertices of a boundary stay.
 ///
 /// \param surface that the mesh was sampled from.
 /// \param mesh    of resampleSurface(); changed in place. The best that was found is kept.
@@ -105,7 +108,8 @@ struct IntersectionRemoval {
 ///
 /// An edge is flipped if the opposite angles become smaller in space (C. L. Lawson, 1977) and the
 /// new triangles are not flipped on the sphere: the mesh stays closed, manifold, of genus 0, and
-/// its map one to one. Vertices stay, and so do all triangles elsewhere. Normals stay.
+/// its map one to one. Vertices stay, and so do all triangles elsewhere. Normals stay. A mesh with
+/// openings is left as it is.
 ///
 /// \param mesh of resampleSurface(); changed in place.
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]

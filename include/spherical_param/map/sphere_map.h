@@ -64,9 +64,10 @@ struct SphereMapLevel {
   double energy = 0.0;       ///< mean energy per unit of area after them
 };
 
-/// A map from a closed genus-0 mesh to the unit sphere that is one to one.
+/// A map from a genus-0 mesh to the unit sphere that is one to one.
 struct SphereMap {
-  Positions sphere;                    ///< 3 x v, unit vectors
+  Positions sphere;  ///< 3 x v, unit vectors
+  Positions caps;    ///< 3 x c, unit vectors: vertices inside the openings; none of a closed mesh
   MapDistortion distortion;            ///< of `sphere`
   MapDistortion before;                ///< of the start that was given
   std::vector<SphereMapLevel> levels;  ///< finest first
@@ -76,13 +77,16 @@ struct SphereMap {
 /// flipped.
 ///
 /// \param points    3 x v, finite, 4 <= v <= 2^28 [unit of the input].
-/// \param triangles 3 x (2v - 4), closed, manifold, consistently oriented outward, of genus 0, in
-///                  one piece, every vertex used.
+/// \param triangles manifold, consistently oriented outward, of genus 0, in one piece, every vertex
+///                  used; with openings or, as 3 x (2v - 4), without.
 /// \param start     3 x v, unit vectors: the embedding; it gives the map its orientation in space,
 ///                  and may have flipped triangles.
 /// \param options areas against angles, sweeps, threads, progress
 /// \return the map, and how good it is.
 /// \throw InvalidInput for a mesh or start that is not as said; ComputeError; Cancelled.
+///
+/// The openings of a mesh are closed by caps, discs in rings whose vertices are between the loop
+/// and its centroid, and so they stay open on the sphere. The distortion is that of the mesh alone.
 ///
 /// Coarse to fine over a hierarchy of the mesh, after E. Praun and H. Hoppe (2003): vertices are
 /// taken out one by one until a tetrahedron is left, and put back into the kernels of their rings

@@ -36,7 +36,8 @@ enum class SurfaceFit {
 /// Parameters of SphereSurface.
 struct SphereSurfaceOptions {
   SurfaceFit fit = SurfaceFit::Smooth;  ///< between the vertices
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  int threads = 0;      ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  Positions caps = {};  ///< SphereMap::caps of a mesh with openings
 };
 
 /// Many points of a surface.
@@ -47,12 +48,13 @@ struct SurfaceSamples {
 };
 
 /// The surface of an object as a function on the sphere (Zwicker and Gotsman 2004, section 5):
-/// every direction has a position and a normal. Immutable: may be used by many threads.
+/// every direction has a position and a normal. In the openings of a mesh these are of a cap, not
+/// of the surface. Immutable: may be used by many threads.
 class SphereSurface {
 public:
   /// \param points    3 x v, finite; \param sphere 3 x v, unit vectors.
-  /// \param triangles 3 x (2v - 4), closed, genus 0; none flipped on the sphere.
-  /// \param options   fit, threads
+  /// \param triangles as computeSphereMap() takes them; none flipped on the sphere.
+  /// \param options   fit, threads, caps
   /// \throw InvalidInput for a mesh that is not as said, or with a flipped triangle on the sphere.
   /// Cost: O(v log v).
   SphereSurface(const Positions& points, const Triangles& triangles, const Positions& sphere,
@@ -65,14 +67,19 @@ public:
   SphereSurface(const SphereSurface& other) = delete;
   SphereSurface& operator=(const SphereSurface& other) = delete;
 
-  /// Vertices in space. \return as given
+  /// Vertices in space. \return as given, then those of the caps
   const Positions& points() const;
-  /// Triangles. \return as given
+  /// Triangles. \return as given, then those of the caps
   const Triangles& triangles() const;
-  /// Vertices on the sphere. \return as given
+  /// Vertices on the sphere. \return as given, then those of the caps
   const Positions& sphere() const;
-  /// Area of the mesh in space. \return [squared unit of the input]
+  /// Area of the mesh in space, without caps. \return [squared unit of the input]
   double area() const;
+  /// Whether the mesh has openings. \return that
+  bool isOpen() const;
+  /// Whether a triangle is over an opening. \param triangle of triangles() \return that it is of a
+  /// cap
+  bool isCap(Index triangle) const;
 
   /// The triangle that holds a direction, the same for directions of any length > 0. On an edge or
   /// at a corner one of the triangles that share it. O(log v), typically.

@@ -31,7 +31,7 @@ struct CutVertex {
 };
 
 /// A mesh with texture coordinates. Triangles are cut where the chart is, so none wraps round; the
-/// surface in space stays what it was, and stays closed.
+/// surface in space stays what it was, and no cut opens it.
 struct TextureAtlas {
   SphereChart chart = SphereChart::Octahedral;  ///< the layout
   std::vector<CutVertex> vertices;              ///< the first v are those of the mesh, in order
@@ -50,10 +50,10 @@ struct TextureAtlasOptions {
 
 /// Lays a mesh out in a chart of the sphere.
 ///
-/// \param triangles 3 x m, closed, genus 0; \param sphere 3 x v, unit vectors; none flipped.
-/// \param options   chart and margin
-/// \return the mesh, cut where the chart is, with its texture coordinates.
-/// \throw InvalidInput for a mesh that is not as said, or a triangle flipped on the sphere.
+/// \param triangles 3 x m, genus 0, closed or with openings; \param sphere 3 x v, unit vectors;
+/// none flipped. \param options   chart and margin \return the mesh, cut where the chart is, with
+/// its texture coordinates. \throw InvalidInput for a mesh that is not as said, or a triangle
+/// flipped on the sphere.
 TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& sphere,
                               const TextureAtlasOptions& options = {});
 

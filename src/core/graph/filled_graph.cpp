@@ -2,6 +2,7 @@
 
 #include "graph_building.h"
 #include "pi.h"
+#include "ringed_disc.h"
 #include "spherical_param/neighbor_graph.h"
 
 #include <algorithm>
@@ -14,24 +15,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Part of the nodes of a ring that the next one has.
-constexpr double kRingRatio = 0.5;
-/// Nodes of a ring inside which there is a pole.
-constexpr std::size_t kMaxLastRing = 9;
-
-/// Nodes around a circle of the disc.
-struct Ring {
-  std::vector<Index> nodes;
-  std::vector<double> angles;  ///< ascending, from 0
-  double radius = 0.0;
-
-  std::size_t size() const { return nodes.size(); }
-  /// Of node i, which may be one turn further.
-  double angle(std::size_t i) const {
-    return i < size() ? angles[i] : angles[i - size()] + 2.0 * kPi;
-  }
-};
-
 class Filler {
 public:
   Filler(const Positions& points, const Graph& graph) : points_(points) {
@@ -39,19 +22,25 @@ public:
   }
 
   void fill(const Opening& opening) {
-    Ring ring = rimOf(opening);
-    const double rim_radius = ring.radius;
-    while (ring.size() > kMaxLastRing) {
-      Ring inner = ringInside(ring);
-      for (std::size_t j = 0; j < inner.size(); ++j)
-        place(opening, inner.angles[j], inner.radius / rim_radius);
-      join(ring, inner);
-      ring = std::move(inner);
-    }
-    for (const Index node : ring.nodes)
-      add(node, count_, ring.radius);
-    virtual_points_.push_back(opening.center);
-    ++count_;
+    const std::size_t rim = opening.loop.size();
+    const RingedDisc disc = ringedDisc(anglesAround(opening));
+    const auto node = [&](Index vertex) {
+      const auto i = static_cast<std::size_t>(vertex);
+      return i < rim ? opening.loop[i] : count_ + vertex - static_cast<Index>(rim);
+    };
+    // Between the radii of the discs of its area and of its length.
+    const double radius =
+        std::sqrt(std::sqrt(opening.area / kPi) * opening.boundary_length / (2.0 * kPi));
+    for (Eigen::Index t = 0; t < disc.triangles.cols(); ++t)
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Index v = disc.triangles(k, t);
+        const Index w = disc.triangles((k + 1) % 3, t);
+        if (std::max(v, w) >= static_cast<Index>(rim))
+          add(node(v), node(w), radius * disc.distance(v, w));
+      }
+    for (std::size_t i = rim; i < disc.radii.size(); ++i)
+      virtual_points_.push_back(placeOf(opening, disc.angles[i], disc.radii[i]));
+    count_ += static_cast<Index>(disc.radii.size() - rim);
   }
 
   FilledGraph take(const Graph& graph) {
@@ -60,7 +49,8 @@ public:
     filled.points.leftCols(points_.cols()) = points_;
     for (std::size_t i = 0; i < virtual_points_.size(); ++i)
       filled.points.col(points_.cols() + static_cast<Eigen::Index>(i)) = virtual_points_[i];
-    // A node that the loop passes twice may be joined twice to another.
+    // Each edge is in two triangles, and a node that the loop passes twice may be joined twice to
+    // another.
     std::sort(edges_.begin(), edges_.end(), [](const Bridge& a, const Bridge& b) {
       return std::tuple(a.from, a.to, a.length) < std::tuple(b.from, b.to, b.length);
     });
@@ -76,60 +66,24 @@ public:
   }
 
 private:
-  /// The loop of an opening as a circle. Its radius is between those of the discs of its area and
-  /// of its length.
-  Ring rimOf(const Opening& opening) {
-    Ring ring;
-    ring.nodes = opening.loop;
-    ring.radius = std::sqrt(std::sqrt(opening.area / kPi) * opening.boundary_length / (2.0 * kPi));
+  /// The loop of an opening as a circle: the angle of each of its nodes.
+  std::vector<double> anglesAround(const Opening& opening) const {
+    std::vector<double> angles;
     double length = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      ring.angles.push_back(2.0 * kPi * length / opening.boundary_length);
+    for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+      angles.push_back(2.0 * kPi * length / opening.boundary_length);
       length +=
-          (points_.col(ring.nodes[(i + 1) % ring.size()]) - points_.col(ring.nodes[i])).norm();
+          (points_.col(opening.loop[(i + 1) % opening.loop.size()]) - points_.col(opening.loop[i]))
+              .norm();
     }
-    return ring;
+    return angles;
   }
 
-  /// The next ring: as far inside as half of its own and half of the outer ring's edges.
-  Ring ringInside(const Ring& outer) {
-    Ring ring;
-    const auto m = static_cast<double>(outer.size());
-    const auto size = static_cast<std::size_t>(std::ceil(kRingRatio * m));
-    const double half_edge = kPi / static_cast<double>(size);
-    ring.radius = outer.radius * (1.0 - kPi / m) / (1.0 + half_edge);
-    for (std::size_t j = 0; j < size; ++j) {
-      ring.nodes.push_back(count_++);
-      ring.angles.push_back(2.0 * half_edge * static_cast<double>(j));
-    }
-    for (std::size_t j = 0; j < size; ++j)
-      add(ring.nodes[j], ring.nodes[(j + 1) % size], 2.0 * ring.radius * std::sin(half_edge));
-    return ring;
-  }
-
-  /// Puts a virtual node between the point of the rim at an angle and the centre.
-  void place(const Opening& opening, double angle, double fraction) {
+  /// Between the point of the rim at an angle and the centre.
+  Eigen::Vector3d placeOf(const Opening& opening, double angle, double radius) const {
     const auto m = static_cast<double>(opening.loop.size());
     const auto i = static_cast<std::size_t>(angle / (2.0 * kPi) * m) % opening.loop.size();
-    virtual_points_.emplace_back(opening.center +
-                                 fraction * (points_.col(opening.loop[i]) - opening.center));
-  }
-
-  /// Joins two rings by triangles.
-  void join(const Ring& outer, const Ring& inner) {
-    std::size_t i = 0;
-    std::size_t j = 0;
-    while (i < outer.size() || j < inner.size()) {
-      const double angle = outer.angle(i) - inner.angle(j);
-      const double squared = outer.radius * outer.radius + inner.radius * inner.radius -
-                             2.0 * outer.radius * inner.radius * std::cos(angle);
-      add(outer.nodes[i % outer.size()], inner.nodes[j % inner.size()],
-          std::sqrt(std::max(squared, 0.0)));
-      if (j == inner.size() || (i < outer.size() && outer.angle(i + 1) <= inner.angle(j + 1)))
-        ++i;
-      else
-        ++j;
-    }
+    return opening.center + radius * (points_.col(opening.loop[i]) - opening.center);
   }
 
   void add(Index from, Index to, double length) {

@@ -14,10 +14,9 @@ struct FilledGraph {
   Positions points;  ///< 3 x graph.size(), those of the nodes first
 };
 
-/// Fills each opening by rings of virtual nodes, each ring of half as many as the last one, and a
-/// pole in the last ring of kMaxLastRing nodes or less: about as many more nodes as the loop has.
-/// Rings are joined by triangles. The edges have the lengths that they have in a flat disc as large
-/// as the opening. False edges of the graph are left out, but for those that keep it connected.
+/// Fills each opening by a ringed disc as large as the opening, whose rim is the loop: about as
+/// many virtual nodes as the loop has. False edges of the graph are left out, but for those that
+/// keep it connected.
 ///
 /// \param points   3 x n.
 /// \param graph    n nodes.

@@ -318,12 +318,14 @@ Outliers findOutliers(const Positions& points, const OutlierOptions& options,
   return result;
 }
 
-std::vector<StrayPoint> findStrayPoints(const Positions& points, const Execution& execution) {
+Outliers findStrayPoints(const Positions& points, const Execution& execution) {
   internal::checkThreads(execution.threads);
   internal::checkFinite("findStrayPoints", points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
+  Outliers result;
+  result.scores.assign(static_cast<std::size_t>(points.cols()), 0.0);
   if (nodes.input_of_node.size() < kMinPositions)
-    return {};
+    return result;
   const internal::Neighbors neighbors =
       internal::nearestNeighbors(nodes, neighborsToSearch({}), execution);
   std::vector<double> distances(nodes.input_of_node.size(), 0.0);
@@ -331,13 +333,12 @@ std::vector<StrayPoint> findStrayPoints(const Positions& points, const Execution
        strayNodes(nodes.points, neighbors.lists, neighbors.search, execution))
     distances[static_cast<std::size_t>(each.point)] = each.distance;
   const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
-  std::vector<StrayPoint> stray;
   for (std::size_t i = 0; i < node_of_input.size(); ++i) {
-    const double distance = distances[static_cast<std::size_t>(node_of_input[i])];
-    if (distance > 0.0)
-      stray.push_back({static_cast<Index>(i), distance});
+    result.scores[i] = distances[static_cast<std::size_t>(node_of_input[i])];
+    if (result.scores[i] > 0.0)
+      result.indices.push_back(static_cast<Index>(i));
   }
-  return stray;
+  return result;
 }
 
 }  // namespace spherical_param

@@ -35,11 +35,4 @@ OpenMesh openMesh(const Positions& points, const Triangles& triangles, const Ope
 /// The triangles of an open mesh that are on the surface, in their order.
 Triangles surfaceOf(const OpenMesh& mesh);
 
-/// The boundary of a manifold: closed loops of vertices, with the surface on the left; the one of
-/// most vertices first, each from its lowest vertex.
-///
-/// \param triangles    3 x m, a consistently oriented manifold with boundary.
-/// \param vertex_count vertices are [0, vertex_count).
-std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles, std::size_t vertex_count);
-
 }  // namespace spherical_param::internal

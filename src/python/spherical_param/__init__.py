@@ -10,7 +10,8 @@
 ``reconstruct`` makes of the points of an object without holes through it a closed, manifold
 triangle mesh through every point, and a map to the sphere. ``sphere_map`` makes that map one to one
 and of low distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it
-out in the plane. ``find_outliers`` finds points to leave out before.
+out in the plane. ``find_outliers`` finds points to leave out before, ``find_parts`` the surfaces of
+a cloud.
 
 Arrays are NumPy's: points (n, 3) float64, triangles (m, 3) int32, counter-clockwise seen from
 outside. All functions let other Python threads run while they work, may be called from several
@@ -34,6 +35,7 @@ from ._maps import (
     texture_coordinates,
 )
 from ._outliers import Outliers, find_outliers
+from ._parts import find_parts
 from ._reconstruct import reconstruct
 from ._results import (
     Bridge,
@@ -87,6 +89,7 @@ __all__ = [
     "Triangulation",
     "__version__",
     "find_outliers",
+    "find_parts",
     "measure_map_distortion",
     "reconstruct",
     "remesh",

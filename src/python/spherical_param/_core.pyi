@@ -23,6 +23,13 @@ def find_outliers(
     threads: int,
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
+def find_parts(
+    points: NDArray[np.float64],
+    *,
+    min_points: int,
+    threads: int,
+    progress: Optional[Callable[[str, float], object]],
+) -> list[NDArray[np.int32]]: ...
 def sphere_map(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],
@@ -45,6 +52,7 @@ def remesh(
     triangles: NDArray[np.int32],
     sphere: NDArray[np.float64],
     *,
+    caps: NDArray[np.float64],
     grid: str,
     count: int,
     fit: str,

@@ -55,8 +55,9 @@ class SphereMap:
     """A mesh with a map to the unit sphere that is one to one."""
 
     vertices: FloatArray  #: (v, 3) of the mesh [unit of the input]
-    triangles: IndexArray  #: (2v - 4, 3) of the mesh, outward
+    triangles: IndexArray  #: (m, 3) of the mesh, outward
     directions: FloatArray  #: (v, 3) unit vectors: the map
+    caps: FloatArray  #: (c, 3) unit vectors: vertices inside the openings; none of a closed mesh
     distortion: Distortion  #: of the map
     before: Distortion  #: of the embedding that it was made from
     levels: tuple[SphereMapLevel, ...]  #: finest first
@@ -120,8 +121,9 @@ def sphere_map(
     mesh : Result, SphereMap, or array-like (v, 3)
         A mesh of ``reconstruct`` (its smoothed points, if it has them); or the points of one, with
         ``triangles`` and ``sphere``.
-    triangles : array-like of integers, (2v - 4, 3)
-        Closed, manifold, oriented outward, of genus 0, in one piece, each point used.
+    triangles : array-like of integers, (m, 3)
+        Manifold, oriented outward, of genus 0, in one piece, each point used; openings stay open on
+        the sphere.
     sphere : array-like, (v, 3)
         Unit vectors, the start. It gives the map its orientation in space, and may have flipped
         triangles.
@@ -154,6 +156,7 @@ def sphere_map(
         vertices=points.copy(),
         triangles=indices.copy(),
         directions=fields["sphere"],
+        caps=fields["caps"],
         distortion=_distortion(fields["distortion"]),
         before=_distortion(fields["before"]),
         levels=tuple(SphereMapLevel(**level) for level in fields["levels"]),
@@ -264,7 +267,7 @@ def remesh(
 ) -> Remeshed:
     """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
 
-    A mesh is closed, manifold, of genus 0, oriented outward. Where its triangles would intersect,
+    A mesh is manifold, of genus 0, oriented outward, and as open as the surface. Where its triangles would intersect,
     vertices slide along the surface, then edges are flipped; ``self_intersections`` holds the rest.
 
     Parameters
@@ -318,6 +321,7 @@ def remesh(
     )
     fields = _core.remesh(
         *_mesh(mapped, None, None),
+        caps=mapped.caps,
         grid=grid,
         count=len(mapped.vertices) if count is None else count,
         fit=fit,

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from . import _arguments as arguments
 from . import _core
 from ._arguments import FloatArray, IndexArray, ProgressFunction
+from ._errors import InvalidInput
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,8 +37,13 @@ class Outliers:
         )
 
 
-def _is_auto(sigma: Union[SupportsFloat, str]) -> bool:
-    return isinstance(sigma, str) and sigma == "auto"
+def _deviations(sigma: Union[SupportsFloat, str]) -> Optional[float]:
+    """None: stray points."""
+    if not isinstance(sigma, str):
+        return arguments.real("sigma", sigma)
+    if sigma == "auto":
+        return None
+    raise InvalidInput(f'sigma = "{sigma}" is no number; use 0 to 1000, or "auto"')
 
 
 def find_outliers(
@@ -81,7 +87,7 @@ def find_outliers(
     return Outliers(
         **_core.find_outliers(
             arguments.positions("points", points),
-            sigma=None if _is_auto(sigma) else arguments.real("sigma", sigma),
+            sigma=_deviations(sigma),
             k=arguments.integer("k", k, 3),
             threads=arguments.thread_count(threads),
             progress=arguments.progress_function(progress),

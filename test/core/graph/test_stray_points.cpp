@@ -15,10 +15,7 @@ using test::randomSphere;
 using test::spiralSphere;
 
 std::vector<Index> strayOf(const Positions& points, int threads = 0) {
-  std::vector<Index> indices;
-  for (const StrayPoint& stray : findStrayPoints(points, test::onThreads(threads)))
-    indices.push_back(stray.point);
-  return indices;
+  return findStrayPoints(points, test::onThreads(threads)).indices;
 }
 
 std::vector<Index> range(Eigen::Index begin, Eigen::Index end) {
@@ -110,15 +107,13 @@ TEST(StrayPoints, AreTheSameMovedTurnedScaledAndPermuted) {
 
 TEST(StrayPoints, HaveTheirDistanceInSpacingsForAnyNumberOfThreads) {
   const Positions points = horizontally(spiralSphere(6000), Eigen::Vector3d(0.0, 2.0, 0.0));
-  const std::vector<StrayPoint> one = findStrayPoints(points, test::onThreads(1));
-  ASSERT_EQ(one.size(), 1U);
-  EXPECT_EQ(one[0].point, 6000);
-  EXPECT_NEAR(one[0].distance, 1.0 / test::sphereSpacing(6000), 0.2 * one[0].distance);
-  for (const int threads : {2, 5, 0}) {
-    const std::vector<StrayPoint> several = findStrayPoints(points, test::onThreads(threads));
-    ASSERT_EQ(several.size(), 1U);
-    EXPECT_EQ(several[0].distance, one[0].distance);
-  }
+  const Outliers one = findStrayPoints(points, test::onThreads(1));
+  EXPECT_EQ(one.indices, std::vector<Index>(1, 6000));
+  ASSERT_EQ(one.scores.size(), 6001U);
+  EXPECT_NEAR(one.scores[6000], 1.0 / test::sphereSpacing(6000), 0.2 * one.scores[6000]);
+  EXPECT_EQ(one.scores[0], 0.0);
+  for (const int threads : {2, 5, 0})
+    EXPECT_EQ(findStrayPoints(points, test::onThreads(threads)).scores, one.scores);
 }
 
 TEST(StrayPoints, AreReportedByReconstructThatMakesVerticesOfThem) {

@@ -1,5 +1,6 @@
 #include "open_mesh.h"
 
+#include "boundary_loops.h"
 #include "open_shapes.h"
 #include "spherical_param/mesh_topology.h"
 
@@ -76,22 +77,6 @@ TEST(OpenMesh, KeepsAVertexAmongOpenTriangles) {
   const MeshTopology topology = checkTopology(internal::surfaceOf(mesh), 10);
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.faults.unused_vertices.empty());
-}
-
-TEST(OpenMesh, BoundaryLoopsAreThoseOfAnIndependentWalk) {
-  DoublePyramid pyramid(12);
-  Triangles surface(3, 22);
-  surface << pyramid.triangles.leftCols(4), pyramid.triangles.middleCols(5, 8),
-      pyramid.triangles.rightCols(10);
-  const std::map<Index, Index> next = test::boundaryOf(surface);
-  std::size_t vertices = 0;
-  for (const std::vector<Index>& loop : internal::boundaryLoops(surface, 14)) {
-    EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
-    for (std::size_t i = 0; i < loop.size(); ++i)
-      EXPECT_EQ(next.at(loop[i]), loop[(i + 1) % loop.size()]);
-    vertices += loop.size();
-  }
-  EXPECT_EQ(vertices, next.size());
 }
 
 }  // namespace

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// The boundary of a manifold: closed loops of vertices, with the surface on the left; the one of
+/// most vertices first, each from its lowest vertex.
+///
+/// \param triangles    3 x m, a consistently oriented manifold with boundary.
+/// \param vertex_count vertices are [0, vertex_count).
+std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles, std::size_t vertex_count);
+
+}  // namespace spherical_param::internal

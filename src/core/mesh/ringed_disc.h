@@ -1,0 +1,25 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A flat disc of radius 1, triangulated in rings. Each ring has half as many vertices as the one
+/// around it, and is as far inside as half of its own and half of the outer ring's edges; inside
+/// the last one, of 9 or fewer, is a pole: about as many vertices inside as on the rim.
+struct RingedDisc {
+  std::vector<double> angles;  ///< of the vertices [rad]: the rim, ring by ring, the pole
+  std::vector<double> radii;   ///< of the vertices, 1 at the rim
+  Triangles triangles;         ///< clockwise: a rim that has a surface on its left is continued
+
+  /// Distance of two vertices.
+  double distance(Index a, Index b) const;
+};
+
+/// \param rim angles of the vertices of the rim, 3 or more, ascending from 0, below 2 pi; two
+///            neighbours may have the same.
+RingedDisc ringedDisc(const std::vector<double>& rim);
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,221 @@
+#include "caps.h"
+
+#include "boundary_loops.h"
+#include "parallel.h"
+#include "pi.h"
+#include "ringed_disc.h"
+#include "spherical_param/mesh_topology.h"
+
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Puts the vertices of caps behind others.
+class Capping {
+public:
+  explicit Capping(const Positions& points) : points_(points) {}
+
+  void cap(const std::vector<Index>& loop) {
+    std::vector<double> lengths(1, 0.0);  // from the first vertex to each
+    Vector3d moment = Vector3d::Zero();
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vector3d a = points_.col(loop[i]);
+      const Vector3d b = points_.col(loop[(i + 1) % loop.size()]);
+      lengths.push_back(lengths.back() + (b - a).norm());
+      moment += 0.5 * (lengths[i + 1] - lengths[i]) * (a + b);
+    }
+    const double length = lengths.back();
+    const Vector3d center = length > 0.0 ? Vector3d(moment / length) : points_.col(loop.front());
+    std::vector<double> angles(loop.size());
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      angles[i] = 2.0 * kPi *
+                  (length > 0.0 ? lengths[i] / length
+                                : static_cast<double>(i) / static_cast<double>(loop.size()));
+    const RingedDisc disc = ringedDisc(angles);
+
+    const auto rim = static_cast<Index>(loop.size());
+    const Index first = static_cast<Index>(points_.cols()) + static_cast<Index>(added_.size());
+    for (Eigen::Index t = 0; t < disc.triangles.cols(); ++t)
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Index v = disc.triangles(k, t);
+        corners_.push_back(v < rim ? loop[static_cast<std::size_t>(v)] : first + v - rim);
+      }
+    // The last vertex of the rim before each angle; rings begin at angle 0.
+    std::size_t before = 0;
+    for (std::size_t i = loop.size(); i < disc.radii.size(); ++i) {
+      const double angle = disc.angles[i];
+      if (angle < angles[before])
+        before = 0;
+      while (before + 1 < angles.size() && angles[before + 1] <= angle)
+        ++before;
+      const double end = before + 1 < angles.size() ? angles[before + 1] : 2.0 * kPi;
+      const double fraction = (angle - angles[before]) / (end - angles[before]);
+      const Vector3d on_loop = (1.0 - fraction) * points_.col(loop[before]) +
+                               fraction * points_.col(loop[(before + 1) % loop.size()]);
+      added_.emplace_back(center + disc.radii[i] * (on_loop - center));
+    }
+  }
+
+  CappedMesh take(const Triangles& triangles) const {
+    CappedMesh mesh;
+    mesh.points.resize(3, points_.cols() + static_cast<Eigen::Index>(added_.size()));
+    mesh.points.leftCols(points_.cols()) = points_;
+    for (std::size_t i = 0; i < added_.size(); ++i)
+      mesh.points.col(points_.cols() + static_cast<Eigen::Index>(i)) = added_[i];
+    mesh.triangles.resize(3, triangles.cols() + static_cast<Eigen::Index>(corners_.size() / 3));
+    mesh.triangles << triangles,
+        Eigen::Map<const Triangles>(corners_.data(), 3,
+                                    static_cast<Eigen::Index>(corners_.size() / 3));
+    return mesh;
+  }
+
+private:
+  const Positions& points_;
+  std::vector<Vector3d> added_;
+  std::vector<Index> corners_;
+};
+
+/// Where a vertex is, or is going to be.
+enum class Side : char { Open, Boundary, Surface };
+
+/// A vertex that is nearer to the boundary than this fraction of an edge is moved to it.
+constexpr double kNear = 0.3;
+
+/// Halves an edge from the surface into an opening. \return the last fraction of it on the surface
+double fractionOnSurface(const Vector3d& from, const Vector3d& to,
+                         const std::function<bool(const Vector3d&)>& is_open) {
+  constexpr int steps = 24;
+  double inside = 0.0;
+  double outside = 1.0;
+  for (int step = 0; step < steps; ++step) {
+    const double middle = 0.5 * (inside + outside);
+    (is_open((1.0 - middle) * from + middle * to) ? outside : inside) = middle;
+  }
+  return inside;
+}
+
+/// Triangles without those at vertices whose triangles are not one fan.
+Triangles manifoldPart(Triangles triangles, std::size_t vertices) {
+  while (triangles.cols() > 0) {
+    const MeshTopology topology = checkTopology(triangles, vertices, 1);
+    if (topology.manifold())
+      break;
+    std::vector<char> is_fault(vertices, 0);
+    for (const Index v : topology.faults.nonmanifold_vertices)
+      is_fault[static_cast<std::size_t>(v)] = 1;
+    Eigen::Index kept = 0;
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      bool is_good = true;
+      for (Eigen::Index k = 0; k < 3; ++k)
+        is_good = is_good && is_fault[static_cast<std::size_t>(triangles(k, t))] == 0;
+      if (is_good)
+        triangles.col(kept++) = triangles.col(t).eval();
+    }
+    if (kept == triangles.cols())
+      break;
+    triangles.conservativeResize(3, kept);
+  }
+  return triangles;
+}
+
+/// Calls visit(vertex on the surface, vertex in an opening) for edges between the two.
+template <typename Visit>
+void forEachCrossing(const Triangles& triangles, const std::vector<Side>& sides,
+                     const Visit& visit) {
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      // An edge is in two triangles, once in each direction.
+      const Index u = triangles(k, t);
+      const Index v = triangles((k + 1) % 3, t);
+      if (sides[static_cast<std::size_t>(u)] == Side::Surface &&
+          sides[static_cast<std::size_t>(v)] == Side::Open)
+        visit(u, v);
+    }
+}
+
+}  // namespace
+
+CappedMesh capOpenings(const Positions& points, const Triangles& triangles) {
+  Capping capping(points);
+  for (const std::vector<Index>& loop :
+       boundaryLoops(triangles, static_cast<std::size_t>(points.cols())))
+    capping.cap(loop);
+  return capping.take(triangles);
+}
+
+std::vector<Index> compact(Triangles& triangles, Eigen::Index vertex_count) {
+  std::vector<Index> numbers(static_cast<std::size_t>(vertex_count), -1);
+  for (Eigen::Index i = 0; i < triangles.size(); ++i)
+    numbers[static_cast<std::size_t>(triangles.data()[i])] = 0;
+  std::vector<Index> used;
+  for (std::size_t v = 0; v < numbers.size(); ++v)
+    if (numbers[v] == 0) {
+      numbers[v] = static_cast<Index>(used.size());
+      used.push_back(static_cast<Index>(v));
+    }
+  for (Eigen::Index i = 0; i < triangles.size(); ++i)
+    triangles.data()[i] = numbers[static_cast<std::size_t>(triangles.data()[i])];
+  return used;
+}
+
+OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
+                       const std::function<bool(const Vector3d&)>& is_open) {
+  const auto count = static_cast<std::size_t>(directions.cols());
+  std::vector<Side> sides(count, Side::Surface);
+  forEachItem(count, threadCount(0, count, kParallelThreshold), [&](std::size_t, std::size_t i) {
+    if (is_open(directions.col(static_cast<Eigen::Index>(i))))
+      sides[i] = Side::Open;
+  });
+  Positions moved = directions;
+  // How far each vertex moves to the nearest crossing: fractions of the edge.
+  std::vector<double> moves(count, 1.0);
+  const auto move = [&](Index v, double fraction, const Vector3d& place) {
+    if (fraction < moves[static_cast<std::size_t>(v)]) {
+      moves[static_cast<std::size_t>(v)] = fraction;
+      moved.col(v) = place.normalized();
+    }
+  };
+  const auto crossing = [&](Index u, Index v) {
+    return fractionOnSurface(directions.col(u), directions.col(v), is_open);
+  };
+  const auto place = [&](Index u, Index v, double fraction) -> Vector3d {
+    return (1.0 - fraction) * directions.col(u) + fraction * directions.col(v);
+  };
+  forEachCrossing(triangles, sides, [&](Index u, Index v) {
+    const double fraction = crossing(u, v);
+    if (fraction < kNear)
+      move(u, fraction, place(u, v, fraction));
+  });
+  for (std::size_t i = 0; i < count; ++i)
+    if (moves[i] < 1.0)
+      sides[i] = Side::Boundary;
+  forEachCrossing(triangles, sides, [&](Index u, Index v) {
+    const double fraction = crossing(u, v);
+    move(v, 1.0 - fraction, place(u, v, fraction));
+  });
+
+  Triangles left(3, triangles.cols());
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (Eigen::Index k = 0; k < 3; ++k)
+      if (sides[static_cast<std::size_t>(triangles(k, t))] == Side::Surface) {
+        left.col(kept++) = triangles.col(t);
+        break;
+      }
+  left.conservativeResize(3, kept);
+
+  OpenSphere sphere;
+  sphere.triangles = manifoldPart(std::move(left), count);
+  const std::vector<Index> used = compact(sphere.triangles, directions.cols());
+  sphere.directions = moved(Eigen::all, used);
+  return sphere;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,180 @@
+#include "caps.h"
+
+#include "boundary_loops.h"
+#include "map_shapes.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/map/morphing.h"
+#include "spherical_param/map/resampling.h"
+#include "spherical_param/map/texture_atlas.h"
+#include "spherical_param/mesh_topology.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+/// What the map makes of surfaces with openings, by the caps that close them.
+namespace spherical_param {
+namespace {
+
+using Eigen::Vector3d;
+using test::Mapped;
+
+std::size_t count(const Positions& points) {
+  return static_cast<std::size_t>(points.cols());
+}
+
+/// The least distance of a point from the loops of a mesh.
+double distanceFromBoundary(const Mapped& mesh, const Vector3d& point) {
+  double least = 1e300;
+  for (const auto& loop : internal::boundaryLoops(mesh.triangles, count(mesh.points)))
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vector3d a = mesh.points.col(loop[i]);
+      const Vector3d b = mesh.points.col(loop[(i + 1) % loop.size()]);
+      const double fraction = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+      least = std::min(least, (a + fraction * (b - a) - point).norm());
+    }
+  return least;
+}
+
+TEST(Caps, CloseAMeshBehindItsVerticesAndTriangles) {
+  const Mapped open = test::openBumpy(1500);
+  ASSERT_TRUE(checkTopology(open.triangles, count(open.points)).isOpenSurface());
+  const internal::CappedMesh capped = internal::capOpenings(open.points, open.triangles);
+  EXPECT_EQ(capped.points.leftCols(open.points.cols()), open.points);
+  EXPECT_EQ(capped.triangles.leftCols(open.triangles.cols()), open.triangles);
+  EXPECT_TRUE(checkTopology(capped.triangles, count(capped.points)).isSphere());
+  // Each cap has one hub at least, the mean of its loop, and no vertex farther out than the loop.
+  EXPECT_LT(capped.points.colwise().norm().maxCoeff(),
+            open.points.colwise().norm().maxCoeff() + 1e-12);
+  EXPECT_TRUE(internal::boundaryLoops(capped.triangles, count(capped.points)).empty());
+
+  const Mapped closed = test::bumpy(test::spiralSphere(100));
+  EXPECT_EQ(internal::capOpenings(closed.points, closed.triangles).triangles, closed.triangles);
+}
+
+TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
+  const Mapped open = test::openBumpy(1500);
+  EXPECT_GT(open.caps.cols(), 0);
+  const internal::CappedMesh capped = internal::capOpenings(open.points, open.triangles);
+  Positions sphere(3, capped.points.cols());
+  sphere << open.sphere, open.caps;
+  EXPECT_TRUE(test::isOneToOne(sphere, capped.triangles));
+  double covered = 0.0;
+  for (Eigen::Index t = 0; t < open.triangles.cols(); ++t)
+    covered += test::sphericalArea(open.sphere, open.triangles, t);
+  // Three discs of radius 0.4 have an eighth of the sphere.
+  EXPECT_NEAR(covered / (4.0 * test::kPi), 0.88, 0.04);
+  const MapDistortion distortion = measureMapDistortion(open.points, open.triangles, open.sphere);
+  EXPECT_LT(distortion.angle.mean, 1.3);
+  EXPECT_LT(distortion.area.mean, 1.3);
+}
+
+TEST(Caps, OfAMapAreAskedForAndMustFit) {
+  const Mapped open = test::openBumpy(400);
+  EXPECT_THROW(SphereSurface(open.points, open.triangles, open.sphere), InvalidInput);
+  EXPECT_THROW(SphereSurface(open.points, open.triangles, open.sphere,
+                             {SurfaceFit::Linear, 0, open.caps.leftCols(3)}),
+               InvalidInput);
+  const Mapped closed = test::bumpy(test::spiralSphere(100));
+  EXPECT_THROW(SphereSurface(closed.points, closed.triangles, closed.sphere,
+                             {SurfaceFit::Linear, 0, open.caps}),
+               InvalidInput);
+}
+
+TEST(Caps, AreNoPartOfTheSurface) {
+  const Mapped open = test::openBumpy(1500);
+  const SphereSurface surface = open.surface(SurfaceFit::Smooth);
+  EXPECT_TRUE(surface.isOpen());
+  EXPECT_FALSE(test::bumpy(test::spiralSphere(100)).surface().isOpen());
+  EXPECT_NEAR(surface.area(), surfaceArea(open.points, open.triangles), 1e-9);
+  for (Eigen::Index i = 0; i < open.points.cols(); ++i)
+    EXPECT_FALSE(surface.isCap(surface.locate(open.sphere.col(i)).triangle));
+  for (Eigen::Index i = 0; i < open.caps.cols(); ++i)
+    EXPECT_TRUE(surface.isCap(surface.locate(open.caps.col(i)).triangle));
+  const SurfacePoints even = sampleEvenly(surface, 500);
+  for (const SphereLocation& location : even.locations)
+    EXPECT_FALSE(surface.isCap(location.triangle));
+}
+
+TEST(Caps, ResamplingLeavesTheOpeningsOpen) {
+  const Mapped open = test::openBumpy(3000);
+  const SphereSurface surface = open.surface(SurfaceFit::Linear);
+  ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 20));
+  const MeshTopology topology = checkTopology(mesh.triangles, count(mesh.points));
+  EXPECT_TRUE(topology.isOpenSurface());
+  const auto loops = internal::boundaryLoops(mesh.triangles, count(mesh.points));
+  ASSERT_EQ(loops.size(), 3U);
+  // Vertices of the boundary are on that of the surface.
+  for (const std::vector<Index>& loop : loops)
+    for (const Index v : loop)
+      EXPECT_LT(distanceFromBoundary(open, mesh.points.col(v)), 1e-5);
+  EXPECT_NEAR(surfaceArea(mesh.points, mesh.triangles), surface.area(), 0.01 * surface.area());
+  const Triangles triangles = mesh.triangles;
+  untangle(surface, mesh);
+  EXPECT_EQ(removeIntersections(mesh).flips, 0U);
+  EXPECT_EQ(mesh.triangles, triangles);
+}
+
+TEST(Caps, VerticesOfTheBoundaryDoNotSlide) {
+  const Mapped open = test::openBumpy(600);
+  const SphereSurface surface = open.surface(SurfaceFit::Linear);
+  ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 8));
+  const auto loops = internal::boundaryLoops(mesh.triangles, count(mesh.points));
+  // One vertex through the opposite side.
+  mesh.points.col(mesh.triangles(0, 0)) *= -1.5;
+  const Positions before = mesh.points;
+  EXPECT_GT(untangle(surface, mesh).before, 0U);
+  for (const std::vector<Index>& loop : loops)
+    for (const Index v : loop)
+      EXPECT_EQ(mesh.points.col(v), before.col(v));
+}
+
+TEST(Caps, AnAtlasOfAnOpenMeshCoversItAndNothingElse) {
+  const Mapped open = test::openBumpy(800);
+  for (const SphereChart chart :
+       {SphereChart::Equirectangular, SphereChart::Octahedral, SphereChart::CubeMap}) {
+    const TextureAtlas atlas = makeTextureAtlas(open.triangles, open.sphere, {chart});
+    const Positions points = atCutVertices(atlas, open.points);
+    EXPECT_NEAR(surfaceArea(points, atlas.triangles), surfaceArea(open.points, open.triangles),
+                1e-9);
+    EXPECT_TRUE(checkTopology(atlas.triangles, count(points)).isOpenSurface());
+  }
+}
+
+TEST(Caps, AMorphIsOpenWhereEitherSurfaceIs) {
+  const Mapped closed = test::bumpy(test::spiralSphere(500));
+  const Mapped open =
+      test::withOpenings(test::bumpy(test::spiralSphere(700)), Vector3d(0.0, 0.0, 1.0), 0.5);
+  const SphereSurface whole = closed.surface();
+  const SphereSurface holed = open.surface();
+  MorphOptions options;
+  options.align = false;
+  for (const MorphConnectivity connectivity :
+       {MorphConnectivity::AllVertices, MorphConnectivity::Resampled})
+    for (const bool opens : {false, true}) {
+      options.connectivity = connectivity;
+      options.samples = 2000;
+      const MorphResult morph =
+          morphSurfaces(opens ? holed : whole, opens ? whole : holed, options);
+      const MeshTopology topology = checkTopology(morph.triangles, count(morph.first));
+      EXPECT_TRUE(topology.isOpenSurface());
+      EXPECT_EQ(topology.euler_characteristic, 1);
+      const Positions& of_open = opens ? morph.first : morph.second;
+      EXPECT_NEAR(surfaceArea(of_open, morph.triangles), holed.area(),
+                  connectivity == MorphConnectivity::AllVertices ? 1e-9 : 0.03 * holed.area());
+      const std::vector<SphereLocation>& places = opens ? morph.first_places : morph.second_places;
+      ASSERT_EQ(places.size(), count(of_open));
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_FALSE(holed.isCap(places[i].triangle));
+        EXPECT_LT(
+            (holed.evaluate(places[i]).position - of_open.col(static_cast<Eigen::Index>(i))).norm(),
+            1e-9);
+      }
+    }
+}
+
+}  // namespace
+}  // namespace spherical_param
