@@ -353,10 +353,10 @@ std::vector<Color> interpolatedColors(const MappedCloud& mapped,
   return colors;
 }
 
-GridSphere gridOf(const Settings& settings, std::size_t points) {
+GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurface& surface) {
   const SphereGrid kind =
       settings.sampling == Sampling::Icosahedral ? SphereGrid::Icosahedral : SphereGrid::Octahedral;
-  int frequency = spherical_param::gridFrequency(kind, points);
+  int frequency = spherical_param::gridFrequency(kind, points, surface);
   if (settings.writes_image) {
     frequency = (settings.side ? *settings.side : std::min(2 * frequency + 1, longest_side)) / 2;
   }
@@ -375,7 +375,7 @@ void resample(const Settings& settings, const MappedCloud& mapped, const SphereS
     output.mesh.normals = std::move(points.normals);
     output.colors = interpolatedColors(mapped, points.locations);
   } else {
-    const GridSphere grid = gridOf(settings, wanted);
+    const GridSphere grid = gridOf(settings, wanted, surface);
     output.frequency = grid.frequency;
     output.mesh = spherical_param::resampleSurface(surface, grid);
     if (settings.series) {

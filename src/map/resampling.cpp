@@ -409,6 +409,12 @@ int gridFrequency(SphereGrid grid, std::size_t vertices) {
   return static_cast<int>(std::clamp(f, 1.0, most));
 }
 
+int gridFrequency(SphereGrid grid, std::size_t vertices, const SphereSurface& surface) {
+  const double all = static_cast<double>(vertices) / surface.coverage();
+  return gridFrequency(grid,
+                       static_cast<std::size_t>(std::min(all, static_cast<double>(kMaxVertices))));
+}
+
 std::size_t gridVertices(SphereGrid grid, int frequency) {
   const std::size_t factor = factorOf(grid);
   internal::checkEnum("gridVertices: grid", grid, SphereGrid::Octahedral);

@@ -223,6 +223,17 @@ double SphereSurface::area() const {
   return data_->area;
 }
 
+double SphereSurface::coverage() const {
+  double openings = 0.0;
+  for (Eigen::Index t = data_->mesh_triangles; t < data_->triangles.cols(); ++t)
+    openings += solidAngle(data_->sphere.col(data_->triangles(0, t)),
+                           data_->sphere.col(data_->triangles(1, t)),
+                           data_->sphere.col(data_->triangles(2, t)));
+  // A mesh has a part of the sphere, be it lost in rounding.
+  constexpr double least = 1e-12;
+  return std::max(least, 1.0 - openings / (4.0 * kPi));
+}
+
 bool SphereSurface::isOpen() const {
   return data_->mesh_triangles < data_->triangles.cols();
 }

@@ -23,7 +23,7 @@ pcl::PolygonMesh remesh(const MappedMesh& mesh, const SphericalParamRemeshOption
                                                {options.fit, threads, mesh.map.caps});
   spherical_param::ResampledMesh resampled = spherical_param::resampleSurface(
       surface, spherical_param::makeGridSphere(
-                   options.grid, spherical_param::gridFrequency(options.grid, wanted)));
+                   options.grid, spherical_param::gridFrequency(options.grid, wanted, surface)));
   // Other edges may remove the intersections that sliding leaves.
   if (spherical_param::untangle(surface, resampled, threads).after > 0)
     spherical_param::removeIntersections(resampled, threads);

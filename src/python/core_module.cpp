@@ -226,7 +226,7 @@ Remeshed remeshOnGrid(const SphereSurface& surface, SphereGrid kind, std::size_t
     throw InvalidInput("points = " + std::to_string(points) +
                        " is out of range; use 4 to 2^28 for a grid");
   Remeshed result;
-  const GridSphere grid = makeGridSphere(kind, gridFrequency(kind, points));
+  const GridSphere grid = makeGridSphere(kind, gridFrequency(kind, points, surface));
   result.frequency = grid.frequency;
   result.mesh = resampleSurface(surface, grid);
   listener.step("resample", 1.0);

@@ -67,6 +67,8 @@ TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
     covered += test::sphericalArea(open.sphere, open.triangles, t);
   // Three discs of radius 0.4 have an eighth of the sphere.
   EXPECT_NEAR(covered / (4.0 * test::kPi), 0.88, 0.04);
+  EXPECT_NEAR(open.surface().coverage(), covered / (4.0 * test::kPi), 1e-9);
+  EXPECT_EQ(test::bumpy(test::spiralSphere(100)).surface().coverage(), 1.0);
   const MapDistortion distortion = measureMapDistortion(open.points, open.triangles, open.sphere);
   EXPECT_LT(distortion.angle.mean, 1.3);
   EXPECT_LT(distortion.area.mean, 1.3);
@@ -102,7 +104,9 @@ TEST(Caps, AreNoPartOfTheSurface) {
 TEST(Caps, ResamplingLeavesTheOpeningsOpen) {
   const Mapped open = test::openBumpy(3000);
   const SphereSurface surface = open.surface(SurfaceFit::Linear);
-  ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, 20));
+  const int frequency = gridFrequency(SphereGrid::Icosahedral, 4000, surface);
+  ResampledMesh mesh = resampleSurface(surface, makeGridSphere(SphereGrid::Icosahedral, frequency));
+  EXPECT_NEAR(static_cast<double>(mesh.points.cols()), 4000.0, 300.0);
   const MeshTopology topology = checkTopology(mesh.triangles, count(mesh.points));
   EXPECT_TRUE(topology.isOpenSurface());
   const auto loops = internal::boundaryLoops(mesh.triangles, count(mesh.points));

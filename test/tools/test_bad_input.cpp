@@ -252,7 +252,7 @@ TEST_F(BadInput, AFullDiskIsAFailureAndKeepsTheOldFile) {
       {{mesh_tool, {"in.xyz", "kept.ply", "-sphere", "s.stl"}, "cannot write 's.stl': " + full},
        medium},
       {{mesh_tool,
-        {"in.xyz", "kept.ply", "-json", "r.json", "-embedding", "iterative", "-stagnation_window",
+        {"in.xyz", "kept.ply", "-json", "r.json", "-embedding", "iterative", "-stagnation-window",
          "0", "-tolerance", "0"},
         "cannot write 'r.json': " + full},
        medium},

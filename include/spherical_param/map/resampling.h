@@ -33,6 +33,15 @@ struct GridSphere {
 /// \return the frequency, at least 1.
 int gridFrequency(SphereGrid grid, std::size_t vertices);
 
+/// The frequency of a grid that comes nearest to a number of vertices on a surface: those in its
+/// openings do not count.
+///
+/// \param grid     the kind of grid.
+/// \param vertices the number.
+/// \param surface  that is sampled.
+/// \return the frequency, at least 1.
+int gridFrequency(SphereGrid grid, std::size_t vertices, const SphereSurface& surface);
+
 /// Vertices of a grid.
 ///
 /// \param grid      the kind of grid.

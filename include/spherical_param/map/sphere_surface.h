@@ -75,6 +75,8 @@ public:
   const Positions& sphere() const;
   /// Area of the mesh in space, without caps. \return [squared unit of the input]
   double area() const;
+  /// Fraction of the sphere that the mesh covers. \return 1 for a closed one, (0, 1]
+  double coverage() const;
   /// Whether the mesh has openings. \return that
   bool isOpen() const;
   /// Whether a triangle is over an opening. \param triangle of triangles() \return that it is of a
