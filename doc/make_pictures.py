@@ -51,17 +51,36 @@ def draw(path, size, views, *options):
     for _, caption in views:
         words += ["--caption", caption]
     subprocess.run([ROOT / "tools" / "draw.py", path, *words, f"--size={size}", *options], check=True)
-    picture = Image.open(path).convert("RGB")
+    save(path, Image.open(path).convert("RGB"))
+
+
+def save(path, picture):
     # Without dithering a smooth change of colours becomes patches.
     picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
-    print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1024} KB", flush=True)
+    print(f"{path}: {os.path.getsize(path) // 1024} KB", flush=True)
+
+
+def beside(path, *pictures):
+    """Puts pictures of the same height side by side."""
+    pictures = [Image.open(picture).convert("RGB") for picture in pictures]
+    row = Image.new("RGB", (sum(picture.width for picture in pictures), pictures[0].height), "white")
+    left = 0
+    for picture in pictures:
+        row.paste(picture, (left, 0))
+        left += picture.width
+    save(path, row)
 
 
 def demo():
     cloud = scan("hand", 20000)
     mesh(cloud, "mesh", "-sphere", "sphere.ply")
-    draw(GITHUB / "demo.png", "1320x440", [(cloud, "point cloud"), ("mesh.ply", "closed mesh"),
+    draw("whole.png", "1020x400", [(cloud, "point cloud"), ("mesh.ply", "closed mesh"),
          ("sphere.ply", "its map to the sphere")], "--colors=sphere.ply", "--view=25,20")  # fmt: skip
+    cloud = scan("holed", 12000)
+    mesh(cloud, "open", "-surface", "open", "-sphere", "open_sphere.ply")
+    draw("open.png", "680x400", [(cloud, "a scan with openings"), ("open.ply", "open mesh")],
+         "--colors=open_sphere.ply", "--view=60,15")  # fmt: skip
+    beside(GITHUB / "demo.png", "whole.png", "open.png")
 
 
 def remesh():
@@ -86,6 +105,15 @@ def pipeline():
     draw(PICTURES / "pipeline.png", "1320x360", [(cloud, "points"), ("sphere.ply", "embedding, triangulated"),
          ("first.ply", "the same triangles in space"), ("last.ply", "optimised mesh")],
          "--colors=sphere.ply", "--edges", FRONT)  # fmt: skip
+
+
+def openings():
+    cloud = scan("holed", 4000)
+    mesh(cloud, "closed", "-surface", "closed")
+    mesh(cloud, "open", "-surface", "open", "-sphere", "sphere.ply")
+    draw(PICTURES / "openings.png", "1320x400", [(cloud, "points"), ("closed.ply", "closed: the openings are filled"),
+         ("open.ply", "open"), ("sphere.ply", "directions: room for the openings")], "--edges", "--view=60,15",
+         "--view=60,15", "--view=60,15", "--view=60,15")  # fmt: skip
 
 
 def embedding():
@@ -124,7 +152,7 @@ def scans():
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
-ALL = [demo, remesh, morph, pipeline, embedding, optimisation, smoothing, checks, scans]
+ALL = [demo, remesh, morph, pipeline, openings, embedding, optimisation, smoothing, checks, scans]
 
 
 def main(names):
