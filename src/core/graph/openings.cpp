@@ -76,11 +76,20 @@ public:
   /// Whether an edge joins two sheets: it is steep to one of them, and their normals differ.
   bool leavesSheet(Index v, Index w) const {
     const Eigen::Vector3d d = direction(v, w);
-    if (separates_opposite_ && normals_.col(v).dot(normals_.col(w)) < kMaxOppositeCosine)
+    if (separates_opposite_ && areOpposite(v, w))
       return true;
     return std::abs(normals_.col(v).dot(normals_.col(w))) < kMinSheetCosine &&
            std::max(std::abs(d.dot(normals_.col(v))), std::abs(d.dot(normals_.col(w)))) >
                kMaxSheetSlope;
+  }
+
+  /// Whether some edges of the graph are left out only if those between opposite sheets are.
+  bool hasOpposite(const Graph& graph) const {
+    for (std::size_t v = 0; v < graph.size(); ++v)
+      for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e)
+        if (areOpposite(static_cast<Index>(v), graph.neighbors[e]))
+          return true;
+    return false;
   }
 
   /// Edges between neighbours on one sheet that have normals to opposite sides.
@@ -134,6 +143,10 @@ private:
           neighbors_.push_back(neighbors[e]);
       offsets_.push_back(neighbors_.size());
     }
+  }
+
+  bool areOpposite(Index v, Index w) const {
+    return normals_.col(v).dot(normals_.col(w)) < kMaxOppositeCosine;
   }
 
   bool areJoined(Index v, Index w) const {
@@ -374,12 +387,11 @@ std::vector<std::array<Index, 2>> falseEdges(const Graph& graph, const Rotation&
   return edges;
 }
 
-/// The openings that are seen with edges between opposite sheets, or without.
+/// The openings that are seen.
 Openings openingsOf(const Positions& points, const Graph& graph, const std::vector<double>& spacing,
-                    bool separates_opposite, int threads) {
+                    const Rotation& rotation) {
   Openings result;
   result.spacing = spacing;
-  const Rotation rotation(points, graph, spacing, separates_opposite, threads);
   for (std::vector<Index>& loop : rotation.wideFaces()) {
     Opening opening = measured(points, spacing, std::move(loop));
     if (opening.width >= kMinWidth * opening.spacing)
@@ -414,13 +426,15 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Executi
   internal::forEachItem(graph.size(), threads, [&](std::size_t thread, std::size_t v) {
     spacing[v] = internal::nodeSpacing(graph, v, scratch[thread]);
   });
-  Openings found = openingsOf(points, graph, spacing, false, threads);
-  if (found.openings.empty())
+  const Rotation rotation(points, graph, spacing, false, threads);
+  Openings found = openingsOf(points, graph, spacing, rotation);
+  if (found.openings.empty() || !rotation.hasOpposite(graph))
     return found;
   const std::optional<int> cycles = cyclesLeft(points, graph, found);
   if (cycles == 0)
     return found;
-  Openings other = openingsOf(points, graph, spacing, true, threads);
+  Openings other =
+      openingsOf(points, graph, spacing, Rotation(points, graph, spacing, true, threads));
   const std::optional<int> other_cycles = cyclesLeft(points, graph, other);
   // Edges between opposite sheets look like a twist, too.
   found.is_one_sided = other.is_one_sided = found.is_one_sided && other.is_one_sided;

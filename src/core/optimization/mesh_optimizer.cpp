@@ -5,6 +5,7 @@
 #include "optimization_constants.h"
 #include "parallel.h"
 #include "self_intersection_of_fans.h"
+#include "spherical_param/self_intersection.h"
 
 #include <algorithm>
 #include <array>
@@ -77,6 +78,7 @@ void MeshOptimizer::setEnergy(const SurfaceEnergy& energy) {
 
 void MeshOptimizer::setPoints(const Positions& points) {
   points_ = &points;
+  checked_ = {};
   recomputeFacets();
   energy_ = recomputedEnergy();
 }
@@ -711,13 +713,42 @@ Triangles MeshOptimizer::trianglesAt(const std::vector<Index>& places) const {
   return triangles;
 }
 
-std::vector<std::array<Index, 2>> MeshOptimizer::intersections(const FractionReport& report) const {
+MeshOptimizer::Pairs MeshOptimizer::intersections(const FractionReport& report) {
+  Triangles triangles = mesh_.triangles();
+  const auto is_changed = [&](Index t) { return triangles.col(t) != checked_.triangles.col(t); };
+  // With more than this fraction of the triangles, all are looked at.
+  constexpr std::size_t few = 8;
+  std::vector<Index> changed;
+  const bool was_checked = checked_.triangles.cols() == triangles.cols();
+  if (was_checked)
+    changed = filter(facets_.size(), is_changed);
+  if (was_checked && changed.size() < facets_.size() / few) {
+    Pairs pairs;
+    for (const auto& pair : checked_.pairs)
+      if (!is_changed(pair[0]) && !is_changed(pair[1]))
+        pairs.push_back(pair);
+    Execution execution;
+    execution.threads = threads_;
+    for (const auto& pair : findSelfIntersectionsOf(*points_, triangles, changed, execution))
+      if (!facetOf(pair[0]).isOpen() && !facetOf(pair[1]).isOpen())
+        pairs.push_back(pair);
+    std::sort(pairs.begin(), pairs.end());
+    checked_.pairs = std::move(pairs);
+  } else {
+    checked_.pairs = allIntersections(triangles, report);
+  }
+  checked_.triangles = std::move(triangles);
+  return checked_.pairs;
+}
+
+MeshOptimizer::Pairs MeshOptimizer::allIntersections(const Triangles& triangles,
+                                                     const FractionReport& report) const {
   const std::vector<std::uint8_t> fans = plainFans(report);
   if (openings_ == nullptr)
-    return findSelfIntersections(*points_, mesh_.triangles(), fans, threads_, report);
+    return findSelfIntersections(*points_, triangles, fans, threads_, report);
   const std::vector<Index> surface =
       filter(facets_.size(), [&](Index t) { return !facetOf(t).isOpen(); });
-  auto pairs = findSelfIntersections(*points_, trianglesAt(surface), fans, threads_, report);
+  Pairs pairs = findSelfIntersections(*points_, trianglesAt(surface), fans, threads_, report);
   for (auto& [t, u] : pairs) {
     t = surface[at(t)];
     u = surface[at(u)];

@@ -18,6 +18,8 @@ namespace spherical_param::internal {
 /// rolled back, to the last index and bit. The running total of the energy is kept.
 class MeshOptimizer {
 public:
+  using Pairs = std::vector<std::array<Index, 2>>;
+
   /// \param openings of the surface; nullptr: it is closed.
   ///
   /// All but the triangles and the report, which is called with the fraction that is done, must
@@ -83,7 +85,10 @@ public:
 
   /// All pairs of triangles that intersect, by their places in the mesh; none may be free. Open
   /// triangles do not count.
-  std::vector<std::array<Index, 2>> intersections(const FractionReport& report = {}) const;
+  ///
+  /// Of a mesh that has changed little since it was asked last, only triangles that are new are
+  /// looked at.
+  Pairs intersections(const FractionReport& report = {});
   /// For each vertex, 1 if the triangles around it are evidently such that no two of them
   /// intersect: seen along an axis, they go around it once.
   std::vector<std::uint8_t> plainFans(const FractionReport& report = {}) const;
@@ -119,6 +124,7 @@ private:
   bool isNearChange(Index t, std::uint8_t change) const;
   void unmark(std::uint8_t change);
   bool isPlainFan(Index v) const;
+  Pairs allIntersections(const Triangles& triangles, const FractionReport& report) const;
   Triangles trianglesAt(const std::vector<Index>& places) const;
   /// Of the angles of medianAngles().
   void gatherCosines(Index v, std::vector<double>& cosines) const;
@@ -164,6 +170,12 @@ private:
   double energy_ = 0.0;
   double energy_before_ = 0.0;
   std::vector<Facet> facets_;
+  /// The mesh when intersections() was asked last, and what it answered.
+  struct Checked {
+    Triangles triangles;
+    Pairs pairs;
+  };
+  Checked checked_;
   bool is_recording_ = false;
   std::vector<std::pair<Index, Facet>> old_facets_;
 
