@@ -272,6 +272,36 @@ TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
   EXPECT_GT(std::count(fans.begin(), fans.end(), 1), 900);
 }
 
+TEST(MeshOptimizer, IntersectionsOfAMeshThatChangedAreThoseOfItAlone) {
+  for (const Case& of : {scrambledEllipsoid(3000, 0.3, 2000, 3), noisySphere(3000, 0.7, 4)}) {
+    MeshOptimizer optimizer = optimizerOf(of);
+    optimizer.setEnergy(energyWith(Bend::Angle));
+    const auto expect_all = [&] {
+      EXPECT_EQ(optimizer.intersections(),
+                findSelfIntersections(of.points, optimizer.mesh().triangles()));
+    };
+    expect_all();
+    // Nothing, a little, and nearly everything has changed.
+    expect_all();
+    const Triangles before = optimizer.mesh().triangles();
+    optimizer.flipAll();
+    expect_all();
+    optimizer.reset(before);
+    expect_all();
+    SphereMesh flipped(before, static_cast<std::size_t>(of.points.cols()), 1);
+    std::size_t flips = 0;
+    for (Index t = 0; t < 2000 && flips < 20; t += 7)
+      flips += flipped.flip(t, 0) ? 1U : 0U;
+    EXPECT_GT(flips, 10U);
+    optimizer.reset(flipped.triangles());
+    expect_all();
+    // Other positions of the same points.
+    const Positions moved = withNoise(of.points, 0.05, 8);
+    optimizer.setPoints(moved);
+    EXPECT_EQ(optimizer.intersections(), findSelfIntersections(moved, flipped.triangles()));
+  }
+}
+
 TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
   Case of = ellipsoid(400, 0.9, 0.8);
   const MeshOptimizer clean = optimizerOf(of);
