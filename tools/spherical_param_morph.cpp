@@ -1,5 +1,5 @@
 // pcl_spherical_param_morph: changes the shape of one point cloud into that of another, as a
-// sequence of closed meshes.
+// sequence of meshes.
 
 #include "common/command_line.h"
 #include "common/console.h"

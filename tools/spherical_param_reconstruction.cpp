@@ -60,7 +60,8 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
 std::string helpText() {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
-         "Meshes the points of an object without holes through it into a closed surface.\n"
+         "Meshes the points of an object without holes through it into a closed surface,\n"
+         "or one with the openings of the scan.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +

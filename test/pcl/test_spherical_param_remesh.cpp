@@ -59,6 +59,21 @@ TEST_F(SphericalParamRemesh, OutputIsAClosedSphereOnTheEllipsoidWithNormals) {
     }
 }
 
+TEST_F(SphericalParamRemesh, OpeningsStayOpen) {
+  pcl::PointCloud<PointXYZ>::Ptr half(new pcl::PointCloud<PointXYZ>);
+  for (const PointXYZ& point : *test::makeEllipsoid(3000))
+    if (point.z < 0.0F)
+      half->push_back(point);
+  reconstruction.setInputCloud(half);
+  reconstruction.setSurface(spherical_param::SurfaceMode::Open);
+  ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh));
+  const auto cloud = test::cloudOf<pcl::PointNormal>(mesh.cloud);
+  EXPECT_NEAR(static_cast<double>(cloud.size()), static_cast<double>(half->size()),
+              0.1 * static_cast<double>(half->size()));
+  for (const pcl::PointNormal& point : cloud)
+    EXPECT_LT(point.z, 0.05F);
+}
+
 TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVerticesSmoothedOrNot) {
   Positions points;
   SphereMap map;

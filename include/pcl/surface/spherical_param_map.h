@@ -34,7 +34,7 @@ namespace detail {
 /** \brief A mesh with its map to the sphere. */
 struct MappedMesh {
   spherical_param::Positions points;     ///< 3 x v
-  spherical_param::Triangles triangles;  ///< 3 x (2v - 4)
+  spherical_param::Triangles triangles;  ///< 3 x m
   spherical_param::SphereMap map;        ///< of the points
 };
 

@@ -30,8 +30,9 @@ struct SphericalParamMorphOptions {
   spherical_param::SphereMapOptions map = {};
 };
 
-/** \brief Mesh two clouds and change one shape into the other, as a sequence of meshes: closed,
- * manifold, oriented outward, of genus 0, with the same polygons in each.
+/** \brief Mesh two clouds and change one shape into the other, as a sequence of meshes:
+ * manifold, oriented outward, of genus 0, with the same polygons in each; closed, but for the
+ * openings that setSurface() leaves open in either one.
  *
  * \param[in,out] first with its input cloud set; its reconstruct() is called, and its results stay
  * there

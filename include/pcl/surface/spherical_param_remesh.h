@@ -27,9 +27,10 @@ struct SphericalParamRemeshOptions {
   spherical_param::SphereMapOptions map = spherical_param::mapOptionsForResampling();
 };
 
-/** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere: closed,
- * manifold, oriented outward, of genus 0, with as many vertices as one likes. Vertices are slid
- * along the surface where triangles would intersect (see spherical_param::untangle()).
+/** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere:
+ * manifold, oriented outward, of genus 0, with as many vertices as one likes. It is closed, but for
+ * the openings that setSurface() leaves open. Vertices are slid along the surface where triangles
+ * would intersect (see spherical_param::untangle()).
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
  * results stay there

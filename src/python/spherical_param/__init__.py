@@ -1,4 +1,4 @@
-"""Closed genus-0 meshes of point clouds by spherical parameterisation.
+"""Genus-0 meshes of point clouds by spherical parameterisation.
 
     >>> import numpy as np, spherical_param
     >>> points = np.random.default_rng(1).normal(size=(1000, 3))
@@ -8,7 +8,8 @@
     (1996, 3)
 
 ``reconstruct`` makes of the points of an object without holes through it a closed, manifold
-triangle mesh through every point, and a map to the sphere. ``sphere_map`` makes that map one to one
+triangle mesh through every point, and a map to the sphere; with ``surface="open"`` the openings of
+the scan stay open. ``sphere_map`` makes that map one to one
 and of low distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it
 out in the plane. ``find_outliers`` finds points to leave out before, ``find_parts`` the surfaces of
 a cloud.

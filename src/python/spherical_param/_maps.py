@@ -267,8 +267,9 @@ def remesh(
 ) -> Remeshed:
     """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
 
-    A mesh is manifold, of genus 0, oriented outward, and as open as the surface. Where its triangles would intersect,
-    vertices slide along the surface, then edges are flipped; ``self_intersections`` holds the rest.
+    A mesh is manifold, of genus 0, oriented outward, and open where the surface is. Where its
+    triangles would intersect, vertices slide along the surface, then edges are flipped;
+    ``self_intersections`` holds the rest.
 
     Parameters
     ----------
