@@ -84,7 +84,7 @@ def figures6_and_7(context):
         reports = []
         for color, (label, options) in enumerate(curves.items()):
             is_paper = options[: len(ITERATIVE)] == ITERATIVE
-            limit = ("-max_iterations", iterations) if is_paper else ()
+            limit = ("-max-iterations", iterations) if is_paper else ()
             report = context.programs.reconstruct(cloud, mesh, *options, *limit)[1]
             reports.append(report)
             residuals = report["residuals"]
@@ -166,7 +166,7 @@ def figure9(context):
     for weights in ("uniform", "adaptive"):
         for count in (0, 100, 200, 800):
             methods[f"{weights}, {count} iterations"] = (
-                *PAPER, "-max_iterations", count, "-weights", weights)  # fmt: skip
+                *PAPER, "-max-iterations", count, "-weights", weights)  # fmt: skip
         methods[f"{weights}, default, raw"] = (*RAW, "-weights", weights)
     meshes, spheres = _measured(context, cloud, "figure9", methods, FIGURE9)
     pictures = Pictures(context.out / "figure9.png")

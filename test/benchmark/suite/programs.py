@@ -10,7 +10,7 @@ import time
 
 # The paper's own method, with all of its iterations.
 ITERATIVE = ("-graph", "knn", "-embedding", "iterative", "-optimization", "none",
-             "-stagnation_window", "0", "-tolerance", "0")  # fmt: skip
+             "-stagnation-window", "0", "-tolerance", "0")  # fmt: skip
 PAPER = (*ITERATIVE, "-triangulation", "qhull")
 
 
