@@ -9,8 +9,9 @@
 #include <Eigen/Geometry>
 
 #include <cstddef>
-#include <limits>
+#include <functional>
 #include <utility>
+#include <vector>
 
 namespace spherical_param::internal {
 namespace {

@@ -50,10 +50,11 @@ struct TextureAtlasOptions {
 
 /// Lays a mesh out in a chart of the sphere.
 ///
-/// \param triangles 3 x m, genus 0, closed or with openings; \param sphere 3 x v, unit vectors;
-/// none flipped. \param options   chart and margin \return the mesh, cut where the chart is, with
-/// its texture coordinates. \throw InvalidInput for a mesh that is not as said, or a triangle
-/// flipped on the sphere.
+/// \param triangles 3 x m, genus 0, closed or with openings.
+/// \param sphere    3 x v, unit vectors; no triangle is flipped.
+/// \param options   chart and margin
+/// \return the mesh, cut where the chart is, with its texture coordinates.
+/// \throw InvalidInput for a mesh that is not as said, or a triangle flipped on the sphere.
 TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& sphere,
                               const TextureAtlasOptions& options = {});
 
