@@ -61,7 +61,8 @@ TEST_F(SphericalParamRemesh, OutputIsAClosedSphereOnTheEllipsoidWithNormals) {
 
 TEST_F(SphericalParamRemesh, OpeningsStayOpen) {
   pcl::PointCloud<PointXYZ>::Ptr half(new pcl::PointCloud<PointXYZ>);
-  for (const PointXYZ& point : *test::makeEllipsoid(3000))
+  const auto whole = test::makeEllipsoid(3000);
+  for (const PointXYZ& point : *whole)
     if (point.z < 0.0F)
       half->push_back(point);
   reconstruction.setInputCloud(half);
