@@ -50,6 +50,18 @@ TEST(OpenSurface, HasTheOpeningsOfTheCloud) {
   expectSound(reconstruct(test::spiralSphere(600), leftOpen()), 0);
 }
 
+TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
+  // Ragged rims, near which some points have no triangle at first.
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Result result =
+        reconstruct(test::pointsWhere(test::randomSphere(1500, seed),
+                                      [](const Eigen::Vector3d& p) { return p.z() < 0.3; }),
+                    leftOpen());
+    EXPECT_GE(result.boundary.size(), 1U) << seed;
+    expectSound(result, result.boundary.size());
+  }
+}
+
 TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
   // Discs around two points that are a little less apart than the discs are wide.
   for (const double radius : {0.27, 0.29, 0.31}) {

@@ -15,6 +15,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -73,7 +74,9 @@ public:
       : graph_(graph), options_(options), threads_(execution.threads),
         report_(internal::reportOf(execution, "optimization")), given_(&points), points_(&points),
         random_(seed), budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
-        optimizer_(checkedOptimizer(points, triangles, graph, openings, threads_, report_)) {}
+        openings_(openings != nullptr ? std::optional(*openings) : std::nullopt),
+        optimizer_(checkedOptimizer(points, triangles, graph, openings_ ? &*openings_ : nullptr,
+                                    threads_, report_)) {}
 
   MeshOptimization run() {
     switch (options_.method) {
@@ -140,6 +143,7 @@ private:
       untangle();
     const Triangles unpolished = optimizer_.mesh().triangles();
     polish();
+    closeWithoutLoop();
     // With the first energy: it is what keeps sheets apart.
     optimizer_.setEnergy(energyOf(Bend::Angle, tuned::kMu));
     result_.self_intersections = untangle();
@@ -147,6 +151,20 @@ private:
       rollBackPolish(unpolished);
     if (result_.report.noise_steps > 0)
       endOnNoise();
+  }
+
+  /// Open triangles that no loop leads to are part of the surface, and must not intersect it.
+  void closeWithoutLoop() {
+    if (!openings_)
+      return;
+    std::vector<Index> vertices;
+    for (const Index t : internal::trianglesWithoutLoop(optimizer_.mesh(), *openings_))
+      for (int k = 0; k < 3; ++k)
+        vertices.push_back(optimizer_.mesh().vertex(t, k));
+    if (vertices.empty())
+      return;
+    openings_->close(vertices);
+    optimizer_.setPoints(*points_);
   }
 
   /// Continues on smoothed positions. Returns the rough vertices there.
@@ -359,6 +377,7 @@ private:
   Positions smoothed_;
   std::uint64_t random_;
   std::size_t budget_;  ///< vertices that may still be taken out in parts
+  std::optional<internal::OpenPlaces> openings_;
   MeshOptimizer optimizer_;
   MeshOptimization result_;
 };

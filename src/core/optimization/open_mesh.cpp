@@ -1,12 +1,18 @@
 #include "open_mesh.h"
 
 #include "sphere_mesh.h"
+#include "spherical_param/self_intersection.h"
 
 #include <algorithm>
+#include <array>
+#include <tuple>
 #include <utility>
 
 namespace spherical_param::internal {
 namespace {
+
+/// Edges of the boundary to which a vertex may be joined, the nearest ones.
+constexpr std::size_t kMaxPlaces = 64;
 
 std::size_t entry(Index i) {
   return static_cast<std::size_t>(i);
@@ -24,19 +30,22 @@ public:
   }
 
   OpenMesh run() {
-    closePiecesWithoutLoop();
+    for (const Index t : trianglesWithoutLoop(mesh_, openings_))
+      close(t);
     std::vector<Index> due;
     for (Index v = 0; v < static_cast<Index>(points_.cols()); ++v)
-      if (isUnsound(v))
+      if (isBare(v))
+        attach(v);
+    for (Index v = 0; v < static_cast<Index>(points_.cols()); ++v)
+      if (isPinched(v))
         due.push_back(v);
     while (!due.empty()) {
       const Index v = due.back();
       due.pop_back();
-      if (!isUnsound(v))
-        continue;
-      // What is closed may leave other vertices unsound, and this one, too.
-      for (const Index w : closeAt(v))
-        due.push_back(w);
+      // What is closed may leave other vertices pinched, and this one, too.
+      if (isPinched(v))
+        for (const Index w : release(v))
+          due.push_back(w);
     }
     return {mesh_.triangles(), std::move(is_open_)};
   }
@@ -46,87 +55,210 @@ private:
 
   double distance(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
 
-  /// Open triangles that no loop leads to are part of the surface.
-  void closePiecesWithoutLoop() {
-    std::vector<std::uint8_t> is_seen(is_open_.size(), 0);
-    std::vector<Index> piece;
-    for (Index first = 0; first < mesh_.size(); ++first) {
-      if (!isOpen(first) || is_seen[entry(first)] != 0)
-        continue;
-      piece.assign(1, first);
-      is_seen[entry(first)] = 1;
-      bool has_loop = false;
-      for (std::size_t head = 0; head < piece.size(); ++head)
-        for (int k = 0; k < 3; ++k) {
-          const Index t = piece[head];
-          const Index next = mesh_.neighbor(t, k);
-          has_loop = has_loop ||
-                     openings_.isRim(mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3));
-          if (!isOpen(next) || is_seen[entry(next)] != 0)
-            continue;
-          is_seen[entry(next)] = 1;
-          piece.push_back(next);
-        }
-      if (!has_loop)
-        for (const Index t : piece)
-          is_open_[entry(t)] = 0;
-    }
-  }
-
   /// Open triangles around a vertex that follow each other, counter-clockwise.
   using Run = std::vector<Index>;
 
-  /// All runs around a vertex; one if all triangles are open.
-  std::vector<Run> runsAt(Index v) const {
+  /// All runs around a vertex of triangles that are open, or of those that are not: none if all are
+  /// alike.
+  std::vector<Run> runsAt(Index v, bool are_open) const {
     std::vector<Index> around;
     mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    const auto closed =
-        std::find_if(around.begin(), around.end(), [&](Index t) { return !isOpen(t); });
-    if (closed == around.end())
-      return {around};
-    std::rotate(around.begin(), closed, around.end());
+    const auto other =
+        std::find_if(around.begin(), around.end(), [&](Index t) { return isOpen(t) != are_open; });
     std::vector<Run> runs;
+    if (other == around.end())
+      return runs;
+    std::rotate(around.begin(), other, around.end());
     for (std::size_t i = 1; i < around.size(); ++i) {
-      if (!isOpen(around[i]))
+      if (isOpen(around[i]) != are_open)
         continue;
-      if (!isOpen(around[i - 1]))
+      if (isOpen(around[i - 1]) != are_open)
         runs.emplace_back();
       runs.back().push_back(around[i]);
     }
     return runs;
   }
 
-  /// Whether the surface around a vertex is not one fan.
-  bool isUnsound(Index v) const {
-    Index changes = 0;
-    bool is_any_closed = false;
-    mesh_.forEachAround(v, [&](Index t, int corner) {
-      is_any_closed = is_any_closed || !isOpen(t);
-      changes += isOpen(t) != isOpen(mesh_.neighbor(t, (corner + 1) % 3)) ? 1 : 0;
-    });
-    return !is_any_closed || changes > 2;
+  /// Whether no triangle of a vertex is on the surface.
+  bool isBare(Index v) const {
+    bool is_bare = true;
+    mesh_.forEachAround(v, [&](Index t, int) { is_bare = is_bare && isOpen(t); });
+    return is_bare;
   }
 
-  /// Closes the narrowest gap at a vertex. Returns the vertices that this concerns.
-  std::vector<Index> closeAt(Index v) {
-    std::vector<Run> runs = runsAt(v);
-    if (runs.size() == 1)
-      return closed({smallestOf(runs.front())});
-    const auto narrowest =
-        std::min_element(runs.begin(), runs.end(),
-                         [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
-    return closed(trimmed(v, *narrowest));
+  /// Whether the surface around a vertex is more than one fan.
+  bool isPinched(Index v) const {
+    Index changes = 0;
+    mesh_.forEachAround(v, [&](Index t, int corner) {
+      changes += isOpen(t) != isOpen(mesh_.neighbor(t, (corner + 1) % 3)) ? 1 : 0;
+    });
+    return changes > 2;
+  }
+
+  /// Joins a bare vertex by one triangle to an edge of the boundary: the nearest one for which that
+  /// intersects nothing.
+  void attach(Index v) {
+    struct Place {
+      double length;
+      std::array<Index, 2> edge;
+    };
+    std::vector<Place> places;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      for (int k = 0; isOpen(t) && k < 3; ++k) {
+        const Index a = mesh_.vertex(t, (k + 1) % 3);
+        const Index b = mesh_.vertex(t, (k + 2) % 3);
+        if (!isOpen(mesh_.neighbor(t, k)))
+          places.push_back({distance(v, a) + distance(v, b), {a, b}});
+      }
+    const std::size_t count = std::min(places.size(), kMaxPlaces);
+    std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count),
+                      places.end(), [](const Place& a, const Place& b) {
+                        return std::tie(a.length, a.edge) < std::tie(b.length, b.edge);
+                      });
+    places.resize(count);
+    const auto crossings = [&](const Place& place) {
+      return crossed({place.edge[0], place.edge[1], v}).size();
+    };
+    const auto place = leastCrossing(places, crossings);
+    if (place == places.end() || !takeOut(v))
+      close(smallestAt(v));
+    else if (crossings(*place) == 0 || !coverWith(v, crossed({place->edge[0], place->edge[1], v})))
+      close(besideEdge(v, place->edge));
+  }
+
+  /// Takes a vertex out of the mesh, if its triangles are open.
+  bool takeOut(Index v) {
+    while (mesh_.degree(v) > 3 && flipFrom(v)) {
+    }
+    return mesh_.degree(v) == 3 && mesh_.merge(v) >= 0;
+  }
+
+  /// Puts a vertex that was taken out into one of some triangles of the surface, if no other
+  /// triangle intersects it then.
+  bool coverWith(Index v, const std::vector<Index>& covers) {
+    for (const Index t : covers) {
+      const std::array<Index, 3> corners = {mesh_.vertex(t, 0), mesh_.vertex(t, 1),
+                                            mesh_.vertex(t, 2)};
+      is_open_[entry(t)] = 1;
+      const bool fits = crossed({corners[0], corners[1], v}).empty() &&
+                        crossed({corners[1], corners[2], v}).empty() &&
+                        crossed({corners[2], corners[0], v}).empty();
+      close(t);
+      if (!fits)
+        continue;
+      for (const Index part : mesh_.split(t, v))
+        close(part);
+      return true;
+    }
+    return false;
+  }
+
+  /// Puts a vertex that was taken out into the open triangle at an edge. Returns the triangle of
+  /// both.
+  Index besideEdge(Index v, const std::array<Index, 2>& edge) {
+    const auto at_edge = [&] {
+      Index found = -1;
+      mesh_.forEachAround(edge[0], [&](Index t, int corner) {
+        if (mesh_.vertex(t, (corner + 1) % 3) == edge[1])
+          found = t;
+      });
+      return found;
+    };
+    for (const Index t : mesh_.split(at_edge(), v))
+      is_open_[entry(t)] = 1;
+    return at_edge();
+  }
+
+  /// Flips an edge away from a vertex, if that is possible.
+  bool flipFrom(Index v) {
+    std::vector<std::pair<Index, int>> sides;
+    mesh_.forEachAround(v, [&](Index t, int corner) { sides.emplace_back(t, (corner + 1) % 3); });
+    return std::any_of(sides.begin(), sides.end(),
+                       [&](const auto& side) { return mesh_.flip(side.first, side.second); });
+  }
+
+  Index smallestAt(Index v) const {
+    Index smallest = mesh_.triangleAt(v);
+    mesh_.forEachAround(v, [&](Index t, int) {
+      if (perimeter(t) < perimeter(smallest))
+        smallest = t;
+    });
+    return smallest;
+  }
+
+  /// Leaves one fan less at a vertex: closes the narrowest gap between two for which that
+  /// intersects nothing. Returns the vertices that this concerns.
+  std::vector<Index> release(Index v) {
+    std::vector<Run> gaps = runsAt(v, true);
+    std::stable_sort(gaps.begin(), gaps.end(),
+                     [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
+    for (Run& gap : gaps)
+      gap = trimmed(v, std::move(gap));
+    const auto gap = leastCrossing(gaps, [&](const Run& run) {
+      std::size_t count = 0;
+      for (const Index t : run)
+        count += crossed({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)}).size();
+      return count;
+    });
+    return set(*gap, false);
+  }
+
+  /// The first of the candidates that crosses nothing, or the one that crosses least.
+  template <typename Candidates, typename Crossings>
+  typename Candidates::iterator leastCrossing(Candidates& candidates, const Crossings& crossings) {
+    auto best = candidates.end();
+    std::size_t least = 0;
+    for (auto candidate = candidates.begin(); candidate != candidates.end(); ++candidate) {
+      const std::size_t count = crossings(*candidate);
+      if (best != candidates.end() && count >= least)
+        continue;
+      best = candidate;
+      least = count;
+      if (least == 0)
+        break;
+    }
+    return best;
+  }
+
+  /// The triangles of the surface that a triangle would intersect.
+  std::vector<Index> crossed(const std::array<Index, 3>& corners) const {
+    Eigen::Array3d low = points_.col(corners[0]).array();
+    Eigen::Array3d high = low;
+    for (const Index v : corners) {
+      low = low.min(points_.col(v).array());
+      high = high.max(points_.col(v).array());
+    }
+    std::vector<Index> near;
+    std::vector<Index> corners_of_all(corners.begin(), corners.end());
+    for (Index t = 0; t < mesh_.size(); ++t) {
+      if (isOpen(t) || !mesh_.isTriangle(t))
+        continue;
+      const auto a = points_.col(mesh_.vertex(t, 0)).array();
+      const auto b = points_.col(mesh_.vertex(t, 1)).array();
+      const auto c = points_.col(mesh_.vertex(t, 2)).array();
+      if ((a.min(b).min(c) > high).any() || (a.max(b).max(c) < low).any())
+        continue;
+      near.push_back(t);
+      for (int k = 0; k < 3; ++k)
+        corners_of_all.push_back(mesh_.vertex(t, k));
+    }
+    std::vector<Index> vertices = corners_of_all;
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    Triangles part(3, static_cast<Eigen::Index>(near.size() + 1));
+    for (std::size_t i = 0; i < corners_of_all.size(); ++i)
+      part(static_cast<Eigen::Index>(i)) = static_cast<Index>(
+          std::lower_bound(vertices.begin(), vertices.end(), corners_of_all[i]) - vertices.begin());
+    std::vector<Index> found;
+    for (const auto& pair : findSelfIntersectionsOf(points_(Eigen::all, vertices), part, {0}))
+      found.push_back(near[entry(pair[1] - 1)]);
+    return found;
   }
 
   /// Distance of the first and the last neighbour of a run.
   double widthAt(Index v, const Run& run) const {
     return distance(mesh_.vertex(run.front(), (mesh_.cornerOf(run.front(), v) + 1) % 3),
                     mesh_.vertex(run.back(), (mesh_.cornerOf(run.back(), v) + 2) % 3));
-  }
-
-  Index smallestOf(const Run& run) const {
-    return *std::min_element(run.begin(), run.end(),
-                             [&](Index t, Index u) { return perimeter(t) < perimeter(u); });
   }
 
   double perimeter(Index t) const {
@@ -149,11 +281,13 @@ private:
     return run;
   }
 
-  /// Makes triangles part of the surface.
-  std::vector<Index> closed(const Run& run) {
+  void close(Index t) { is_open_[entry(t)] = 0; }
+
+  /// Makes triangles open, or part of the surface. Returns their vertices.
+  std::vector<Index> set(const Run& run, bool is_open) {
     std::vector<Index> vertices;
     for (const Index t : run) {
-      is_open_[entry(t)] = 0;
+      is_open_[entry(t)] = is_open ? 1 : 0;
       for (int k = 0; k < 3; ++k)
         vertices.push_back(mesh_.vertex(t, k));
     }
@@ -167,6 +301,36 @@ private:
 };
 
 }  // namespace
+
+std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
+  const auto is_open = [&](Index t) {
+    return openings.isOpen(mesh.vertex(t, 0), mesh.vertex(t, 1), mesh.vertex(t, 2));
+  };
+  std::vector<Index> found;
+  std::vector<std::uint8_t> is_seen(entry(mesh.size()), 0);
+  std::vector<Index> piece;
+  for (Index first = 0; first < mesh.size(); ++first) {
+    if (is_seen[entry(first)] != 0 || !is_open(first))
+      continue;
+    piece.assign(1, first);
+    is_seen[entry(first)] = 1;
+    bool has_loop = false;
+    for (std::size_t head = 0; head < piece.size(); ++head)
+      for (int k = 0; k < 3; ++k) {
+        const Index t = piece[head];
+        const Index next = mesh.neighbor(t, k);
+        has_loop =
+            has_loop || openings.isRim(mesh.vertex(t, (k + 1) % 3), mesh.vertex(t, (k + 2) % 3));
+        if (is_seen[entry(next)] != 0 || !is_open(next))
+          continue;
+        is_seen[entry(next)] = 1;
+        piece.push_back(next);
+      }
+    if (!has_loop)
+      found.insert(found.end(), piece.begin(), piece.end());
+  }
+  return found;
+}
 
 OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings) {
   return Opener(points, triangles, openings).run();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "open_places.h"
+#include "sphere_mesh.h"
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/types.h"
 
@@ -16,6 +17,10 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
                               const Graph& graph, const OpenPlaces* openings,
                               const OptimizationOptions& options, std::uint32_t seed,
                               const Execution& execution);
+
+/// The triangles over openings that are not connected to a loop by others: those are part of the
+/// surface.
+std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings);
 
 /// A closed mesh with openings.
 struct OpenMesh {

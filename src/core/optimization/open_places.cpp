@@ -17,17 +17,19 @@ constexpr int kNearSteps = 2;
 OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings)
     : points_(points), is_near_(graph.size(), 0), spacing_(openings.spacing) {
   std::vector<Index> ring;
-  const auto add = [&](Index v) {
-    if (is_near_[static_cast<std::size_t>(v)] == 0)
-      ring.push_back(v);
-    is_near_[static_cast<std::size_t>(v)] = 1;
+  const auto add = [&](Index v, std::uint8_t mark) {
+    std::uint8_t& is_near = is_near_[static_cast<std::size_t>(v)];
+    if (is_near != 0)
+      return;
+    is_near = mark;
+    ring.push_back(v);
   };
   for (const Opening& opening : openings.openings)
     for (std::size_t i = 0; i < opening.loop.size(); ++i) {
       const Index v = opening.loop[i];
       const Index w = opening.loop[i + 1 < opening.loop.size() ? i + 1 : 0];
       rim_edges_.push_back({std::min(v, w), std::max(v, w)});
-      add(v);
+      add(v, kLoop);
     }
   std::sort(rim_edges_.begin(), rim_edges_.end());
   rim_edges_.erase(std::unique(rim_edges_.begin(), rim_edges_.end()), rim_edges_.end());
@@ -37,7 +39,7 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
     for (const Index v : last) {
       const auto i = static_cast<std::size_t>(v);
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        add(graph.neighbors[e]);
+        add(graph.neighbors[e], 1);
     }
   }
 }
@@ -46,6 +48,12 @@ bool OpenPlaces::isLong(Index a, Index b) const {
   const double longest = tuned::kMaxSurfaceEdge * std::max(spacing_[static_cast<std::size_t>(a)],
                                                            spacing_[static_cast<std::size_t>(b)]);
   return (points_.col(a) - points_.col(b)).squaredNorm() > longest * longest;
+}
+
+void OpenPlaces::close(const std::vector<Index>& vertices) {
+  for (const Index v : vertices)
+    if (is_near_[static_cast<std::size_t>(v)] != kLoop)
+      is_near_[static_cast<std::size_t>(v)] = 0;
 }
 
 bool OpenPlaces::isRim(Index a, Index b) const {

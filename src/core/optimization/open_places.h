@@ -30,14 +30,18 @@ public:
            (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
+  /// No triangle of some vertices is over an opening any more, unless these are in a loop.
+  void close(const std::vector<Index>& vertices);
+
   /// Whether an edge is in a loop around an opening.
   bool isRim(Index a, Index b) const;
 
 private:
+  static constexpr std::uint8_t kLoop = 2;
   bool isLong(Index a, Index b) const;
 
   const Positions& points_;
-  std::vector<std::uint8_t> is_near_;
+  std::vector<std::uint8_t> is_near_;  ///< kLoop: in a loop
   std::vector<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
 };

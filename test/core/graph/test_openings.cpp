@@ -60,15 +60,31 @@ TEST(Openings, HaveTheSizesOfTheHole) {
 }
 
 TEST(Openings, CountFromThreeSpacingsOn) {
-  // 3,000 points are 0.065 apart.
-  std::vector<double> certainties;
-  for (const double radius : {0.05, 0.15, 0.25, 0.4})
-    for (const Opening& opening : openingsOf(sphereWithHoles(3000, 1, radius)))
-      certainties.push_back(opening.certainty);
-  ASSERT_EQ(certainties.size(), 3U);  // all but the least
-  EXPECT_LT(certainties[0], 0.7);
-  EXPECT_LT(certainties[0], certainties[1]);
-  EXPECT_EQ(certainties[2], 1.0);
+  // Hexagonal grid of distance 1. Without five points in two rows the hole is of 19 triangles and
+  // 11 edges, a little less than 3 wide: 4 area / length = 2.99. Without six, it is of 22 and
+  // 12: 3.18.
+  Positions grid(3, 20 * 20);
+  for (int row = 0; row < 20; ++row)
+    for (int i = 0; i < 20; ++i)
+      grid.col(20 * row + i) << i + 0.5 * (row % 2), std::sqrt(0.75) * row, 0.0;
+  const auto without = [&](const std::set<Index>& points) {
+    std::vector<Index> kept;
+    for (Index i = 0; i < 400; ++i)
+      if (points.count(i) == 0)
+        kept.push_back(i);
+    return openingsOf(grid(Eigen::all, kept));
+  };
+  const std::set<Index> five{209, 210, 211, 229, 230};
+  EXPECT_EQ(without(five).size(), 1U);  // the rim of the grid
+  const std::vector<Opening> openings = without({209, 210, 211, 229, 230, 250});
+  ASSERT_EQ(openings.size(), 2U);
+  EXPECT_EQ(openings[1].loop.size(), 12U);
+  EXPECT_NEAR(openings[1].width, 22.0 * std::sqrt(0.75) / 2.0 * 4.0 / 12.0, 1e-9);
+  EXPECT_NEAR(openings[1].certainty, (openings[1].width - 3.0) / 6.0, 1e-9);
+  // Wider ones are more certain, up to 9 spacings: 3,000 points are 0.065 apart.
+  EXPECT_LT(openingsOf(sphereWithHoles(3000, 1, 0.15)).at(0).certainty,
+            openingsOf(sphereWithHoles(3000, 1, 0.25)).at(0).certainty);
+  EXPECT_EQ(openingsOf(sphereWithHoles(3000, 1, 0.4)).at(0).certainty, 1.0);
 }
 
 TEST(Openings, OfAPlanePatchAreItsRimAndItsHoles) {

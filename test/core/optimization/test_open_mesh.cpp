@@ -3,6 +3,7 @@
 #include "boundary_loops.h"
 #include "open_shapes.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/self_intersection.h"
 
 namespace spherical_param {
 namespace {
@@ -68,6 +69,46 @@ TEST(OpenMesh, IsAManifoldWhereTwoOpeningsMeet) {
   EXPECT_TRUE(topology.oriented);
   EXPECT_TRUE(topology.faults.unused_vertices.empty());
   EXPECT_EQ(surface.cols(), 15);
+}
+
+TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
+  // All around the upper tip is open, and it lies in a triangle of the lower side, to the last bit:
+  // whatever joins it to an edge of the ring would intersect that one.
+  DoublePyramid pyramid(4);
+  pyramid.points.leftCols(4) << 1.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0;
+  pyramid.points.col(4) << 0.25, 0.25, -0.25;
+  const Triangles surface = internal::surfaceOf(pyramid.open({{0, 1, 2, 3, 4}}));
+  EXPECT_EQ(surface.cols(), 6);
+  EXPECT_TRUE(findSelfIntersections(pyramid.points, surface).empty());
+  const MeshTopology topology = checkTopology(surface, 6);
+  EXPECT_TRUE(topology.manifold());
+  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+}
+
+TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
+  // The edges from the upper tip to 0 and to 4 are long; only the first is in a loop.
+  DoublePyramid pyramid(8);
+  pyramid.openings.spacing.assign(10, 1.0);
+  for (const std::size_t v : {0, 4, 8})
+    pyramid.openings.spacing[v] = 0.3;
+  Opening opening;
+  opening.loop = {0, 1, 8};
+  pyramid.openings.openings.push_back(opening);
+  for (Index v = 0; v < 10; ++v) {
+    for (Index w = 0; w < 10; ++w)
+      if (v != w)
+        pyramid.graph.neighbors.push_back(w);
+    pyramid.graph.offsets[static_cast<std::size_t>(v) + 1] = pyramid.graph.neighbors.size();
+  }
+  OpenPlaces places(pyramid.points, pyramid.graph, pyramid.openings);
+  const internal::SphereMesh mesh(pyramid.triangles, 10);
+  const std::vector<Index> found = internal::trianglesWithoutLoop(mesh, places);
+  EXPECT_EQ(std::set<Index>(found.begin(), found.end()), (std::set<Index>{6, 8}));
+  EXPECT_TRUE(places.isOpen(4, 5, 8));
+  places.close({3, 4, 5, 8});
+  EXPECT_FALSE(places.isOpen(4, 5, 8));
+  EXPECT_TRUE(places.isOpen(0, 1, 8));
+  EXPECT_TRUE(internal::trianglesWithoutLoop(mesh, places).empty());
 }
 
 TEST(OpenMesh, KeepsAVertexAmongOpenTriangles) {
