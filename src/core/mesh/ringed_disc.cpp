@@ -10,7 +10,7 @@ namespace spherical_param::internal {
 namespace {
 
 /// Part of the vertices of a ring that the next one has.
-constexpr double kRingRatio = 0.5;
+constexpr double kRingRatio = 0.7;
 /// Vertices of a ring inside which there is a pole.
 constexpr std::size_t kMaxLastRing = 9;
 

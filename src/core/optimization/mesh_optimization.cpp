@@ -147,6 +147,8 @@ private:
     // With the first energy: it is what keeps sheets apart.
     optimizer_.setEnergy(energyOf(Bend::Angle, tuned::kMu));
     result_.self_intersections = untangle();
+    for (int round = 0; round < tuned::kMaxClosingRounds && closeWithoutLoop(); ++round)
+      result_.self_intersections = untangle();
     if (!result_.self_intersections.empty())
       rollBackPolish(unpolished);
     if (result_.report.noise_steps > 0)
@@ -154,17 +156,19 @@ private:
   }
 
   /// Open triangles that no loop leads to are part of the surface, and must not intersect it.
-  void closeWithoutLoop() {
+  /// Returns whether there were any.
+  bool closeWithoutLoop() {
     if (!openings_)
-      return;
+      return false;
     std::vector<Index> vertices;
     for (const Index t : internal::trianglesWithoutLoop(optimizer_.mesh(), *openings_))
       for (int k = 0; k < 3; ++k)
         vertices.push_back(optimizer_.mesh().vertex(t, k));
     if (vertices.empty())
-      return;
+      return false;
     openings_->close(vertices);
     optimizer_.setPoints(*points_);
+    return true;
   }
 
   /// Continues on smoothed positions. Returns the rough vertices there.

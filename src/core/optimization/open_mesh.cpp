@@ -11,7 +11,8 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Edges of the boundary to which a vertex may be joined, the nearest ones.
+/// Edges of the boundary, and triangles of the surface, to which a vertex may be joined: the
+/// nearest.
 constexpr std::size_t kMaxPlaces = 64;
 
 std::size_t entry(Index i) {
@@ -53,7 +54,7 @@ public:
 private:
   bool isOpen(Index t) const { return is_open_[entry(t)] != 0; }
 
-  double distance(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
+  double length(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
 
   /// Open triangles around a vertex that follow each other, counter-clockwise.
   using Run = std::vector<Index>;
@@ -95,35 +96,68 @@ private:
     return changes > 2;
   }
 
-  /// Joins a bare vertex by one triangle to an edge of the boundary: the nearest one for which that
-  /// intersects nothing.
+  /// Where a bare vertex may get triangles: an edge of the boundary or a triangle of the surface.
+  struct Place {
+    double distance;  ///< of the vertex from its corners, mean
+    std::vector<Index> corners;
+    Index triangle;  ///< of the surface, at the edge or itself
+  };
+
+  /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
+  /// the surface: the nearest place where that intersects nothing, edges first.
   void attach(Index v) {
-    struct Place {
-      double length;
-      std::array<Index, 2> edge;
+    std::vector<Place> edges;
+    std::vector<Place> triangles;
+    const auto add = [&](std::vector<Place>& places, std::vector<Index> corners, Index t) {
+      double sum = 0.0;
+      for (const Index w : corners)
+        sum += length(v, w);
+      places.push_back({sum / static_cast<double>(corners.size()), std::move(corners), t});
     };
-    std::vector<Place> places;
-    for (Index t = 0; t < mesh_.size(); ++t)
-      for (int k = 0; isOpen(t) && k < 3; ++k) {
-        const Index a = mesh_.vertex(t, (k + 1) % 3);
-        const Index b = mesh_.vertex(t, (k + 2) % 3);
-        if (!isOpen(mesh_.neighbor(t, k)))
-          places.push_back({distance(v, a) + distance(v, b), {a, b}});
-      }
+    for (Index t = 0; t < mesh_.size(); ++t) {
+      if (isOpen(t))
+        continue;
+      add(triangles, {mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)}, t);
+      for (int k = 0; k < 3; ++k)
+        if (isOpen(mesh_.neighbor(t, k)))
+          add(edges, {mesh_.vertex(t, (k + 2) % 3), mesh_.vertex(t, (k + 1) % 3)}, t);
+    }
+    keepNearest(edges);
+    keepNearest(triangles);
+    const auto edge = leastCrossing(edges, [&](const Place& at) { return crossingsAt(v, at); });
+    const auto triangle =
+        edge != edges.end() && crossingsAt(v, *edge) > 0
+            ? std::find_if(triangles.begin(), triangles.end(),
+                           [&](const Place& at) { return crossingsAt(v, at) == 0; })
+            : triangles.end();
+    if (edge == edges.end() || !takeOut(v))
+      close(smallestAt(v));
+    else if (triangle == triangles.end())
+      close(besideEdge(v, edge->corners));
+    else
+      for (const Index part : mesh_.split(triangle->triangle, v))
+        close(part);
+  }
+
+  static void keepNearest(std::vector<Place>& places) {
     const std::size_t count = std::min(places.size(), kMaxPlaces);
     std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count),
                       places.end(), [](const Place& a, const Place& b) {
-                        return std::tie(a.length, a.edge) < std::tie(b.length, b.edge);
+                        return std::tie(a.distance, a.corners) < std::tie(b.distance, b.corners);
                       });
-    places.resize(count);
-    const auto crossings = [&](const Place& place) {
-      return crossed({place.edge[0], place.edge[1], v}).size();
-    };
-    const auto place = leastCrossing(places, crossings);
-    if (place == places.end() || !takeOut(v))
-      close(smallestAt(v));
-    else if (crossings(*place) == 0 || !coverWith(v, crossed({place->edge[0], place->edge[1], v})))
-      close(besideEdge(v, place->edge));
+    places.erase(places.begin() + static_cast<std::ptrdiff_t>(count), places.end());
+  }
+
+  /// Number of triangles of the surface that those of a vertex would intersect at a place.
+  std::size_t crossingsAt(Index v, const Place& place) {
+    const std::vector<Index>& c = place.corners;
+    if (c.size() == 2)
+      return crossings({c[0], c[1], v});
+    open(place.triangle);
+    const std::size_t count =
+        crossings({c[0], c[1], v}) + crossings({c[1], c[2], v}) + crossings({c[2], c[0], v});
+    close(place.triangle);
+    return count;
   }
 
   /// Takes a vertex out of the mesh, if its triangles are open.
@@ -133,29 +167,9 @@ private:
     return mesh_.degree(v) == 3 && mesh_.merge(v) >= 0;
   }
 
-  /// Puts a vertex that was taken out into one of some triangles of the surface, if no other
-  /// triangle intersects it then.
-  bool coverWith(Index v, const std::vector<Index>& covers) {
-    for (const Index t : covers) {
-      const std::array<Index, 3> corners = {mesh_.vertex(t, 0), mesh_.vertex(t, 1),
-                                            mesh_.vertex(t, 2)};
-      is_open_[entry(t)] = 1;
-      const bool fits = crossed({corners[0], corners[1], v}).empty() &&
-                        crossed({corners[1], corners[2], v}).empty() &&
-                        crossed({corners[2], corners[0], v}).empty();
-      close(t);
-      if (!fits)
-        continue;
-      for (const Index part : mesh_.split(t, v))
-        close(part);
-      return true;
-    }
-    return false;
-  }
-
   /// Puts a vertex that was taken out into the open triangle at an edge. Returns the triangle of
   /// both.
-  Index besideEdge(Index v, const std::array<Index, 2>& edge) {
+  Index besideEdge(Index v, const std::vector<Index>& edge) {
     const auto at_edge = [&] {
       Index found = -1;
       mesh_.forEachAround(edge[0], [&](Index t, int corner) {
@@ -165,7 +179,7 @@ private:
       return found;
     };
     for (const Index t : mesh_.split(at_edge(), v))
-      is_open_[entry(t)] = 1;
+      open(t);
     return at_edge();
   }
 
@@ -197,10 +211,16 @@ private:
     const auto gap = leastCrossing(gaps, [&](const Run& run) {
       std::size_t count = 0;
       for (const Index t : run)
-        count += crossed({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)}).size();
+        count += crossings({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)});
       return count;
     });
-    return set(*gap, false);
+    std::vector<Index> vertices;
+    for (const Index t : *gap) {
+      close(t);
+      for (int k = 0; k < 3; ++k)
+        vertices.push_back(mesh_.vertex(t, k));
+    }
+    return vertices;
   }
 
   /// The first of the candidates that crosses nothing, or the one that crosses least.
@@ -220,51 +240,45 @@ private:
     return best;
   }
 
-  /// The triangles of the surface that a triangle would intersect.
-  std::vector<Index> crossed(const std::array<Index, 3>& corners) const {
+  /// Number of triangles of the surface that a triangle would intersect.
+  std::size_t crossings(const std::array<Index, 3>& corners) const {
     Eigen::Array3d low = points_.col(corners[0]).array();
     Eigen::Array3d high = low;
     for (const Index v : corners) {
       low = low.min(points_.col(v).array());
       high = high.max(points_.col(v).array());
     }
-    std::vector<Index> near;
-    std::vector<Index> corners_of_all(corners.begin(), corners.end());
+    std::vector<Index> near(corners.begin(), corners.end());
     for (Index t = 0; t < mesh_.size(); ++t) {
       if (isOpen(t) || !mesh_.isTriangle(t))
         continue;
       const auto a = points_.col(mesh_.vertex(t, 0)).array();
       const auto b = points_.col(mesh_.vertex(t, 1)).array();
       const auto c = points_.col(mesh_.vertex(t, 2)).array();
-      if ((a.min(b).min(c) > high).any() || (a.max(b).max(c) < low).any())
-        continue;
-      near.push_back(t);
-      for (int k = 0; k < 3; ++k)
-        corners_of_all.push_back(mesh_.vertex(t, k));
+      if ((a.min(b).min(c) <= high).all() && (a.max(b).max(c) >= low).all())
+        for (int k = 0; k < 3; ++k)
+          near.push_back(mesh_.vertex(t, k));
     }
-    std::vector<Index> vertices = corners_of_all;
+    std::vector<Index> vertices = near;
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    Triangles part(3, static_cast<Eigen::Index>(near.size() + 1));
-    for (std::size_t i = 0; i < corners_of_all.size(); ++i)
+    Triangles part(3, static_cast<Eigen::Index>(near.size() / 3));
+    for (std::size_t i = 0; i < near.size(); ++i)
       part(static_cast<Eigen::Index>(i)) = static_cast<Index>(
-          std::lower_bound(vertices.begin(), vertices.end(), corners_of_all[i]) - vertices.begin());
-    std::vector<Index> found;
-    for (const auto& pair : findSelfIntersectionsOf(points_(Eigen::all, vertices), part, {0}))
-      found.push_back(near[entry(pair[1] - 1)]);
-    return found;
+          std::lower_bound(vertices.begin(), vertices.end(), near[i]) - vertices.begin());
+    return findSelfIntersectionsOf(points_(Eigen::all, vertices), part, {0}).size();
   }
 
   /// Distance of the first and the last neighbour of a run.
   double widthAt(Index v, const Run& run) const {
-    return distance(mesh_.vertex(run.front(), (mesh_.cornerOf(run.front(), v) + 1) % 3),
-                    mesh_.vertex(run.back(), (mesh_.cornerOf(run.back(), v) + 2) % 3));
+    return length(mesh_.vertex(run.front(), (mesh_.cornerOf(run.front(), v) + 1) % 3),
+                  mesh_.vertex(run.back(), (mesh_.cornerOf(run.back(), v) + 2) % 3));
   }
 
   double perimeter(Index t) const {
-    return distance(mesh_.vertex(t, 0), mesh_.vertex(t, 1)) +
-           distance(mesh_.vertex(t, 1), mesh_.vertex(t, 2)) +
-           distance(mesh_.vertex(t, 2), mesh_.vertex(t, 0));
+    return length(mesh_.vertex(t, 0), mesh_.vertex(t, 1)) +
+           length(mesh_.vertex(t, 1), mesh_.vertex(t, 2)) +
+           length(mesh_.vertex(t, 2), mesh_.vertex(t, 0));
   }
 
   /// Flips the edges from a vertex into a run of it, as far as that goes: what is left of the run.
@@ -281,18 +295,8 @@ private:
     return run;
   }
 
+  void open(Index t) { is_open_[entry(t)] = 1; }
   void close(Index t) { is_open_[entry(t)] = 0; }
-
-  /// Makes triangles open, or part of the surface. Returns their vertices.
-  std::vector<Index> set(const Run& run, bool is_open) {
-    std::vector<Index> vertices;
-    for (const Index t : run) {
-      is_open_[entry(t)] = is_open ? 1 : 0;
-      for (int k = 0; k < 3; ++k)
-        vertices.push_back(mesh_.vertex(t, k));
-    }
-    return vertices;
-  }
 
   const Positions& points_;
   const OpenPlaces& openings_;

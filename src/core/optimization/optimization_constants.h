@@ -49,6 +49,9 @@ constexpr double kOpenEdge = 0.5;
 /// edge]: the first, and the second times mu. Too low makes holes, too high folds ears.
 constexpr double kRimPrice = 0.8;
 constexpr double kRimPriceOfMu = 2.0;
+/// Untangling may leave other open triangles to which no loop leads: rounds of closing them.
+/// Without any, 1 of 56 open clouds keeps an intersection.
+constexpr int kMaxClosingRounds = 4;
 
 // --- Gains ---------------------------------------------------------------------------------------
 
