@@ -14,9 +14,9 @@ struct FilledGraph {
   Positions points;  ///< 3 x graph.size(), those of the nodes first
 };
 
-/// Fills each opening by a ringed disc as large as the opening, whose rim is the loop: about as
-/// many virtual nodes as the loop has. False edges of the graph are left out, but for those that
-/// keep it connected.
+/// Fills each opening by a ringed disc as large as the opening, whose rim is the loop:
+/// two to three times as many virtual nodes as the loop has. False edges of the graph are left out,
+/// but for those that keep it connected.
 ///
 /// \param points   3 x n.
 /// \param graph    n nodes.

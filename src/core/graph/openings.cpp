@@ -57,8 +57,8 @@ std::size_t at(Index i) {
 class Rotation {
 public:
   Rotation(const Positions& points, const Graph& graph, const std::vector<double>& spacing,
-           bool separates_opposite, int threads)
-      : points_(points), separates_opposite_(separates_opposite), threads_(threads) {
+           int threads)
+      : points_(points), threads_(threads) {
     keepEdges(graph.size(), graph.neighbors, graph.offsets, [&](Index v, Index w, std::size_t e) {
       return graph.lengths[e] <= kMaxLength * std::max(spacing[at(v)], spacing[at(w)]);
     });
@@ -70,6 +70,16 @@ public:
     keepEdges(graph.size(), neighbors, offsets, [&](Index v, Index w, std::size_t e) {
       return crosses[e] == 0 && !leavesSheet(v, w);
     });
+    sortAround();
+  }
+
+  /// Leaves out the edges between opposite sheets.
+  void separateOpposite() {
+    separates_opposite_ = true;
+    const std::vector<Index> neighbors = neighbors_;
+    const std::vector<std::size_t> offsets = offsets_;
+    keepEdges(offsets.size() - 1, neighbors, offsets,
+              [&](Index v, Index w, std::size_t) { return !areOpposite(v, w); });
     sortAround();
   }
 
@@ -327,7 +337,7 @@ private:
   }
 
   const Positions& points_;
-  bool separates_opposite_;
+  bool separates_opposite_ = false;
   int threads_;
   std::vector<std::size_t> offsets_{0};
   std::vector<Index> neighbors_;
@@ -405,10 +415,9 @@ Openings openingsOf(const Positions& points, const Graph& graph, const std::vect
   return result;
 }
 
-/// Cycles of the graph that are left when the openings are filled: none if these are all that there
-/// are, and the surface has no handles.
-std::optional<int> cyclesLeft(const Positions& points, const Graph& graph, const Openings& found) {
-  return internal::countCycles(internal::fillOpenings(points, graph, found).graph, kReach);
+/// Whether the openings are all that there are: the graph has no cycles when they are filled.
+bool hasNoCyclesLeft(const Positions& points, const Graph& graph, const Openings& found) {
+  return internal::countCycles(internal::fillOpenings(points, graph, found).graph, kReach) == 0;
 }
 
 }  // namespace
@@ -426,19 +435,16 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Executi
   internal::forEachItem(graph.size(), threads, [&](std::size_t thread, std::size_t v) {
     spacing[v] = internal::nodeSpacing(graph, v, scratch[thread]);
   });
-  const Rotation rotation(points, graph, spacing, false, threads);
-  Openings found = openingsOf(points, graph, spacing, rotation);
-  if (found.openings.empty() || !rotation.hasOpposite(graph))
-    return found;
-  const std::optional<int> cycles = cyclesLeft(points, graph, found);
-  if (cycles == 0)
-    return found;
-  Openings other =
-      openingsOf(points, graph, spacing, Rotation(points, graph, spacing, true, threads));
-  const std::optional<int> other_cycles = cyclesLeft(points, graph, other);
-  // Edges between opposite sheets look like a twist, too.
-  found.is_one_sided = other.is_one_sided = found.is_one_sided && other.is_one_sided;
-  return other_cycles && (!cycles || *other_cycles < *cycles) ? other : found;
+  Rotation rotation(points, graph, spacing, threads);
+  if (!rotation.hasOpposite(graph))
+    return openingsOf(points, graph, spacing, rotation);
+  if (rotation.countTwisted() >= kMinTwisted) {
+    Openings found = openingsOf(points, graph, spacing, rotation);
+    if (hasNoCyclesLeft(points, graph, found))
+      return found;
+  }
+  rotation.separateOpposite();
+  return openingsOf(points, graph, spacing, rotation);
 }
 
 }  // namespace spherical_param
