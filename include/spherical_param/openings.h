@@ -51,9 +51,9 @@ struct Openings {
 /// least 7 edges, is at least 3 spacings wide, and has corners of at least 117 degrees in the mean:
 /// those of narrow seams are sharp.
 ///
-/// Edges between opposite normals join the two sides of a thin part, and are left out as well,
-/// unless the surface has one side only: then there are many of them that are not steep to their
-/// planes, and the graph has no cycles when the openings are filled.
+/// If there are openings, edges between opposite normals are left out as well: near a loop they join
+/// the two sides of a thin part. Not so if the surface has one side only: then many of them are not
+/// steep to their planes, and the graph has no cycles when the openings are filled.
 ///
 /// \param points 3 x n, finite.
 /// \param graph  n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.

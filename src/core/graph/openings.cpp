@@ -436,13 +436,10 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Executi
     spacing[v] = internal::nodeSpacing(graph, v, scratch[thread]);
   });
   Rotation rotation(points, graph, spacing, threads);
-  if (!rotation.hasOpposite(graph))
-    return openingsOf(points, graph, spacing, rotation);
-  if (rotation.countTwisted() >= kMinTwisted) {
-    Openings found = openingsOf(points, graph, spacing, rotation);
-    if (hasNoCyclesLeft(points, graph, found))
-      return found;
-  }
+  Openings found = openingsOf(points, graph, spacing, rotation);
+  if (found.openings.empty() || !rotation.hasOpposite(graph) ||
+      (found.is_one_sided && hasNoCyclesLeft(points, graph, found)))
+    return found;
   rotation.separateOpposite();
   return openingsOf(points, graph, spacing, rotation);
 }
