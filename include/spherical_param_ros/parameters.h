@@ -14,8 +14,7 @@ namespace spherical_param_ros {
 /// How clouds are meshed, and how they wait for it.
 struct Settings {
   spherical_param::Options options;  ///< `progress` is ignored
-  /// OutlierOptions::sigma, or kAuto: stray points; unset: with surface auto stray points,
-  /// else none.
+  /// OutlierOptions::sigma, or kAuto: stray points; unset: outliers are not looked for.
   std::optional<double> outliers;
   /// Larger clouds are refused, so that no cloud takes all memory; 0: none is.
   std::size_t max_points = 5000000;

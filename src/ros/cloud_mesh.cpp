@@ -237,9 +237,8 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   outcome.ignored = outcome.points - points.of_record.size();
   if (points.of_record.empty())
     throw BadCloud("all points are not finite; check the scanner and the filters before this node");
-  const bool is_auto = options.surface == spherical_param::SurfaceMode::Auto;
-  if (settings.outliers || is_auto)
-    outcome.outliers = removeOutliers(points, settings.outliers.value_or(kAuto), options);
+  if (settings.outliers)
+    outcome.outliers = removeOutliers(points, *settings.outliers, options);
   const Result result = spherical_param::reconstruct(points.positions, options);
   outcome.mesh = makeMesh(cloud, points, result);
   outcome.status = Status::Done;

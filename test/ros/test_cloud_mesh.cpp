@@ -192,10 +192,6 @@ TEST(RosCloudMesh, StrayPointsAreLeftOutAutomatically) {
   setPoint(cloud, 100, 20.0, 0.0, 0.0);
   Settings settings;
   EXPECT_NE(meshed(cloud, settings).message.find("1 outlier"), std::string::npos);
-  settings.outliers.reset();
-  settings.options.surface = spherical_param::SurfaceMode::Auto;
-  EXPECT_EQ(meshCloud(cloud, settings, {}).outliers, 1U);
-  settings.options.surface = spherical_param::SurfaceMode::Closed;
   settings.outliers = kAuto;
   const Outcome outcome = meshed(cloud, settings);
   EXPECT_EQ(outcome.outliers, 1U);

@@ -125,9 +125,9 @@ std::vector<OptionInfo> reconstructionOptions() {
          row.help + "; " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
          row.expert});
   }
-  lines.push_back({"outliers", "auto|off|SIGMA",
-                   "leave out stray points, none, or those that lie this number of standard "
-                   "deviations off, 0 to 1000 (off; with -surface auto: auto)",
+  lines.push_back({"outliers", "auto|SIGMA",
+                   "leave out stray points, or those that lie this number of standard deviations "
+                   "off, 0 to 1000 (off)",
                    false});
   lines.push_back({"parts", "NAME",
                    "which parts of the cloud are meshed; all (as one surface), largest or each "
@@ -144,15 +144,14 @@ std::vector<OptionInfo> reconstructionOptions() {
 
 ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line) {
   ReconstructionSettings settings;
-  settings.options = parseOptions(command_line);
-  const bool is_auto = settings.options.surface == SurfaceMode::Auto;
-  const std::string choice = command_line.value("outliers", is_auto ? "auto" : "off");
-  if (choice != "off") {
+  if (command_line.has("outliers")) {
+    const std::string choice = command_line.value("outliers", "");
     settings.outliers.emplace();
     if (choice != "auto") {
       settings.outliers->sigma = parseReal("outliers", choice, {0.0, 1000.0, true});
     }
   }
+  settings.options = parseOptions(command_line);
   settings.parts = parseName("parts", command_line.value("parts", "all"), parts_names);
   if (command_line.has("min-points")) {
     if (settings.parts == PartsMode::All) {
