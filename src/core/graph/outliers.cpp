@@ -2,6 +2,7 @@
 
 #include "caller_neighbors.h"
 #include "local_delaunay_graph.h"
+#include "near_outliers.h"
 #include "neighbor_lists.h"
 #include "ordered_points.h"
 #include "parallel.h"
@@ -329,9 +330,18 @@ Outliers findStrayPoints(const Positions& points, const Execution& execution) {
   const internal::Neighbors neighbors =
       internal::nearestNeighbors(nodes, neighborsToSearch({}), execution);
   std::vector<double> distances(nodes.input_of_node.size(), 0.0);
-  for (const StrayPoint& each :
-       strayNodes(nodes.points, neighbors.lists, neighbors.search, execution))
+  const std::vector<StrayPoint> stray =
+      strayNodes(nodes.points, neighbors.lists, neighbors.search, execution);
+  for (const StrayPoint& each : stray)
     distances[static_cast<std::size_t>(each.point)] = each.distance;
+  // Near a surface, but off it: without the others, which are no surface.
+  std::vector<Index> numbers;
+  const Positions others = othersOf(nodes.points, stray, numbers);
+  const std::vector<double> near = internal::nearOutliers(
+      others, findNearestNeighbors(others, internal::kFittedNeighbors, execution),
+      execution.threads);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    distances[static_cast<std::size_t>(numbers[i])] = near[i];
   const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
   for (std::size_t i = 0; i < node_of_input.size(); ++i) {
     result.scores[i] = distances[static_cast<std::size_t>(node_of_input[i])];

@@ -76,6 +76,13 @@ TEST(StrayPoints, AreThoseBetweenTwoSheets) {
   expectFound(sheets, between);
 }
 
+TEST(StrayPoints, AreThoseALittleOffASurface) {
+  // 5,000 points are 0.05 apart; on a noisy sphere the same distance is none.
+  const Positions near = horizontally(1.03 * spiralSphere(7), 0.98 * spiralSphere(4));
+  expectFound(spiralSphere(5000), near);
+  EXPECT_TRUE(strayOf(horizontally(test::withNoise(spiralSphere(5000), 0.01, 1), near)).empty());
+}
+
 TEST(StrayPoints, ShapesHaveNoneHoweverTheyAreSampled) {
   Positions ellipsoid = spiralSphere(2000);
   ellipsoid.row(0) *= 6.0;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Nearest neighbours through which nearOutliers() lays a surface.
+constexpr int kFittedNeighbors = 20;
+
+/// How far points near a surface are off it, as findStrayPoints() defines it.
+///
+/// \param points  3 x n, finite, distinct.
+/// \param lists   n lists, the kFittedNeighbors nearest others of each point, and the point itself
+/// or
+///                not; shorter ones give 0.
+/// \return n entries: 0 for a point of the surface, else its distance [spacing there].
+std::vector<double> nearOutliers(const Positions& points, const NeighborLists& lists, int threads);
+
+}  // namespace spherical_param::internal
