@@ -5,17 +5,65 @@
 #include "progress.h"
 #include "spherical_param/self_intersection.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace spherical_param::internal {
 
-Triangles surfaceOf(const Positions& points, const OpenSurface& openings, Candidate& mesh) {
-  if (!openings.isOpen())
-    return mesh.triangles();
-  OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
-  Triangles surface = surfaceOf(open);
-  mesh.triangles() = std::move(open.triangles);
+namespace {
+
+using Pairs = std::vector<std::array<Index, 2>>;
+
+/// The pairs that intersect on a surface of which those among the closed mesh are known: only what
+/// was changed or closed when it was opened is tested.
+///
+/// \param pairs of the closed mesh, without triangles over openings.
+Pairs intersectionsOf(const Positions& points, const Triangles& closed, const OpenMesh& open,
+                      const Triangles& surface, const OpenPlaces& places, const Pairs& pairs,
+                      const Options& options) {
+  std::vector<Index> in_surface(open.is_open.size(), -1);  // those as they were
+  std::vector<Index> changed;
+  Index next = 0;
+  for (std::size_t i = 0; i < open.is_open.size(); ++i) {
+    if (open.is_open[i] != 0)
+      continue;
+    const auto corners = open.triangles.col(static_cast<Eigen::Index>(i));
+    if (corners == closed.col(static_cast<Eigen::Index>(i)) &&
+        !places.isOpen(corners[0], corners[1], corners[2]))
+      in_surface[i] = next;
+    else
+      changed.push_back(next);
+    ++next;
+  }
+  Pairs found = findSelfIntersectionsOf(points, surface, changed, options);
+  for (const auto& [t, u] : pairs) {
+    const Index a = in_surface[static_cast<std::size_t>(t)];
+    const Index b = in_surface[static_cast<std::size_t>(u)];
+    if (a >= 0 && b >= 0)
+      found.push_back({a, b});
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace
+
+Surface surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh,
+                  const Options& options) {
+  Surface surface{mesh.triangles(), mesh.optimization.self_intersections};
+  if (openings.isOpen()) {
+    const OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
+    surface.triangles = surfaceOf(open);
+    if (!mesh.isSmoothed())
+      surface.self_intersections =
+          intersectionsOf(points, mesh.triangles(), open, surface.triangles, *openings.places(),
+                          mesh.optimization.self_intersections, options);
+  }
+  if (mesh.isSmoothed())
+    surface.self_intersections = findSelfIntersections(points, surface.triangles, options);
   return surface;
 }
 
@@ -39,7 +87,9 @@ Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openin
   const FractionReport report = reportOf(options, "quality");
   Candidate& mesh = best.mesh;
   Result result;
-  result.triangles = surfaceOf(points, openings, mesh);
+  Surface surface = surfaceOf(points, openings, mesh, options);
+  result.triangles = std::move(surface.triangles);
+  result.self_intersections = std::move(surface.self_intersections);
   result.openings = openings.found();
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
@@ -59,9 +109,6 @@ Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openin
   result.topology =
       checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
   reportFraction(report, 0.8);
-  result.self_intersections = mesh.isSmoothed() || openings.isOpen()
-                                  ? findSelfIntersections(points, result.triangles, options)
-                                  : std::move(mesh.optimization.self_intersections);
   if (options.details) {
     result.vertex_residuals =
         tangentialLaplacianLengths(mesh.graph.graph, mesh.embedding.directions,

@@ -61,7 +61,7 @@ struct BestOfRuns {
 
 /// Whether retries may find a better mesh: the mesh is bad, and either the cloud looks like a
 /// closed surface, or one with the openings that are left open, or few triangles intersect.
-bool isWorthRetrying(const Positions& points, Candidate& mesh, const OpenSurface& surface,
+bool isWorthRetrying(const Positions& points, const Candidate& mesh, const OpenSurface& surface,
                      const Options& options);
 
 }  // namespace spherical_param::internal

@@ -3,6 +3,7 @@
 #include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
 
 namespace spherical_param {
 namespace {
@@ -66,6 +67,19 @@ TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
         leftOpen());
     EXPECT_GE(result.boundary.size(), 2U) << seed;
     expectSound(result, result.boundary.size());
+  }
+}
+
+TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
+  // Strong noise, not smoothed away: some triangles intersect.
+  const Positions points = test::withNoise(test::hemisphere(600), 0.15, 3);
+  for (const int retries : {0, 1}) {
+    Options options = leftOpen();
+    options.retries = retries;
+    const Result result = reconstruct(points, options);
+    EXPECT_FALSE(result.self_intersections.empty());
+    EXPECT_EQ(result.self_intersections,
+              findSelfIntersections(points(Eigen::all, result.input_of_vertex), result.triangles));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -34,10 +35,10 @@ public:
     for (const Index t : trianglesWithoutLoop(mesh_, openings_))
       close(t);
     std::vector<Index> due;
-    for (Index v = 0; v < static_cast<Index>(points_.cols()); ++v)
+    for (const Index v : verticesOfOpen())
       if (isBare(v))
         attach(v);
-    for (Index v = 0; v < static_cast<Index>(points_.cols()); ++v)
+    for (const Index v : verticesOfOpen())
       if (isPinched(v))
         due.push_back(v);
     while (!due.empty()) {
@@ -55,6 +56,17 @@ private:
   bool isOpen(Index t) const { return is_open_[entry(t)] != 0; }
 
   double length(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
+
+  /// Ascending.
+  std::vector<Index> verticesOfOpen() const {
+    std::vector<Index> vertices;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      for (int k = 0; isOpen(t) && k < 3; ++k)
+        vertices.push_back(mesh_.vertex(t, k));
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
 
   /// Open triangles around a vertex that follow each other, counter-clockwise.
   using Run = std::vector<Index>;
@@ -98,64 +110,72 @@ private:
 
   /// Where a bare vertex may get triangles: an edge of the boundary or a triangle of the surface.
   struct Place {
-    double distance;  ///< of the vertex from its corners, mean
-    std::vector<Index> corners;
-    Index triangle;  ///< of the surface, at the edge or itself
+    double distance;  ///< sum over its corners
+    Index triangle;   ///< the open one at the edge, or that of the surface
+    int corner;       ///< opposite to the edge; -1: the triangle
   };
 
   /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
   /// the surface: the nearest place where that intersects nothing, edges first.
   void attach(Index v) {
     std::vector<Place> edges;
-    std::vector<Place> triangles;
-    const auto add = [&](std::vector<Place>& places, std::vector<Index> corners, Index t) {
-      double sum = 0.0;
-      for (const Index w : corners)
-        sum += length(v, w);
-      places.push_back({sum / static_cast<double>(corners.size()), std::move(corners), t});
-    };
-    for (Index t = 0; t < mesh_.size(); ++t) {
-      if (isOpen(t))
-        continue;
-      add(triangles, {mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)}, t);
-      for (int k = 0; k < 3; ++k)
-        if (isOpen(mesh_.neighbor(t, k)))
-          add(edges, {mesh_.vertex(t, (k + 2) % 3), mesh_.vertex(t, (k + 1) % 3)}, t);
-    }
+    for (Index t = 0; t < mesh_.size(); ++t)
+      for (int k = 0; isOpen(t) && k < 3; ++k)
+        if (!isOpen(mesh_.neighbor(t, k)))
+          edges.push_back(
+              {length(v, mesh_.vertex(t, (k + 1) % 3)) + length(v, mesh_.vertex(t, (k + 2) % 3)), t,
+               k});
     keepNearest(edges);
-    keepNearest(triangles);
-    const auto edge = leastCrossing(edges, [&](const Place& at) { return crossingsAt(v, at); });
-    const auto triangle =
-        edge != edges.end() && crossingsAt(v, *edge) > 0
-            ? std::find_if(triangles.begin(), triangles.end(),
-                           [&](const Place& at) { return crossingsAt(v, at) == 0; })
-            : triangles.end();
-    if (edge == edges.end() || !takeOut(v))
+    std::size_t least = 0;
+    const auto edge = leastCrossing(
+        edges, [&](const Place& place) { return crossingsAt(v, place); }, least);
+    if (least > 0)
+      if (const std::optional<Index> cover = coverOf(v); cover && takeOut(v)) {
+        for (const Index part : mesh_.split(*cover, v))
+          close(part);
+        return;
+      }
+    if (edge == edges.end()) {
       close(smallestAt(v));
-    else if (triangle == triangles.end())
-      close(besideEdge(v, edge->corners));
-    else
-      for (const Index part : mesh_.split(triangle->triangle, v))
-        close(part);
+      return;
+    }
+    const Index a = mesh_.vertex(edge->triangle, (edge->corner + 1) % 3);
+    const Index b = mesh_.vertex(edge->triangle, (edge->corner + 2) % 3);
+    close(takeOut(v) ? besideEdge(v, a, b) : smallestAt(v));
+  }
+
+  /// The nearest triangle of the surface that a vertex may split without intersections.
+  std::optional<Index> coverOf(Index v) {
+    std::vector<Place> covers;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (!isOpen(t))
+        covers.push_back({length(v, mesh_.vertex(t, 0)) + length(v, mesh_.vertex(t, 1)) +
+                              length(v, mesh_.vertex(t, 2)),
+                          t, -1});
+    keepNearest(covers);
+    const auto cover = std::find_if(covers.begin(), covers.end(),
+                                    [&](const Place& place) { return crossingsAt(v, place) == 0; });
+    return cover == covers.end() ? std::nullopt : std::optional(cover->triangle);
   }
 
   static void keepNearest(std::vector<Place>& places) {
-    const std::size_t count = std::min(places.size(), kMaxPlaces);
-    std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(count),
-                      places.end(), [](const Place& a, const Place& b) {
-                        return std::tie(a.distance, a.corners) < std::tie(b.distance, b.corners);
-                      });
-    places.erase(places.begin() + static_cast<std::ptrdiff_t>(count), places.end());
+    const auto end =
+        places.begin() + static_cast<std::ptrdiff_t>(std::min(places.size(), kMaxPlaces));
+    std::partial_sort(places.begin(), end, places.end(), [](const Place& a, const Place& b) {
+      return std::tie(a.distance, a.triangle, a.corner) <
+             std::tie(b.distance, b.triangle, b.corner);
+    });
+    places.erase(end, places.end());
   }
 
   /// Number of triangles of the surface that those of a vertex would intersect at a place.
   std::size_t crossingsAt(Index v, const Place& place) {
-    const std::vector<Index>& c = place.corners;
-    if (c.size() == 2)
-      return crossings({c[0], c[1], v});
+    const auto corner = [&](int k) { return mesh_.vertex(place.triangle, k % 3); };
+    const auto with_side = [&](int k) { return crossings({corner(k + 1), corner(k + 2), v}); };
+    if (place.corner >= 0)
+      return with_side(place.corner);
     open(place.triangle);
-    const std::size_t count =
-        crossings({c[0], c[1], v}) + crossings({c[1], c[2], v}) + crossings({c[2], c[0], v});
+    const std::size_t count = with_side(0) + with_side(1) + with_side(2);
     close(place.triangle);
     return count;
   }
@@ -167,13 +187,13 @@ private:
     return mesh_.degree(v) == 3 && mesh_.merge(v) >= 0;
   }
 
-  /// Puts a vertex that was taken out into the open triangle at an edge. Returns the triangle of
-  /// both.
-  Index besideEdge(Index v, const std::vector<Index>& edge) {
+  /// Puts a vertex that was taken out into the open triangle to the left of an edge. Returns the
+  /// triangle of both.
+  Index besideEdge(Index v, Index a, Index b) {
     const auto at_edge = [&] {
       Index found = -1;
-      mesh_.forEachAround(edge[0], [&](Index t, int corner) {
-        if (mesh_.vertex(t, (corner + 1) % 3) == edge[1])
+      mesh_.forEachAround(a, [&](Index t, int corner) {
+        if (mesh_.vertex(t, (corner + 1) % 3) == b)
           found = t;
       });
       return found;
@@ -208,12 +228,14 @@ private:
                      [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
     for (Run& gap : gaps)
       gap = trimmed(v, std::move(gap));
-    const auto gap = leastCrossing(gaps, [&](const Run& run) {
+    std::size_t least = 0;
+    const auto count_crossings = [&](const Run& run) {
       std::size_t count = 0;
       for (const Index t : run)
         count += crossings({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)});
       return count;
-    });
+    };
+    const auto gap = leastCrossing(gaps, count_crossings, least);
     std::vector<Index> vertices;
     for (const Index t : *gap) {
       close(t);
@@ -224,10 +246,13 @@ private:
   }
 
   /// The first of the candidates that crosses nothing, or the one that crosses least.
+  ///
+  /// \param least what it crosses.
   template <typename Candidates, typename Crossings>
-  typename Candidates::iterator leastCrossing(Candidates& candidates, const Crossings& crossings) {
+  static typename Candidates::iterator
+  leastCrossing(Candidates& candidates, const Crossings& crossings, std::size_t& least) {
     auto best = candidates.end();
-    std::size_t least = 0;
+    least = 0;
     for (auto candidate = candidates.begin(); candidate != candidates.end(); ++candidate) {
       const std::size_t count = crossings(*candidate);
       if (best != candidates.end() && count >= least)
