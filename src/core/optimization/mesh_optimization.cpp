@@ -143,12 +143,10 @@ private:
       untangle();
     const Triangles unpolished = optimizer_.mesh().triangles();
     polish();
-    closeWithoutLoop();
     // With the first energy: it is what keeps sheets apart.
     optimizer_.setEnergy(energyOf(Bend::Angle, tuned::kMu));
-    result_.self_intersections = untangle();
-    for (int round = 0; round < tuned::kMaxClosingRounds && closeWithoutLoop(); ++round)
-      result_.self_intersections = untangle();
+    closeWithoutLoop();
+    result_.self_intersections = untangleSurface();
     if (!result_.self_intersections.empty())
       rollBackPolish(unpolished);
     if (result_.report.noise_steps > 0)
@@ -169,6 +167,14 @@ private:
     openings_->close(vertices);
     optimizer_.setPoints(*points_);
     return true;
+  }
+
+  /// untangle(), again as long as that leaves open triangles without a loop.
+  std::vector<std::array<Index, 2>> untangleSurface() {
+    auto pairs = untangle();
+    for (int round = 0; round < tuned::kMaxClosingRounds && closeWithoutLoop(); ++round)
+      pairs = untangle();
+    return pairs;
   }
 
   /// Continues on smoothed positions. Returns the rough vertices there.
@@ -192,11 +198,12 @@ private:
       return;
     // The work on the smoothed points may have spent it: a few points then stayed tangled.
     budget_ = budgetOf(static_cast<std::size_t>(points_->cols()));
+    closeWithoutLoop();
     result_.self_intersections = optimizer_.intersections(report_);
     const auto count = static_cast<double>(result_.self_intersections.size());
     if (count <= std::max(tuned::kMaxFewIntersections,
                           tuned::kMaxFewIntersectionsPerTriangle * optimizer_.mesh().size()))
-      result_.self_intersections = untangle();
+      result_.self_intersections = untangleSurface();
   }
 
   /// Reports the fraction of a round's items that are done.
