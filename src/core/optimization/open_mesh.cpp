@@ -3,6 +3,8 @@
 #include "sphere_mesh.h"
 #include "spherical_param/self_intersection.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -53,6 +55,8 @@ public:
   }
 
 private:
+  using Box = Eigen::AlignedBox3d;
+
   bool isOpen(Index t) const { return is_open_[entry(t)] != 0; }
 
   double length(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
@@ -126,22 +130,24 @@ private:
               {length(v, mesh_.vertex(t, (k + 1) % 3)) + length(v, mesh_.vertex(t, (k + 2) % 3)), t,
                k});
     keepNearest(edges);
+    const std::vector<Index> near = surfaceIn(boxOf(v, edges));
     std::size_t least = 0;
     const auto edge = leastCrossing(
-        edges, [&](const Place& place) { return crossingsAt(v, place); }, least);
-    if (least > 0)
-      if (const std::optional<Index> cover = coverOf(v); cover && takeOut(v)) {
-        for (const Index part : mesh_.split(*cover, v))
-          close(part);
-        return;
-      }
+        edges, [&](const Place& place) { return crossingsAt(v, place, near); }, least);
     if (edge == edges.end()) {
       close(smallestAt(v));
       return;
     }
     const Index a = mesh_.vertex(edge->triangle, (edge->corner + 1) % 3);
     const Index b = mesh_.vertex(edge->triangle, (edge->corner + 2) % 3);
-    close(takeOut(v) ? besideEdge(v, a, b) : smallestAt(v));
+    const std::optional<Index> cover = least > 0 ? coverOf(v) : std::nullopt;
+    if (!takeOut(v))
+      close(smallestAt(v));
+    else if (!cover)
+      close(besideEdge(v, a, b));
+    else
+      for (const Index part : mesh_.split(*cover, v))
+        close(part);
   }
 
   /// The nearest triangle of the surface that a vertex may split without intersections.
@@ -153,8 +159,10 @@ private:
                               length(v, mesh_.vertex(t, 2)),
                           t, -1});
     keepNearest(covers);
-    const auto cover = std::find_if(covers.begin(), covers.end(),
-                                    [&](const Place& place) { return crossingsAt(v, place) == 0; });
+    const std::vector<Index> near = surfaceIn(boxOf(v, covers));
+    const auto cover = std::find_if(covers.begin(), covers.end(), [&](const Place& place) {
+      return crossingsAt(v, place, near) == 0;
+    });
     return cover == covers.end() ? std::nullopt : std::optional(cover->triangle);
   }
 
@@ -168,10 +176,22 @@ private:
     places.erase(end, places.end());
   }
 
-  /// Number of triangles of the surface that those of a vertex would intersect at a place.
-  std::size_t crossingsAt(Index v, const Place& place) {
+  /// Of a vertex and some places for it.
+  Box boxOf(Index v, const std::vector<Place>& places) const {
+    Box box(points_.col(v));
+    for (const Place& place : places)
+      for (int k = 0; k < 3; ++k)
+        if (k != place.corner)
+          box.extend(points_.col(mesh_.vertex(place.triangle, k)));
+    return box;
+  }
+
+  /// Number of triangles among some that those of a vertex would intersect at a place.
+  std::size_t crossingsAt(Index v, const Place& place, const std::vector<Index>& among) {
     const auto corner = [&](int k) { return mesh_.vertex(place.triangle, k % 3); };
-    const auto with_side = [&](int k) { return crossings({corner(k + 1), corner(k + 2), v}); };
+    const auto with_side = [&](int k) {
+      return crossings({corner(k + 1), corner(k + 2), v}, among);
+    };
     if (place.corner >= 0)
       return with_side(place.corner);
     open(place.triangle);
@@ -228,11 +248,16 @@ private:
                      [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
     for (Run& gap : gaps)
       gap = trimmed(v, std::move(gap));
+    Box box(points_.col(v));
+    for (const Run& gap : gaps)
+      for (const Index t : gap)
+        box.extend(boxOf(t));
+    const std::vector<Index> near = surfaceIn(box);
     std::size_t least = 0;
     const auto count_crossings = [&](const Run& run) {
       std::size_t count = 0;
       for (const Index t : run)
-        count += crossings({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)});
+        count += crossings({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)}, near);
       return count;
     };
     const auto gap = leastCrossing(gaps, count_crossings, least);
@@ -265,25 +290,32 @@ private:
     return best;
   }
 
-  /// Number of triangles of the surface that a triangle would intersect.
-  std::size_t crossings(const std::array<Index, 3>& corners) const {
-    Eigen::Array3d low = points_.col(corners[0]).array();
-    Eigen::Array3d high = low;
-    for (const Index v : corners) {
-      low = low.min(points_.col(v).array());
-      high = high.max(points_.col(v).array());
-    }
+  Box boxOf(Index t) const {
+    Box box(points_.col(mesh_.vertex(t, 0)));
+    box.extend(points_.col(mesh_.vertex(t, 1)));
+    return box.extend(points_.col(mesh_.vertex(t, 2)));
+  }
+
+  /// The triangles of the surface whose boxes overlap one.
+  std::vector<Index> surfaceIn(const Box& box) const {
+    std::vector<Index> triangles;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (!isOpen(t) && boxOf(t).intersects(box))
+        triangles.push_back(t);
+    return triangles;
+  }
+
+  /// Number of triangles among some, those of the surface, that a triangle would intersect.
+  std::size_t crossings(const std::array<Index, 3>& corners,
+                        const std::vector<Index>& among) const {
+    Box box;
+    for (const Index v : corners)
+      box.extend(points_.col(v));
     std::vector<Index> near(corners.begin(), corners.end());
-    for (Index t = 0; t < mesh_.size(); ++t) {
-      if (isOpen(t) || !mesh_.isTriangle(t))
-        continue;
-      const auto a = points_.col(mesh_.vertex(t, 0)).array();
-      const auto b = points_.col(mesh_.vertex(t, 1)).array();
-      const auto c = points_.col(mesh_.vertex(t, 2)).array();
-      if ((a.min(b).min(c) <= high).all() && (a.max(b).max(c) >= low).all())
+    for (const Index t : among)
+      if (!isOpen(t) && boxOf(t).intersects(box))
         for (int k = 0; k < 3; ++k)
           near.push_back(mesh_.vertex(t, k));
-    }
     std::vector<Index> vertices = near;
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
