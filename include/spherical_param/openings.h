@@ -49,7 +49,7 @@ struct Openings {
 /// out, and so are edges that are steep to a plane and join different normals. In the order of the
 /// neighbours around the normals all faces of the graph are traced. One is an opening if it has at
 /// least 7 edges, is at least 3 spacings wide, and has corners of at least 117 degrees in the mean:
-/// those of narrow seams are sharp.
+/// those of narrow seams are sharp. Around a flat patch there is an opening in any case.
 ///
 /// If there are openings, edges between opposite normals are left out as well: near a loop they join
 /// the two sides of a thin part. Not so if the surface has one side only: then many of them are not

@@ -51,7 +51,10 @@ bool isAsPromised(const Result& result) {
              : topology.manifold() && topology.oriented && topology.faults.unused_vertices.empty();
 }
 
-[[noreturn]] void refuseFlat() {
+[[noreturn]] void refuseFlat(const Options& options) {
+  if (internal::seeksOpenings(options))
+    throw InvalidInput("reconstruct: all points lie in one plane and form no patch there; give more "
+                       "points, and not on a line");
   throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
                      "outside of it, and an open one the surface mode 'open'");
 }
@@ -109,7 +112,7 @@ Result runWithRetries(const OrderedPoints& nodes, bool is_flat, const FindNeighb
         return surface->isOpen();
       });
     if (is_flat && !surface->isOpen())
-      refuseFlat();
+      refuseFlat(options);
     const auto begin = std::chrono::steady_clock::now();
     Candidate mesh = meshGraph(nodes.points, std::move(graph), *surface, plan.options, clock);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
@@ -130,8 +133,10 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
       "neighbors", [&] { return internal::orderCheckedPoints(points, options.threads); });
   const bool is_flat = areCoplanar(points);
   if (is_flat && !internal::seeksOpenings(options))
-    refuseFlat();
+    refuseFlat(options);
   Result result = runWithRetries(nodes, is_flat, find_neighbors, options, clock);
+  if (is_flat && result.isClosed())
+    refuseFlat(options);
   internal::toInput(nodes, result);
   if (!isAsPromised(result))
     throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "

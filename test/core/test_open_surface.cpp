@@ -118,6 +118,13 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
       }
     EXPECT_NEAR(result.measures.area, std::abs(rim) / 2.0, 1e-9);
   }
+  // Patches of two and three rows are no wider than the gap that counts elsewhere.
+  for (const int rows : {2, 3}) {
+    Positions narrow(3, 9 * rows);
+    for (int i = 0; i < 9 * rows; ++i)
+      narrow.col(i) << i / rows + 0.01 * (i * i % 7), i % rows + 0.01 * (i * i % 5), 0.0;
+    expectSound(reconstruct(narrow, leftOpen()), 1);
+  }
   // Of a line there is no surface.
   Positions line = Positions::Zero(3, 50);
   line.row(0).setLinSpaced(0.0, 1.0);

@@ -7,6 +7,7 @@
 #include "parallel.h"
 #include "pi.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/point_set.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -45,6 +46,8 @@ constexpr int kReach = 2;
 constexpr double kCentered = 0.5;
 /// From this width on an opening is certain [spacing].
 constexpr double kCertainWidth = 9.0;
+/// A narrower flat patch is a line [spacing].
+constexpr double kMinPatchWidth = 0.1;
 /// Loops nearer to a plane are flat [spacing].
 constexpr double kMaxFlat = 0.01;
 
@@ -112,10 +115,10 @@ public:
     return count;
   }
 
-  /// The loops of all faces with at least kMinSteps edges whose mean corner is large enough, with
-  /// the face on the left seen from where the normals point.
-  std::vector<std::vector<Index>> wideFaces() const {
-    std::vector<std::vector<Index>> faces;
+  /// The loops of all faces with at least some edges whose mean corner is large enough, with the
+  /// face on the left seen from where the normals point.
+  std::vector<std::vector<Index>> faces(std::size_t min_steps, double min_corner) const {
+    std::vector<std::vector<Index>> found;
     std::vector<std::uint8_t> is_seen(neighbors_.size(), 0);
     std::vector<Index> loop;
     for (std::size_t v = 0; v + 1 < offsets_.size(); ++v)
@@ -134,10 +137,10 @@ public:
           corners += cornerBetween(edge, back);
           from = to;
         }
-        if (loop.size() >= kMinSteps && corners >= kMinCorner * static_cast<double>(loop.size()))
-          faces.push_back(loop);
+        if (loop.size() >= min_steps && corners >= min_corner * static_cast<double>(loop.size()))
+          found.push_back(loop);
       }
-    return faces;
+    return found;
   }
 
 private:
@@ -397,15 +400,33 @@ std::vector<std::array<Index, 2>> falseEdges(const Graph& graph, const Rotation&
   return edges;
 }
 
+/// The largest face of the graph of a flat patch, however narrow: what is around it. None of points
+/// on a line.
+std::optional<Opening> outsideOf(const Positions& points, const std::vector<double>& spacing,
+                                 const Rotation& rotation) {
+  std::optional<Opening> outside;
+  for (std::vector<Index>& loop : rotation.faces(3, 0.0)) {
+    Opening face = measured(points, spacing, std::move(loop));
+    if (face.width >= kMinPatchWidth * face.spacing && (!outside || face.area > outside->area))
+      outside = std::move(face);
+  }
+  return outside;
+}
+
 /// The openings that are seen.
 Openings openingsOf(const Positions& points, const Graph& graph, const std::vector<double>& spacing,
                     const Rotation& rotation) {
   Openings result;
   result.spacing = spacing;
-  for (std::vector<Index>& loop : rotation.wideFaces()) {
+  for (std::vector<Index>& loop : rotation.faces(kMinSteps, kMinCorner)) {
     Opening opening = measured(points, spacing, std::move(loop));
     if (opening.width >= kMinWidth * opening.spacing)
       result.openings.push_back(std::move(opening));
+  }
+  if (result.openings.empty() && areCoplanar(points)) {
+    std::optional<Opening> outside = outsideOf(points, spacing, rotation);
+    if (outside)
+      result.openings.push_back(std::move(*outside));
   }
   result.is_one_sided = !result.openings.empty() && rotation.countTwisted() >= kMinTwisted;
   result.false_edges = falseEdges(graph, rotation, result);
