@@ -39,8 +39,8 @@ struct Outliers {
 /// distance of neighbours there and 6 times the roughness, and in no star of a point of a surface.
 /// The roughness is the root mean square distance of some 12 points there from their plane.
 ///
-/// The 20 nearest neighbours of each other point have a quadric of least squares over their plane. A
-/// point is stray, too, if its distance from that is above 10 times their standard deviation, and
+/// The 20 nearest neighbours of each other point have a quadric of least squares over their plane.
+/// A point is stray, too, if its distance from that is above 10 times their standard deviation, and
 /// above a quarter of the spacing there, the median distance of the fourth neighbours, and if, seen
 /// along the normal, a neighbour is no farther than that spacing. The distance is divided by
 /// sqrt(1 + leverage): a quadric is less certain where no neighbours hold it.
@@ -48,11 +48,11 @@ struct Outliers {
 /// \param points 3 x n, finite. Of points at one position all are stray or none.
 /// \param execution threads, progress
 /// \return the stray points, the same, bit by bit, for any number of threads; the score of one is
-///         StrayPoint::distance, that of others 0.
+///         StrayPoint::distance, or its distance from the quadric in spacings, that of others 0.
 /// \throw InvalidInput for coordinates that are not finite, or options out of range; Cancelled.
 /// Cost: that of a neighbour graph and of a search and a fit for each point. Result::outliers of
-/// reconstruct() are those without the last kind, and cost no more than a search for each point that
-/// is on no surface.
+/// reconstruct() are those without the last kind, and cost no more than a search for each point
+/// that is on no surface.
 ///
 /// No guarantees: a point as near to a surface as its own are to each other may be noise, and one
 /// that far from the rim of an opening continues the surface.

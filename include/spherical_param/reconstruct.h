@@ -101,7 +101,8 @@ struct Result {
   std::vector<double> vertex_residuals;
 
   /// Input points, ascending, that look like outliers; they are vertices even so, one entry for
-  /// each. Empty for the graph of nearest neighbours. \see findStrayPoints
+  /// each. Empty for the graph of nearest neighbours. \see findStrayPoints, without single points
+  /// near a surface
   std::vector<Index> outliers;
 
   MeshTopology topology;       ///< checked on `triangles`

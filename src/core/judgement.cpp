@@ -20,7 +20,9 @@ using Pairs = std::vector<std::array<Index, 2>>;
 /// The pairs that intersect on a surface of which those among the closed mesh are known: only what
 /// was changed or closed when it was opened is tested.
 ///
-/// \param pairs of the closed mesh, without triangles over openings.
+/// \param pairs of the closed mesh, without triangles over openings: the optimisation may have
+/// taken
+///              more triangles for surface than `places`, never fewer.
 Pairs intersectionsOf(const Positions& points, const Triangles& closed, const OpenMesh& open,
                       const Triangles& surface, const OpenPlaces& places, const Pairs& pairs,
                       const Options& options) {
@@ -49,22 +51,34 @@ Pairs intersectionsOf(const Positions& points, const Triangles& closed, const Op
   return found;
 }
 
+/// Moves the triangles of a candidate that are not over openings to the result, with the pairs of
+/// them that intersect.
+void takeSurface(const Positions& points, const OpenSurface& openings, Candidate& mesh,
+                 const Options& options, Result& result) {
+  // Not those of positions that the optimisation has smoothed.
+  const bool are_pairs_known = !mesh.isSmoothed() && (mesh.optimization.report.noise_steps == 0 ||
+                                                      options.optimization.finish_on_points);
+  if (!openings.isOpen()) {
+    result.triangles = std::move(mesh.triangles());
+    result.self_intersections = mesh.isSmoothed()
+                                    ? findSelfIntersections(points, result.triangles, options)
+                                    : std::move(mesh.optimization.self_intersections);
+    return;
+  }
+  const OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
+  result.triangles = surfaceOf(open);
+  result.self_intersections =
+      are_pairs_known
+          ? intersectionsOf(points, mesh.triangles(), open, result.triangles, *openings.places(),
+                            mesh.optimization.self_intersections, options)
+          : findSelfIntersections(points, result.triangles, options);
+}
+
 }  // namespace
 
-Surface surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh,
-                  const Options& options) {
-  Surface surface{mesh.triangles(), mesh.optimization.self_intersections};
-  if (openings.isOpen()) {
-    const OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
-    surface.triangles = surfaceOf(open);
-    if (!mesh.isSmoothed())
-      surface.self_intersections =
-          intersectionsOf(points, mesh.triangles(), open, surface.triangles, *openings.places(),
-                          mesh.optimization.self_intersections, options);
-  }
-  if (mesh.isSmoothed())
-    surface.self_intersections = findSelfIntersections(points, surface.triangles, options);
-  return surface;
+Triangles surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh) {
+  return openings.isOpen() ? surfaceOf(openMesh(points, mesh.triangles(), *openings.places()))
+                           : mesh.triangles();
 }
 
 SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
@@ -87,9 +101,7 @@ Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openin
   const FractionReport report = reportOf(options, "quality");
   Candidate& mesh = best.mesh;
   Result result;
-  Surface surface = surfaceOf(points, openings, mesh, options);
-  result.triangles = std::move(surface.triangles);
-  result.self_intersections = std::move(surface.self_intersections);
+  takeSurface(points, openings, mesh, options, result);
   result.openings = openings.found();
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));

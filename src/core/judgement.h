@@ -4,21 +4,12 @@
 #include "retries.h"
 #include "spherical_param/reconstruct.h"
 
-#include <array>
 #include <cstddef>
-#include <vector>
 
 namespace spherical_param::internal {
 
-/// The triangles of a candidate that are not over openings, and the pairs of them that intersect.
-struct Surface {
-  Triangles triangles;
-  std::vector<std::array<Index, 2>> self_intersections;
-};
-
-/// The surface of a candidate: all of it, if it is closed.
-Surface surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh,
-                  const Options& options);
+/// The triangles of a candidate that are not over openings, all if it is closed.
+Triangles surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh);
 
 /// Diagnoses the cloud by a mesh and a graph.
 ///

@@ -10,7 +10,7 @@ namespace spherical_param::internal {
 namespace {
 
 /// From this certainty on SurfaceMode::Auto trusts in an opening: of 9 spacings. The closed models
-/// have none above 4.7; a random quarter of the points of one has a false one of 6.4.
+/// have none above 4.8; a random quarter of the points of one has a false one of 6.4.
 constexpr double kCertain = 1.0;
 
 /// Whether an opening is wide enough to be taken for one.

@@ -53,8 +53,9 @@ bool isAsPromised(const Result& result) {
 
 [[noreturn]] void refuseFlat(const Options& options) {
   if (internal::seeksOpenings(options))
-    throw InvalidInput("reconstruct: all points lie in one plane and form no patch there; give more "
-                       "points, and not on a line");
+    throw InvalidInput(
+        "reconstruct: all points lie in one plane and form no patch there; give more "
+        "points, and not on a line");
   throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
                      "outside of it, and an open one the surface mode 'open'");
 }

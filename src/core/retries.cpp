@@ -77,8 +77,8 @@ bool isWorthRetrying(const Positions& points, const Candidate& mesh, const OpenS
   if (static_cast<double>(mesh.intersections()) <= kMaxIntersections * triangles)
     return true;
   const std::size_t boundaries = surface.isOpen() ? 1 : 0;
-  const SurfaceDiagnosis diagnosis = diagnose(
-      points, surfaceOf(points, surface, mesh, options).triangles, boundaries, mesh.graph, options);
+  const SurfaceDiagnosis diagnosis =
+      diagnose(points, surfaceOf(points, surface, mesh), boundaries, mesh.graph, options);
   return diagnosis.looksClosedGenus0() || (boundaries > 0 && diagnosis.kind == SurfaceKind::Open);
 }
 

@@ -15,7 +15,7 @@ struct FilledGraph {
 };
 
 /// Fills each opening by a ringed disc as large as the opening, whose rim is the loop:
-/// two to three times as many virtual nodes as the loop has. False edges of the graph are left out,
+/// up to 2.4 times as many virtual nodes as the loop has. False edges of the graph are left out,
 /// but for those that keep it connected.
 ///
 /// \param points   3 x n.

@@ -38,8 +38,8 @@ Quadric monomials(const Eigen::Vector3d& p) {
 
 using Patch = Eigen::Matrix<double, 3, kFittedNeighbors>;
 
-/// Distance of the origin from the quadric of least squares through a patch, and what it deviates
-/// from the patch: 0, unless the distance shows an outlier.
+/// Distance of the origin from the quadric of least squares through a patch; 0 if it does not show
+/// an outlier.
 double distanceOff(const Patch& patch) {
   const Eigen::Vector3d mean = patch.rowwise().mean();
   const Patch centered = patch.colwise() - mean;

@@ -96,7 +96,7 @@ public:
                kMaxSheetSlope;
   }
 
-  /// Whether some edges of the graph are left out only if those between opposite sheets are.
+  /// Whether some edges of the graph join opposite sheets.
   bool hasOpposite(const Graph& graph) const {
     for (std::size_t v = 0; v < graph.size(); ++v)
       for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e)

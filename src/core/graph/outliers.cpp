@@ -337,9 +337,13 @@ Outliers findStrayPoints(const Positions& points, const Execution& execution) {
   // Near a surface, but off it: without the others, which are no surface.
   std::vector<Index> numbers;
   const Positions others = othersOf(nodes.points, stray, numbers);
+  Execution search = execution;
+  if (execution.progress)
+    search.progress = [&](const Progress& progress) {
+      return execution.progress({"outliers", progress.fraction});
+    };
   const std::vector<double> near = internal::nearOutliers(
-      others, findNearestNeighbors(others, internal::kFittedNeighbors, execution),
-      execution.threads);
+      others, findNearestNeighbors(others, internal::kFittedNeighbors, search), execution.threads);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     distances[static_cast<std::size_t>(numbers[i])] = near[i];
   const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);

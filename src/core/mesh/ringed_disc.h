@@ -8,7 +8,7 @@ namespace spherical_param::internal {
 
 /// A flat disc of radius 1, triangulated in rings. Each ring has 0.7 times as many vertices as
 /// the one around it, and is as far inside as half of its own and half of the outer ring's edges;
-/// inside the last one, of 9 or fewer, is a pole: two to three times as many vertices inside as on
+/// inside the last one, of 9 or fewer, is a pole: up to 2.4 times as many vertices inside as on
 /// the rim.
 struct RingedDisc {
   std::vector<double> angles;  ///< of the vertices [rad]: the rim, ring by ring, the pole

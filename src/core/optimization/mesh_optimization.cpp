@@ -154,17 +154,16 @@ private:
   }
 
   /// Open triangles that no loop leads to are part of the surface, and must not intersect it.
-  /// Returns whether there were any.
+  /// Returns whether some were closed.
   bool closeWithoutLoop() {
     if (!openings_)
       return false;
     std::vector<Index> vertices;
     for (const Index t : internal::trianglesWithoutLoop(optimizer_.mesh(), *openings_))
-      for (int k = 0; k < 3; ++k)
-        vertices.push_back(optimizer_.mesh().vertex(t, k));
-    if (vertices.empty())
+      for (const Index v : cornersOf(t))
+        vertices.push_back(v);
+    if (!openings_->close(vertices))
       return false;
-    openings_->close(vertices);
     optimizer_.setPoints(*points_);
     return true;
   }

@@ -75,21 +75,20 @@ private:
   /// Open triangles around a vertex that follow each other, counter-clockwise.
   using Run = std::vector<Index>;
 
-  /// All runs around a vertex of triangles that are open, or of those that are not: none if all are
-  /// alike.
-  std::vector<Run> runsAt(Index v, bool are_open) const {
+  /// All runs around a vertex, none if all of its triangles are open.
+  std::vector<Run> runsAt(Index v) const {
     std::vector<Index> around;
     mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    const auto other =
-        std::find_if(around.begin(), around.end(), [&](Index t) { return isOpen(t) != are_open; });
+    const auto closed =
+        std::find_if(around.begin(), around.end(), [&](Index t) { return !isOpen(t); });
     std::vector<Run> runs;
-    if (other == around.end())
+    if (closed == around.end())
       return runs;
-    std::rotate(around.begin(), other, around.end());
+    std::rotate(around.begin(), closed, around.end());
     for (std::size_t i = 1; i < around.size(); ++i) {
-      if (isOpen(around[i]) != are_open)
+      if (!isOpen(around[i]))
         continue;
-      if (isOpen(around[i - 1]) != are_open)
+      if (!isOpen(around[i - 1]))
         runs.emplace_back();
       runs.back().push_back(around[i]);
     }
@@ -243,7 +242,7 @@ private:
   /// Leaves one fan less at a vertex: closes the narrowest gap between two for which that
   /// intersects nothing. Returns the vertices that this concerns.
   std::vector<Index> release(Index v) {
-    std::vector<Run> gaps = runsAt(v, true);
+    std::vector<Run> gaps = runsAt(v);
     std::stable_sort(gaps.begin(), gaps.end(),
                      [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
     for (Run& gap : gaps)

@@ -11,6 +11,7 @@
 namespace spherical_param::internal {
 
 /// optimizeMesh() of a surface with openings: triangles over them do not bend and do not intersect.
+/// Those to which no loop leads are taken for surface in the end.
 ///
 /// \param openings nullptr: the surface is closed.
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
@@ -24,13 +25,15 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
 
 /// A closed mesh with openings.
 struct OpenMesh {
-  Triangles triangles;                ///< the closed mesh; changed over the openings alone
+  Triangles triangles;                ///< the closed mesh, changed over the openings and beside
   std::vector<std::uint8_t> is_open;  ///< for each triangle, 1 if it is over an opening
 };
 
 /// Decides which triangles of a closed mesh are over openings, so that the others are a manifold
-/// with boundary over all vertices: connected open triangles count if they are next to a loop;
-/// where two openings meet in one vertex, the narrower gap is closed there by a triangle.
+/// with boundary over all vertices: connected open triangles count if they are next to a loop. A
+/// vertex without a triangle gets one, with an edge of the boundary, or is put into one of the
+/// surface; where openings meet in one vertex, gaps are closed there by triangles. Of the nearest
+/// places and the narrowest gaps those are taken that intersect nothing, if there are such.
 ///
 /// \param points    3 x n.
 /// \param triangles a closed manifold of genus 0 over the points.

@@ -39,7 +39,7 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
     for (const Index v : last) {
       const auto i = static_cast<std::size_t>(v);
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        add(graph.neighbors[e], 1);
+        add(graph.neighbors[e], kNear);
     }
   }
 }
@@ -50,10 +50,14 @@ bool OpenPlaces::isLong(Index a, Index b) const {
   return (points_.col(a) - points_.col(b)).squaredNorm() > longest * longest;
 }
 
-void OpenPlaces::close(const std::vector<Index>& vertices) {
+bool OpenPlaces::close(const std::vector<Index>& vertices) {
+  bool has_changed = false;
   for (const Index v : vertices)
-    if (is_near_[static_cast<std::size_t>(v)] != kLoop)
+    if (is_near_[static_cast<std::size_t>(v)] == kNear) {
       is_near_[static_cast<std::size_t>(v)] = 0;
+      has_changed = true;
+    }
+  return has_changed;
 }
 
 bool OpenPlaces::isRim(Index a, Index b) const {

@@ -22,7 +22,8 @@ public:
   bool areAny() const { return !rim_edges_.empty(); }
 
   /// Whether a triangle is over an opening: its vertices are at loops, or at most two steps from
-  /// them, and a side is longer than those of the surface.
+  /// them, and a side is longer than those of the surface; unless close() has excluded one of
+  /// them.
   bool isOpen(Index a, Index b, Index c) const {
     return is_near_[static_cast<std::size_t>(a)] != 0 &&
            is_near_[static_cast<std::size_t>(b)] != 0 &&
@@ -30,18 +31,20 @@ public:
            (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
-  /// No triangle of some vertices is over an opening any more, unless these are in a loop.
-  void close(const std::vector<Index>& vertices);
+  /// No triangle of some vertices is over an opening any more, unless these are in a loop. Returns
+  /// whether that changes anything.
+  bool close(const std::vector<Index>& vertices);
 
   /// Whether an edge is in a loop around an opening.
   bool isRim(Index a, Index b) const;
 
 private:
+  static constexpr std::uint8_t kNear = 1;
   static constexpr std::uint8_t kLoop = 2;
   bool isLong(Index a, Index b) const;
 
   const Positions& points_;
-  std::vector<std::uint8_t> is_near_;  ///< kLoop: in a loop
+  std::vector<std::uint8_t> is_near_;  ///< kNear, kLoop for those in a loop, or 0
   std::vector<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
 };

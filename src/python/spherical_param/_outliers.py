@@ -65,15 +65,15 @@ def find_outliers(
         As for ``reconstruct``.
     sigma : float, 0 to 1000, or "auto"
         Outliers are farther off than the mean by this number of standard deviations. "auto": stray
-        points, small clusters of them and points between sheets, in spacings of the nearest
-        surface; points of a surface are hardly ever among them.
+        points, small clusters of them, points between sheets and single points a little off a
+        surface, in spacings there; points of a surface are hardly ever among them.
     k : int, 3 and up
         Neighbours of each point that make its surface.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
     progress : callable(stage, fraction)
         As for ``reconstruct``; the stages are "neighbors" and "outliers", with "auto"
-        "neighbors" and "graph".
+        "neighbors", "graph" and "outliers".
 
     Raises
     ------

@@ -16,7 +16,7 @@ TEST(FilledGraph, IsThatOfAClosedSurface) {
     const Openings openings = findOpenings(points, graph);
     const FilledGraph filled = internal::fillOpenings(points, graph, openings);
     EXPECT_EQ(internal::countCycles(filled.graph, 2), 0);
-    // Two to three times as many nodes as the loops have.
+    // About twice as many nodes as the loops have.
     std::size_t loops = 0;
     for (const Opening& opening : openings.openings)
       loops += opening.loop.size();

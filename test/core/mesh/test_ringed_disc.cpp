@@ -17,7 +17,7 @@ std::vector<double> evenRim(std::size_t size) {
   return angles;
 }
 
-TEST(RingedDisc, IsADiscBelowItsRimWithTwoToThreeTimesAsManyVerticesInside) {
+TEST(RingedDisc, IsADiscBelowItsRim) {
   std::vector<std::vector<double>> rims;
   for (const std::size_t size : {3U, 4U, 9U, 10U, 11U, 64U, 1001U})
     rims.push_back(evenRim(size));
@@ -32,6 +32,7 @@ TEST(RingedDisc, IsADiscBelowItsRimWithTwoToThreeTimesAsManyVerticesInside) {
     const std::size_t count = disc.radii.size();
     ASSERT_EQ(disc.angles.size(), count);
     EXPECT_LE(count, 7 * rim.size() / 2 + 10);
+    EXPECT_GE(count, rim.size() < 40 ? rim.size() + 1 : 3 * rim.size());
     EXPECT_TRUE(std::is_sorted(disc.radii.rbegin(), disc.radii.rend()));
     EXPECT_EQ(disc.radii.back(), 0.0);
     const MeshTopology topology = checkTopology(disc.triangles, count);
