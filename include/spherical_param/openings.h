@@ -49,8 +49,9 @@ struct Openings {
 /// out, and so are edges that are steep to a plane and join different normals. In the order of the
 /// neighbours around the normals all faces of the graph are traced. One is an opening if it has at
 /// least 7 edges, is at least 3 spacings wide, and has corners of at least 117 degrees in the mean:
-/// those of narrow seams are sharp. A flat patch in which no face is wide
-/// enough has an opening around it even so, unless it is narrower than a tenth of a spacing.
+/// those of narrow seams are sharp. A slit, longer than 5 times the edge of a disc as wide, must be
+/// 4 spacings wide. A flat patch in which no face is wide enough has an opening around it even so,
+/// unless it is narrower than a tenth of a spacing.
 ///
 /// If there are openings, edges between opposite normals are left out as well: near a loop they
 /// join the two sides of a thin part. Not so if the surface has one side only: then many of them

@@ -81,6 +81,20 @@ TEST(Openings, CountFromThreeSpacingsOn) {
   EXPECT_EQ(openings[1].loop.size(), 12U);
   EXPECT_NEAR(openings[1].width, 22.0 * std::sqrt(0.75) / 2.0 * 4.0 / 12.0, 1e-9);
   EXPECT_NEAR(openings[1].certainty, (openings[1].width - 3.0) / 6.0, 1e-9);
+  // A slit of 60 points in one row is 3.4 wide, which would do for a hole, one of two rows 5.
+  Positions field(3, 80 * 20);
+  for (int row = 0; row < 20; ++row)
+    for (int i = 0; i < 80; ++i)
+      field.col(80 * row + i) << i + 0.5 * (row % 2), std::sqrt(0.75) * row, 0.0;
+  const auto with_slit = [&](int first, int last) {
+    std::vector<Index> kept;
+    for (Index i = 0; i < 1600; ++i)
+      if (i / 80 < first || i / 80 > last || i % 80 < 10 || i % 80 >= 70)
+        kept.push_back(i);
+    return openingsOf(field(Eigen::all, kept)).size();
+  };
+  EXPECT_EQ(with_slit(8, 8), 1U);
+  EXPECT_EQ(with_slit(8, 9), 2U);
   // Wider ones are more certain, up to 9 spacings: 3,000 points are 0.065 apart.
   EXPECT_LT(openingsOf(sphereWithHoles(3000, 1, 0.15)).at(0).certainty,
             openingsOf(sphereWithHoles(3000, 1, 0.25)).at(0).certainty);
