@@ -90,22 +90,23 @@ double ranked(std::array<double, kFittedNeighbors> values, std::size_t rank) {
 
 std::vector<double> nearOutliers(const Positions& points, const NeighborLists& lists, int threads) {
   const std::size_t n = lists.size();
-  const int used_threads = threadCount(threads, n, kParallelThreshold);
+  using Around = std::array<Index, kFittedNeighbors>;
+  const auto for_each_point = [&](const auto& visit) {
+    forEachItem(n, threadCount(threads, n, kParallelThreshold), [&](std::size_t, std::size_t i) {
+      Around around{};
+      if (others(lists, i, around))
+        visit(i, around);
+    });
+  };
   std::vector<double> spacing(n, 0.0);
-  forEachItem(n, used_threads, [&](std::size_t, std::size_t i) {
-    std::array<Index, kFittedNeighbors> around{};
-    if (!others(lists, i, around))
-      return;
+  for_each_point([&](std::size_t i, const Around& around) {
     std::array<double, kFittedNeighbors> distances{};
     for (std::size_t k = 0; k < around.size(); ++k)
       distances[k] = (points.col(around[k]) - points.col(static_cast<Eigen::Index>(i))).norm();
     spacing[i] = ranked(distances, kSpacingRank);
   });
   std::vector<double> distances(n, 0.0);
-  forEachItem(n, used_threads, [&](std::size_t, std::size_t i) {
-    std::array<Index, kFittedNeighbors> around{};
-    if (!others(lists, i, around))
-      return;
+  for_each_point([&](std::size_t i, const Around& around) {
     std::array<double, kFittedNeighbors> spacings{};
     for (std::size_t k = 0; k < around.size(); ++k)
       spacings[k] = spacing[static_cast<std::size_t>(around[k])];

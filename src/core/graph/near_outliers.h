@@ -12,9 +12,8 @@ constexpr int kFittedNeighbors = 20;
 /// How far points near a surface are off it, as findStrayPoints() defines it.
 ///
 /// \param points  3 x n, finite, distinct.
-/// \param lists   n lists, the kFittedNeighbors nearest others of each point, and the point itself
-/// or
-///                not; shorter ones give 0.
+/// \param lists   n lists of the kFittedNeighbors nearest others of each point, with or without the
+///                point itself; shorter ones give 0.
 /// \return n entries: 0 for a point of the surface, else its distance [spacing there].
 std::vector<double> nearOutliers(const Positions& points, const NeighborLists& lists, int threads);
 
