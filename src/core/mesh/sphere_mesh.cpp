@@ -298,10 +298,11 @@ bool SphereMesh::flip(Index triangle, int corner) {
   return true;
 }
 
-void SphereMesh::rollBack() {
-  for (auto change = changes_.rbegin(); change != changes_.rend(); ++change)
-    *change->first = change->second;
-  commit();
+void SphereMesh::rollBack(std::size_t first) {
+  for (; changes_.size() > first; changes_.pop_back())
+    *changes_.back().first = changes_.back().second;
+  if (first == 0)
+    commit();
 }
 
 Triangles SphereMesh::triangles() const {

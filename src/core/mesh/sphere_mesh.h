@@ -79,14 +79,18 @@ public:
   /// `corner`, as corner 0; the neighbour has it as corner 0 too.
   bool flip(Index triangle, int corner);
 
-  /// Begins to write down all changes, until commit() or rollBack(). There must be room for all
-  /// splits: places that merge() freed.
-  void record() { is_recording_ = true; }
+  /// Begins to write down all changes, or goes on with it, until commit() or rollBack(). There must
+  /// be room for all splits: places that merge() freed. Returns the number of changes so far.
+  std::size_t record() {
+    is_recording_ = true;
+    return changes_.size();
+  }
   void commit() {
     is_recording_ = false;
     changes_.clear();
   }
-  void rollBack();
+  /// Undoes the changes from a number on; with 0 it ends writing them down.
+  void rollBack(std::size_t first = 0);
 
   Triangles triangles() const;
 

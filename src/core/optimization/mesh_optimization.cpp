@@ -285,34 +285,80 @@ private:
   std::vector<std::array<Index, 2>> untangle() {
     auto pairs = optimizer_.intersections(report_);
     result_.report.phases.back().self_intersections = pairs.size();
-    for (int round = 0; round < tuned::kMaxUntangleRounds && !pairs.empty() && budget_ > 0;
+    const bool is_noise = points_ == given_ && result_.report.noise_steps > 0;
+    const int rounds_by_energy = is_noise ? 0 : tuned::kMaxRoundsByEnergy;
+    int idle = 0;
+    for (int round = 0; round < tuned::kMaxUntangleRounds && idle < tuned::kMaxIdleRounds &&
+                        !pairs.empty() && budget_ > 0;
          ++round) {
+      const bool by_number = round >= rounds_by_energy;
+      if (by_number && idle == 0) {
+        flipApart(pairs);
+        if (pairs.empty())
+          break;
+      }
       OptimizationPhase& untangled = phase("untangle", [&] {
         Tally tally;
-        std::vector<std::array<std::array<Index, 3>, 2>> corners;
-        corners.reserve(pairs.size());
-        for (const auto& [t, u] : pairs)
-          corners.push_back({cornersOf(t), cornersOf(u)});
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-          reportItem(i, pairs.size(), 16);
-          untanglePair(pairs[i], corners[i], round >= tuned::kMaxRoundsByEnergy, tally);
-        }
+        forEachPair(pairs, [&](const auto& pair, const auto& corners) {
+          untanglePair(pair, corners, by_number, tally);
+        });
         return tally;
       });
       pairs = optimizer_.intersections(report_);
       untangled.self_intersections = pairs.size();
+      if (by_number)
+        idle = untangled.moves == 0 ? idle + 1 : 0;
     }
     return pairs;
   }
 
-  void untanglePair(const std::array<Index, 2>& pair,
-                    const std::array<std::array<Index, 3>, 2>& corners, bool by_number,
-                    Tally& tally) {
+  void flipApart(std::vector<std::array<Index, 2>>& pairs) {
+    OptimizationPhase& flipped = phase("flip apart", [&] {
+      Tally tally;
+      forEachPair(pairs, [&](const auto& pair, const auto& corners) {
+        if (areCornersOf(pair, corners)) {
+          ++tally.tried;
+          optimizer_.intersectionsAround(
+              optimizer_.spread(seedsOf(corners), tuned::kFlipRegion, random_));
+          tally.moves += optimizer_.flipApart();
+        }
+      });
+      return tally;
+    });
+    pairs = optimizer_.intersections(report_);
+    flipped.self_intersections = pairs.size();
+  }
+
+  using Corners = std::array<std::array<Index, 3>, 2>;
+
+  template <typename Work>
+  void forEachPair(const std::vector<std::array<Index, 2>>& pairs, const Work& work) {
+    std::vector<Corners> corners;
+    corners.reserve(pairs.size());
+    for (const auto& [t, u] : pairs)
+      corners.push_back({cornersOf(t), cornersOf(u)});
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      reportItem(i, pairs.size(), 16);
+      work(pairs[i], corners[i]);
+    }
+  }
+
+  bool areCornersOf(const std::array<Index, 2>& pair, const Corners& corners) const {
+    return cornersOf(pair[0]) == corners[0] && cornersOf(pair[1]) == corners[1];
+  }
+
+  static std::vector<Index> seedsOf(const Corners& corners) {
     std::vector<Index> seeds(corners[0].begin(), corners[0].end());
     seeds.insert(seeds.end(), corners[1].begin(), corners[1].end());
+    return seeds;
+  }
+
+  void untanglePair(const std::array<Index, 2>& pair, const Corners& corners, bool by_number,
+                    Tally& tally) {
+    const std::vector<Index> seeds = seedsOf(corners);
     for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2) {
       // A pair that has changed waits for the next round.
-      if (cornersOf(pair[0]) != corners[0] || cornersOf(pair[1]) != corners[1])
+      if (!areCornersOf(pair, corners))
         return;
       if (!by_number) {
         tryPart(seeds, size, MeshOptimizer::isGain, tally);
@@ -324,7 +370,9 @@ private:
       tryPart(
           seeds, size,
           [&](double change) {
-            const std::size_t after = optimizer_.intersectionsAround(around);
+            std::size_t after = optimizer_.intersectionsAround(around);
+            if (after > 0)
+              after -= optimizer_.flipApart();
             return after < before || (after == before && MeshOptimizer::isGain(change));
           },
           tally);

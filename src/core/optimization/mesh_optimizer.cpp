@@ -42,13 +42,17 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
       mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
       facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
       stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
-      seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
+      seen_vertices_(static_cast<std::size_t>(points.cols()), 0), local_(facets_.size()) {
   reportFraction(report, 0.0);
   double lengths = 0.0;
   for (const double length : graph_.lengths)
     lengths += length;
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph_.lengths.size());
+  // The predicates multiply three differences.
+  int exponent = 0;
+  std::frexp(points.cwiseAbs().maxCoeff(), &exponent);
+  scale_ = std::ldexp(1.0, std::min(-exponent, 1000));
   recomputeFacets(report);
 }
 
@@ -101,7 +105,7 @@ double MeshOptimizer::recomputedEnergy() const {
 }
 
 void MeshOptimizer::setFacet(Index t) {
-  if (is_recording_)
+  if (!open_.empty())
     old_facets_.emplace_back(t, facetOf(t));
   changes_[at(t)] = kChangedSinceFlips | kChangedSinceAngles;
   facets_[at(t)] = facet(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
@@ -344,7 +348,7 @@ bool MeshOptimizer::remove(Index v) {
   if (t < 0)
     return false;
   for (const Index old : fan)
-    if (is_recording_ && old != t)
+    if (!open_.empty() && old != t)
       old_facets_.emplace_back(old, facetOf(old));
   setFacet(t);
   energy_ -= splitCost(t, v, std::numeric_limits<double>::infinity());
@@ -392,24 +396,26 @@ void MeshOptimizer::appendNeighbors(Index v, std::vector<Index>& neighbors) cons
 }
 
 void MeshOptimizer::begin() {
-  mesh_.record();
-  is_recording_ = true;
-  energy_before_ = energy_;
+  open_.push_back({mesh_.record(), old_facets_.size(), energy_});
 }
 
 void MeshOptimizer::keep() {
+  open_.pop_back();
+  if (!open_.empty())
+    return;
   mesh_.commit();
-  is_recording_ = false;
   old_facets_.clear();
 }
 
 void MeshOptimizer::rollBack() {
-  mesh_.rollBack();
-  for (auto old = old_facets_.rbegin(); old != old_facets_.rend(); ++old)
-    facets_[at(old->first)] = old->second;
-  energy_ = energy_before_;
-  is_recording_ = false;
-  old_facets_.clear();
+  const Before& before = open_.back();
+  mesh_.rollBack(before.changes);
+  for (; old_facets_.size() > before.facets; old_facets_.pop_back())
+    facets_[at(old_facets_.back().first)] = old_facets_.back().second;
+  energy_ = before.energy;
+  open_.pop_back();
+  if (!open_.empty())
+    mesh_.record();
 }
 
 bool MeshOptimizer::isGain(double change) {
@@ -458,6 +464,131 @@ bool MeshOptimizer::recreate(const std::vector<Index>& vertices,
   }
   rollBack();
   return false;
+}
+
+Face MeshOptimizer::face(Index t, Index a, Index b, Index c) const {
+  Face face{{scale_ * points_->col(a), scale_ * points_->col(b), scale_ * points_->col(c)},
+            0.0,
+            {a, b, c},
+            t};
+  face.size = boxOf(face.corners).size();
+  return face;
+}
+
+int MeshOptimizer::intersectionsOf(const Face& first, const Face& second) const {
+  const bool are_apart =
+      evidentlyApart(first, Plane(first), second) || !intersectCarefully(first, second);
+  return static_cast<int>(local_.count(first, first.triangle, second.triangle) +
+                          local_.count(second, first.triangle, second.triangle)) +
+         (are_apart ? 0 : 1);
+}
+
+bool MeshOptimizer::findRepair(Index t, int k, Repair& repair) const {
+  const Index o = mesh_.neighbor(t, k);
+  const Index c = mesh_.vertex(t, k);
+  const Index a = mesh_.vertex(t, (k + 1) % 3);
+  const Index b = mesh_.vertex(t, (k + 2) % 3);
+  const Index d = mesh_.vertex(o, mesh_.oppositeCorner(t, k));
+  if (c == d || mesh_.areJoined(c, d) || !local_.contains(t) || !local_.contains(o) ||
+      rawFacet(c, a, d).radius < 0.0 || rawFacet(c, d, b).radius < 0.0)
+    return false;
+  repair.triangle = t;
+  repair.corner = k;
+  repair.intersections =
+      intersectionsOf(face(t, c, a, d), face(o, c, d, b)) - intersectionsOf(face(t), face(o));
+  repair.cost = -flipGain(t, k, -std::numeric_limits<double>::infinity());
+  return true;
+}
+
+void MeshOptimizer::updateLocally(Index t, Index o) {
+  local_.set(face(t));
+  local_.set(face(o));
+}
+
+void MeshOptimizer::flipLocally(const Repair& repair) {
+  const Index o = mesh_.neighbor(repair.triangle, repair.corner);
+  flip(repair.triangle, repair.corner, -repair.cost);
+  updateLocally(repair.triangle, o);
+}
+
+int MeshOptimizer::findRepairs(Index t, std::array<Repair, 2>& repairs) {
+  Repair best{0, 0.0, -1, 0};
+  const auto consider = [&](Index u, int k, const Repair* first) {
+    Repair repair;
+    if (!findRepair(u, k, repair))
+      return;
+    if (first != nullptr) {
+      repair.intersections += first->intersections;
+      repair.cost += first->cost;
+    }
+    if (repair.intersections >= 0 || !repair.isBetterThan(best))
+      return;
+    best = repair;
+    repairs[0] = repair;
+    if (first != nullptr) {
+      repairs[0] = *first;
+      repairs[1] = repair;
+      repairs[1].intersections -= first->intersections;
+      repairs[1].cost -= first->cost;
+    }
+  };
+  for (int k = 0; k < 3; ++k)
+    consider(t, k, nullptr);
+  if (best.triangle >= 0)
+    return 1;
+  std::array<std::pair<Index, int>, 9> sides;
+  std::size_t count = 0;
+  for (int k = 0; k < 3; ++k) {
+    sides[count++] = {t, k};
+    const Index o = mesh_.neighbor(t, k);
+    for (int l = 0; l < 3; ++l)
+      if (mesh_.neighbor(o, l) != t)
+        sides[count++] = {o, l};
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [u, k] = sides[i];
+    Repair first;
+    if (!findRepair(u, k, first) || first.intersections > 1)
+      continue;
+    const Index o = mesh_.neighbor(u, k);
+    begin();
+    flipLocally(first);
+    for (int l = 0; l < 3; ++l) {
+      consider(u, l, &first);
+      consider(o, l, &first);
+      if (t != u && t != o)
+        consider(t, l, &first);
+    }
+    rollBack();
+    updateLocally(u, o);
+  }
+  return best.triangle >= 0 ? 2 : 0;
+}
+
+std::size_t MeshOptimizer::flipApart() {
+  std::vector<Index> bad;
+  for (const Face& face : local_.faces())
+    if (intersects(face.triangle))
+      bad.push_back(face.triangle);
+  int fewer = 0;
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    const Index t = bad[i];
+    while (intersects(t)) {
+      std::array<Repair, 2> repairs;
+      const int count = findRepairs(t, repairs);
+      if (count == 0)
+        break;
+      for (int r = 0; r < count; ++r) {
+        const Repair& repair = repairs[static_cast<std::size_t>(r)];
+        const Index o = mesh_.neighbor(repair.triangle, repair.corner);
+        flipLocally(repair);
+        fewer -= repair.intersections;
+        bad.push_back(repair.triangle);
+        bad.push_back(o);
+      }
+    }
+  }
+  return static_cast<std::size_t>(fewer);
 }
 
 std::vector<Index> MeshOptimizer::spread(const std::vector<Index>& seeds, std::size_t count,
@@ -757,38 +888,17 @@ MeshOptimizer::Pairs MeshOptimizer::allIntersections(const Triangles& triangles,
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {
-  ++pass_;
-  numbers_.resize(seen_vertices_.size());
-  std::vector<Index> triangles;
-  std::vector<Index> corners;
+  local_.clear();
+  std::size_t pairs = 0;
   for (const Index v : vertices)
     mesh_.forEachAround(v, [&](Index t, int) {
-      if (seen_triangles_[at(t)] == pass_)
+      if (facetOf(t).isOpen() || local_.contains(t))
         return;
-      seen_triangles_[at(t)] = pass_;
-      if (facetOf(t).isOpen())
-        return;
-      triangles.push_back(t);
-      for (int k = 0; k < 3; ++k) {
-        const Index corner = mesh_.vertex(t, k);
-        if (seen_vertices_[at(corner)] == pass_)
-          continue;
-        seen_vertices_[at(corner)] = pass_;
-        numbers_[at(corner)] = static_cast<Index>(corners.size());
-        corners.push_back(corner);
-      }
+      const Face face_of_t = face(t);
+      pairs += local_.count(face_of_t, t, t);
+      local_.set(face_of_t);
     });
-  Positions points(3, static_cast<Eigen::Index>(corners.size()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    points.col(i) = points_->col(corners[static_cast<std::size_t>(i)]);
-  Triangles part(3, static_cast<Eigen::Index>(triangles.size()));
-  for (Eigen::Index i = 0; i < part.cols(); ++i)
-    for (int k = 0; k < 3; ++k)
-      part(k, i) = numbers_[at(mesh_.vertex(triangles[static_cast<std::size_t>(i)], k))];
-  std::vector<std::uint8_t> fans(corners.size());
-  for (std::size_t i = 0; i < fans.size(); ++i)
-    fans[i] = isPlainFan(corners[i]) ? 1 : 0;
-  return findSelfIntersections(points, part, fans, 1).size();
+  return pairs;
 }
 
 }  // namespace spherical_param::internal

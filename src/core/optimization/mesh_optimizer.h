@@ -1,5 +1,6 @@
 #pragma once
 
+#include "local_intersections.h"
 #include "progress.h"
 #include "sphere_mesh.h"
 #include "spherical_param/types.h"
@@ -94,6 +95,10 @@ public:
   std::vector<std::uint8_t> plainFans(const FractionReport& report = {}) const;
   /// Pairs that intersect among the triangles around some vertices.
   std::size_t intersectionsAround(const std::vector<Index>& vertices);
+  /// Flips edges among the triangles of the last intersectionsAround() so that fewer of them
+  /// intersect: one edge or two at a time, and of equally good flips those that cost least. Returns
+  /// how many pairs fewer there are.
+  std::size_t flipApart();
 
 private:
   /// A flip that gains. Void if its side has another stamp by now.
@@ -141,6 +146,31 @@ private:
   /// What the energy falls by if a side is flipped, or no more than `floor` if that is so.
   double flipGain(Index t, int k, double floor) const;
   bool flip(Index t, int k, double gain);
+  /// A flip by what it changes: intersections among local_, and the energy.
+  struct Repair {
+    int intersections;
+    double cost;
+    Index triangle;
+    int corner;
+
+    bool isBetterThan(const Repair& other) const {
+      return intersections != other.intersections ? intersections < other.intersections
+                                                  : cost < other.cost;
+    }
+  };
+  Face face(Index t, Index a, Index b, Index c) const;
+  Face face(Index t) const {
+    return face(t, mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
+  }
+  /// Pairs of two triangles and those of local_, or of the two.
+  int intersectionsOf(const Face& first, const Face& second) const;
+  bool intersects(Index t) const { return local_.contains(t) && local_.count(face(t), t, t) > 0; }
+  /// \return false if the side may not be flipped.
+  bool findRepair(Index t, int k, Repair& repair) const;
+  void flipLocally(const Repair& repair);
+  void updateLocally(Index t, Index o);
+  /// The best flip of a triangle that intersects others, or the best two. Returns their number.
+  int findRepairs(Index t, std::array<Repair, 2>& repairs);
   /// Puts the flips of a triangle's sides in the queue, and declares void what was there of them.
   void queueSides(Index t);
   void queueFlip(Index t, int k);
@@ -158,7 +188,7 @@ private:
   void keep();
   void rollBack();
   /// Change of the energy since begin() [mean length of the graph's edges].
-  double change() const { return (energy_ - energy_before_) / unit_; }
+  double change() const { return (energy_ - open_.back().energy) / unit_; }
 
   const Positions* points_;
   const Graph& graph_;
@@ -166,9 +196,9 @@ private:
   const int threads_;
   SphereMesh mesh_;
   SurfaceEnergy terms_;
-  double unit_ = 1.0;  ///< mean length of the graph's edges
+  double unit_ = 1.0;   ///< mean length of the graph's edges
+  double scale_ = 1.0;  ///< brings the coordinates to at most 1
   double energy_ = 0.0;
-  double energy_before_ = 0.0;
   std::vector<Facet> facets_;
   /// The mesh when intersections() was asked last, and what it answered.
   struct Checked {
@@ -176,7 +206,13 @@ private:
     Pairs pairs;
   };
   Checked checked_;
-  bool is_recording_ = false;
+  /// What was before each begin() that neither keep() nor rollBack() has ended yet.
+  struct Before {
+    std::size_t changes;
+    std::size_t facets;
+    double energy;
+  };
+  std::vector<Before> open_;
   std::vector<std::pair<Index, Facet>> old_facets_;
 
   static constexpr std::uint8_t kChangedSinceFlips = 1;
@@ -198,8 +234,8 @@ private:
   std::vector<std::uint32_t> seen_triangles_;
   std::vector<std::uint32_t> seen_vertices_;
   std::uint32_t pass_ = 0;
-  std::vector<Index> numbers_;  ///< of vertices in a part, working memory of intersectionsAround()
-  std::vector<Index> around_;   ///< working memory of insert() and relocate()
+  LocalIntersections local_;   ///< of the last intersectionsAround()
+  std::vector<Index> around_;  ///< working memory of insert() and relocate()
   std::vector<Index> changed_;
 };
 

@@ -1,39 +1,40 @@
 #include "spherical_param/self_intersection.h"
 
-#include "exact_predicates.h"
+#include "box_group.h"
 #include "parallel.h"
 #include "progress.h"
 #include "radix_sort.h"
 #include "self_intersection_of_fans.h"
 #include "spherical_param/errors.h"
-
-#include <Eigen/Geometry>
+#include "triangle_pair.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
 
 // Candidates come from a tree of bounding boxes over the triangles in the order of a space-filling
 // curve: one for all, or one for each block of a mesh whose triangles are in good order already.
-// Nearly all of them are neighbours that a plane separates, which few operations and a bound of
-// their error show. Exact arithmetic decides about the rest, straight from the definition.
+// \see triangle_pair.h for how two of them are tested.
 
 namespace spherical_param {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
+using internal::Box;
+using internal::BoxGroup;
+using internal::boxOf;
+using internal::Face;
 using internal::FractionReport;
-using internal::kUnitRoundoff;
-using internal::orientation2d;
-using internal::orientation3d;
+using internal::kGroupBits;
+using internal::kGroupSize;
+using internal::Overlaps;
+using internal::Plane;
+using internal::WideBox;
 using Pairs = std::vector<std::array<Index, 2>>;
 
 // They influence the time only, not the pairs that are found.
@@ -46,366 +47,6 @@ constexpr double kMaxBlock = 64.0;
 /// Up to this number of large triangles, and one more for each kTypicalPerLarge, do no harm.
 constexpr std::size_t kMaxLarge = 16;
 constexpr std::size_t kTypicalPerLarge = 10000;
-
-/// A triangle with all that the tests need, in one place of the memory.
-struct Face {
-  std::array<Vector3d, 3> corners;  ///< scaled, see checkedScale()
-  double size;                      ///< at least the longest side of the bounding box
-  std::array<Index, 3> vertices;
-  Index triangle;
-};
-
-// --- The definition, in exact arithmetic ---------------------------------------------------------
-
-/// The axis along which a triangle is projected without losing its area; 3 if it has none.
-int projectionAxis(const std::array<Vector3d, 3>& t) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto flat = [&](const Vector3d& p) {
-      return Vector2d(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-    };
-    if (orientation2d(flat(t[0]), flat(t[1]), flat(t[2])) != 0)
-      return axis;
-  }
-  return 3;
-}
-
-/// A triangle with area, and its plane seen along an axis.
-struct ExactTriangle {
-  std::array<Vector3d, 3> corners;
-  int axis;  ///< of projectionAxis(), below 3
-
-  Vector2d flat(const Vector3d& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
-  /// Sign of the side of the plane that p is on.
-  int side(const Vector3d& p) const { return orientation3d(corners[0], corners[1], corners[2], p); }
-  /// Sign of the side of the line from a to b that c is on; all in the plane.
-  int turn(const Vector3d& a, const Vector3d& b, const Vector3d& c) const {
-    return orientation2d(flat(a), flat(b), flat(c));
-  }
-  /// Whether a point of the plane is in the closed triangle.
-  bool contains(const Vector3d& p) const {
-    const int first = turn(corners[0], corners[1], p);
-    const int second = turn(corners[1], corners[2], p);
-    const int third = turn(corners[2], corners[0], p);
-    return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
-  }
-};
-
-/// Whether two closed segments in the plane of a triangle, both longer than zero, have a point in
-/// common, besides an end of the first inside the triangle that the second is a side of.
-bool segmentsCross(const ExactTriangle& plane, const Vector3d& p, const Vector3d& q,
-                   const Vector3d& a, const Vector3d& b) {
-  const int a_side = plane.turn(p, q, a);
-  const int b_side = plane.turn(p, q, b);
-  const int p_side = plane.turn(a, b, p);
-  const int q_side = plane.turn(a, b, q);
-  // On one line they overlap only if an end of one is in the other: of the two ends of the first,
-  // contains() knows; if those of the second are in the first, so is a corner, and with it a point
-  // of another side, which is not on this line.
-  return a_side * b_side <= 0 && p_side * q_side <= 0 && (a_side != 0 || b_side != 0);
-}
-
-/// Whether a closed segment and a closed triangle have a point in common.
-bool segmentMeets(const Vector3d& p, const Vector3d& q, const ExactTriangle& t) {
-  const int p_side = t.side(p);
-  const int q_side = t.side(q);
-  if (p_side * q_side > 0)
-    return false;
-  if ((p_side == 0 && t.contains(p)) || (q_side == 0 && t.contains(q)))
-    return true;
-  const auto& [a, b, c] = t.corners;
-  if (p_side == 0 && q_side == 0)
-    return segmentsCross(t, p, q, a, b) || segmentsCross(t, p, q, b, c) ||
-           segmentsCross(t, p, q, c, a);
-  if (p_side == 0 || q_side == 0)
-    return false;
-  const int first = orientation3d(p, q, a, b);
-  const int second = orientation3d(p, q, b, c);
-  const int third = orientation3d(p, q, c, a);
-  return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
-}
-
-/// The definition of the header.
-bool intersectExactly(const Face& face_a, const Face& face_b) {
-  ExactTriangle a{face_a.corners, projectionAxis(face_a.corners)};
-  ExactTriangle b{face_b.corners, projectionAxis(face_b.corners)};
-  if (a.axis == 3 || b.axis == 3)
-    return false;
-  // Common corners to the front, in the same order.
-  std::size_t common = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = common; j < 3; ++j)
-      if (a.corners[i] == b.corners[j]) {
-        std::swap(a.corners[i], a.corners[common]);
-        std::swap(b.corners[j], b.corners[common]);
-        ++common;
-        break;
-      }
-  switch (common) {
-  case 0:
-    // Where two triangles meet, a side of one of them meets the other.
-    for (std::size_t i = 0; i < 3; ++i)
-      if (segmentMeets(a.corners[i], a.corners[(i + 1) % 3], b) ||
-          segmentMeets(b.corners[i], b.corners[(i + 1) % 3], a))
-        return true;
-    return false;
-  case 1:
-    return segmentMeets(a.corners[1], a.corners[2], b) ||
-           segmentMeets(b.corners[1], b.corners[2], a);
-  case 2:
-    // The cheap question first: in a flat mesh, neighbours lie on different sides.
-    return a.turn(a.corners[0], a.corners[1], a.corners[2]) *
-                   a.turn(a.corners[0], a.corners[1], b.corners[2]) >
-               0 &&
-           a.side(b.corners[2]) == 0;
-  default:
-    return true;
-  }
-}
-
-// --- Quick tests that only ever say that two triangles do not intersect
-// ---------------------------
-
-double largest(const Vector3d& v) {
-  return v.cwiseAbs().maxCoeff();
-}
-
-/// The plane of a triangle, rounded.
-struct Plane {
-  Vector3d origin;
-  Vector3d normal;
-  double error;  ///< bound of that of value(), relative to the distance from the origin
-
-  explicit Plane(const Face& face) : origin(face.corners[0]) {
-    const Vector3d u = face.corners[1] - origin;
-    const Vector3d v = face.corners[2] - origin;
-    normal = u.cross(v);
-    // A coordinate of the normal is wrong by up to 8 units of roundoff of |u| |v| (largest
-    // coordinates), and at most 2 |u| |v|; each of the three products of the value with a distance
-    // d thus by 8 + 2 * 4 units of |u| |v| d. The rest up to 64 covers higher powers.
-    error = 64.0 * kUnitRoundoff * largest(u) * largest(v);
-  }
-  /// Distance of p from the plane, times the length of the normal.
-  double value(const Vector3d& p) const { return normal.dot(p - origin); }
-  /// Whether all of some values are on one side for sure.
-  /// \param reach bound of the coordinates of p - origin.
-  template <typename... Values>
-  bool isBeside(double reach, Values... values) const {
-    const double bound = error * reach;
-    return std::min({values...}) > bound || std::max({values...}) < -bound;
-  }
-};
-
-/// Whether a plane through a common corner v lies between the other corners of two triangles.
-///
-/// \param reach bound of the coordinates of differences of corners.
-bool separatedAt(const Vector3d& v, const Vector3d& a1, const Vector3d& a2, const Vector3d& b1,
-                 const Vector3d& b2, double reach) {
-  // Any direction will do: it has no error. This one is mostly normal to such a plane.
-  const Vector3d direction = (a1 - b1) + (a2 - b2);
-  // 4 roundings in each of three products of a coordinate of the direction, up to 2 reach, with a
-  // distance.
-  const double bound = 32.0 * kUnitRoundoff * reach * reach;
-  return std::min(direction.dot(a1 - v), direction.dot(a2 - v)) > bound &&
-         std::max(direction.dot(b1 - v), direction.dot(b2 - v)) < -bound;
-}
-
-/// Whether a plane across the line between their centres lies between two triangles.
-bool separated(const Face& a, const Face& b, double reach) {
-  const auto& [a0, a1, a2] = a.corners;
-  const auto& [b0, b1, b2] = b.corners;
-  const Vector3d direction = (a0 - b0) + (a1 - b1) + (a2 - b2);
-  const double least = std::min({0.0, direction.dot(a1 - a0), direction.dot(a2 - a0)});
-  const double most =
-      std::max({direction.dot(b0 - a0), direction.dot(b1 - a0), direction.dot(b2 - a0)});
-  // As above, for two distances and a direction up to 3 reach.
-  return least - most > 128.0 * kUnitRoundoff * reach * reach;
-}
-
-/// Whether two triangles whose boxes overlap evidently do not intersect.
-///
-/// \param plane_a of a.
-bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
-  // How many corners they have in common, and the sums of the numbers of these in either.
-  unsigned common = 0;
-  for (unsigned i = 0; i < 3; ++i)
-    for (unsigned j = 0; j < 3; ++j)
-      common += a.vertices[i] == b.vertices[j] ? 1U + (i << 8U) + (j << 16U) : 0U;
-  const std::size_t of_a = common >> 8U & 0xffU;
-  const std::size_t of_b = common >> 16U;
-  const double reach = a.size + b.size;
-  // A triangle that names a vertex twice makes nonsense of the sums, but it has no area. Corners
-  // that are equal but not named alike do no harm: nothing separates them.
-  constexpr std::array<std::size_t, 4> next{1, 2, 0, 1};
-  switch (common & 0xffU) {
-  case 0:
-    return separated(a, b, reach) ||
-           plane_a.isBeside(reach, plane_a.value(b.corners[0]), plane_a.value(b.corners[1]),
-                            plane_a.value(b.corners[2]));
-  case 1: {
-    const Vector3d& b1 = b.corners[next[of_b]];
-    const Vector3d& b2 = b.corners[next[of_b + 1]];
-    return separatedAt(a.corners[of_a], a.corners[next[of_a]], a.corners[next[of_a + 1]], b1, b2,
-                       reach) ||
-           plane_a.isBeside(reach, plane_a.value(b1), plane_a.value(b2));
-  }
-  case 2:
-    return of_b <= 3 && plane_a.isBeside(reach, plane_a.value(b.corners[3 - of_b]));
-  default:
-    return false;
-  }
-}
-
-/// For what is left after evidentlyApart(a, plane_a, b).
-bool intersectCarefully(const Face& a, const Face& b) {
-  return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
-}
-
-// --- The tree of boxes ---------------------------------------------------------------------------
-
-struct Box {
-  Vector3d lower;
-  Vector3d upper;
-
-  double size() const { return (upper - lower).maxCoeff(); }
-  bool overlaps(const Box& other) const {
-    return (lower.array() <= other.upper.array()).all() &&
-           (other.lower.array() <= upper.array()).all();
-  }
-};
-
-Box boxOf(const std::array<Vector3d, 3>& corners) {
-  const auto& [a, b, c] = corners;
-  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
-}
-
-/// Whether a box lies on one side of a plane.
-bool clears(const Plane& plane, const Box& box) {
-  const Vector3d center = 0.5 * (box.lower + box.upper) - plane.origin;
-  const Vector3d half = 0.5 * (box.upper - box.lower);
-  const double reach = plane.normal.cwiseAbs().dot(half);
-  const double bound = plane.error * (largest(center) + largest(half));
-  return std::abs(plane.normal.dot(center)) > reach + 2.0 * bound;
-}
-
-constexpr std::size_t kWidth = 8;  ///< boxes of a group: as wide as several processors' registers
-constexpr unsigned kWidthBits = 3;
-
-/// A box that contains one of doubles: half the memory, and twice as many in a register.
-struct WideBox {
-  std::array<float, 3> lower;
-  std::array<float, 3> upper;
-
-  explicit WideBox(const Box& box) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto low = static_cast<float>(box.lower[static_cast<Eigen::Index>(axis)]);
-      const auto high = static_cast<float>(box.upper[static_cast<Eigen::Index>(axis)]);
-      lower[axis] = low - margin(low);
-      upper[axis] = high + margin(high);
-    }
-  }
-  WideBox(const std::array<float, 3>& low, const std::array<float, 3>& high)
-      : lower(low), upper(high) {}
-
-  Box box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
-  float size() const {
-    return std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
-  }
-
-private:
-  /// More than what rounding to a float has taken, and that of adding the margin.
-  static float margin(float value) { return std::abs(value) * 3e-7F + 1e-37F; }
-};
-
-/// Boxes side by side, so that one is compared with all of them at once.
-struct BoxGroup {
-  std::array<std::array<float, kWidth>, 3> lower;
-  std::array<std::array<float, kWidth>, 3> upper;
-
-  BoxGroup() {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis].fill(std::numeric_limits<float>::infinity());
-      upper[axis].fill(-std::numeric_limits<float>::infinity());
-    }
-  }
-  void set(std::size_t lane, const WideBox& box) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis][lane] = box.lower[axis];
-      upper[axis][lane] = box.upper[axis];
-    }
-  }
-  WideBox at(std::size_t lane) const {
-    return {{lower[0][lane], lower[1][lane], lower[2][lane]},
-            {upper[0][lane], upper[1][lane], upper[2][lane]}};
-  }
-  WideBox all() const {
-    WideBox box = at(0);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t lane = 1; lane < kWidth; ++lane) {
-        box.lower[axis] = std::min(box.lower[axis], lower[axis][lane]);
-        box.upper[axis] = std::max(box.upper[axis], upper[axis][lane]);
-      }
-    return box;
-  }
-};
-
-/// Lanes of a group whose boxes overlap a box.
-class Overlaps {
-public:
-  Overlaps(const BoxGroup& group, const WideBox& box) {
-    // Lanes of one width, and no branches: a few instructions for all of them.
-    std::array<float, kWidth> gaps;
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      const float x =
-          std::max(group.lower[0][lane] - box.upper[0], box.lower[0] - group.upper[0][lane]);
-      const float y =
-          std::max(group.lower[1][lane] - box.upper[1], box.lower[1] - group.upper[1][lane]);
-      const float z =
-          std::max(group.lower[2][lane] - box.upper[2], box.lower[2] - group.upper[2][lane]);
-      gaps[lane] = std::max(std::max(x, y), z);
-    }
-    // Boxes are wider than what they contain: where it touches, gaps are below 0. Their signs to
-    // places of their own, and these together, half by half.
-    std::array<std::int32_t, kWidth> signs;
-    static_assert(sizeof(signs) == sizeof(gaps), "a sign for each gap");
-    std::memcpy(signs.data(), gaps.data(), sizeof(gaps));
-    std::array<std::int32_t, kWidth / 2> halves;
-    for (std::size_t lane = 0; lane < kWidth / 2; ++lane)
-      halves[lane] = (signs[lane] < 0 ? kBits[lane] : 0) |
-                     (signs[lane + kWidth / 2] < 0 ? kBits[lane + kWidth / 2] : 0);
-    bits_ = static_cast<std::uint32_t>((halves[0] | halves[1]) | (halves[2] | halves[3]));
-  }
-
-  class Iterator {
-  public:
-    explicit Iterator(std::uint32_t bits) : bits_(bits) {}
-    std::size_t operator*() const { return kLowestBits[bits_]; }
-    Iterator& operator++() {
-      bits_ &= bits_ - 1U;
-      return *this;
-    }
-    bool operator!=(const Iterator& other) const { return bits_ != other.bits_; }
-
-  private:
-    std::uint32_t bits_;
-  };
-  Iterator begin() const { return Iterator(bits_); }
-  Iterator end() const { return Iterator(0); }
-
-private:
-  static constexpr std::array<std::uint8_t, 1U << kWidth> lowestBits() {
-    std::array<std::uint8_t, 1U << kWidth> lowest{};
-    for (std::size_t bits = 1; bits < lowest.size(); ++bits)
-      lowest[bits] =
-          bits % 2 != 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(lowest[bits / 2] + 1);
-    return lowest;
-  }
-  static const std::array<std::uint8_t, 1U << kWidth> kLowestBits;
-  static constexpr std::array<std::int32_t, kWidth> kBits{1, 2, 4, 8, 16, 32, 64, 128};
-
-  std::uint32_t bits_ = 0;
-};
-
-constexpr std::array<std::uint8_t, 1U << kWidth> Overlaps::kLowestBits = Overlaps::lowestBits();
 
 /// Moves the lowest 10 bits of x to every third bit.
 std::uint32_t spread(std::uint32_t x) {
@@ -497,7 +138,7 @@ void refine(const Mesh& mesh, Place* begin, Place* end) {
   for (Place* crowd = begin; crowd != end;) {
     const std::uint32_t key = crowd->key;
     Place* rest = std::find_if(crowd, end, [&](const Place& place) { return place.key != key; });
-    if (rest - crowd > static_cast<std::ptrdiff_t>(kWidth))
+    if (rest - crowd > static_cast<std::ptrdiff_t>(kGroupSize))
       refine(mesh, crowd, rest);
     crowd = rest;
   }
@@ -544,7 +185,7 @@ std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subse
     std::size_t end = begin + 1;
     while (end < places.size() && places[end].key == places[begin].key)
       ++end;
-    if (end - begin > kWidth)
+    if (end - begin > kGroupSize)
       refine(mesh, places.data() + begin, places.data() + end);
     begin = end;
   }
@@ -676,7 +317,7 @@ public:
        const FractionReport& report);
 
   /// Triangles of a bunch: those of a group of leaves.
-  static constexpr std::size_t kBunch = kWidth * kWidth;
+  static constexpr std::size_t kBunch = kGroupSize * kGroupSize;
 
   std::size_t size() const { return order_.size(); }
   /// Bounding box of all.
@@ -714,20 +355,20 @@ private:
 Tree::Tree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
            const FractionReport& report)
     : mesh_(mesh), order_(ordered(mesh, subset, threads, report)) {
-  levels_.emplace_back((order_.size() + kWidth - 1) / kWidth);
-  static_assert(internal::kBlockSize % kWidth == 0, "a group is in one block");
+  levels_.emplace_back((order_.size() + kGroupSize - 1) / kGroupSize);
+  static_assert(internal::kBlockSize % kGroupSize == 0, "a group is in one block");
   internal::forEachBlock(
       order_.size(), threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-          levels_.front()[i / kWidth].set(i % kWidth, WideBox(mesh.box(order_[i])));
+          levels_.front()[i / kGroupSize].set(i % kGroupSize, WideBox(mesh.box(order_[i])));
       });
   do {
     const std::vector<BoxGroup>& below = levels_.back();
-    std::vector<BoxGroup> level((below.size() + kWidth - 1) / kWidth);
+    std::vector<BoxGroup> level((below.size() + kGroupSize - 1) / kGroupSize);
     internal::forEachBlock(below.size(), below.size() >= internal::kParallelThreshold ? threads : 1,
                            [&](std::size_t, std::size_t begin, std::size_t end) {
                              for (std::size_t i = begin; i < end; ++i)
-                               level[i / kWidth].set(i % kWidth, below[i].all());
+                               level[i / kGroupSize].set(i % kGroupSize, below[i].all());
                            });
     levels_.push_back(std::move(level));
   } while (levels_.back().size() > 1);
@@ -741,7 +382,7 @@ void Tree::visitGroups(std::size_t level, const WideBox& box, std::size_t first,
     std::size_t group;
   };
   // At most 7 wait on each level but the last; there are at most 2^31 triangles.
-  std::array<Node, kWidth*(31 / kWidthBits + 2)> open;
+  std::array<Node, kGroupSize*(31 / kGroupBits + 2)> open;
   std::size_t count = 0;
   if (levels_.size() - 1 == level) {
     visit(std::size_t{0}, levels_.back().front().all());
@@ -751,9 +392,9 @@ void Tree::visitGroups(std::size_t level, const WideBox& box, std::size_t first,
   while (count > 0) {
     const Node node = open[--count];
     const BoxGroup& group = levels_[node.level][node.group];
-    const std::size_t least = first >> kWidthBits * (node.level - 1 - level);
+    const std::size_t least = first >> kGroupBits * (node.level - 1 - level);
     for (const std::size_t lane : Overlaps(group, box)) {
-      const std::size_t below = node.group * kWidth + lane;
+      const std::size_t below = node.group * kGroupSize + lane;
       if (below < least)
         continue;
       if (node.level - 1 == level)
@@ -777,7 +418,8 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
   const std::size_t begin = bunch * kBunch;
   for (std::size_t i = begin; i < std::min(order_.size(), begin + kBunch); ++i) {
     const Index triangle = order_[i];
-    const Face face = mesh_.face(triangle, levels_.front()[i / kWidth].at(i % kWidth).size());
+    const Face face =
+        mesh_.face(triangle, levels_.front()[i / kGroupSize].at(i % kGroupSize).size());
     own.push_back({face, Plane(face), mesh_.centersOfFans(triangle)});
   }
   const auto test = [&](const Face& a, const Plane& plane, const Face& b) {
@@ -789,18 +431,18 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
     const BoxGroup& other_group = levels_.front()[other];
     const double other_size = other_box.size();
     for (const std::size_t lane : Overlaps(group, other_box)) {
-      const auto& [a, plane, fans] = own[leaf * kWidth + lane - begin];
+      const auto& [a, plane, fans] = own[leaf * kGroupSize + lane - begin];
       // A triangle that is large beside a leaf is likely to pass it by.
       if (a.size > 2.0 * other_size && clears(plane, other_box.box()))
         continue;
       for (const std::size_t other_lane : Overlaps(other_group, group.at(lane))) {
         if (other == leaf && other_lane <= lane)
           continue;
-        const Index triangle = order_[other * kWidth + other_lane];
+        const Index triangle = order_[other * kGroupSize + other_lane];
         // Most are neighbours of which that is known.
         if (haveCommon(fans, mesh_.vertices(triangle)))
           continue;
-        const std::size_t place = other * kWidth + other_lane - begin;
+        const std::size_t place = other * kGroupSize + other_lane - begin;
         if (place < own.size())
           test(a, plane, own[place].face);
         else
@@ -811,9 +453,9 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
   visitGroups(1, leaves.all(), bunch, [&](std::size_t other_bunch, const WideBox& other_bunch_box) {
     const BoxGroup& other_leaves = levels_[1][other_bunch];
     for (const std::size_t lane : Overlaps(leaves, other_bunch_box)) {
-      const std::size_t leaf = bunch * kWidth + lane;
+      const std::size_t leaf = bunch * kGroupSize + lane;
       for (const std::size_t other_lane : Overlaps(other_leaves, leaves.at(lane))) {
-        const std::size_t other = other_bunch * kWidth + other_lane;
+        const std::size_t other = other_bunch * kGroupSize + other_lane;
         if (other >= leaf)
           compare(leaf, other, other_leaves.at(other_lane));
       }
@@ -829,7 +471,7 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
     if (clears(plane, leaf_box.box()))
       return;
     for (const std::size_t lane : Overlaps(group, wide)) {
-      const Face other = mesh_.face(order_[leaf * kWidth + lane], group.at(lane).size());
+      const Face other = mesh_.face(order_[leaf * kGroupSize + lane], group.at(lane).size());
       if (!evidentlyApart(face, plane, other) && intersectCarefully(face, other))
         append(face, other, pairs);
     }

@@ -1,0 +1,152 @@
+#pragma once
+
+#include "exact_predicates.h"
+#include "spherical_param/types.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+/// Whether two triangles intersect: few operations, and a bound of their error, show of nearly all
+/// that a plane separates them. Exact arithmetic decides about the rest.
+namespace spherical_param::internal {
+
+using Eigen::Vector3d;
+
+/// A triangle with all that the tests need, in one place of the memory.
+struct Face {
+  std::array<Vector3d, 3> corners;  ///< scaled, see checkedScale()
+  double size;                      ///< at least the longest side of the bounding box
+  std::array<Index, 3> vertices;
+  Index triangle;
+};
+
+struct Box {
+  Vector3d lower;
+  Vector3d upper;
+
+  double size() const { return (upper - lower).maxCoeff(); }
+  bool overlaps(const Box& other) const {
+    return (lower.array() <= other.upper.array()).all() &&
+           (other.lower.array() <= upper.array()).all();
+  }
+};
+
+inline Box boxOf(const std::array<Vector3d, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
+}
+
+/// The definition of self_intersection.h, in exact arithmetic.
+bool intersectExactly(const Face& a, const Face& b);
+
+// --- Quick tests that only ever say that two triangles do not intersect
+
+inline double largest(const Vector3d& v) {
+  return v.cwiseAbs().maxCoeff();
+}
+
+/// The plane of a triangle, rounded.
+struct Plane {
+  Vector3d origin;
+  Vector3d normal;
+  double error;  ///< bound of that of value(), relative to the distance from the origin
+
+  explicit Plane(const Face& face) : origin(face.corners[0]) {
+    const Vector3d u = face.corners[1] - origin;
+    const Vector3d v = face.corners[2] - origin;
+    normal = u.cross(v);
+    // A coordinate of the normal is wrong by up to 8 units of roundoff of |u| |v| (largest
+    // coordinates), and at most 2 |u| |v|; each of the three products of the value with a distance
+    // d thus by 8 + 2 * 4 units of |u| |v| d. The rest up to 64 covers higher powers.
+    error = 64.0 * kUnitRoundoff * largest(u) * largest(v);
+  }
+  /// Distance of p from the plane, times the length of the normal.
+  double value(const Vector3d& p) const { return normal.dot(p - origin); }
+  /// Whether all of some values are on one side for sure.
+  /// \param reach bound of the coordinates of p - origin.
+  template <typename... Values>
+  bool isBeside(double reach, Values... values) const {
+    const double bound = error * reach;
+    return std::min({values...}) > bound || std::max({values...}) < -bound;
+  }
+};
+
+/// Whether a plane through a common corner v lies between the other corners of two triangles.
+///
+/// \param reach bound of the coordinates of differences of corners.
+inline bool separatedAt(const Vector3d& v, const Vector3d& a1, const Vector3d& a2,
+                        const Vector3d& b1, const Vector3d& b2, double reach) {
+  // Any direction will do: it has no error. This one is mostly normal to such a plane.
+  const Vector3d direction = (a1 - b1) + (a2 - b2);
+  // 4 roundings in each of three products of a coordinate of the direction, up to 2 reach, with a
+  // distance.
+  const double bound = 32.0 * kUnitRoundoff * reach * reach;
+  return std::min(direction.dot(a1 - v), direction.dot(a2 - v)) > bound &&
+         std::max(direction.dot(b1 - v), direction.dot(b2 - v)) < -bound;
+}
+
+/// Whether a plane across the line between their centres lies between two triangles.
+inline bool separated(const Face& a, const Face& b, double reach) {
+  const auto& [a0, a1, a2] = a.corners;
+  const auto& [b0, b1, b2] = b.corners;
+  const Vector3d direction = (a0 - b0) + (a1 - b1) + (a2 - b2);
+  const double least = std::min({0.0, direction.dot(a1 - a0), direction.dot(a2 - a0)});
+  const double most =
+      std::max({direction.dot(b0 - a0), direction.dot(b1 - a0), direction.dot(b2 - a0)});
+  // As above, for two distances and a direction up to 3 reach.
+  return least - most > 128.0 * kUnitRoundoff * reach * reach;
+}
+
+/// Whether two triangles whose boxes overlap evidently do not intersect.
+///
+/// \param plane_a of a.
+inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
+  // How many corners they have in common, and the sums of the numbers of these in either.
+  unsigned common = 0;
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j)
+      common += a.vertices[i] == b.vertices[j] ? 1U + (i << 8U) + (j << 16U) : 0U;
+  const std::size_t of_a = common >> 8U & 0xffU;
+  const std::size_t of_b = common >> 16U;
+  const double reach = a.size + b.size;
+  // A triangle that names a vertex twice makes nonsense of the sums, but it has no area. Corners
+  // that are equal but not named alike do no harm: nothing separates them.
+  constexpr std::array<std::size_t, 4> next{1, 2, 0, 1};
+  switch (common & 0xffU) {
+  case 0:
+    return separated(a, b, reach) ||
+           plane_a.isBeside(reach, plane_a.value(b.corners[0]), plane_a.value(b.corners[1]),
+                            plane_a.value(b.corners[2]));
+  case 1: {
+    const Vector3d& b1 = b.corners[next[of_b]];
+    const Vector3d& b2 = b.corners[next[of_b + 1]];
+    return separatedAt(a.corners[of_a], a.corners[next[of_a]], a.corners[next[of_a + 1]], b1, b2,
+                       reach) ||
+           plane_a.isBeside(reach, plane_a.value(b1), plane_a.value(b2));
+  }
+  case 2:
+    return of_b <= 3 && plane_a.isBeside(reach, plane_a.value(b.corners[3 - of_b]));
+  default:
+    return false;
+  }
+}
+
+/// For what is left after evidentlyApart(a, plane_a, b).
+inline bool intersectCarefully(const Face& a, const Face& b) {
+  return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
+}
+
+/// Whether a box lies on one side of a plane.
+inline bool clears(const Plane& plane, const Box& box) {
+  const Vector3d center = 0.5 * (box.lower + box.upper) - plane.origin;
+  const Vector3d half = 0.5 * (box.upper - box.lower);
+  const double reach = plane.normal.cwiseAbs().dot(half);
+  const double bound = plane.error * (largest(center) + largest(half));
+  return std::abs(plane.normal.dot(center)) > reach + 2.0 * bound;
+}
+
+}  // namespace spherical_param::internal
