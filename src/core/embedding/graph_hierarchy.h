@@ -11,7 +11,7 @@
 namespace spherical_param::internal {
 
 /// Nodes of the coarsest level, at most.
-inline constexpr Index kTypicalCoarsestSize = 1000;
+inline constexpr Index kTypicalCoarsestSize = 500;
 
 /// A graph of fewer nodes and what joins it to the next finer one.
 struct HierarchyLevel {
