@@ -32,7 +32,8 @@ struct OptimizationOptions {
 
 /// What one phase of the optimisation did.
 struct OptimizationPhase {
-  /// "flips", "relocate", "ruin and recreate", "untangle", "polish", or "roll back": of the polish
+  /// "flips", "relocate", "ruin and recreate", "flip apart", "untangle", "polish", or "roll back":
+  /// of the polish
   std::string name;
   std::size_t tried = 0;       ///< vertices or parts that were taken out
   std::size_t moves = 0;       ///< flips, or of these those that stayed at another place

@@ -27,10 +27,9 @@ using internal::MeshOptimizer;
 using internal::SurfaceEnergy;
 using Bend = SurfaceEnergy::Bend;
 
-/// Vertices that may be taken out in parts, in all.
+/// Work that repairs may take [vertices that are taken out, or looked at for intersections].
 std::size_t budgetOf(std::size_t points) {
-  return std::min(tuned::kMaxRuinedVertices + tuned::kMaxRuinsOfVertex * points,
-                  tuned::kMaxRuinsOfSmallCloud * points);
+  return tuned::kMaxWork + tuned::kMaxWorkOfPoint * points;
 }
 
 SurfaceEnergy energyOf(Bend bend, double mu) {
@@ -270,7 +269,7 @@ private:
     if (budget_ == 0)
       return;
     const std::vector<Index> part = optimizer_.spread(seeds, size, random_);
-    budget_ -= std::min(budget_, part.size());
+    spend(part.size());
     ++tally.tried;
     tally.moves += optimizer_.recreate(part, accept, random_) ? 1 : 0;
   }
@@ -291,7 +290,7 @@ private:
     for (int round = 0; round < tuned::kMaxUntangleRounds && idle < tuned::kMaxIdleRounds &&
                         !pairs.empty() && budget_ > 0;
          ++round) {
-      const bool by_number = round >= rounds_by_energy;
+      const bool by_number = round >= rounds_by_energy || !hasMoreThanReserve();
       if (by_number && idle == 0) {
         flipApart(pairs);
         if (pairs.empty())
@@ -300,7 +299,10 @@ private:
       OptimizationPhase& untangled = phase("untangle", [&] {
         Tally tally;
         forEachPair(pairs, [&](const auto& pair, const auto& corners) {
-          untanglePair(pair, corners, by_number, tally);
+          if (by_number)
+            untangleByNumber(pair, corners, tally);
+          else if (hasMoreThanReserve())
+            untangleByEnergy(pair, corners, tally);
         });
         return tally;
       });
@@ -312,16 +314,24 @@ private:
     return pairs;
   }
 
+  /// Whether more of the budget is left than the rounds by number need.
+  bool hasMoreThanReserve() const {
+    return budget_ > budgetOf(static_cast<std::size_t>(points_->cols())) / 2;
+  }
+
+  void spend(std::size_t work) { budget_ -= std::min(budget_, work); }
+
   void flipApart(std::vector<std::array<Index, 2>>& pairs) {
     OptimizationPhase& flipped = phase("flip apart", [&] {
       Tally tally;
       forEachPair(pairs, [&](const auto& pair, const auto& corners) {
-        if (areCornersOf(pair, corners)) {
-          ++tally.tried;
-          optimizer_.intersectionsAround(
-              optimizer_.spread(seedsOf(corners), tuned::kFlipRegion, random_));
-          tally.moves += optimizer_.flipApart();
-        }
+        if (budget_ == 0 || !areCornersOf(pair, corners))
+          return;
+        spend(tuned::kFlipRegion);
+        optimizer_.intersectionsAround(
+            optimizer_.spread(seedsOf(corners), tuned::kFlipRegion, random_));
+        ++tally.tried;
+        tally.moves += optimizer_.flipApart();
       });
       return tally;
     });
@@ -353,19 +363,24 @@ private:
     return seeds;
   }
 
-  void untanglePair(const std::array<Index, 2>& pair, const Corners& corners, bool by_number,
-                    Tally& tally) {
-    const std::vector<Index> seeds = seedsOf(corners);
+  void untangleByEnergy(const std::array<Index, 2>& pair, const Corners& corners, Tally& tally) {
     for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2) {
       // A pair that has changed waits for the next round.
       if (!areCornersOf(pair, corners))
         return;
-      if (!by_number) {
-        tryPart(seeds, size, MeshOptimizer::isGain, tally);
-        continue;
-      }
+      tryPart(seedsOf(corners), size, MeshOptimizer::isGain, tally);
+    }
+  }
+
+  /// The same, but what counts are the intersections after those that flips can take apart were.
+  void untangleByNumber(const std::array<Index, 2>& pair, const Corners& corners, Tally& tally) {
+    const std::vector<Index> seeds = seedsOf(corners);
+    for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2) {
+      if (budget_ == 0 || !areCornersOf(pair, corners))
+        return;
       const std::vector<Index> around =
           optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_);
+      spend(around.size());
       const std::size_t before = optimizer_.intersectionsAround(around);
       tryPart(
           seeds, size,
@@ -434,7 +449,7 @@ private:
   const Positions* points_;  ///< given, or smoothed_
   Positions smoothed_;
   std::uint64_t random_;
-  std::size_t budget_;  ///< vertices that may still be taken out in parts
+  std::size_t budget_;  ///< what is left of budgetOf()
   std::optional<internal::OpenPlaces> openings_;
   MeshOptimizer optimizer_;
   MeshOptimization result_;

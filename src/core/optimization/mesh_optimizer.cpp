@@ -496,8 +496,11 @@ bool MeshOptimizer::findRepair(Index t, int k, Repair& repair) const {
   repair.corner = k;
   repair.intersections =
       intersectionsOf(face(t, c, a, d), face(o, c, d, b)) - intersectionsOf(face(t), face(o));
-  repair.cost = -flipGain(t, k, -std::numeric_limits<double>::infinity());
   return true;
+}
+
+double MeshOptimizer::costOf(const Repair& repair) const {
+  return -flipGain(repair.triangle, repair.corner, -std::numeric_limits<double>::infinity());
 }
 
 void MeshOptimizer::updateLocally(Index t, Index o) {
@@ -517,11 +520,12 @@ int MeshOptimizer::findRepairs(Index t, std::array<Repair, 2>& repairs) {
     Repair repair;
     if (!findRepair(u, k, repair))
       return;
-    if (first != nullptr) {
+    if (first != nullptr)
       repair.intersections += first->intersections;
-      repair.cost += first->cost;
-    }
-    if (repair.intersections >= 0 || !repair.isBetterThan(best))
+    if (repair.intersections >= 0 || repair.intersections > best.intersections)
+      return;
+    repair.cost = costOf(repair) + (first != nullptr ? first->cost : 0.0);
+    if (!repair.isBetterThan(best))
       return;
     best = repair;
     repairs[0] = repair;
@@ -550,6 +554,7 @@ int MeshOptimizer::findRepairs(Index t, std::array<Repair, 2>& repairs) {
     Repair first;
     if (!findRepair(u, k, first) || first.intersections > 1)
       continue;
+    first.cost = costOf(first);
     const Index o = mesh_.neighbor(u, k);
     begin();
     flipLocally(first);

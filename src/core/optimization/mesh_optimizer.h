@@ -165,8 +165,9 @@ private:
   /// Pairs of two triangles and those of local_, or of the two.
   int intersectionsOf(const Face& first, const Face& second) const;
   bool intersects(Index t) const { return local_.contains(t) && local_.count(face(t), t, t) > 0; }
-  /// \return false if the side may not be flipped.
+  /// What a flip changes, without its cost. \return false if the side may not be flipped.
   bool findRepair(Index t, int k, Repair& repair) const;
+  double costOf(const Repair& repair) const;
   void flipLocally(const Repair& repair);
   void updateLocally(Index t, Index o);
   /// The best flip of a triangle that intersects others, or the best two. Returns their number.
