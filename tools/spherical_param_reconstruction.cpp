@@ -331,18 +331,6 @@ Json optimizationToJson(const Settings& settings,
   return json;
 }
 
-Json runsToJson(const std::vector<spherical_param::RunReport>& runs) {
-  Json json = Json::array();
-  for (const spherical_param::RunReport& run : runs) {
-    json.push_back({{"description", run.description},
-                    {"self_intersections", run.self_intersections},
-                    {"energy", run.energy},
-                    {"seconds", run.seconds},
-                    {"chosen", run.chosen}});
-  }
-  return json;
-}
-
 Json smoothingToJson(const Settings& settings, const spherical_param::SmoothingReport& smoothing) {
   if (settings.reconstruction.options.smoothing.steps == 0) {
     return nullptr;
@@ -500,7 +488,6 @@ void addMesh(const Settings& settings, const CloudReconstruction& cloud, Json& j
                            {"coincident", result.triangulation.coincident},
                            {"hull_rejected", result.triangulation.hull_rejected}};
   json["optimization"] = optimizationToJson(settings, result.optimization);
-  json["runs"] = runsToJson(result.runs);
   json["smoothing"] = smoothingToJson(settings, result.smoothing);
   json["stages"] = toJson(cloud.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
@@ -639,16 +626,6 @@ void printOpenings(const spherical_param::Result& result, Console& console) {
   }
 }
 
-void printRuns(const std::vector<spherical_param::RunReport>& runs, Console& console) {
-  // One run alone is described by the other lines.
-  for (std::size_t i = 0; runs.size() > 1 && i < runs.size(); ++i) {
-    console.entry("run " + std::to_string(i + 1),
-                  oneLine(runs[i].description) + ": " +
-                      counted(runs[i].self_intersections, "self-intersection") + ", energy " +
-                      formatted(runs[i].energy, 6) + (runs[i].chosen ? ", chosen" : ""));
-  }
-}
-
 void printSmoothing(const Settings& settings, const spherical_param::SmoothingReport& smoothing,
                     Console& console) {
   if (settings.reconstruction.options.smoothing.steps == 0) {
@@ -723,7 +700,6 @@ void printMesh(const Settings& settings, const CloudReconstruction& cloud, Conso
   console.entry("oriented", yesOrNo(result.topology.oriented));
   console.entry("genus",
                 result.topology.genus ? std::to_string(*result.topology.genus) : "undefined");
-  printRuns(result.runs, console);
   console.entry("optimised", optimized(settings, result.optimization));
   console.entry("self-intersections", std::to_string(cloud.result.self_intersections.size()));
   printSmoothing(settings, result.smoothing, console);

@@ -9,8 +9,8 @@ namespace spherical_param {
 
 /// How far a computation is, as reported to Execution::progress.
 struct Progress {
-  /// Of reconstruct(): "neighbors", "graph", "embedding", "triangulation", "optimization",
-  /// "smoothing" or "quality"; all but the last come again with each retry.
+  /// Of reconstruct(): "neighbors", "graph", "openings", "embedding", "triangulation",
+  /// "optimization", "smoothing" or "quality".
   const char* stage;
   /// Fraction of the stage's current loop, in [0, 1]. A stage may have several loops, one after the
   /// other.

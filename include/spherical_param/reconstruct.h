@@ -50,10 +50,6 @@ struct Options : Execution {
   /// The same by the area of the opening [squared unit of the input]; [0, 1e15].
   double fill_holes_area = 0.0;
 
-  /// Retries at most while the mesh intersects itself, if the cloud looks like a closed surface or
-  /// few triangles intersect: with other graphs, another seed, the radial start, then further
-  /// seeds. The best mesh is returned. 0 to 99.
-  int retries = 3;
   std::uint32_t seed = 1;  ///< of all random choices
   /// Fill Result::vertex_residuals and SurfaceDiagnosis::triangle_marks as well.
   bool details = false;
@@ -63,15 +59,6 @@ struct Options : Execution {
 struct StageTime {
   std::string name;  ///< as in Progress::stage
   double seconds;    ///< wall time [s]
-};
-
-/// The first run, or one of Options::retries.
-struct RunReport {
-  std::string description;             ///< what is different from the first
-  std::size_t self_intersections = 0;  ///< pairs of triangles, on the points or the smoothed ones
-  double energy = 0.0;                 ///< equation (1) of optimizeMesh() [unit of the input]
-  double seconds = 0.0;                ///< wall time after the graph [s]
-  bool chosen = false;                 ///< the least (self_intersections, energy)
 };
 
 /// A mesh through all points, the map to the sphere, and their quality. It is closed and of genus
@@ -109,15 +96,14 @@ struct Result {
   MeshMeasures measures;       ///< of the mesh on the input's points
   SurfaceDiagnosis diagnosis;  ///< does the cloud look like a closed genus-0 surface?
 
-  // Of the run that was chosen; nodes are vertices, lengths in the unit of the input.
+  // Of the stages; nodes are vertices, lengths in the unit of the input.
   GraphReport graph;                  ///< how the neighbour graph came about
   EmbeddingReport embedding;          ///< how the embedding was reached
   TriangulationReport triangulation;  ///< how the sphere was triangulated
   OptimizationReport optimization;    ///< how the mesh was optimised
   SmoothingReport smoothing;          ///< all zero without smoothing
 
-  std::vector<RunReport> runs;        ///< in the order of the work; at least one
-  std::vector<StageTime> stages;      ///< in the order of the work, of all runs together
+  std::vector<StageTime> stages;      ///< in the order of the work
   std::vector<std::string> warnings;  ///< one sentence each; empty if there is nothing to say
 
   /// Number of distinct points. \return v

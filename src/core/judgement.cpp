@@ -51,9 +51,9 @@ Pairs intersectionsOf(const Positions& points, const Triangles& closed, const Op
   return found;
 }
 
-/// Moves the triangles of a candidate that are not over openings to the result, with the pairs of
-/// them that intersect.
-void takeSurface(const Positions& points, const OpenSurface& openings, Candidate& mesh,
+/// Moves the triangles of a mesh that are not over openings to the result, with the pairs of them
+/// that intersect.
+void takeSurface(const Positions& points, const OpenSurface& openings, MeshedCloud& mesh,
                  const Options& options, Result& result) {
   // Not those of positions that the optimisation has smoothed.
   const bool are_pairs_known = !mesh.isSmoothed() && (mesh.optimization.report.noise_steps == 0 ||
@@ -74,13 +74,9 @@ void takeSurface(const Positions& points, const OpenSurface& openings, Candidate
           : findSelfIntersections(points, result.triangles, options);
 }
 
-}  // namespace
-
-Triangles surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh) {
-  return openings.isOpen() ? surfaceOf(openMesh(points, mesh.triangles(), *openings.places()))
-                           : mesh.triangles();
-}
-
+/// Diagnoses the cloud by a mesh and a graph.
+///
+/// \param boundaries loops around openings that the mesh leaves open.
 SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
                           const NeighborGraph& graph, const Options& options) {
   DiagnosisOptions of_diagnosis;
@@ -96,23 +92,24 @@ SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::s
   return diagnosis;
 }
 
-Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openings,
+}  // namespace
+
+Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
              const Options& options) {
   const FractionReport report = reportOf(options, "quality");
-  Candidate& mesh = best.mesh;
   Result result;
   takeSurface(points, openings, mesh, options, result);
   result.openings = openings.found();
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
   result.diagnosis =
-      diagnose(points, result.triangles, result.boundary.size(), best.graph(), options);
+      diagnose(points, result.triangles, result.boundary.size(), mesh.graph, options);
   if (openings.isOneSided()) {
     result.diagnosis.is_one_sided = true;
     result.diagnosis.kind = SurfaceKind::Unclear;
     result.diagnosis.summary = summaryOf(result.diagnosis);
   }
-  for (const StrayPoint& stray : best.graph().report.stray_points)
+  for (const StrayPoint& stray : mesh.graph.report.stray_points)
     result.outliers.push_back(stray.point);
   result.diagnosis.outliers = result.outliers.size();
   reportFraction(report, 0.5);
@@ -130,7 +127,6 @@ Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openin
         result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
             TriangleMarks::self_intersection;
   }
-  result.runs = std::move(best.runs);
   result.smoothing = mesh.smoothed.report;
   result.smoothed = std::move(mesh.smoothed.points);
   result.sphere = std::move(mesh.embedding.directions);

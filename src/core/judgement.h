@@ -1,25 +1,26 @@
 #pragma once
 
 #include "open_surface.h"
-#include "retries.h"
+#include "smoothed_mesh.h"
 #include "spherical_param/reconstruct.h"
-
-#include <cstddef>
 
 namespace spherical_param::internal {
 
-/// The triangles of a candidate that are not over openings, all if it is closed.
-Triangles surfaceOf(const Positions& points, const OpenSurface& openings, const Candidate& mesh);
+/// What the stages made of a cloud. Vertices are nodes, in units of the nodes.
+struct MeshedCloud {
+  NeighborGraph graph;
+  Embedding embedding;
+  TriangulationReport triangulation;
+  MeshOptimization optimization;
+  SmoothedMesh smoothed;  ///< empty without smoothing
 
-/// Diagnoses the cloud by a mesh and a graph.
-///
-/// \param boundaries loops around openings that the mesh leaves open.
-SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
-                          const NeighborGraph& graph, const Options& options);
+  bool isSmoothed() const { return smoothed.points.cols() > 0; }
+  Triangles& triangles() { return isSmoothed() ? smoothed.triangles : optimization.triangles; }
+};
 
-/// Measures, checks and diagnoses the best mesh, and moves it and its reports to the result, which
-/// is on nodes and in their unit; \see toInput.
-Result judge(const Positions& points, BestOfRuns best, const OpenSurface& openings,
+/// Measures, checks and diagnoses a mesh, and moves it and its reports to the result, which is on
+/// nodes and in their unit; \see toInput.
+Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
              const Options& options);
 
 }  // namespace spherical_param::internal

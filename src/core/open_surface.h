@@ -10,19 +10,17 @@ namespace spherical_param::internal {
 /// Whether openings are sought: only local Delaunay neighbourhoods show them.
 bool seeksOpenings(const Options& options);
 
-/// The openings of a cloud, found once for all runs, and which of them the mesh leaves open.
+/// The openings of a cloud, and which of them the mesh leaves open.
 class OpenSurface {
 public:
   /// \param points nodes, must outlive this.
-  /// \param graph   of the first run.
+  /// \param graph   of the nodes.
   /// \param is_flat all points are in one plane: none of the openings can be filled.
   /// \param unit    of the nodes' coordinates [unit of the input].
   OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
               const Options& options);
 
   OpenSurface() = default;  // of a closed surface
-  OpenSurface(const OpenSurface& other) = delete;
-  OpenSurface& operator=(const OpenSurface& other) = delete;
 
   bool isOpen() const { return places_.has_value(); }
   /// nullptr: the mesh is closed.
@@ -31,7 +29,7 @@ public:
   /// All that were found.
   const std::vector<Opening>& found() const { return found_; }
 
-  /// embed() of the graph of any run, with virtual nodes in the openings.
+  /// embed() of a graph of the nodes, with virtual nodes in the openings.
   Embedding embedded(const Positions& points, const Graph& graph, const Options& options) const;
 
 private:

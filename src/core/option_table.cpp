@@ -206,11 +206,6 @@ std::vector<OptionRow> surfaceRows() {
 
 std::vector<OptionRow> runRows() {
   return {
-      usedWith({{"optimization", "full"}},
-               number(
-                   "retries", "retries",
-                   "maximum number of retries while the mesh intersects itself", Expert, 0, 99,
-                   [](Options & o) -> auto& { return o.retries; })),
       number(
           "seed", "seed", "seed of all random choices", Everybody, 0, kMaxSeed,
           [](Options & o) -> auto& { return o.seed; }),

@@ -7,26 +7,21 @@
 #include "open_surface.h"
 #include "ordered_points.h"
 #include "result_units.h"
-#include "retries.h"
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
 #include "warnings.h"
 
-#include <chrono>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <utility>
 
 namespace spherical_param {
 namespace {
 
-using internal::BestOfRuns;
-using internal::Candidate;
+using internal::MeshedCloud;
 using internal::Neighbors;
 using internal::OpenSurface;
 using internal::OrderedPoints;
-using internal::Plan;
 using internal::StageClock;
 
 /// The neighbours of the nodes, for a graph with these options.
@@ -70,10 +65,19 @@ NeighborGraph buildGraph(const OrderedPoints& nodes, const FindNeighbors& find_n
   });
 }
 
+OpenSurface findOpenSurface(const OrderedPoints& nodes, const Graph& graph, bool is_flat,
+                            const Options& options, StageClock& clock) {
+  if (!internal::seeksOpenings(options))
+    return {};
+  return clock.time("openings", [&] {
+    return OpenSurface(nodes.points, graph, is_flat, std::ldexp(1.0, nodes.exponent), options);
+  });
+}
+
 /// The method: embed the graph, triangulate the sphere, optimise the mesh on the points.
-Candidate meshGraph(const Positions& points, NeighborGraph graph, const OpenSurface& surface,
-                    const Options& options, StageClock& clock) {
-  Candidate mesh;
+MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSurface& surface,
+                      const Options& options, StageClock& clock) {
+  MeshedCloud mesh;
   mesh.graph = std::move(graph);
   mesh.embedding =
       clock.time("embedding", [&] { return surface.embedded(points, mesh.graph.graph, options); });
@@ -82,11 +86,16 @@ Candidate meshGraph(const Positions& points, NeighborGraph graph, const OpenSurf
   });
   mesh.triangulation = triangulation.report;
   orientOutward(points, triangulation.triangles, mesh.embedding);
+  const bool is_smoothed = options.smoothing.steps > 0;
+  OptimizationOptions of_optimization = options.optimization;
+  // The smoothed points get an optimisation of their own.
+  if (is_smoothed)
+    of_optimization.finish_on_points = false;
   mesh.optimization = clock.time("optimization", [&] {
     return internal::optimizeMesh(points, triangulation.triangles, mesh.graph.graph,
-                                  surface.places(), options.optimization, options.seed, options);
+                                  surface.places(), of_optimization, options.seed, options);
   });
-  if (options.smoothing.steps > 0)
+  if (is_smoothed)
     mesh.smoothed = clock.time("smoothing", [&] {
       return internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph,
                                   surface.places(), options.smoothing, options.optimization.method,
@@ -94,36 +103,6 @@ Candidate meshGraph(const Positions& points, NeighborGraph graph, const OpenSurf
     });
   orientOutward(points, mesh.triangles(), mesh.embedding);
   return mesh;
-}
-
-/// Runs the method once, and again only where the first mesh is bad although the cloud is not.
-///
-/// \param is_flat all points are in one plane.
-Result runWithRetries(const OrderedPoints& nodes, bool is_flat, const FindNeighbors& find_neighbors,
-                      const Options& options, StageClock& clock) {
-  BestOfRuns best;
-  std::optional<OpenSurface> surface(std::in_place);
-  for (int run = 0; run <= options.retries; ++run) {
-    const Plan plan = internal::planOf(run, options);
-    NeighborGraph graph = buildGraph(nodes, find_neighbors, plan.options, clock);
-    if (run == 0 && internal::seeksOpenings(options))
-      clock.time("openings", [&] {
-        surface.emplace(nodes.points, graph.graph, is_flat, std::ldexp(1.0, nodes.exponent),
-                        options);
-        return surface->isOpen();
-      });
-    if (is_flat && !surface->isOpen())
-      refuseFlat(options);
-    const auto begin = std::chrono::steady_clock::now();
-    Candidate mesh = meshGraph(nodes.points, std::move(graph), *surface, plan.options, clock);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    best.add(plan.description, std::move(mesh), seconds.count());
-    if (best.mesh.isGood() ||
-        (run == 0 && !internal::isWorthRetrying(nodes.points, best.mesh, *surface, options)))
-      break;
-  }
-  return clock.time(
-      "quality", [&] { return internal::judge(nodes.points, std::move(best), *surface, options); });
 }
 
 Result run(const Positions& points, const Options& all, const FindNeighbors& find_neighbors) {
@@ -135,7 +114,13 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
   const bool is_flat = areCoplanar(points);
   if (is_flat && !internal::seeksOpenings(options))
     refuseFlat(options);
-  Result result = runWithRetries(nodes, is_flat, find_neighbors, options, clock);
+  NeighborGraph graph = buildGraph(nodes, find_neighbors, options, clock);
+  const OpenSurface surface = findOpenSurface(nodes, graph.graph, is_flat, options, clock);
+  if (is_flat && !surface.isOpen())
+    refuseFlat(options);
+  MeshedCloud mesh = meshGraph(nodes.points, std::move(graph), surface, options, clock);
+  Result result = clock.time(
+      "quality", [&] { return internal::judge(nodes.points, std::move(mesh), surface, options); });
   if (is_flat && result.isClosed())
     refuseFlat(options);
   internal::toInput(nodes, result);
@@ -150,8 +135,8 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
 }  // namespace
 
 Result reconstruct(const Positions& points, const Options& options) {
-  return run(points, options, [](const OrderedPoints& nodes, const Options& of_run) {
-    return internal::nearestNeighbors(nodes, neighborsToSearch(of_run.graph), of_run);
+  return run(points, options, [](const OrderedPoints& nodes, const Options& of_stages) {
+    return internal::nearestNeighbors(nodes, neighborsToSearch(of_stages.graph), of_stages);
   });
 }
 

@@ -25,8 +25,6 @@ void scaleBack(int exponent, Result& result) {
   scale_all(result.measures.centroid);
   scale_all(result.measures.inertia, 5);
   scale(result.optimization.energy);
-  for (RunReport& run : result.runs)
-    scale(run.energy);
   for (OptimizationPhase& phase : result.optimization.phases) {
     scale(phase.energy_before);
     scale(phase.energy);

@@ -10,7 +10,7 @@
 
 namespace spherical_param::internal {
 
-/// Times the stages, all runs together, and reports their beginning and end.
+/// Times the stages and reports their beginning and end.
 class StageClock {
 public:
   /// \param options must outlive the clock.

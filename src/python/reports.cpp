@@ -151,12 +151,6 @@ py::dict toDict(const SmoothingReport& smoothing) {
                   "self_intersections"_a = smoothing.self_intersections);
 }
 
-py::dict toDict(const RunReport& run) {
-  return py::dict("description"_a = run.description,
-                  "self_intersections"_a = run.self_intersections, "energy"_a = run.energy,
-                  "seconds"_a = run.seconds, "chosen"_a = run.chosen);
-}
-
 py::dict toDict(const DistortionStatistics& statistics) {
   return py::dict("mean"_a = statistics.mean, "p95"_a = statistics.p95, "max"_a = statistics.max);
 }
@@ -195,7 +189,6 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
   dict["triangulation"] = toDict(result.triangulation);
   dict["optimization"] = toDict(result.optimization);
   dict["smoothing"] = toDict(result.smoothing);
-  dict["runs"] = listOf(result.runs, [](const RunReport& run) { return toDict(run); });
   py::dict stages;
   for (const StageTime& stage : result.stages)
     stages[py::str(stage.name)] = stage.seconds;

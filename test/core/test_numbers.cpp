@@ -15,11 +15,10 @@ namespace {
 
 using test::canonical;
 
-/// Meshes once; the topology must be sound.
+/// The topology must be sound.
 Result meshOf(const Positions& points, OptimizationMethod method = OptimizationMethod::Full) {
   Options options;
   options.optimization.method = method;
-  options.retries = 0;
   const Result result = reconstruct(points, test::bruteForceNeighbors(points, 24), options);
   EXPECT_TRUE(test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
   return result;

@@ -77,7 +77,6 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
       test::withNoise(test::hemisphere(1500), 0.5 * std::sqrt(2.0 * test::kPi / 1500), 3);
   for (const bool finishes : {false, true}) {
     Options options = leftOpen();
-    options.retries = 0;
     options.optimization.finish_on_points = finishes;
     const Result result = reconstruct(points, options);
     EXPECT_FALSE(result.isClosed());
@@ -241,9 +240,7 @@ TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
     return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
   });
   for (const Positions& points : {holed, band}) {
-    Options options = leftOpen();
-    options.retries = 0;
-    const Result result = reconstruct(points, options);
+    const Result result = reconstruct(points, leftOpen());
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);

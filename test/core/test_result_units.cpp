@@ -34,8 +34,6 @@ void visitQuantities(Result& r, const Visit& visit) {
     visit("energy before phase", phase.energy_before, 1);
     visit("energy of phase", phase.energy, 1);
   }
-  for (RunReport& run : r.runs)
-    visit("energy of run", run.energy, 1);
   visit_all("smoothed", r.smoothed, 1);
   visit("max displacement", r.smoothing.max_displacement, 1);
   visit("mean displacement", r.smoothing.mean_displacement, 1);
@@ -71,7 +69,6 @@ Result onNodes() {
   r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
   r.history.vertices = {3, 0};
   r.optimization.phases.resize(1);
-  r.runs.resize(2);
   r.graph.bridges = {{0, 3, 1.0}};
   r.graph.without_tangent_plane = {0, 3};
   r.graph.stray_points = {{0, 5.0}, {1, 6.0}};

@@ -42,7 +42,6 @@ Options optionsFrom(Bytes& bytes) {
   vary(embedding.stagnation_window, &Bytes::integer);
   vary(embedding.starts, &Bytes::integer);
   vary(options.seed, &Bytes::raw<std::uint32_t>);
-  vary(options.retries, &Bytes::integer);
   vary(options.smoothing.steps, &Bytes::integer);
   vary(embedding.history.vertices, &Bytes::integer);
   vary(embedding.history.frames, &Bytes::integer);
@@ -66,7 +65,7 @@ bool areRight(const Options& o) {
          in(e.history.vertices, 0, 1 << 24) && in(e.history.frames, 2, 10000) &&
          in(o.graph.method, 0, 1) && (!o.graph.k || in(*o.graph.k, 3, any)) &&
          in(o.triangulation.method, 0, 1) && in(o.optimization.method, 0, 2) &&
-         in(o.retries, 0, 99) && in(o.smoothing.steps, 0, 10000) && in(o.threads, 0, 1024);
+         in(o.smoothing.steps, 0, 10000) && in(o.threads, 0, 1024);
 }
 
 /// A search that answers correctly, or from bytes.
@@ -139,8 +138,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto n = static_cast<std::size_t>(points.cols());
 
   // Valid, but too long to wait for.
-  if (options.embedding.max_iterations > 3000 || options.retries > 5 ||
-      options.embedding.starts > 20 || options.smoothing.steps > 300)
+  if (options.embedding.max_iterations > 3000 || options.embedding.starts > 20 ||
+      options.smoothing.steps > 300)
     watch.cancelAt(2000);
   const std::array<std::string, 7> stages{"neighbors",    "graph",     "embedding", "triangulation",
                                           "optimization", "smoothing", "quality"};

@@ -271,7 +271,6 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
       SETTER("smoothing", Integer{8}, Smoothing, 8),
       SETTER("surface", "open", Surface, spherical_param::SurfaceMode::Open),
       SETTER("fill_holes", Integer{12}, FillHoles, 12),
-      SETTER("retries", Integer{9}, Retries, 9),
       SETTER("seed", Integer{4294967295}, Seed, 4294967295U),
       SETTER("threads", Integer{3}, NumberOfThreads, 3U),
   };

@@ -176,7 +176,6 @@ class Options(unittest.TestCase):
         for absent in (usual.smoothed, usual.history, usual.vertex_residuals,
                        usual.diagnosis.triangle_marks):  # fmt: skip
             self.assertIsNone(absent)
-        self.assertEqual([run.chosen for run in usual.runs], [True])
 
     def test_history_ends_at_the_sphere_and_details_have_an_entry_each(self):
         mesh = sp.reconstruct(self.points, history_vertices=50, history_frames=10, details=True)

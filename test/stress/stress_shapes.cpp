@@ -76,7 +76,6 @@ Options someOptions(stress::Random& random, bool is_large) {
   options.smoothing.steps = one(3) == 0 ? one(30) : 0;
   embedding.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
   embedding.starts = 1 + one(3);
-  options.retries = one(4);
   options.seed = static_cast<std::uint32_t>(one(1000000));
   return options;
 }

@@ -65,7 +65,6 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
       below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
   options.optimization.method = static_cast<OptimizationMethod>(below(3));
   options.smoothing.steps = below(3) == 0 ? 5 : 0;
-  options.retries = below(3);
   options.seed = static_cast<std::uint32_t>(below(1000));
   options.details = below(4) == 0;
   options.threads = 1 + below(2);
@@ -116,7 +115,6 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
       const Positions points =
           Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() * test::spiralSphere(size);
       Options options;
-      options.retries = 0;
       if (is_paper) {
         options.graph.method = GraphMethod::NearestNeighbors;
         options.embedding.method = EmbeddingMethod::Iterative;

@@ -52,7 +52,6 @@ using namespace spherical_param;
 TEST(Guarantees, BadAllocIsPassedOnFromEveryAllocation) {
   const Positions points = test::spiralSphere(5000);  // enough for several threads
   Options options;
-  options.retries = 0;
   options.threads = 2;
   constexpr long many = 1L << 40;
   left = many;

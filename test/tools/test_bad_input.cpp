@@ -161,8 +161,7 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   expectOptionsRefused(
       mesh_tool, {"in.xyz", "out.ply"},
       {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-embedding multilevel"},
-       {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"},
-       {{"-retries", "5", "-optimization", "flips"}, "-retries" + nothing}});
+       {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"}});
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
                        {{{"-side", "9"}, "-side" + nothing},
                         {{"-grid", "even", "-series"}, "-series" + nothing},

@@ -134,14 +134,13 @@ TEST_F(EveryTool, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
   ASSERT_EQ(run(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"}).exit_code, 0);
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    const RunResult lax = run(tool.program, with(tool.arguments, {"-quiet", "-retries", "0"}));
+    const RunResult lax = run(tool.program, with(tool.arguments, {"-quiet"}));
     EXPECT_EQ(lax.exit_code, 0);
     EXPECT_EQ(lax.errors, "");
     auto files = directory.listing();
     files.erase("report.json");  // of the tool before
     const RunResult strict =
-        run(tool.program,
-            with(tool.arguments, {"-strict", "-quiet", "-json", "report.json", "-retries", "0"}));
+        run(tool.program, with(tool.arguments, {"-strict", "-quiet", "-json", "report.json"}));
     EXPECT_EQ(strict.exit_code, 1);
     const std::vector<std::string> lines = strict.errorLines();
     ASSERT_EQ(lines.size(), 2U) << strict.errors;

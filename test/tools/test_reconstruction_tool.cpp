@@ -113,25 +113,24 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
        "/embedding/starts /embedding/collapsed_starts /triangulation/hull_vertices "
        "/triangulation/reinserted /triangulation/coincident /optimization/noise_steps "
        "/optimization/phases/0/tried /optimization/phases/0/moves "
-       "/runs/0/self_intersections /graph/k /options/k /options/starts /options/seed "
-       "/options/retries /options/smoothing /options/threads"},
+       "/graph/k /options/k /options/starts /options/seed "
+       "/options/smoothing /options/threads"},
       {"number_float",
        "/residual /edges_outside_graph /stages/0/seconds /embedding/centroid_norm "
        "/embedding/energy /embedding/operator_complexity /embedding/grid_complexity "
        "/optimization/energy /optimization/rough /optimization/alignment "
        "/optimization/unevenness /optimization/phases/0/energy_before "
-       "/optimization/phases/0/energy /optimization/phases/0/seconds /runs/0/energy "
-       "/runs/0/seconds /measures/volume /measures/area /measures/mean_edge_length "
+       "/optimization/phases/0/energy /optimization/phases/0/seconds "
+       "/measures/volume /measures/area /measures/mean_edge_length "
        "/measures/bounding_box/min/2 /measures/bounding_box/max/2 /measures/centroid/2 "
        "/measures/inertia/2/2 /options/exponent /options/damping"},
-      {"boolean",
-       "/closed /manifold /oriented /converged /fallback_start /embedding/barrier "
-       "/embedding/added_barrier /triangulation/hull_rejected /optimization/noisy /runs/0/chosen "
-       "/diagnosis/looks_closed_genus0 /options/strict /options/ascii /options/quiet"},
+      {"boolean", "/closed /manifold /oriented /converged /fallback_start /embedding/barrier "
+                  "/embedding/added_barrier /triangulation/hull_rejected /optimization/noisy "
+                  "/diagnosis/looks_closed_genus0 /options/strict /options/ascii /options/quiet"},
       {"string",
        "/stop_reason /input /output /version /stages/0/name /graph/method /embedding/method "
        "/triangulation/method /optimization/method /optimization/phases/0/name "
-       "/runs/0/description /diagnosis/kind /diagnosis/summary /options/graph /options/embedding "
+       "/diagnosis/kind /diagnosis/summary /options/graph /options/embedding "
        "/options/weights /options/triangulation /options/optimization"},
       {"array",
        "/residuals /stages /warnings /self_intersecting_pairs /graph/bridges "
@@ -210,7 +209,7 @@ TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
   EXPECT_EQ(paper["graph"]["k"], 25);
   EXPECT_GE(paper["graph"]["edges"], 200 * 25 / 2);
   EXPECT_TRUE(paper["optimization"]["phases"].empty());
-  for (const char* unused : {"exponent", "starts", "retries", "tolerance", "k"})
+  for (const char* unused : {"exponent", "starts", "tolerance", "k"})
     EXPECT_TRUE(paper["options"][unused].is_null()) << unused;
   EXPECT_EQ(paper["options"]["max_iterations"], 3);
   EXPECT_EQ(paper["options"]["weights"], "inverse");

@@ -211,7 +211,6 @@ TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
     EXPECT_GT(volumeOf(points, result.triangles), 0.0);
   };
   Options options;
-  options.retries = 0;
   options.threads = 1;  // so few points take longer on more
   // The whole optimisation takes long where it is in vain.
   options.optimization.method = OptimizationMethod::Flips;

@@ -122,11 +122,6 @@ function showTables(data) {
     Nodes: 'nodes', Edges: 'edges', Sweeps: 'sweeps', Newton: 'newton_iterations',
     CG: 'linear_iterations', Residual: 'residual',
   });
-  const runs = report.runs ?? [];
-  showGrid('runs', runs.length > 1 ? runs : [], {
-    Run: 'description', 'Self-intersections': 'self_intersections', Energy: 'energy',
-    Chosen: 'chosen',
-  });
   byId('command').textContent = data.command;
   byId('json').addEventListener('toggle', () => {
     byId('json').lastChild.textContent = JSON.stringify(report, null, 2);

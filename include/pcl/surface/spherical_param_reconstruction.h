@@ -26,10 +26,8 @@ namespace pcl {
  * that limbs are unfolded, towards a vanishing tangential Laplacian. The Delaunay triangulation of
  * the embedded points, which is their convex hull, gives a first connectivity; its decisions are
  * exact. It is then optimised on the points themselves, by moves that keep a sphere a sphere, until
- * no triangles intersect, if possible (getSelfIntersections()); the points are never moved. Where
- * some are left although the cloud looks like a closed surface, the work is repeated with other
- * graphs and seeds (setRetries()). getDiagnosis() lists what speaks against such a surface, and
- * where.
+ * no triangles intersect, if possible (getSelfIntersections()); the points are never moved.
+ * getDiagnosis() lists what speaks against a closed surface without handles, and where.
  *
  * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
  * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
@@ -213,16 +211,6 @@ public:
   /** \brief Get the strength of the smoothing.
    * \return the steps; 0: none */
   inline int getSmoothing() const { return options_.smoothing.steps; }
-
-  /** \brief Set how often the work is repeated at most while the mesh intersects itself although
-   * the cloud looks like a closed surface.
-   * \param[in] retries 0 to 99; default 3. The best mesh is kept (getResult().runs).
-   * \note Set 0 where time matters. A mesh that is good at once takes no longer for a larger one.
-   */
-  inline void setRetries(int retries) { options_.retries = retries; }
-  /** \brief Get how often the work is repeated at most.
-   * \return the number of retries */
-  inline int getRetries() const { return options_.retries; }
 
   /** \brief Set the seed of all random choices: the order in which the multilevel embedding
    * coarsens the graph, and the parts of the mesh that OptimizationMethod::Full takes out.

@@ -221,17 +221,6 @@ class Smoothing:
     self_intersections: int  #: pairs of triangles, on the smoothed points
 
 
-@dataclass(frozen=True)
-class Run:
-    """The first run, or one of ``retries``."""
-
-    description: str  #: what is different from the first
-    self_intersections: int  #: pairs of triangles, on the points or the smoothed ones
-    energy: float  #: as ``Optimization.energy``
-    seconds: float
-    chosen: bool
-
-
 @dataclass(frozen=True, eq=False)
 class HistoryFrame:
     """One state of the embedding on its way."""
@@ -283,7 +272,6 @@ class Result(MeshExport):
     triangulation: Triangulation
     optimization: Optimization
     smoothing: Smoothing
-    runs: tuple[Run, ...]  #: in the order of the work, at least one
     stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
     history: Optional[History]  #: how the embedding unfolded; None without ``history_vertices``
     vertex_residuals: Optional[FloatArray]
@@ -331,7 +319,6 @@ def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
         triangulation=Triangulation(**fields["triangulation"]),
         optimization=Optimization(**optimization),
         smoothing=Smoothing(**fields["smoothing"]),
-        runs=tuple(Run(**run) for run in fields["runs"]),
         warnings=tuple(fields["warnings"]),
     )
     return Result(vertices=points[fields["input_of_vertex"]], **fields)

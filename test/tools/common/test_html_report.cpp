@@ -39,7 +39,6 @@ Positions scanned(Shape shape, std::size_t points) {
 ReconstructionSettings flipsAlone() {
   ReconstructionSettings settings;
   settings.options.optimization.method = OptimizationMethod::Flips;
-  settings.options.retries = 0;
   settings.options.threads = 2;
   return settings;
 }
