@@ -314,6 +314,7 @@ Json optimizationToJson(const Settings& settings,
   json["rough"] = optimization.rough;
   json["noisy"] = optimization.noise_steps > 0;
   json["noise_steps"] = optimization.noise_steps;
+  json["out_of_time"] = optimization.is_out_of_time;
   json["alignment"] = optimization.alignment;
   json["unevenness"] = optimization.unevenness;
   json["phases"] = Json::array();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 namespace spherical_param {
 
@@ -17,13 +18,17 @@ struct Progress {
   double fraction;
 };
 
-/// How a computation is run. It has no influence on the result.
+/// How a computation is run. Only the time limit has an influence on the result.
 struct Execution {
   int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
   /// Called every second or more often during long work, from the calling thread only. Returning
   /// false ends the work with Cancelled. May be empty. The paper's own stages (qhull, and a
   /// tolerance for the multilevel embedding) and smoothing may take longer between two calls.
   std::function<bool(const Progress&)> progress = {};
+  /// Wall time after which the optimisation ends with the best mesh so far [s]; [0, 1e9]. Unset:
+  /// none. What comes before the optimisation is not cut short. The same limit may give another
+  /// mesh on another machine.
+  std::optional<double> time_limit = {};
 };
 
 /// @}

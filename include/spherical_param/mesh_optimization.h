@@ -54,8 +54,9 @@ struct OptimizationReport {
   int noise_steps = 0;
   /// With `noise_steps`: pairs that intersected on the smoothed points, before the finish.
   std::size_t smoothed_self_intersections = 0;
-  double alignment = 0.0;   ///< how far the sampling follows the curvature, in [-1, 1]
-  double unevenness = 0.0;  ///< relative deviation of the distances of a point's neighbours
+  bool is_out_of_time = false;  ///< the time limit ended it early
+  double alignment = 0.0;       ///< how far the sampling follows the curvature, in [-1, 1]
+  double unevenness = 0.0;      ///< relative deviation of the distances of a point's neighbours
 };
 
 /// An optimised mesh.
@@ -80,7 +81,10 @@ struct MeshOptimization {
 ///           taken out and put back where they cost least.
 /// Ruin and recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put
 ///           back in random order.
-/// Untangle: the same with up to 96 vertices around triangles that intersect, until none do.
+/// Flip apart: edges near triangles that intersect are flipped, one or two at a time, so that
+///           fewer do.
+/// Untangle: parts of up to 96 vertices around triangles that intersect are taken out and put back,
+///           by the energy, then by the number of intersections.
 /// Polish:   flips (and relocation) again, in terms that suit the cloud. Where the sampling follows
 ///           the surface's curvature (simplified and designed models), or is random: angle^1.5 and
 ///           mu = 0.8.
@@ -97,14 +101,13 @@ struct MeshOptimization {
 /// \param graph     n nodes, the neighbours of each point.
 /// \param options how far
 /// \param seed  of the random choice of parts that are taken out.
-/// \param execution threads, progress
+/// \param execution threads, progress, time limit
 /// \return the mesh: the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for sizes that disagree, an index or option out of range, or a mesh that is
 ///        not as said; Cancelled.
 ///
 /// Not guaranteed: that no triangles intersect; that the energy is the least.
-/// Cost: O(n log n), typically; untangling is given up after a number of attempts that is
-/// proportional to n.
+/// Cost: O(n log n); repairs end after work that is proportional to n.
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
                               const Graph& graph, const OptimizationOptions& options = {},
                               std::uint32_t seed = 1, const Execution& execution = {});

@@ -18,6 +18,7 @@ namespace {
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 /// Where numbers still count.
 constexpr double kMaxArea = 1e15;
+constexpr double kMaxSeconds = 1e9;
 constexpr double kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 
 template <typename T>
@@ -209,6 +210,11 @@ std::vector<OptionRow> runRows() {
       number(
           "seed", "seed", "seed of all random choices", Everybody, 0, kMaxSeed,
           [](Options & o) -> auto& { return o.seed; }),
+      usedWith({{"optimization", "full"}},
+               number(
+                   "time_limit", "time_limit",
+                   "seconds until the work ends with the best mesh so far, unset: no limit",
+                   Everybody, 0, kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
       number(
           "threads", "threads", "threads, 0: as many as OpenMP would use", Everybody, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),

@@ -91,16 +91,23 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
   // The smoothed points get an optimisation of their own.
   if (is_smoothed)
     of_optimization.finish_on_points = false;
+  Execution execution = options;
+  execution.time_limit = clock.remaining();
+  if (is_smoothed && execution.time_limit)
+    *execution.time_limit /= 2.0;
   mesh.optimization = clock.time("optimization", [&] {
     return internal::optimizeMesh(points, triangulation.triangles, mesh.graph.graph,
-                                  surface.places(), of_optimization, options.seed, options);
+                                  surface.places(), of_optimization, options.seed, execution);
   });
+  execution.time_limit = clock.remaining();
   if (is_smoothed)
     mesh.smoothed = clock.time("smoothing", [&] {
       return internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph,
                                   surface.places(), options.smoothing, options.optimization.method,
-                                  options.seed, options);
+                                  options.seed, execution);
     });
+  bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
+  is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
   orientOutward(points, mesh.triangles(), mesh.embedding);
   return mesh;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,19 @@ public:
     return outcome;
   }
 
+  /// What is left of the time limit, without what is kept for the check of the mesh: half of the
+  /// time until the embedding, which is more than it takes [s].
+  std::optional<double> remaining() const {
+    if (!options_.time_limit)
+      return std::nullopt;
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+    double kept = 0.0;
+    for (const StageTime& time : times_)
+      if (time.name == "neighbors" || time.name == "graph")
+        kept += time.seconds / 2.0;
+    return std::max(0.0, *options_.time_limit - passed.count() - kept);
+  }
+
   std::vector<StageTime> take() { return std::move(times_); }
 
 private:
@@ -55,6 +69,7 @@ private:
   }
 
   const Options& options_;
+  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   const char* stage_ = "";
   std::vector<StageTime> times_;
 };

@@ -76,6 +76,9 @@ std::vector<std::string> warningsOf(const Options& options, const Result& result
   if (result.optimization.noise_steps > 0 && result.smoothed.cols() == 0)
     warn("The cloud is noisy: the mesh was optimised on smoothed positions of its points; "
          "smoothing gives a surface without the noise.");
+  if (result.optimization.is_out_of_time)
+    warn("The time limit ended the optimisation early: this is the best mesh so far; more time may "
+         "make it better.");
   if (!result.self_intersections.empty())
     warn(std::to_string(result.self_intersections.size()) + " pairs of triangles intersect" +
          (result.smoothed.cols() > 0 ? " (" + std::to_string(result.smoothing.self_intersections) +

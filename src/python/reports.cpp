@@ -138,6 +138,7 @@ py::dict toDict(const OptimizationReport& optimization) {
   });
   return py::dict("phases"_a = phases, "energy"_a = optimization.energy,
                   "rough"_a = optimization.rough, "noise_steps"_a = optimization.noise_steps,
+                  "is_out_of_time"_a = optimization.is_out_of_time,
                   "smoothed_self_intersections"_a = optimization.smoothed_self_intersections,
                   "alignment"_a = optimization.alignment, "unevenness"_a = optimization.unevenness);
 }

@@ -6,7 +6,9 @@
 #include "spherical_param/outliers.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 namespace spherical_param::tools {
@@ -139,10 +141,30 @@ void prepareCloud(const std::string& path, const ReconstructionSettings& setting
   }
 }
 
+/// What is left of the time limit of a whole run.
+class TimeLeft {
+public:
+  explicit TimeLeft(const ReconstructionSettings& settings) : limit_(settings.options.time_limit) {}
+
+  /// [s]; unset: there is no limit.
+  std::optional<double> operator()() const {
+    if (!limit_) {
+      return std::nullopt;
+    }
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
+    return std::max(0.0, *limit_ - passed.count());
+  }
+
+private:
+  std::optional<double> limit_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// Meshes the points that were chosen. \throw InvalidInput, ComputeError
-void meshChosen(const ReconstructionSettings& settings, StageProgress& progress,
-                CloudReconstruction& cloud) {
+void meshChosen(const ReconstructionSettings& settings, std::optional<double> time_limit,
+                StageProgress& progress, CloudReconstruction& cloud) {
   Options options = settings.options;
+  options.time_limit = time_limit;
   options.progress = [&progress](const Progress& reported) { return progress(reported); };
   cloud.result = reconstruct(positionsOf(*cloud.data, cloud.meshed), options);
   progress.finish();
@@ -157,6 +179,7 @@ void meshChosen(const ReconstructionSettings& settings, StageProgress& progress,
 
 void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, CloudReconstruction& cloud) {
+  const TimeLeft time_left(settings);
   prepareCloud(path, settings, console, cloud);
   if (cloud.parts) {
     cloud.meshed = cloud.parts->parts.front().points;
@@ -164,14 +187,19 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   StageProgress progress(console);
   runLibrary("cannot mesh " + inQuotes(path) + leftOut(cloud),
              "check that the file holds the cloud you mean",
-             [&] { meshChosen(settings, progress, cloud); });
+             [&] { meshChosen(settings, time_left(), progress, cloud); });
 }
 
 void reconstructParts(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, PartsReconstruction& result) {
   CloudReconstruction& cloud = result.cloud;
+  const TimeLeft time_left(settings);
   prepareCloud(path, settings, console, cloud);
   std::vector<Part>& found = cloud.parts->parts;
+  std::size_t points_left = 0;
+  for (const Part& part : found) {
+    points_left += part.points.size();
+  }
   std::vector<Part> meshed;
   StageProgress progress(console);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -182,8 +210,15 @@ void reconstructParts(const std::string& path, const ReconstructionSettings& set
     CloudReconstruction part;
     part.data = cloud.data;
     part.meshed = found[i].points;
+    // Each part has its share of the time.
+    std::optional<double> time_limit = time_left();
+    if (time_limit) {
+      *time_limit *= static_cast<double>(part.meshed.size()) / static_cast<double>(points_left);
+    }
+    points_left -= part.meshed.size();
     try {
-      runLibrary("cannot mesh " + name, "", [&] { meshChosen(settings, progress, part); });
+      runLibrary("cannot mesh " + name, "",
+                 [&] { meshChosen(settings, time_limit, progress, part); });
     } catch (const Failure& failure) {
       progress.finish();
       result.failures.emplace_back(failure.what());

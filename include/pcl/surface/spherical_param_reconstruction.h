@@ -221,6 +221,16 @@ public:
    * \return the seed */
   inline std::uint32_t getSeed() const { return options_.seed; }
 
+  /** \brief Set the time after which the work ends with the best mesh so far.
+   * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit. A first mesh is made in any case;
+   * getResult().optimization.is_out_of_time says whether the limit ended the work.
+   * \note Set it where a scan must not hold up what comes after it. The same limit may give another
+   * mesh on another machine. */
+  inline void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
+  /** \brief Get the time after which the work ends.
+   * \return that of setTimeLimit() [s]; unset by default */
+  inline std::optional<double> getTimeLimit() const { return options_.time_limit; }
+
   /** \brief Set the number of threads. The result does not depend on it.
    * \param[in] threads 0 (default): as many as OpenMP would use. */
   inline void setNumberOfThreads(unsigned int threads = 0) {

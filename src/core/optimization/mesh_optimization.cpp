@@ -65,6 +65,15 @@ MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangl
   return optimizer;
 }
 
+using Clock = std::chrono::steady_clock;
+
+std::optional<Clock::time_point> deadlineOf(const Execution& execution) {
+  if (!execution.time_limit)
+    return std::nullopt;
+  const std::chrono::duration<double> limit(*execution.time_limit);
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
+}
+
 class Optimization {
 public:
   Optimization(const Positions& points, const Triangles& triangles, const Graph& graph,
@@ -72,7 +81,8 @@ public:
                std::uint32_t seed, const Execution& execution)
       : graph_(graph), options_(options), threads_(execution.threads),
         report_(internal::reportOf(execution, "optimization")), given_(&points), points_(&points),
-        random_(seed), budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
+        random_(seed), deadline_(deadlineOf(execution)),
+        budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
         openings_(openings != nullptr ? std::optional(*openings) : std::nullopt),
         optimizer_(checkedOptimizer(points, triangles, graph, openings_ ? &*openings_ : nullptr,
                                     threads_, report_)) {}
@@ -109,15 +119,21 @@ private:
     OptimizationPhase phase;
     phase.name = name;
     phase.energy_before = optimizer_.energy();
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     const Tally tally = work();
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+    const std::chrono::duration<double> time = Clock::now() - begin;
     phase.tried = tally.tried;
     phase.moves = tally.moves;
     phase.energy = optimizer_.energy();
     phase.seconds = time.count();
     result_.report.phases.push_back(phase);
     return result_.report.phases.back();
+  }
+
+  bool isOutOfTime() {
+    bool& is_out = result_.report.is_out_of_time;
+    is_out = is_out || (deadline_ && Clock::now() >= *deadline_);
+    return is_out;
   }
 
   void flips(const char* name) {
@@ -211,10 +227,11 @@ private:
   }
 
   void relocate(std::vector<Index> rough) {
-    for (int round = 0; round < tuned::kMaxRelocateRounds && !rough.empty(); ++round) {
+    for (int round = 0; round < tuned::kMaxRelocateRounds && !rough.empty() && !isOutOfTime();
+         ++round) {
       std::vector<Index> moved;
       phase("relocate", [&] {
-        for (std::size_t i = 0; i < rough.size(); ++i) {
+        for (std::size_t i = 0; i < rough.size() && !isOutOfTime(); ++i) {
           reportItem(i, rough.size(), 256);
           if (optimizer_.relocate(rough[i]))
             moved.push_back(rough[i]);
@@ -246,7 +263,7 @@ private:
   bool recreate() {
     for (int round = 0; round < tuned::kMaxRecreateRounds; ++round) {
       const auto folded = optimizer_.edgesBelow(tuned::kMinUnfoldedCosine);
-      if (folded.empty() || budget_ == 0)
+      if (folded.empty() || !mayRepair())
         return !folded.empty();
       phase("ruin and recreate", [&] {
         Tally tally;
@@ -266,7 +283,7 @@ private:
   /// Ruins and recreates a part around some vertices, while the budget lasts.
   void tryPart(const std::vector<Index>& seeds, std::size_t size,
                const std::function<bool(double)>& accept, Tally& tally) {
-    if (budget_ == 0)
+    if (!mayRepair())
       return;
     const std::vector<Index> part = optimizer_.spread(seeds, size, random_);
     spend(part.size());
@@ -288,7 +305,7 @@ private:
     const int rounds_by_energy = is_noise ? 0 : tuned::kMaxRoundsByEnergy;
     int idle = 0;
     for (int round = 0; round < tuned::kMaxUntangleRounds && idle < tuned::kMaxIdleRounds &&
-                        !pairs.empty() && budget_ > 0;
+                        !pairs.empty() && mayRepair();
          ++round) {
       const bool by_number = round >= rounds_by_energy || !hasMoreThanReserve();
       if (by_number && idle == 0) {
@@ -314,6 +331,9 @@ private:
     return pairs;
   }
 
+  /// Whether budget and time last.
+  bool mayRepair() { return budget_ > 0 && !isOutOfTime(); }
+
   /// Whether more of the budget is left than the rounds by number need.
   bool hasMoreThanReserve() const {
     return budget_ > budgetOf(static_cast<std::size_t>(points_->cols())) / 2;
@@ -325,7 +345,7 @@ private:
     OptimizationPhase& flipped = phase("flip apart", [&] {
       Tally tally;
       forEachPair(pairs, [&](const auto& pair, const auto& corners) {
-        if (budget_ == 0 || !areCornersOf(pair, corners))
+        if (!mayRepair() || !areCornersOf(pair, corners))
           return;
         spend(tuned::kFlipRegion);
         optimizer_.intersectionsAround(
@@ -376,7 +396,7 @@ private:
   void untangleByNumber(const std::array<Index, 2>& pair, const Corners& corners, Tally& tally) {
     const std::vector<Index> seeds = seedsOf(corners);
     for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2) {
-      if (budget_ == 0 || !areCornersOf(pair, corners))
+      if (!mayRepair() || !areCornersOf(pair, corners))
         return;
       const std::vector<Index> around =
           optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_);
@@ -419,6 +439,8 @@ private:
   }
 
   void polish() {
+    if (isOutOfTime())
+      return;
     setFlipEnergy(tuned::kPolishMu);
     flips("polish");
     if (!isEven())
@@ -449,6 +471,7 @@ private:
   const Positions* points_;  ///< given, or smoothed_
   Positions smoothed_;
   std::uint64_t random_;
+  std::optional<Clock::time_point> deadline_;
   std::size_t budget_;  ///< what is left of budgetOf()
   std::optional<internal::OpenPlaces> openings_;
   MeshOptimizer optimizer_;

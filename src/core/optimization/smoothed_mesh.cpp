@@ -21,6 +21,7 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
         optimizeMesh(result.points, triangles, graph, openings, {}, seed, execution);
     result.triangles = std::move(outcome.triangles);
     count = outcome.self_intersections.size();
+    result.is_out_of_time = outcome.report.is_out_of_time;
   }
   return result;
 }

@@ -205,6 +205,7 @@ class Optimization:
     rough: float  #: fraction of rough vertices after the first flips, in [0, 1]
     noise_steps: int  #: of smoothing that it took because the cloud is noisy; 0: it is not
     smoothed_self_intersections: int  #: with ``noise_steps``: on the smoothed points
+    is_out_of_time: bool  #: the time limit ended it early
     alignment: float  #: how far the sampling follows the curvature, in [-1, 1]
     unevenness: float  #: relative deviation of the distances of a point's neighbours
 
