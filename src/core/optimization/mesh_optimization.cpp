@@ -351,7 +351,13 @@ private:
         optimizer_.intersectionsAround(
             optimizer_.spread(seedsOf(corners), tuned::kFlipRegion, random_));
         ++tally.tried;
-        tally.moves += optimizer_.flipApart();
+        if (optimizer_.flipApart() == 0)
+          return;
+        ++tally.moves;
+        // Flips alone may leave the surface crumpled.
+        Tally improved;
+        for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxFlippedPart; size *= 2)
+          tryByNumber(seedsOf(corners), size, improved);
       });
       return tally;
     });
@@ -392,26 +398,30 @@ private:
     }
   }
 
-  /// The same, but what counts are the intersections after those that flips can take apart were.
   void untangleByNumber(const std::array<Index, 2>& pair, const Corners& corners, Tally& tally) {
-    const std::vector<Index> seeds = seedsOf(corners);
-    for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2) {
-      if (!mayRepair() || !areCornersOf(pair, corners))
-        return;
-      const std::vector<Index> around =
-          optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_);
-      spend(around.size());
-      const std::size_t before = optimizer_.intersectionsAround(around);
-      tryPart(
-          seeds, size,
-          [&](double change) {
-            std::size_t after = optimizer_.intersectionsAround(around);
-            if (after > 0)
-              after -= optimizer_.flipApart();
-            return after < before || (after == before && MeshOptimizer::isGain(change));
-          },
-          tally);
-    }
+    for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2)
+      if (areCornersOf(pair, corners))
+        tryByNumber(seedsOf(corners), size, tally);
+  }
+
+  /// Ruins and recreates a part, and flips apart what intersects then: commits that if fewer
+  /// triangles around it intersect, or as many at a lower energy.
+  void tryByNumber(const std::vector<Index>& seeds, std::size_t size, Tally& tally) {
+    if (!mayRepair())
+      return;
+    const std::vector<Index> around =
+        optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_);
+    spend(around.size());
+    const std::size_t before = optimizer_.intersectionsAround(around);
+    tryPart(
+        seeds, size,
+        [&](double change) {
+          std::size_t after = optimizer_.intersectionsAround(around);
+          if (after > 0)
+            after -= optimizer_.flipApart();
+          return after < before || (after == before && MeshOptimizer::isGain(change));
+        },
+        tally);
   }
 
   void analyze() {

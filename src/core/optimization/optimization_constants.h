@@ -106,10 +106,12 @@ constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
 /// Work of all repairs: the sum of the first and of the second for each point, in vertices that are
 /// taken out or looked at for intersections. One takes about as long as a point does in the first
-/// mesh: so repairs take about ten times as long as that at most. Of the 56 runs below, 45 end
-/// without intersections and the others with 41; with 5 for each point 40 and 756 without the half
-/// that is kept for rounds by number, with 1,000 for each point 48 and 18, in 1.4 times as long.
-constexpr std::size_t kMaxWork = 2000;
+/// mesh, and the least mesh as long as 1,000 points: so repairs take at most about ten times as
+/// long as that. With a first of 2,000 a tube from a bad start keeps its spikes. With 1,000 for
+/// each point 48 instead of 45 of the 56 runs below end without intersections, in 1.4 times as
+/// long; with 5, 40. Half is kept for rounds by number: without, a coarse body with limbs keeps 250
+/// intersections instead of 23.
+constexpr std::size_t kMaxWork = 10000;
 constexpr std::size_t kMaxWorkOfPoint = 10;
 
 // --- Untangling ----------------------------------------------------------------------------------
@@ -120,17 +122,20 @@ constexpr std::size_t kMaxWorkOfPoint = 10;
 /// than the number of intersections does, but may be stuck with the last ones. With 4 or 2 of the
 /// latter the springer keeps 2 with some seeds. Where the points are noisy the energy decides in
 /// none.
-constexpr int kMaxUntangleRounds = 16;
+constexpr int kMaxUntangleRounds = 40;
 constexpr int kMaxRoundsByEnergy = 5;
-/// Rounds by number in a row without a gain. With 2, 43 of the runs end without intersections
-/// instead of 46.
-constexpr int kMaxIdleRounds = 4;
+/// Rounds by number in a row without a gain. 49 of the runs end without intersections; with 4, and
+/// 16 rounds in all, 47 in 0.85 times as long, with 40 and 100, 51 in 1.1 times as long.
+constexpr int kMaxIdleRounds = 12;
 /// Vertices of a part around two triangles that intersect, from the first size to the last,
 /// doubled. From 12 on the noisy sphere keeps 122 intersections, up to 48 the cheburashka 3.
 constexpr std::size_t kMinUntangled = 6;
 constexpr std::size_t kMaxUntangled = 96;
-/// Vertices around whose triangles flips take two triangles apart that intersect.
+/// Vertices around whose triangles flips take two triangles apart that intersect, and the largest
+/// part that is then ruined and recreated there. Without such parts a cube keeps a corner cut off;
+/// with up to 24 vertices 42 of the runs end without intersections instead of 47.
 constexpr std::size_t kFlipRegion = 64;
+constexpr std::size_t kMaxFlippedPart = 12;
 /// Intersections are counted among twice as many vertices as the part has, and these. With none of
 /// these the springer keeps 32 intersections; with 1000 noisy clouds take 1.7 times as long.
 constexpr std::size_t kWatchedVertices = 200;

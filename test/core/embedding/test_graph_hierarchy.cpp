@@ -284,7 +284,7 @@ TEST(GraphHierarchy, PathsBeyondTheRangeOfDoubleStayLengths) {
 
 TEST(GraphHierarchy, SmallGraphsHaveNoLevels) {
   EXPECT_TRUE(buildGraphHierarchy(Graph(), 1).levels.empty());
-  EXPECT_TRUE(buildGraphHierarchy(sphereGraph(randomSphere(1000, 1)), 1).levels.empty());
+  EXPECT_TRUE(buildGraphHierarchy(sphereGraph(randomSphere(500, 1)), 1).levels.empty());
 }
 
 TEST(GraphHierarchy, NeverFewerThanFourNodes) {
