@@ -244,6 +244,49 @@ TEST(MeshOptimization, ScaleByAPowerOfTwoChangesNothing) {
   }
 }
 
+/// The mesh of a sphere on other points, in a cube: a tangle that nothing untangles.
+Case tangle(Index n) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Case of = ellipsoid(n, 1.0, 1.0);
+  of.points = Positions(Positions::NullaryExpr(3, n, [&] { return uniform(random); }));
+  return of;
+}
+
+TEST(MeshOptimization, RepairsEndAfterWorkProportionalToThePoints) {
+  for (const Index n : {500, 1500}) {
+    const Case of = tangle(n);
+    const MeshOptimization result = optimize(of);
+    EXPECT_FALSE(result.self_intersections.empty());
+    std::size_t parts = 0;
+    for (const OptimizationPhase& phase : result.report.phases)
+      if (phase.name == "ruin and recreate" || phase.name == "untangle")
+        parts += phase.tried;
+    // Parts of at least 4 vertices; twice, as on noise.
+    EXPECT_LE(4 * parts, 2 * (10000 + 10 * static_cast<std::size_t>(n)));
+  }
+}
+
+TEST(MeshOptimization, ATimeLimitEndsItWithASphereAndSaysSo) {
+  const Case of = tangle(500);
+  for (const double limit : {0.0, 0.01}) {
+    Execution execution;
+    execution.time_limit = limit;
+    const MeshOptimization result = optimize(of, {}, 1, execution);
+    expectGuarantees(of, result);
+    EXPECT_TRUE(result.report.is_out_of_time);
+  }
+}
+
+TEST(MeshOptimization, ATimeLimitThatIsNotReachedChangesNothing) {
+  const Case of = noisySphere(200, 0.5, 26);
+  Execution execution;
+  execution.time_limit = 1e9;
+  const MeshOptimization limited = optimize(of, {}, 1, execution);
+  EXPECT_FALSE(limited.report.is_out_of_time);
+  EXPECT_EQ(limited.triangles, optimize(of).triangles);
+}
+
 // --- The caller's part ---------------------------------------------------------------------------
 
 TEST(MeshOptimization, BadInputIsInvalidInput) {

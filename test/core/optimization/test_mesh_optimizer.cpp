@@ -302,6 +302,41 @@ TEST(MeshOptimizer, IntersectionsOfAMeshThatChangedAreThoseOfItAlone) {
   }
 }
 
+std::vector<Index> allVertices(const Case& of) {
+  std::vector<Index> vertices(static_cast<std::size_t>(of.points.cols()));
+  std::iota(vertices.begin(), vertices.end(), Index{0});
+  return vertices;
+}
+
+TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
+  for (const Case& of : roughCases()) {
+    MeshOptimizer optimizer = optimizerOf(of);
+    optimizer.setEnergy(energyWith(Bend::Angle));
+    const std::size_t before = optimizer.intersectionsAround(allVertices(of));
+    EXPECT_EQ(before, findSelfIntersections(of.points, of.triangles).size());
+    const std::size_t fewer = optimizer.flipApart();
+    const Triangles triangles = optimizer.mesh().triangles();
+    EXPECT_EQ(findSelfIntersections(of.points, triangles).size(), before - fewer);
+    EXPECT_TRUE(isSphereOverAll(triangles, static_cast<Index>(of.points.cols())));
+    EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
+  }
+}
+
+TEST(MeshOptimizer, NearlyAllThatFlipsMadeIntersectIsFlippedApart) {
+  std::size_t pairs = 0;
+  std::size_t left = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Case of = scrambledEllipsoid(300, 0.5, 450, seed);
+    MeshOptimizer optimizer = optimizerOf(of);
+    optimizer.setEnergy(energyWith(Bend::Angle));
+    const std::size_t before = optimizer.intersectionsAround(allVertices(of));
+    pairs += before;
+    left += before - optimizer.flipApart();
+  }
+  EXPECT_GT(pairs, 100U);
+  EXPECT_LE(left, pairs / 20);
+}
+
 TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
   Case of = ellipsoid(400, 0.9, 0.8);
   const MeshOptimizer clean = optimizerOf(of);
