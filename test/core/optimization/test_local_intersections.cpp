@@ -1,0 +1,75 @@
+#include "local_intersections.h"
+
+#include "optimization_cases.h"
+#include "spherical_param/self_intersection.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace spherical_param::test {
+namespace {
+
+using internal::boxOf;
+using internal::Face;
+using internal::LocalIntersections;
+
+Face faceOf(const Positions& points, const Triangles& triangles, Index t) {
+  Face face{{points.col(triangles(0, t)), points.col(triangles(1, t)), points.col(triangles(2, t))},
+            0.0,
+            {triangles(0, t), triangles(1, t), triangles(2, t)},
+            t};
+  face.size = boxOf(face.corners).size();
+  return face;
+}
+
+/// How many other triangles each one intersects.
+std::vector<std::size_t> countsOf(const Positions& points, const Triangles& triangles) {
+  std::vector<std::size_t> counts(static_cast<std::size_t>(triangles.cols()), 0);
+  for (const auto& [t, u] : findSelfIntersections(points, triangles)) {
+    ++counts[static_cast<std::size_t>(t)];
+    ++counts[static_cast<std::size_t>(u)];
+  }
+  return counts;
+}
+
+TEST(LocalIntersections, CountsAreThoseOfTheWholeMesh) {
+  const Case of = scrambledEllipsoid(300, 0.3, 400, 1);
+  const auto m = static_cast<Index>(of.triangles.cols());
+  LocalIntersections local(static_cast<std::size_t>(m));
+  for (Index t = 0; t < m; ++t)
+    local.set(faceOf(of.points, of.triangles, t));
+  const std::vector<std::size_t> counts = countsOf(of.points, of.triangles);
+  for (Index t = 0; t < m; ++t)
+    EXPECT_EQ(local.count(faceOf(of.points, of.triangles, t), t, t),
+              counts[static_cast<std::size_t>(t)]);
+}
+
+TEST(LocalIntersections, ATriangleThatChangesTakesTheOldOnesPlace) {
+  // A triangle across a square of two, and the same beside it.
+  Positions points(3, 7);
+  points << 0, 1, 1, 0, 0.4, 0.6, 0.5,  //
+      0, 0, 1, 1, 0.4, 0.4, 0.6,        //
+      0, 0, 0, 0, -1, -1, 1;
+  Triangles triangles(3, 3);
+  triangles << 0, 0, 4,  //
+      1, 2, 5,           //
+      2, 3, 6;
+  LocalIntersections local(3);
+  for (Index t = 0; t < 3; ++t)
+    local.set(faceOf(points, triangles, t));
+  const Face across = faceOf(points, triangles, 2);
+  EXPECT_EQ(local.count(across, 2, 2), 2U);
+  EXPECT_EQ(local.count(across, 2, 0), 1U);
+  points.row(0).tail(3).array() += 5.0;
+  local.set(faceOf(points, triangles, 2));
+  EXPECT_EQ(local.faces().size(), 3U);
+  for (Index t = 0; t < 3; ++t)
+    EXPECT_EQ(local.count(faceOf(points, triangles, t), t, t), 0U);
+  local.clear();
+  EXPECT_TRUE(local.faces().empty() && !local.contains(2));
+  EXPECT_EQ(local.count(across, 2, 2), 0U);
+}
+
+}  // namespace
+}  // namespace spherical_param::test
