@@ -28,7 +28,9 @@ using test::bruteForceSearch;
 using test::ellipsoid;
 using test::expectGuarantees;
 using test::horizontally;
+using test::isSphereOverAll;
 using test::mesh;
+using test::noisySphere;
 using test::paper;
 using test::quick;
 using test::randomSphere;
@@ -359,6 +361,27 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
   options = paper();
   options.graph.k = 1000;  // uses all others
   EXPECT_EQ(mesh(randomSphere(12, 1), options).graph.edges, 12U * 11U / 2U);
+}
+
+TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
+  const Positions points = noisySphere(1500, 0.5);
+  for (const int smoothing : {0, 5}) {
+    Options options;
+    options.smoothing.steps = smoothing;
+    options.time_limit = 0.0;
+    const Result result = reconstruct(points, options);
+    EXPECT_TRUE(isSphereOverAll(result.triangles, 1500));
+    EXPECT_TRUE(result.optimization.is_out_of_time);
+    EXPECT_TRUE(
+        std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& text) {
+          return text.find("time limit") != std::string::npos;
+        }));
+    options.time_limit = 1e9;
+    const Result unhurried = reconstruct(points, options);
+    EXPECT_FALSE(unhurried.optimization.is_out_of_time);
+    options.time_limit.reset();
+    EXPECT_EQ(unhurried.triangles, reconstruct(points, options).triangles);
+  }
 }
 
 TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {

@@ -71,6 +71,7 @@ TEST(Warnings, EachFindingHasItsOwn) {
          r.optimization.noise_steps = 3;
          r.smoothed.resize(3, kPoints);
        }},
+      {"time limit", [](Result& r) { r.optimization.is_out_of_time = true; }},
       {"2 pairs of triangles intersect.", [](Result& r) { r.self_intersections.resize(2); }},
       {"2 pairs of triangles intersect (1 on the smoothed points)",
        [](Result& r) {

@@ -161,7 +161,9 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   expectOptionsRefused(
       mesh_tool, {"in.xyz", "out.ply"},
       {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-embedding multilevel"},
-       {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"}});
+       {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"},
+       {{"-time-limit", "1", "-optimization", "flips"},
+        "-time-limit" + nothing + "-optimization flips"}});
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
                        {{{"-side", "9"}, "-side" + nothing},
                         {{"-grid", "even", "-series"}, "-series" + nothing},

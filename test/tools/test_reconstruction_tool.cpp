@@ -104,6 +104,21 @@ TEST_F(ReconstructionTool, StrayPointsAreListedAndLeftOutByAuto) {
   EXPECT_EQ(without["vertices"], 800);
 }
 
+TEST_F(ReconstructionTool, ATimeLimitIsAWarning) {
+  ASSERT_EQ(run(SCAN_TOOL, {"ellipsoid", "in.xyz", "-points", "800", "-noise", "0.5"}).exit_code,
+            0);
+  const json limited = reportOf({"in.xyz", "out.ply", "-time-limit", "0"});
+  EXPECT_EQ(limited["optimization"]["out_of_time"], true);
+  EXPECT_NE(limited["warnings"].dump().find("time limit"), std::string::npos);
+  EXPECT_TRUE(mesh("out.ply").isSphere());
+  EXPECT_EQ(limited["options"]["time_limit"], 0.0);
+  const json parts = reportOf({"in.xyz", "out.ply", "-time-limit", "0", "-parts", "largest"});
+  EXPECT_EQ(parts["optimization"]["out_of_time"], true);
+  const json free = reportOf({"in.xyz", "out.ply"});
+  EXPECT_EQ(free["optimization"]["out_of_time"], false);
+  EXPECT_TRUE(free["options"]["time_limit"].is_null());
+}
+
 TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   const std::vector<std::pair<std::string, std::string>> keys = {
       {"number_integer",

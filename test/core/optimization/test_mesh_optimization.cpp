@@ -244,7 +244,7 @@ TEST(MeshOptimization, ScaleByAPowerOfTwoChangesNothing) {
   }
 }
 
-/// The mesh of a sphere on other points, in a cube: a tangle that nothing untangles.
+/// The mesh of a sphere on other points, in a cube: nearly all of its triangles intersect others.
 Case tangle(Index n) {
   std::mt19937_64 random(31);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -257,11 +257,11 @@ TEST(MeshOptimization, RepairsEndAfterWorkProportionalToThePoints) {
   for (const Index n : {500, 1500}) {
     const Case of = tangle(n);
     const MeshOptimization result = optimize(of);
-    EXPECT_FALSE(result.self_intersections.empty());
     std::size_t parts = 0;
     for (const OptimizationPhase& phase : result.report.phases)
       if (phase.name == "ruin and recreate" || phase.name == "untangle")
         parts += phase.tried;
+    EXPECT_GT(parts, 100U);
     // Parts of at least 4 vertices; twice, as on noise.
     EXPECT_LE(4 * parts, 2 * (10000 + 10 * static_cast<std::size_t>(n)));
   }
