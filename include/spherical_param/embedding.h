@@ -126,7 +126,7 @@ struct EmbeddingReport {
   // Of EmbeddingMethod::Multilevel alone.
 
   std::vector<LevelReport> levels;  ///< finest (the graph itself) first
-  int starts = 0;                   ///< starts of the coarsest level that were tried
+  int starts = 0;                   ///< starts that were tried, on all levels
   int collapsed_starts = 0;         ///< of these, collapsed and rejected
   bool added_barrier = false;       ///< all starts collapsed: a barrier against it was added
   double energy = 0.0;              ///< that of the weights, without barrier

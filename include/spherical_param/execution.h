@@ -26,8 +26,8 @@ struct Execution {
   /// tolerance for the multilevel embedding) and smoothing may take longer between two calls.
   std::function<bool(const Progress&)> progress = {};
   /// Wall time after which the optimisation ends with the best mesh so far [s]; [0, 1e9]. Unset:
-  /// none. What comes before the optimisation is not cut short. The same limit may give another
-  /// mesh on another machine.
+  /// none. What comes before the optimisation is not cut short; with smoothing, the optimisation
+  /// before it has half of what is left. The same limit may give another mesh on another machine.
   std::optional<double> time_limit = {};
 };
 

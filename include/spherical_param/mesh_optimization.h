@@ -32,8 +32,8 @@ struct OptimizationOptions {
 
 /// What one phase of the optimisation did.
 struct OptimizationPhase {
-  /// "flips", "relocate", "ruin and recreate", "flip apart", "untangle", "polish", or "roll back":
-  /// of the polish
+  /// "flips", "relocate", "ruin and recreate", "flip apart", "untangle", "polish", or "roll back"
+  /// (of the polish)
   std::string name;
   std::size_t tried = 0;       ///< vertices or parts that were taken out
   std::size_t moves = 0;       ///< flips, or of these those that stayed at another place
@@ -81,7 +81,8 @@ struct MeshOptimization {
 ///           taken out and put back where they cost least.
 /// Ruin and recreate: around edges that are folded, parts of 4 to 32 vertices are taken out and put
 ///           back in random order.
-/// Flip apart: edges near triangles that intersect are flipped, one or two at a time, so that
+/// Flip apart: before rounds of untangling by number, edges near triangles that intersect are
+/// flipped, one or two at a time, so that
 ///           fewer do.
 /// Untangle: parts of up to 96 vertices around triangles that intersect are taken out and put back,
 ///           by the energy, then by the number of intersections.

@@ -93,6 +93,7 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
     of_optimization.finish_on_points = false;
   Execution execution = options;
   execution.time_limit = clock.remaining();
+  // The other half is for the smoothed points.
   if (is_smoothed && execution.time_limit)
     *execution.time_limit /= 2.0;
   mesh.optimization = clock.time("optimization", [&] {

@@ -29,7 +29,7 @@ namespace {
 
 /// Smoothing sweeps on each level. With 0 or 3, 15 of the 104 intersect themselves, with 20, 14.
 constexpr int kSweeps = 10;
-/// Levels of at most this number of nodes are solved fully, not only smoothed. With none, 20 of the
+/// Levels of at most this number of nodes are solved, not only smoothed. With none, 20 of the
 /// 104 intersect themselves, with those up to 3,000, 16, with all, 13.
 constexpr std::size_t kMaxSolvedSize = 10000;
 /// Relative residuals to which a start, a level and the graph itself are solved: limbs shrink

@@ -4,7 +4,6 @@
 #include "spherical_param/types.h"
 #include "triangle_pair.h"
 
-#include <array>
 #include <cstddef>
 #include <vector>
 

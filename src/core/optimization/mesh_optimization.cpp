@@ -67,9 +67,14 @@ MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangl
 
 using Clock = std::chrono::steady_clock;
 
+constexpr double kMaxTimeLimit = 1e9;  ///< [s]
+
 std::optional<Clock::time_point> deadlineOf(const Execution& execution) {
   if (!execution.time_limit)
     return std::nullopt;
+  if (!(*execution.time_limit >= 0.0 && *execution.time_limit <= kMaxTimeLimit))
+    throw InvalidInput("optimizeMesh: time_limit = " + std::to_string(*execution.time_limit) +
+                       " s is out of range; use 0 to 1e9, or leave it unset for no limit");
   const std::chrono::duration<double> limit(*execution.time_limit);
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
 }
@@ -150,19 +155,19 @@ private:
   void runFull() {
     std::vector<Index> rough = optimizer_.roughVertices(tuned::kMinSmoothCosine, report_);
     result_.report.rough = static_cast<double>(rough.size()) / static_cast<double>(points_->cols());
-    if (result_.report.rough > tuned::kMaxRough)
+    if (result_.report.rough > tuned::kMaxRough && !isOutOfTime())
       rough = beginOnNoise();
     relocate(rough);
     // Where nothing is folded, hardly anything intersects: once after the polish is enough.
     if (recreate())
       untangle();
     const Triangles unpolished = optimizer_.mesh().triangles();
-    polish();
+    const bool is_polished = polish();
     // With the first energy: it is what keeps sheets apart.
     optimizer_.setEnergy(energyOf(Bend::Angle, tuned::kMu));
     closeWithoutLoop();
     result_.self_intersections = untangleSurface();
-    if (!result_.self_intersections.empty())
+    if (is_polished && !result_.self_intersections.empty())
       rollBackPolish(unpolished);
     if (result_.report.noise_steps > 0)
       endOnNoise();
@@ -231,12 +236,14 @@ private:
          ++round) {
       std::vector<Index> moved;
       phase("relocate", [&] {
-        for (std::size_t i = 0; i < rough.size() && !isOutOfTime(); ++i) {
-          reportItem(i, rough.size(), 256);
-          if (optimizer_.relocate(rough[i]))
-            moved.push_back(rough[i]);
+        Tally tally;
+        for (; tally.tried < rough.size() && !isOutOfTime(); ++tally.tried) {
+          reportItem(tally.tried, rough.size(), 256);
+          if (optimizer_.relocate(rough[tally.tried]))
+            moved.push_back(rough[tally.tried]);
         }
-        return Tally{rough.size(), moved.size()};
+        tally.moves = moved.size();
+        return tally;
       });
       if (moved.empty())
         break;
@@ -374,7 +381,7 @@ private:
     for (const auto& [t, u] : pairs)
       corners.push_back({cornersOf(t), cornersOf(u)});
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      reportItem(i, pairs.size(), 16);
+      reportItem(i, pairs.size(), 1);
       work(pairs[i], corners[i]);
     }
   }
@@ -405,7 +412,7 @@ private:
   }
 
   /// Ruins and recreates a part, and flips apart what intersects then: commits that if fewer
-  /// triangles around it intersect, or as many at a lower energy.
+  /// triangles around it intersect, or as many at an energy that was lower before the flips.
   void tryByNumber(const std::vector<Index>& seeds, std::size_t size, Tally& tally) {
     if (!mayRepair())
       return;
@@ -448,13 +455,15 @@ private:
                                tuned::kMinTypicalAngle);
   }
 
-  void polish() {
+  /// Returns whether there was time for it.
+  bool polish() {
     if (isOutOfTime())
-      return;
+      return false;
     setFlipEnergy(tuned::kPolishMu);
     flips("polish");
     if (!isEven())
       relocate(optimizer_.roughVertices(tuned::kMinSmoothCosine));
+    return true;
   }
 
   /// Goes back to the mesh before the polish if fewer of its triangles intersect.

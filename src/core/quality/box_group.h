@@ -12,9 +12,9 @@
 
 namespace spherical_param::internal {
 
-constexpr std::size_t kGroupSize =
-    8;  ///< boxes of a group: as wide as several processors' registers
-constexpr unsigned kGroupBits = 3;
+/// Boxes of a group: as wide as several processors' registers.
+inline constexpr std::size_t kGroupSize = 8;
+inline constexpr unsigned kGroupBits = 3;
 
 /// A box that contains one of doubles: half the memory, and twice as many in a register.
 struct WideBox {

@@ -278,6 +278,14 @@ TEST(MeshOptimization, ATimeLimitEndsItWithASphereAndSaysSo) {
   }
 }
 
+TEST(MeshOptimization, ATimeLimitOutOfRangeIsInvalidInput) {
+  for (const double limit : {std::numeric_limits<double>::quiet_NaN(), -1.0, 1e300}) {
+    Execution execution;
+    execution.time_limit = limit;
+    EXPECT_THROW(optimize(ellipsoid(50, 0.8, 0.6), {}, 1, execution), InvalidInput);
+  }
+}
+
 TEST(MeshOptimization, ATimeLimitThatIsNotReachedChangesNothing) {
   const Case of = noisySphere(200, 0.5, 26);
   Execution execution;

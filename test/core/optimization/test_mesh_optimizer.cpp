@@ -309,17 +309,44 @@ std::vector<Index> allVertices(const Case& of) {
 }
 
 TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
+  std::size_t all = 0;
   for (const Case& of : roughCases()) {
     MeshOptimizer optimizer = optimizerOf(of);
     optimizer.setEnergy(energyWith(Bend::Angle));
     const std::size_t before = optimizer.intersectionsAround(allVertices(of));
     EXPECT_EQ(before, findSelfIntersections(of.points, of.triangles).size());
     const std::size_t fewer = optimizer.flipApart();
+    all += fewer;
     const Triangles triangles = optimizer.mesh().triangles();
     EXPECT_EQ(findSelfIntersections(of.points, triangles).size(), before - fewer);
     EXPECT_TRUE(isSphereOverAll(triangles, static_cast<Index>(of.points.cols())));
     EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
   }
+  EXPECT_GT(all, 0U);
+}
+
+TEST(MeshOptimizer, FlipsApartAreRolledBackWithThePartTheyFollow) {
+  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
+  MeshOptimizer optimizer = optimizerOf(of);
+  optimizer.setEnergy(energyWith(Bend::Angle));
+  const Triangles triangles = optimizer.mesh().triangles();
+  const double energy = optimizer.energy();
+  std::uint64_t random = 5;
+  std::size_t fewer = 0;
+  for (Index v = 0; v < 300; v += 7) {
+    const std::vector<Index> part = optimizer.spread({v}, 12, random);
+    EXPECT_FALSE(optimizer.recreate(
+        part,
+        [&](double) {
+          optimizer.intersectionsAround(allVertices(of));
+          fewer += optimizer.flipApart();
+          return false;
+        },
+        random));
+    EXPECT_EQ(optimizer.mesh().triangles(), triangles);
+    EXPECT_EQ(optimizer.energy(), energy);
+  }
+  EXPECT_GT(fewer, 0U);
 }
 
 TEST(MeshOptimizer, NearlyAllThatFlipsMadeIntersectIsFlippedApart) {
