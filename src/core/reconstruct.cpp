@@ -100,13 +100,14 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
     return internal::optimizeMesh(points, triangulation.triangles, mesh.graph.graph,
                                   surface.places(), of_optimization, options.seed, execution);
   });
-  execution.time_limit = clock.remaining();
-  if (is_smoothed)
+  if (is_smoothed) {
+    execution.time_limit = clock.remaining();
     mesh.smoothed = clock.time("smoothing", [&] {
       return internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph,
                                   surface.places(), options.smoothing, options.optimization.method,
                                   options.seed, execution);
     });
+  }
   bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
   is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
   orientOutward(points, mesh.triangles(), mesh.embedding);

@@ -2,6 +2,7 @@
 
 #include "progress.h"
 #include "spherical_param/reconstruct.h"
+#include "time_left.h"
 
 #include <algorithm>
 #include <chrono>
@@ -46,14 +47,11 @@ public:
   /// What is left of the time limit, without what is kept for the check of the mesh: half of the
   /// time until the embedding, which is more than it takes [s].
   std::optional<double> remaining() const {
-    if (!options_.time_limit)
-      return std::nullopt;
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin_;
     double kept = 0.0;
     for (const StageTime& time : times_)
       if (time.name == "neighbors" || time.name == "graph")
         kept += time.seconds / 2.0;
-    return std::max(0.0, *options_.time_limit - passed.count() - kept);
+    return time_left_(kept);
   }
 
   std::vector<StageTime> take() { return std::move(times_); }
@@ -69,7 +67,7 @@ private:
   }
 
   const Options& options_;
-  const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  TimeLeft time_left_{options_.time_limit};
   const char* stage_ = "";
   std::vector<StageTime> times_;
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 
 namespace spherical_param::internal {
@@ -23,6 +24,14 @@ private:
   int exponent_;
   double factor_;
 };
+
+/// A power of two that brings coordinates of at most this size to 1/2 ... 1: the exact predicates
+/// multiply three differences.
+inline double scaleToUnit(double most) {
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  return std::ldexp(1.0, std::min(-exponent, 1000));
+}
 
 /// Exponent of the smallest power of two that is larger than half of the largest extent along an
 /// axis; 0 without any.

@@ -2,11 +2,12 @@
 
 namespace spherical_param::internal {
 
-void LocalIntersections::clear() {
+void LocalIntersections::begin(std::size_t triangles) {
   for (const Face& face : faces_)
     places_[static_cast<std::size_t>(face.triangle)] = -1;
   faces_.clear();
   boxes_.clear();
+  places_.resize(triangles, -1);
 }
 
 void LocalIntersections::set(const Face& face) {

@@ -12,10 +12,10 @@ namespace spherical_param::internal {
 /// Some triangles of a mesh that changes, to count which of them another one intersects.
 class LocalIntersections {
 public:
+  /// Begins without any. Most meshes never ask: until then there is nothing as long as the mesh.
+  ///
   /// \param triangles of the mesh; their numbers are below that.
-  explicit LocalIntersections(std::size_t triangles) : places_(triangles, -1) {}
-
-  void clear();
+  void begin(std::size_t triangles);
   /// Adds a triangle, or changes it.
   void set(const Face& face);
   bool contains(Index triangle) const { return places_[static_cast<std::size_t>(triangle)] >= 0; }

@@ -4,6 +4,7 @@
 #include "exact_predicates.h"
 #include "optimization_constants.h"
 #include "parallel.h"
+#include "power_of_two.h"
 #include "self_intersection_of_fans.h"
 #include "spherical_param/self_intersection.h"
 
@@ -42,17 +43,14 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
       mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
       facets_(static_cast<std::size_t>(triangles.cols())), changes_(facets_.size(), 0),
       stamps_(3 * facets_.size(), 0), seen_triangles_(facets_.size(), 0),
-      seen_vertices_(static_cast<std::size_t>(points.cols()), 0), local_(facets_.size()) {
+      seen_vertices_(static_cast<std::size_t>(points.cols()), 0) {
   reportFraction(report, 0.0);
   double lengths = 0.0;
   for (const double length : graph_.lengths)
     lengths += length;
   if (lengths > 0.0)
     unit_ = lengths / static_cast<double>(graph_.lengths.size());
-  // The predicates multiply three differences.
-  int exponent = 0;
-  std::frexp(points.cwiseAbs().maxCoeff(), &exponent);
-  scale_ = std::ldexp(1.0, std::min(-exponent, 1000));
+  scale_ = scaleToUnit(points.cwiseAbs().maxCoeff());
   recomputeFacets(report);
 }
 
@@ -893,7 +891,7 @@ MeshOptimizer::Pairs MeshOptimizer::allIntersections(const Triangles& triangles,
 }
 
 std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {
-  local_.clear();
+  local_.begin(facets_.size());
   std::size_t pairs = 0;
   for (const Index v : vertices)
     mesh_.forEachAround(v, [&](Index t, int) {

@@ -1,9 +1,8 @@
 #include "smoothed_mesh.h"
 
 #include "open_mesh.h"
+#include "time_left.h"
 
-#include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -11,7 +10,7 @@ namespace spherical_param::internal {
 SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
                         const OpenPlaces* openings, const SmoothingOptions& options,
                         OptimizationMethod method, std::uint32_t seed, const Execution& execution) {
-  const auto begin = std::chrono::steady_clock::now();
+  const TimeLeft time_left(execution.time_limit);
   Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
   std::size_t& count = result.report.self_intersections;
@@ -21,10 +20,7 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
               .self_intersections.size();
   if (count > 0 && method == OptimizationMethod::Full) {
     Execution rest = execution;
-    if (rest.time_limit) {
-      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-      rest.time_limit = std::max(0.0, *rest.time_limit - passed.count());
-    }
+    rest.time_limit = time_left();
     MeshOptimization outcome =
         optimizeMesh(result.points, triangles, graph, openings, {}, seed, rest);
     result.triangles = std::move(outcome.triangles);

@@ -2,6 +2,7 @@
 
 #include "box_group.h"
 #include "parallel.h"
+#include "power_of_two.h"
 #include "progress.h"
 #include "radix_sort.h"
 #include "self_intersection_of_fans.h"
@@ -484,8 +485,7 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
   throw InvalidInput("findSelfIntersections: " + message);
 }
 
-/// A power of two that brings the largest coordinate to 1/2 ... 1: the predicates multiply three
-/// differences. Throws InvalidInput.
+/// The scale of the tests, after checks. Throws InvalidInput.
 double checkedScale(const Positions& points, const Triangles& triangles) {
   if (!points.allFinite())
     for (Eigen::Index i = 0; i < points.cols(); ++i)
@@ -499,9 +499,7 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
           refuse("triangle " + std::to_string(t) + " names vertex " +
                  std::to_string(triangles(k, t)) + ", but there are " +
                  std::to_string(points.cols()) + " points");
-  int exponent = 0;
-  std::frexp(most, &exponent);
-  return std::ldexp(1.0, std::min(-exponent, 1000));
+  return internal::scaleToUnit(most);
 }
 
 /// Runs find(i, pairs) for i in [0, count) and joins what it appends.

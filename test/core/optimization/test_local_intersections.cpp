@@ -36,7 +36,8 @@ std::vector<std::size_t> countsOf(const Positions& points, const Triangles& tria
 TEST(LocalIntersections, CountsAreThoseOfTheWholeMesh) {
   const Case of = scrambledEllipsoid(300, 0.3, 400, 1);
   const auto m = static_cast<Index>(of.triangles.cols());
-  LocalIntersections local(static_cast<std::size_t>(m));
+  LocalIntersections local;
+  local.begin(static_cast<std::size_t>(m));
   for (Index t = 0; t < m; ++t)
     local.set(faceOf(of.points, of.triangles, t));
   const std::vector<std::size_t> counts = countsOf(of.points, of.triangles);
@@ -55,7 +56,8 @@ TEST(LocalIntersections, ATriangleThatChangesTakesTheOldOnesPlace) {
   triangles << 0, 0, 4,  //
       1, 2, 5,           //
       2, 3, 6;
-  LocalIntersections local(3);
+  LocalIntersections local;
+  local.begin(3);
   for (Index t = 0; t < 3; ++t)
     local.set(faceOf(points, triangles, t));
   const Face across = faceOf(points, triangles, 2);
@@ -66,7 +68,7 @@ TEST(LocalIntersections, ATriangleThatChangesTakesTheOldOnesPlace) {
   EXPECT_EQ(local.faces().size(), 3U);
   for (Index t = 0; t < 3; ++t)
     EXPECT_EQ(local.count(faceOf(points, triangles, t), t, t), 0U);
-  local.clear();
+  local.begin(3);
   EXPECT_TRUE(local.faces().empty() && !local.contains(2));
   EXPECT_EQ(local.count(across, 2, 2), 0U);
 }
