@@ -1,39 +1,91 @@
 #include "local_intersections.h"
 
+#include <limits>
+
 namespace spherical_param::internal {
 
 void LocalIntersections::begin(std::size_t triangles) {
   for (const Face& face : faces_)
-    places_[static_cast<std::size_t>(face.triangle)] = -1;
+    places_[at(face.triangle)] = -1;
   faces_.clear();
+  counts_.clear();
+  has_counts_ = false;
   boxes_.clear();
   places_.resize(triangles, -1);
 }
 
 void LocalIntersections::set(const Face& face) {
-  Index& place = places_[static_cast<std::size_t>(face.triangle)];
-  if (place < 0) {
+  Index& place = places_[at(face.triangle)];
+  if (place >= 0) {
+    addToCounts(faces_[at(place)], -1);
+  } else {
     place = static_cast<Index>(faces_.size());
     faces_.push_back(face);
+    counts_.push_back(kUnknown);
     if (boxes_.size() * kGroupSize < faces_.size())
       boxes_.emplace_back();
   }
-  const auto i = static_cast<std::size_t>(place);
-  faces_[i] = face;
-  boxes_[i / kGroupSize].set(i % kGroupSize, WideBox(boxOf(face.corners)));
+  faces_[at(place)] = face;
+  boxes_[at(place) / kGroupSize].set(at(place) % kGroupSize, WideBox(boxOf(face.corners)));
+  counts_[at(place)] = addToCounts(face, 1);
 }
 
-std::size_t LocalIntersections::count(const Face& face, Index without, Index and_without) const {
-  const WideBox box(boxOf(face.corners));
+void LocalIntersections::remove(Index triangle) {
+  Index& place = places_[at(triangle)];
+  addToCounts(faces_[at(place)], -1);
+  const std::size_t last = faces_.size() - 1;
+  faces_[at(place)] = faces_[last];
+  counts_[at(place)] = counts_[last];
+  boxes_[at(place) / kGroupSize].set(at(place) % kGroupSize,
+                                     boxes_[last / kGroupSize].at(last % kGroupSize));
+  places_[at(faces_[last].triangle)] = place;
+  place = -1;
+  faces_.pop_back();
+  counts_.pop_back();
+  boxes_[last / kGroupSize].clear(last % kGroupSize);
+}
+
+int LocalIntersections::addToCounts(const Face& face, int change) {
+  if (!has_counts_)
+    return kUnknown;
+  int found = 0;
   const Plane plane(face);
-  std::size_t found = 0;
-  for (std::size_t group = 0; group < boxes_.size(); ++group)
-    for (const std::size_t lane : Overlaps(boxes_[group], box)) {
-      const Face& other = faces_[group * kGroupSize + lane];
-      if (other.triangle != without && other.triangle != and_without &&
-          !evidentlyApart(face, plane, other) && intersectCarefully(face, other))
-        ++found;
+  forEachIn(boxOf(face.corners), [&](const Face& other) {
+    if (intersect(face, plane, other)) {
+      ++found;
+      int& count = counts_[at(places_[at(other.triangle)])];
+      count += count == kUnknown ? 0 : change;
     }
+    return true;
+  });
+  return found;
+}
+
+int LocalIntersections::countOf(Index triangle) {
+  int& count = counts_[at(places_[at(triangle)])];
+  if (count == kUnknown)
+    count = LocalIntersections::count(face(triangle), triangle, std::numeric_limits<int>::max());
+  has_counts_ = true;
+  return count;
+}
+
+void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {
+  const Plane plane(face);
+  forEachIn(boxOf(face.corners), [&](const Face& other) {
+    if (intersect(face, plane, other))
+      triangles.push_back(other.triangle);
+    return true;
+  });
+}
+
+int LocalIntersections::count(const Face& face, Index without, int most) const {
+  const Plane plane(face);
+  int found = 0;
+  forEachIn(boxOf(face.corners), [&](const Face& other) {
+    if (other.triangle != without && intersect(face, plane, other))
+      ++found;
+    return found <= most;
+  });
   return found;
 }
 

@@ -27,8 +27,8 @@ using internal::MeshOptimizer;
 using internal::SurfaceEnergy;
 using Bend = SurfaceEnergy::Bend;
 
-/// Work that repairs may take [vertices that are taken out, or looked at for intersections].
-std::size_t budgetOf(std::size_t points) {
+/// Work that repairs may take. \see MeshOptimizer::work
+std::size_t maxWorkOf(std::size_t points) {
   return tuned::kMaxWork + tuned::kMaxWorkOfPoint * points;
 }
 
@@ -87,7 +87,7 @@ public:
       : graph_(graph), options_(options), threads_(execution.threads),
         report_(internal::reportOf(execution, "optimization")), given_(&points), points_(&points),
         random_(seed), deadline_(deadlineOf(execution)),
-        budget_(budgetOf(static_cast<std::size_t>(points.cols()))),
+        max_work_(maxWorkOf(static_cast<std::size_t>(points.cols()))),
         openings_(openings != nullptr ? std::optional(*openings) : std::nullopt),
         optimizer_(checkedOptimizer(points, triangles, graph, openings_ ? &*openings_ : nullptr,
                                     threads_, report_)) {}
@@ -215,8 +215,8 @@ private:
     result_.report.smoothed_self_intersections = result_.self_intersections.size();
     if (!options_.finish_on_points)
       return;
-    // The work on the smoothed points may have spent it: a few points then stayed tangled.
-    budget_ = budgetOf(static_cast<std::size_t>(points_->cols()));
+    // The smoothed points may have taken all the work: a few points then stayed tangled.
+    max_work_ = optimizer_.work() + maxWorkOf(static_cast<std::size_t>(points_->cols()));
     closeWithoutLoop();
     result_.self_intersections = optimizer_.intersections(report_);
     const auto count = static_cast<double>(result_.self_intersections.size());
@@ -287,13 +287,12 @@ private:
     return !optimizer_.edgesBelow(tuned::kMinUnfoldedCosine).empty();
   }
 
-  /// Ruins and recreates a part around some vertices, while the budget lasts.
+  /// Ruins and recreates a part around some vertices, while work is left.
   void tryPart(const std::vector<Index>& seeds, std::size_t size,
                const std::function<bool(double)>& accept, Tally& tally) {
     if (!mayRepair())
       return;
     const std::vector<Index> part = optimizer_.spread(seeds, size, random_);
-    spend(part.size());
     ++tally.tried;
     tally.moves += optimizer_.recreate(part, accept, random_) ? 1 : 0;
   }
@@ -314,7 +313,11 @@ private:
     for (int round = 0; round < tuned::kMaxUntangleRounds && idle < tuned::kMaxIdleRounds &&
                         !pairs.empty() && mayRepair();
          ++round) {
-      const bool by_number = round >= rounds_by_energy || !hasMoreThanReserve();
+      const bool by_number = round >= rounds_by_energy;
+      // Small parts gain more in the same time: large ones once nothing else helps.
+      const std::size_t largest =
+          by_number ? std::min(tuned::kMaxUntangled, tuned::kMaxFirstUntangled << idle)
+                    : tuned::kMaxUntangledByEnergy;
       if (by_number && idle == 0) {
         flipApart(pairs);
         if (pairs.empty())
@@ -323,10 +326,15 @@ private:
       OptimizationPhase& untangled = phase("untangle", [&] {
         Tally tally;
         forEachPair(pairs, [&](const auto& pair, const auto& corners) {
-          if (by_number)
-            untangleByNumber(pair, corners, tally);
-          else if (hasMoreThanReserve())
-            untangleByEnergy(pair, corners, tally);
+          for (std::size_t size = tuned::kMinUntangled; size <= largest; size *= 2) {
+            // A pair that has changed waits for the next round.
+            if (!areCornersOf(pair, corners))
+              return;
+            if (by_number)
+              tryByNumber(seedsOf(corners), size, tally);
+            else
+              tryPart(seedsOf(corners), size, MeshOptimizer::isGain, tally);
+          }
         });
         return tally;
       });
@@ -338,15 +346,8 @@ private:
     return pairs;
   }
 
-  /// Whether budget and time last.
-  bool mayRepair() { return budget_ > 0 && !isOutOfTime(); }
-
-  /// Whether more of the budget is left than the rounds by number need.
-  bool hasMoreThanReserve() const {
-    return budget_ > budgetOf(static_cast<std::size_t>(points_->cols())) / 2;
-  }
-
-  void spend(std::size_t work) { budget_ -= std::min(budget_, work); }
+  /// Whether work and time are left.
+  bool mayRepair() { return optimizer_.work() < max_work_ && !isOutOfTime(); }
 
   void flipApart(std::vector<std::array<Index, 2>>& pairs) {
     OptimizationPhase& flipped = phase("flip apart", [&] {
@@ -354,16 +355,14 @@ private:
       forEachPair(pairs, [&](const auto& pair, const auto& corners) {
         if (!mayRepair() || !areCornersOf(pair, corners))
           return;
-        spend(tuned::kFlipRegion);
-        optimizer_.intersectionsAround(
-            optimizer_.spread(seedsOf(corners), tuned::kFlipRegion, random_));
+        optimizer_.watch(optimizer_.spread(seedsOf(corners), tuned::kFlipRegion, random_));
         ++tally.tried;
         if (optimizer_.flipApart() == 0)
           return;
         ++tally.moves;
         // Flips alone may leave the surface crumpled.
         Tally improved;
-        for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxFlippedPart; size *= 2)
+        for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxFirstUntangled; size *= 2)
           tryByNumber(seedsOf(corners), size, improved);
       });
       return tally;
@@ -396,37 +395,17 @@ private:
     return seeds;
   }
 
-  void untangleByEnergy(const std::array<Index, 2>& pair, const Corners& corners, Tally& tally) {
-    for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2) {
-      // A pair that has changed waits for the next round.
-      if (!areCornersOf(pair, corners))
-        return;
-      tryPart(seedsOf(corners), size, MeshOptimizer::isGain, tally);
-    }
-  }
-
-  void untangleByNumber(const std::array<Index, 2>& pair, const Corners& corners, Tally& tally) {
-    for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxUntangled; size *= 2)
-      if (areCornersOf(pair, corners))
-        tryByNumber(seedsOf(corners), size, tally);
-  }
-
   /// Ruins and recreates a part, and flips apart what intersects then: commits that if fewer
   /// triangles around it intersect, or as many at an energy that was lower before the flips.
   void tryByNumber(const std::vector<Index>& seeds, std::size_t size, Tally& tally) {
     if (!mayRepair())
       return;
-    const std::vector<Index> around =
-        optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_);
-    spend(around.size());
-    const std::size_t before = optimizer_.intersectionsAround(around);
+    optimizer_.watch(optimizer_.spread(seeds, 2 * size + tuned::kWatchedVertices, random_));
     tryPart(
         seeds, size,
         [&](double change) {
-          std::size_t after = optimizer_.intersectionsAround(around);
-          if (after > 0)
-            after -= optimizer_.flipApart();
-          return after < before || (after == before && MeshOptimizer::isGain(change));
+          const int more = optimizer_.flipChangedApart();
+          return more < 0 || (more == 0 && MeshOptimizer::isGain(change));
         },
         tally);
   }
@@ -491,7 +470,7 @@ private:
   Positions smoothed_;
   std::uint64_t random_;
   std::optional<Clock::time_point> deadline_;
-  std::size_t budget_;  ///< what is left of budgetOf()
+  std::size_t max_work_;  ///< \see MeshOptimizer::work
   std::optional<internal::OpenPlaces> openings_;
   MeshOptimizer optimizer_;
   MeshOptimization result_;

@@ -434,6 +434,7 @@ bool MeshOptimizer::relocate(Index v) {
 
 bool MeshOptimizer::recreate(const std::vector<Index>& vertices,
                              const std::function<bool(double)>& accept, std::uint64_t& random) {
+  work_ += vertices.size();
   std::vector<std::vector<Index>> neighbors(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i)
     appendNeighbors(vertices[i], neighbors[i]);
@@ -473,28 +474,31 @@ Face MeshOptimizer::face(Index t, Index a, Index b, Index c) const {
   return face;
 }
 
-int MeshOptimizer::intersectionsOf(const Face& first, const Face& second) const {
-  const bool are_apart =
-      evidentlyApart(first, Plane(first), second) || !intersectCarefully(first, second);
-  return static_cast<int>(local_.count(first, first.triangle, second.triangle) +
-                          local_.count(second, first.triangle, second.triangle)) +
-         (are_apart ? 0 : 1);
-}
-
-bool MeshOptimizer::findRepair(Index t, int k, Repair& repair) const {
+bool MeshOptimizer::findRepair(Index t, int k, int most, Repair& repair) {
   const Index o = mesh_.neighbor(t, k);
+  if (!near_.contains(t) || !near_.contains(o))
+    return false;
+  int before = near_.countOf(t) + near_.countOf(o);
+  if (before + most < 0)
+    return false;
+  before -= intersect(near_.face(t), near_.face(o)) ? 1 : 0;
   const Index c = mesh_.vertex(t, k);
   const Index a = mesh_.vertex(t, (k + 1) % 3);
   const Index b = mesh_.vertex(t, (k + 2) % 3);
   const Index d = mesh_.vertex(o, mesh_.oppositeCorner(t, k));
-  if (c == d || mesh_.areJoined(c, d) || !local_.contains(t) || !local_.contains(o) ||
-      rawFacet(c, a, d).radius < 0.0 || rawFacet(c, d, b).radius < 0.0)
+  if (before + most < 0 || c == d || mesh_.areJoined(c, d) || rawFacet(c, a, d).radius < 0.0 ||
+      rawFacet(c, d, b).radius < 0.0)
     return false;
-  repair.triangle = t;
-  repair.corner = k;
-  repair.intersections =
-      intersectionsOf(face(t, c, a, d), face(o, c, d, b)) - intersectionsOf(face(t), face(o));
-  return true;
+  const Face cad = face(t, c, a, d);
+  const Face cdb = face(o, c, d, b);
+  int left = before + most;
+  left -= near_.count(cad, o, left);
+  if (left >= 0)
+    left -= near_.count(cdb, t, left);
+  if (left >= 0)
+    left -= intersect(cad, cdb) ? 1 : 0;
+  repair = {most - left, 0.0, t, k};
+  return left >= 0;
 }
 
 double MeshOptimizer::costOf(const Repair& repair) const {
@@ -502,8 +506,10 @@ double MeshOptimizer::costOf(const Repair& repair) const {
 }
 
 void MeshOptimizer::updateLocally(Index t, Index o) {
-  local_.set(face(t));
-  local_.set(face(o));
+  for (const Index changed : {t, o}) {
+    local_.set(face(changed));
+    near_.set(face(changed));
+  }
 }
 
 void MeshOptimizer::flipLocally(const Repair& repair) {
@@ -512,16 +518,41 @@ void MeshOptimizer::flipLocally(const Repair& repair) {
   updateLocally(repair.triangle, o);
 }
 
+void MeshOptimizer::gatherNear(Index t) {
+  // Two flips change triangles, and ask for those beyond their sides.
+  std::vector<Index> ring{t};
+  Box box = boxOf(face(t).corners);
+  ++pass_;
+  seen_triangles_[at(t)] = pass_;
+  for (std::size_t i = 0, end = 1, steps = 0; steps < 3; ++steps, end = ring.size())
+    for (; i < end; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Index o = mesh_.neighbor(ring[i], k);
+        if (seen_triangles_[at(o)] == pass_)
+          continue;
+        seen_triangles_[at(o)] = pass_;
+        ring.push_back(o);
+        const Box other = boxOf(face(o).corners);
+        box.lower = box.lower.cwiseMin(other.lower);
+        box.upper = box.upper.cwiseMax(other.upper);
+      }
+  near_.begin(facets_.size());
+  local_.forEachIn(box, [&](const Face& face) {
+    near_.set(face);
+    return true;
+  });
+}
+
 int MeshOptimizer::findRepairs(Index t, std::array<Repair, 2>& repairs) {
+  gatherNear(t);
+  ++work_;
   Repair best{0, 0.0, -1, 0};
   const auto consider = [&](Index u, int k, const Repair* first) {
+    const int before = first != nullptr ? first->intersections : 0;
     Repair repair;
-    if (!findRepair(u, k, repair))
+    if (!findRepair(u, k, std::min(best.intersections, -1) - before, repair))
       return;
-    if (first != nullptr)
-      repair.intersections += first->intersections;
-    if (repair.intersections >= 0 || repair.intersections > best.intersections)
-      return;
+    repair.intersections += before;
     repair.cost = costOf(repair) + (first != nullptr ? first->cost : 0.0);
     if (!repair.isBetterThan(best))
       return;
@@ -538,6 +569,7 @@ int MeshOptimizer::findRepairs(Index t, std::array<Repair, 2>& repairs) {
     consider(t, k, nullptr);
   if (best.triangle >= 0)
     return 1;
+  work_ += tuned::kWorkOfTwoFlips;
   std::array<std::pair<Index, int>, 9> sides;
   std::size_t count = 0;
   for (int k = 0; k < 3; ++k) {
@@ -550,7 +582,7 @@ int MeshOptimizer::findRepairs(Index t, std::array<Repair, 2>& repairs) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto [u, k] = sides[i];
     Repair first;
-    if (!findRepair(u, k, first) || first.intersections > 1)
+    if (!findRepair(u, k, 1, first))
       continue;
     first.cost = costOf(first);
     const Index o = mesh_.neighbor(u, k);
@@ -573,6 +605,40 @@ std::size_t MeshOptimizer::flipApart() {
   for (const Face& face : local_.faces())
     if (intersects(face.triangle))
       bad.push_back(face.triangle);
+  return flipApart(std::move(bad));
+}
+
+int MeshOptimizer::flipChangedApart() {
+  std::vector<Index> changed;
+  for (std::size_t i = open_.back().facets; i < old_facets_.size(); ++i)
+    changed.push_back(old_facets_[i].first);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  int difference = 0;
+  for (const Index t : changed)
+    if (local_.contains(t)) {
+      difference -= local_.count(local_.face(t), t, std::numeric_limits<int>::max());
+      local_.remove(t);
+    }
+  std::vector<Index> bad;
+  for (const Index t : changed) {
+    if (facetOf(t).isOpen())
+      continue;
+    const Face face_of_t = face(t);
+    const std::size_t before = bad.size();
+    local_.appendIntersecting(face_of_t, bad);
+    if (bad.size() > before) {
+      difference += static_cast<int>(bad.size() - before);
+      bad.push_back(t);
+    }
+    local_.set(face_of_t);
+  }
+  std::sort(bad.begin(), bad.end());
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  return difference - static_cast<int>(flipApart(std::move(bad)));
+}
+
+std::size_t MeshOptimizer::flipApart(std::vector<Index> bad) {
   int fewer = 0;
   for (std::size_t i = 0; i < bad.size(); ++i) {
     const Index t = bad[i];
@@ -890,18 +956,13 @@ MeshOptimizer::Pairs MeshOptimizer::allIntersections(const Triangles& triangles,
   return pairs;
 }
 
-std::size_t MeshOptimizer::intersectionsAround(const std::vector<Index>& vertices) {
+void MeshOptimizer::watch(const std::vector<Index>& vertices) {
   local_.begin(facets_.size());
-  std::size_t pairs = 0;
   for (const Index v : vertices)
     mesh_.forEachAround(v, [&](Index t, int) {
-      if (facetOf(t).isOpen() || local_.contains(t))
-        return;
-      const Face face_of_t = face(t);
-      pairs += local_.count(face_of_t, t, t);
-      local_.set(face_of_t);
+      if (!facetOf(t).isOpen() && !local_.contains(t))
+        local_.set(face(t));
     });
-  return pairs;
 }
 
 }  // namespace spherical_param::internal

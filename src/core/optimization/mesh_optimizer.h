@@ -64,6 +64,10 @@ public:
   bool recreate(const std::vector<Index>& vertices, const std::function<bool(double)>& accept,
                 std::uint64_t& random);
 
+  /// Work of recreate(), flipApart() and flipChangedApart() so far [vertices that are taken out and
+  /// put back]: what time it takes is about proportional to that.
+  std::size_t work() const { return work_; }
+
   /// Whether a change of the energy is a gain beyond rounding [mean length of the graph's edges].
   static bool isGain(double change);
 
@@ -93,12 +97,15 @@ public:
   /// For each vertex, 1 if the triangles around it are evidently such that no two of them
   /// intersect: seen along an axis, they go around it once.
   std::vector<std::uint8_t> plainFans(const FractionReport& report = {}) const;
-  /// Pairs that intersect among the triangles around some vertices.
-  std::size_t intersectionsAround(const std::vector<Index>& vertices);
-  /// Flips edges among the triangles of the last intersectionsAround() so that fewer of them
-  /// intersect: one edge or two at a time, and of equally good flips those that cost least. Returns
-  /// how many pairs fewer there are.
+  /// Watches the triangles around some vertices, other than open ones.
+  void watch(const std::vector<Index>& vertices);
+  /// Flips edges of the triangles that are watched so that fewer of them intersect: one edge or two
+  /// at a time, and of equally good flips those that cost least. Returns how many pairs fewer there
+  /// are.
   std::size_t flipApart();
+  /// For `accept` of recreate(): the same where triangles intersect that it has changed since
+  /// watch(). Returns how many pairs more there are than before that.
+  int flipChangedApart();
 
 private:
   /// A flip that gains. Void if its side has another stamp by now.
@@ -146,6 +153,7 @@ private:
   /// What the energy falls by if a side is flipped, or no more than `floor` if that is so.
   double flipGain(Index t, int k, double floor) const;
   bool flip(Index t, int k, double gain);
+  std::size_t flipApart(std::vector<Index> bad);
   /// A flip by what it changes: intersections among local_, and the energy.
   struct Repair {
     int intersections;
@@ -162,11 +170,12 @@ private:
   Face face(Index t) const {
     return face(t, mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
   }
-  /// Pairs of two triangles and those of local_, or of the two.
-  int intersectionsOf(const Face& first, const Face& second) const;
-  bool intersects(Index t) const { return local_.contains(t) && local_.count(face(t), t, t) > 0; }
-  /// What a flip changes, without its cost. \return false if the side may not be flipped.
-  bool findRepair(Index t, int k, Repair& repair) const;
+  /// Those of local_ that two flips near a triangle may make or end intersections with, to near_.
+  void gatherNear(Index t);
+  bool intersects(Index t) const { return local_.contains(t) && local_.intersects(face(t)); }
+  /// What a flip changes, without its cost. \return false if the side may not be flipped, or if
+  /// more than `most` intersections come.
+  bool findRepair(Index t, int k, int most, Repair& repair);
   double costOf(const Repair& repair) const;
   void flipLocally(const Repair& repair);
   void updateLocally(Index t, Index o);
@@ -235,7 +244,9 @@ private:
   std::vector<std::uint32_t> seen_triangles_;
   std::vector<std::uint32_t> seen_vertices_;
   std::uint32_t pass_ = 0;
-  LocalIntersections local_;   ///< of the last intersectionsAround()
+  std::size_t work_ = 0;
+  LocalIntersections local_;   ///< of the last watch()
+  LocalIntersections near_;    ///< a part of local_
   std::vector<Index> around_;  ///< working memory of insert() and relocate()
   std::vector<Index> changed_;
 };

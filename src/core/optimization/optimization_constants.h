@@ -104,41 +104,45 @@ constexpr int kMaxRecreateRounds = 5;
 /// cheburashka keeps 9 intersections, up to 16 the noisy sphere 9.
 constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
-/// Work of all repairs: the sum of the first and of the second for each point, in vertices that are
-/// taken out or looked at for intersections. One takes about as long as a point does in the first
-/// mesh, and the least mesh as long as 1,000 points: so repairs take at most about ten times as
-/// long as that; on noise, where they are made twice, twenty times. With a first of 2,000 a tube
-/// from a bad start keeps its spikes. With 1,000 for each point 48 instead of 45 of the 56 runs
-/// below end without intersections, in 1.4 times as long; with 5, 40. Rounds by energy leave half
-/// of it to those by number: without, a coarse body with limbs keeps 250 intersections instead
-/// of 23.
+/// Work of all repairs, in vertices that are taken out and put back: the sum of the first and of
+/// the second for each point. To look for two flips that take triangles apart counts as the other
+/// one, for it takes as long. A vertex takes about as long as a point does in the first mesh, and
+/// the least mesh as long as 1,000 points: so repairs take at most about ten times as long as that;
+/// on noise, where they are made twice, twenty times. With a first of 2,000 a tube from a bad start
+/// keeps its spikes. With 5 for each point 46 of the 56 runs below end without intersections, with
+/// 7, 47.
 constexpr std::size_t kMaxWork = 10000;
 constexpr std::size_t kMaxWorkOfPoint = 10;
+constexpr std::size_t kWorkOfTwoFlips = 8;
 
 // --- Untangling ----------------------------------------------------------------------------------
 
 // "56 runs" are those with 4 seeds on 14 clouds that keep intersections easily.
 
 /// Rounds of untangling, and those in which the energy alone decides: it knows the way out better
-/// than the number of intersections does, but may be stuck with the last ones. With 4 or 2 of the
-/// latter the springer keeps 2 with some seeds. Where the points are noisy the energy decides in
-/// none.
+/// than the number of intersections does, but may be stuck with the last ones. With 1 of the latter
+/// 48 of the runs end without intersections instead of 51, with 5, 49. Where the points are noisy
+/// the energy decides in none.
 constexpr int kMaxUntangleRounds = 40;
-constexpr int kMaxRoundsByEnergy = 5;
-/// Rounds by number in a row without a gain. 49 of the runs end without intersections; with 4, and
-/// 16 rounds in all, 47 in 0.85 times as long, with 40 and 100, 51 in 1.1 times as long.
+constexpr int kMaxRoundsByEnergy = 2;
+/// Rounds by number in a row without a gain. With 20, and 80 rounds in all, as many of the runs end
+/// without intersections, in 1.05 times as long.
 constexpr int kMaxIdleRounds = 12;
 /// Vertices of a part around two triangles that intersect, from the first size to the last,
-/// doubled. From 12 on the noisy sphere keeps 122 intersections, up to 48 the cheburashka 3.
+/// doubled. By number the first rounds end at the second one, and at twice as many after each round
+/// without a gain; of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20 times as long. By
+/// energy with 24 a tube from a bad start keeps its spikes; with 96 the runs keep 116 intersections
+/// instead of 24.
 constexpr std::size_t kMinUntangled = 6;
+constexpr std::size_t kMaxFirstUntangled = 24;
 constexpr std::size_t kMaxUntangled = 96;
-/// Vertices around whose triangles flips take two triangles apart that intersect, and the largest
-/// part that is then ruined and recreated there. Without such parts, or with 12 vertices, a cube
-/// of 8 points keeps a corner cut off; as many of the runs end without intersections with 12.
+constexpr std::size_t kMaxUntangledByEnergy = 48;
+/// Vertices around whose triangles flips take two triangles apart that intersect; parts up to
+/// kMaxFirstUntangled are then ruined and recreated there. Without such parts, or up to 12
+/// vertices, a cube of 8 points keeps a corner cut off.
 constexpr std::size_t kFlipRegion = 64;
-constexpr std::size_t kMaxFlippedPart = 24;
 /// Intersections are counted among twice as many vertices as the part has, and these. With none of
-/// these the springer keeps 32 intersections; with 1000 noisy clouds take 1.7 times as long.
+/// these the springer keeps 32 intersections.
 constexpr std::size_t kWatchedVertices = 200;
 
 // --- Analysis of the sampling --------------------------------------------------------------------

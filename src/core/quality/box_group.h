@@ -48,15 +48,20 @@ struct BoxGroup {
   std::array<std::array<float, kGroupSize>, 3> upper;
 
   BoxGroup() {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      lower[axis].fill(std::numeric_limits<float>::infinity());
-      upper[axis].fill(-std::numeric_limits<float>::infinity());
-    }
+    for (std::size_t lane = 0; lane < kGroupSize; ++lane)
+      clear(lane);
   }
   void set(std::size_t lane, const WideBox& box) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       lower[axis][lane] = box.lower[axis];
       upper[axis][lane] = box.upper[axis];
+    }
+  }
+  /// Nothing overlaps it then.
+  void clear(std::size_t lane) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis][lane] = std::numeric_limits<float>::infinity();
+      upper[axis][lane] = -std::numeric_limits<float>::infinity();
     }
   }
   WideBox at(std::size_t lane) const {

@@ -140,6 +140,11 @@ inline bool intersectCarefully(const Face& a, const Face& b) {
   return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
 }
 
+/// Whether two triangles intersect.
+inline bool intersect(const Face& a, const Face& b) {
+  return !evidentlyApart(a, Plane(a), b) && intersectCarefully(a, b);
+}
+
 /// Whether a box lies on one side of a plane.
 inline bool clears(const Plane& plane, const Box& box) {
   const Vector3d center = 0.5 * (box.lower + box.upper) - plane.origin;

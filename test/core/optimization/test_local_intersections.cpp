@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
 #include <vector>
 
 namespace spherical_param::test {
@@ -41,9 +43,46 @@ TEST(LocalIntersections, CountsAreThoseOfTheWholeMesh) {
   for (Index t = 0; t < m; ++t)
     local.set(faceOf(of.points, of.triangles, t));
   const std::vector<std::size_t> counts = countsOf(of.points, of.triangles);
+  for (Index t = 0; t < m; ++t) {
+    const Face face = faceOf(of.points, of.triangles, t);
+    const auto expected = static_cast<int>(counts[static_cast<std::size_t>(t)]);
+    EXPECT_EQ(local.count(face, t, m), expected);
+    EXPECT_EQ(local.count(face, t, 0), std::min(expected, 1));
+    EXPECT_EQ(local.intersects(face), expected > 0);
+    EXPECT_EQ(local.countOf(t), expected);
+    std::vector<Index> others;
+    local.appendIntersecting(face, others);
+    EXPECT_EQ(others.size(), static_cast<std::size_t>(expected));
+  }
+}
+
+TEST(LocalIntersections, NumbersAreKeptUpToDate) {
+  const Case of = scrambledEllipsoid(300, 0.3, 400, 1);
+  Triangles triangles = of.triangles;
+  const auto m = static_cast<Index>(triangles.cols());
+  LocalIntersections local;
+  local.begin(static_cast<std::size_t>(m));
   for (Index t = 0; t < m; ++t)
-    EXPECT_EQ(local.count(faceOf(of.points, of.triangles, t), t, t),
-              counts[static_cast<std::size_t>(t)]);
+    local.set(faceOf(of.points, triangles, t));
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 20; ++round) {
+    // Some are asked for now, others only after changes.
+    for (Index t = round; t < m; t += 3)
+      local.countOf(t);
+    const auto changed = static_cast<Index>(random() % static_cast<std::uint64_t>(m));
+    const auto corner = static_cast<Index>(random() % 300);
+    if (corner == triangles(1, changed) || corner == triangles(2, changed))
+      continue;
+    triangles(0, changed) = corner;
+    if (round % 2 == 0) {
+      local.remove(changed);
+      EXPECT_FALSE(local.contains(changed));
+    }
+    local.set(faceOf(of.points, triangles, changed));
+    const std::vector<std::size_t> counts = countsOf(of.points, triangles);
+    for (Index t = 0; t < m; t += 2)
+      EXPECT_EQ(local.countOf(t), static_cast<int>(counts[static_cast<std::size_t>(t)]));
+  }
 }
 
 TEST(LocalIntersections, ATriangleThatChangesTakesTheOldOnesPlace) {
@@ -61,16 +100,16 @@ TEST(LocalIntersections, ATriangleThatChangesTakesTheOldOnesPlace) {
   for (Index t = 0; t < 3; ++t)
     local.set(faceOf(points, triangles, t));
   const Face across = faceOf(points, triangles, 2);
-  EXPECT_EQ(local.count(across, 2, 2), 2U);
-  EXPECT_EQ(local.count(across, 2, 0), 1U);
+  EXPECT_EQ(local.count(across, 2, 9), 2);
+  EXPECT_EQ(local.count(across, 0, 9), 1);
   points.row(0).tail(3).array() += 5.0;
   local.set(faceOf(points, triangles, 2));
   EXPECT_EQ(local.faces().size(), 3U);
   for (Index t = 0; t < 3; ++t)
-    EXPECT_EQ(local.count(faceOf(points, triangles, t), t, t), 0U);
+    EXPECT_FALSE(local.intersects(faceOf(points, triangles, t)));
   local.begin(3);
   EXPECT_TRUE(local.faces().empty() && !local.contains(2));
-  EXPECT_EQ(local.count(across, 2, 2), 0U);
+  EXPECT_FALSE(local.intersects(across));
 }
 
 }  // namespace

@@ -262,10 +262,6 @@ TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
     MeshOptimizer optimizer = optimizerOf(of);
     const auto expected = findSelfIntersections(of.points, of.triangles);
     EXPECT_EQ(optimizer.intersections(), expected);
-    std::vector<Index> all(static_cast<std::size_t>(of.points.cols()));
-    std::iota(all.begin(), all.end(), Index{0});
-    EXPECT_EQ(optimizer.intersectionsAround(all), expected.size());
-    EXPECT_EQ(optimizer.intersectionsAround({}), 0U);
   }
   // Where nothing is wrong, the triangles around nearly all vertices need not be compared.
   const std::vector<std::uint8_t> fans = optimizerOf(cases[3]).plainFans();
@@ -313,8 +309,10 @@ TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
   for (const Case& of : roughCases()) {
     MeshOptimizer optimizer = optimizerOf(of);
     optimizer.setEnergy(energyWith(Bend::Angle));
-    const std::size_t before = optimizer.intersectionsAround(allVertices(of));
-    EXPECT_EQ(before, findSelfIntersections(of.points, of.triangles).size());
+    const std::size_t before = findSelfIntersections(of.points, of.triangles).size();
+    optimizer.watch({});
+    EXPECT_EQ(optimizer.flipApart(), 0U);
+    optimizer.watch(allVertices(of));
     const std::size_t fewer = optimizer.flipApart();
     all += fewer;
     const Triangles triangles = optimizer.mesh().triangles();
@@ -338,7 +336,7 @@ TEST(MeshOptimizer, FlipsApartAreRolledBackWithThePartTheyFollow) {
     EXPECT_FALSE(optimizer.recreate(
         part,
         [&](double) {
-          optimizer.intersectionsAround(allVertices(of));
+          optimizer.watch(allVertices(of));
           fewer += optimizer.flipApart();
           return false;
         },
@@ -349,6 +347,45 @@ TEST(MeshOptimizer, FlipsApartAreRolledBackWithThePartTheyFollow) {
   EXPECT_GT(fewer, 0U);
 }
 
+TEST(MeshOptimizer, IntersectionsThatAPartBringsAreThoseOfTheWholeMesh) {
+  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
+  MeshOptimizer optimizer = optimizerOf(of);
+  optimizer.setEnergy(energyWith(Bend::Angle));
+  std::uint64_t random = 5;
+  auto count = static_cast<int>(optimizer.intersections().size());
+  std::set<int> changes;
+  for (Index v = 0; v < 300; v += 3) {
+    optimizer.watch(allVertices(of));
+    int more = 0;
+    if (optimizer.recreate(
+            optimizer.spread({v}, 8, random),
+            [&](double) {
+              more = optimizer.flipChangedApart();
+              return v % 2 == 0;
+            },
+            random))
+      count += more;
+    changes.insert(more);
+    EXPECT_EQ(optimizer.intersections().size(), static_cast<std::size_t>(count));
+    EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
+  }
+  EXPECT_GT(changes.size(), 5U);
+}
+
+TEST(MeshOptimizer, WorkIsWhatPartsAndFlipsApartTake) {
+  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
+  MeshOptimizer optimizer = optimizerOf(of);
+  optimizer.setEnergy(energyWith(Bend::Angle));
+  std::uint64_t random = 5;
+  EXPECT_EQ(optimizer.work(), 0U);
+  const std::vector<Index> part = optimizer.spread({17}, 12, random);
+  optimizer.recreate(part, MeshOptimizer::isGain, random);
+  EXPECT_EQ(optimizer.work(), part.size());
+  optimizer.watch(allVertices(of));
+  optimizer.flipApart();
+  EXPECT_GT(optimizer.work(), part.size());
+}
+
 TEST(MeshOptimizer, NearlyAllThatFlipsMadeIntersectIsFlippedApart) {
   std::size_t pairs = 0;
   std::size_t left = 0;
@@ -356,8 +393,9 @@ TEST(MeshOptimizer, NearlyAllThatFlipsMadeIntersectIsFlippedApart) {
     const Case of = scrambledEllipsoid(300, 0.5, 450, seed);
     MeshOptimizer optimizer = optimizerOf(of);
     optimizer.setEnergy(energyWith(Bend::Angle));
-    const std::size_t before = optimizer.intersectionsAround(allVertices(of));
+    const std::size_t before = optimizer.intersections().size();
     pairs += before;
+    optimizer.watch(allVertices(of));
     left += before - optimizer.flipApart();
   }
   EXPECT_GT(pairs, 100U);
