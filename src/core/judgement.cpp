@@ -78,9 +78,10 @@ void takeSurface(const Positions& points, const OpenSurface& openings, MeshedClo
 ///
 /// \param boundaries loops around openings that the mesh leaves open.
 SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
-                          const NeighborGraph& graph, const Options& options) {
+                          const NeighborGraph& graph, bool is_out_of_time, const Options& options) {
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
+  of_diagnosis.find_handles = !is_out_of_time;
   SurfaceDiagnosis diagnosis = diagnoseSurface(points, mesh, graph.graph, graph.report.bridges,
                                                of_diagnosis, options.threads);
   if (boundaries > 0) {
@@ -102,8 +103,8 @@ Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openi
   result.openings = openings.found();
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
-  result.diagnosis =
-      diagnose(points, result.triangles, result.boundary.size(), mesh.graph, options);
+  result.diagnosis = diagnose(points, result.triangles, result.boundary.size(), mesh.graph,
+                              mesh.optimization.report.is_out_of_time, options);
   if (openings.isOneSided()) {
     result.diagnosis.is_one_sided = true;
     result.diagnosis.kind = SurfaceKind::Unclear;

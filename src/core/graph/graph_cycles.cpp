@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -78,7 +79,8 @@ std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
 class Cocycles {
 public:
   explicit Cocycles(const PowerEdges& power)
-      : power_(power), known_(power.count, 0), value_(power.count, 0) {}
+      : power_(power), known_(power.count, 0), value_(power.count, 0),
+        edge_to_(power.nodes(), kNone) {}
 
   /// \return none if there are more symbols than are kept.
   std::optional<int> count() {
@@ -100,6 +102,7 @@ public:
 private:
   using Edge = std::array<Index, 2>;
   static constexpr int kMaxSymbols = 64;
+  static constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
 
   void set(std::uint32_t edge, std::uint64_t value) {
     known_[edge] = 1;
@@ -143,25 +146,34 @@ private:
       const std::uint32_t edge = pending_.back();
       pending_.pop_back();
       const auto [a, b] = ends[edge];
-      std::size_t i = power_.offsets[at(a)];
-      std::size_t j = power_.offsets[at(b)];
-      const std::size_t i_end = power_.offsets[at(a) + 1];
-      const std::size_t j_end = power_.offsets[at(b) + 1];
-      while (i != i_end && j != j_end) {
-        if (power_.neighbors[i] != power_.neighbors[j]) {
-          power_.neighbors[i] < power_.neighbors[j] ? ++i : ++j;
+      if (marked_ != b)
+        mark(a);
+      const Index other = marked_ == a ? b : a;
+      for (std::size_t e = power_.offsets[at(other)]; e < power_.offsets[at(other) + 1]; ++e) {
+        const std::uint32_t to_marked = edge_to_[at(power_.neighbors[e])];
+        if (to_marked == kNone)
           continue;
-        }
-        const std::uint32_t to_a = power_.edges[i++];
-        const std::uint32_t to_b = power_.edges[j++];
-        if (known_[to_a] != 0 && known_[to_b] != 0)
-          relate(value_[edge] ^ value_[to_a] ^ value_[to_b]);
-        else if (known_[to_a] != 0)
-          set(to_b, value_[edge] ^ value_[to_a]);
-        else if (known_[to_b] != 0)
-          set(to_a, value_[edge] ^ value_[to_b]);
+        const std::uint32_t to_other = power_.edges[e];
+        if (known_[to_marked] != 0 && known_[to_other] != 0)
+          relate(value_[edge] ^ value_[to_marked] ^ value_[to_other]);
+        else if (known_[to_marked] != 0)
+          set(to_other, value_[edge] ^ value_[to_marked]);
+        else if (known_[to_other] != 0)
+          set(to_marked, value_[edge] ^ value_[to_other]);
       }
     }
+  }
+
+  /// Fills edge_to_. Edges that follow each other mostly have a node in common.
+  void mark(Index node) {
+    if (marked_ == node)
+      return;
+    if (marked_ >= 0)
+      for (std::size_t e = power_.offsets[at(marked_)]; e < power_.offsets[at(marked_) + 1]; ++e)
+        edge_to_[at(power_.neighbors[e])] = kNone;
+    for (std::size_t e = power_.offsets[at(node)]; e < power_.offsets[at(node) + 1]; ++e)
+      edge_to_[at(power_.neighbors[e])] = power_.edges[e];
+    marked_ = node;
   }
 
   /// A sum of symbols is zero: one of them is not independent.
@@ -182,6 +194,8 @@ private:
   std::vector<char> known_;
   std::vector<std::uint64_t> value_;
   std::vector<std::uint32_t> pending_;
+  Index marked_ = -1;
+  std::vector<std::uint32_t> edge_to_;  ///< from each node to the marked one, or kNone
   std::array<std::uint64_t, kMaxSymbols> relation_{};  ///< by their lowest symbol
   int symbols_ = 0;
   int relations_ = 0;

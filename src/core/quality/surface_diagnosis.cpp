@@ -948,7 +948,8 @@ public:
     is_folded_ = result_.edges_outside_graph > kMaxOutsideGraph;
     findRegions();
     findParts();
-    findHandles();
+    if (options_.find_handles)
+      findHandles();
     findFilledHoles();
     if (options_.mark_triangles)
       markTriangles();

@@ -271,6 +271,18 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
   expect(folded(starShaped(open, open)), SurfaceKind::Unclear, std::nullopt);
 }
 
+TEST(SurfaceDiagnosis, HandlesAreLookedForUnlessToldNotTo) {
+  for (const Scene& scene : {cutTorus(60, 24, 0.4), folded(cutTorus(60, 24, 0.4))}) {
+    DiagnosisOptions options;
+    options.find_handles = false;
+    const SurfaceDiagnosis diagnosis = diagnoseSurface(
+        scene.points, scene.triangles, scene.graph.graph, scene.graph.report.bridges, options);
+    EXPECT_FALSE(diagnosis.genus.has_value());
+    EXPECT_TRUE(diagnosis.handles.empty());
+    EXPECT_NE(diagnosis.kind, SurfaceKind::Handles);
+  }
+}
+
 TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
   const Index n = 600;
   const Index m = 400;
