@@ -107,7 +107,7 @@ constexpr std::size_t kMaxRuin = 32;
 /// Work of all repairs, in vertices that are taken out and put back: the sum of the first and of
 /// the second for each point. To look for two flips that take triangles apart counts as the other
 /// one, for it takes as long. A vertex takes 10 to 16 us, a point of the first mesh some 20: on 112
-/// clouds repairs took at most 7 times as long as all the rest. With a first of 2,000 a tube from a
+/// clouds repairs took at most 9 times as long as all the rest. With a first of 2,000 a tube from a
 /// bad start keeps its spikes. 49 of the 56 runs below end without intersections, with 5 for each
 /// point 44, in 0.9 times as long, with 5,000 and 5, 40.
 constexpr std::size_t kMaxWork = 10000;
