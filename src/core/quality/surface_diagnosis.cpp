@@ -948,8 +948,7 @@ public:
     is_folded_ = result_.edges_outside_graph > kMaxOutsideGraph;
     findRegions();
     findParts();
-    if (options_.find_handles)
-      findHandles();
+    findHandles();
     findFilledHoles();
     if (options_.mark_triangles)
       markTriangles();
@@ -983,7 +982,7 @@ private:
     if (!result_.bridges.empty())
       return;
     if (is_folded_) {
-      if (!hasRim(surface_, graph_.size()))
+      if (options_.find_handles_of_folded && !hasRim(surface_, graph_.size()))
         result_.genus = genusOf(graph_, 0);
       return;
     }
