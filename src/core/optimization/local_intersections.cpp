@@ -49,41 +49,34 @@ int LocalIntersections::addToCounts(const Face& face, int change) {
   if (!has_counts_)
     return kUnknown;
   int found = 0;
-  const Plane plane(face);
-  forEachIn(boxOf(face.corners), [&](const Face& other) {
-    if (intersect(face, plane, other)) {
-      ++found;
-      int& count = counts_[at(places_[at(other.triangle)])];
-      count += count == kUnknown ? 0 : change;
-    }
+  forEachIntersecting(face, [&](const Face& other) {
+    ++found;
+    int& count = counts_[at(places_[at(other.triangle)])];
+    count += count == kUnknown ? 0 : change;
     return true;
   });
   return found;
 }
 
 int LocalIntersections::countOf(Index triangle) {
-  int& count = counts_[at(places_[at(triangle)])];
-  if (count == kUnknown)
-    count = LocalIntersections::count(face(triangle), triangle, std::numeric_limits<int>::max());
+  int& known = counts_[at(places_[at(triangle)])];
+  if (known == kUnknown)
+    known = count(face(triangle), triangle, std::numeric_limits<int>::max());
   has_counts_ = true;
-  return count;
+  return known;
 }
 
 void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {
-  const Plane plane(face);
-  forEachIn(boxOf(face.corners), [&](const Face& other) {
-    if (intersect(face, plane, other))
-      triangles.push_back(other.triangle);
+  forEachIntersecting(face, [&](const Face& other) {
+    triangles.push_back(other.triangle);
     return true;
   });
 }
 
 int LocalIntersections::count(const Face& face, Index without, int most) const {
-  const Plane plane(face);
   int found = 0;
-  forEachIn(boxOf(face.corners), [&](const Face& other) {
-    if (other.triangle != without && intersect(face, plane, other))
-      ++found;
+  forEachIntersecting(face, [&](const Face& other) {
+    found += other.triangle == without ? 0 : 1;
     return found <= most;
   });
   return found;

@@ -45,10 +45,14 @@ public:
 
 private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  /// Whether two different triangles intersect.
-  static bool intersect(const Face& face, const Plane& plane, const Face& other) {
-    return other.triangle != face.triangle && !evidentlyApart(face, plane, other) &&
-           intersectCarefully(face, other);
+  /// Calls with each triangle that intersects another one, but for that itself, until that returns
+  /// false.
+  template <typename Work>
+  void forEachIntersecting(const Face& face, const Work& work) const {
+    const Plane plane(face);
+    forEachIn(boxOf(face.corners), [&](const Face& other) {
+      return other.triangle == face.triangle || !intersect(face, plane, other) || work(other);
+    });
   }
 
   /// Adds to the known numbers of those that a triangle intersects; returns how many these are, if

@@ -104,7 +104,8 @@ public:
   /// are.
   std::size_t flipApart();
   /// For `accept` of recreate(): the same where triangles intersect that it has changed since
-  /// watch(). Returns how many pairs more there are than before that.
+  /// watch(). Returns how many pairs more there are than before that. Of triangles that were not
+  /// watched, no pairs were known before.
   int flipChangedApart();
 
 private:

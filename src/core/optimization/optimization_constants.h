@@ -105,11 +105,11 @@ constexpr int kMaxRecreateRounds = 5;
 constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
 /// Work of all repairs, in vertices that are taken out and put back: the sum of the first and of
-/// the second for each point. To look for two flips that take triangles apart counts as the other
-/// one, for it takes as long. A vertex takes 10 to 16 us, a point of the first mesh some 20: on 112
-/// clouds repairs took at most 9 times as long as all the rest. With a first of 2,000 a tube from a
-/// bad start keeps its spikes. 49 of the 56 runs below end without intersections, with 5 for each
-/// point 44, in 0.9 times as long, with 5,000 and 5, 40.
+/// the second for each point. A search for two flips that take triangles apart counts as the other
+/// one, because it takes as long. A vertex takes 10 to 16 us, a point of the first mesh some 20: on
+/// 112 clouds repairs took at most 9 times as long as all the rest. With a first of 2,000 a tube
+/// from a bad start keeps its spikes. 49 of the 56 runs below end without intersections, with 5 for
+/// each point 44, in 0.9 times as long, with 5,000 and 5, 40.
 constexpr std::size_t kMaxWork = 10000;
 constexpr std::size_t kMaxWorkOfPoint = 10;
 constexpr std::size_t kWorkOfTwoFlips = 8;
@@ -119,19 +119,19 @@ constexpr std::size_t kWorkOfTwoFlips = 8;
 // "56 runs" are those with 4 seeds on 14 clouds that keep intersections easily.
 
 /// Rounds of untangling, and those in which the energy alone decides: it knows the way out better
-/// than the number of intersections does, but may be stuck with the last ones. With 1 of the latter
-/// 48 of the runs end without intersections instead of 51, with 5, 49. Where the points are noisy
-/// the energy decides in none.
+/// than the number of intersections does, but may be stuck with the last ones. With more
+/// work than above, 51 of the runs end without intersections, with 1 of the latter 48, with 5, 49.
+/// Where the points are noisy the energy decides in none.
 constexpr int kMaxUntangleRounds = 40;
 constexpr int kMaxRoundsByEnergy = 2;
 /// Rounds by number in a row without a gain. With 20, and 80 rounds in all, as many of the runs end
 /// without intersections, in 1.05 times as long.
 constexpr int kMaxIdleRounds = 12;
 /// Vertices of a part around two triangles that intersect, from the first size to the last,
-/// doubled. By number the first rounds end at the second one, and at twice as many after each round
-/// without a gain; of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20 times as long. By
-/// energy with 24 a tube from a bad start keeps its spikes; with 96 the runs keep 116 intersections
-/// instead of 24.
+/// doubled. Rounds by number begin with parts up to the second one; each round without a gain
+/// doubles that, up to the third. Of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20
+/// times as long. By energy with 24 a tube from a bad start keeps its spikes; with 96 the runs keep
+/// 116 intersections instead of 24.
 constexpr std::size_t kMinUntangled = 6;
 constexpr std::size_t kMaxFirstUntangled = 24;
 constexpr std::size_t kMaxUntangled = 96;

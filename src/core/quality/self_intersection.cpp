@@ -424,7 +424,7 @@ void Tree::findPairs(std::size_t bunch, Pairs& pairs) const {
     own.push_back({face, Plane(face), mesh_.centersOfFans(triangle)});
   }
   const auto test = [&](const Face& a, const Plane& plane, const Face& b) {
-    if (!evidentlyApart(a, plane, b) && intersectCarefully(a, b))
+    if (intersect(a, plane, b))
       append(a, b, pairs);
   };
   const auto compare = [&](std::size_t leaf, std::size_t other, const WideBox& other_box) {
@@ -473,7 +473,7 @@ void Tree::findPairs(const Face& face, const Box& box, Pairs& pairs) const {
       return;
     for (const std::size_t lane : Overlaps(group, wide)) {
       const Face other = mesh_.face(order_[leaf * kGroupSize + lane], group.at(lane).size());
-      if (!evidentlyApart(face, plane, other) && intersectCarefully(face, other))
+      if (intersect(face, plane, other))
         append(face, other, pairs);
     }
   });

@@ -141,8 +141,12 @@ inline bool intersectCarefully(const Face& a, const Face& b) {
 }
 
 /// Whether two triangles intersect.
+inline bool intersect(const Face& a, const Plane& plane_a, const Face& b) {
+  return !evidentlyApart(a, plane_a, b) && intersectCarefully(a, b);
+}
+
 inline bool intersect(const Face& a, const Face& b) {
-  return !evidentlyApart(a, Plane(a), b) && intersectCarefully(a, b);
+  return intersect(a, Plane(a), b);
 }
 
 /// Whether a box lies on one side of a plane.
