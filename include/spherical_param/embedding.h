@@ -128,7 +128,7 @@ struct EmbeddingReport {
   std::vector<LevelReport> levels;  ///< finest (the graph itself) first
   int starts = 0;                   ///< starts that were tried, on all levels
   int collapsed_starts = 0;         ///< of these, collapsed and rejected
-  bool added_barrier = false;       ///< all starts collapsed: a barrier against it was added
+  bool added_barrier = false;       ///< a barrier holds it, which would collapse without
   double energy = 0.0;              ///< that of the weights, without barrier
 
   /// Whether the tolerance was reached. \return true if it was
@@ -161,8 +161,8 @@ struct Embedding {
 /// 1. Coarsest level: a planar embedding of the graph (Tutte 1963) around a central node, lifted to
 ///    the sphere, is unfolded; Newton's method on the product of spheres solves it. Of several
 ///    starts the one of least energy is kept; collapsed ones (all nodes around one place) are
-///    rejected, and if all collapse the next finer level is tried. If those collapse too, as on
-///    graphs of a few nodes or with wide gaps, a barrier (below) is added.
+///    rejected. If all collapse, as on graphs of a few nodes or with wide gaps, a barrier (below)
+///    is added. Where it pulls hard, finer levels are tried first, without it.
 /// 2. Up: positions are interpolated and smoothed by a few damped sweeps; small levels are solved
 ///    fully, so that even their smallest parts come to rest.
 /// 3. With a `tolerance`, the finest level is solved too: Newton's method, each step by conjugate

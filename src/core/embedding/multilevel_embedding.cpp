@@ -138,6 +138,8 @@ private:
 
   bool isSolved(std::size_t l) const { return graphOf(l).size() <= kMaxSolvedSize; }
 
+  static double toleranceOf(std::size_t l) { return l > 0 ? kLevelTolerance : kGraphTolerance; }
+
   std::vector<LevelReport>& levels() { return result_.report.levels; }
 
   /// The energy of the chosen weights, without a barrier.
@@ -202,13 +204,14 @@ private:
         } else {
           result_.report.added_barrier = true;
         }
+      } else {
+        hardly_pulls_ = level > 0;
       }
     }
     if (best.cols() > 0)
       showStart(level);
     if (best.cols() > 0 && weights_.needsBarrier())
-      solve(level, energyAt(level, best), level > 0 ? kLevelTolerance : kGraphTolerance,
-            std::nullopt, best);
+      solve(level, energyAt(level, best), toleranceOf(level), std::nullopt, best);
     return best;
   }
 
@@ -399,14 +402,14 @@ private:
   NewtonReport solveUncollapsed(std::size_t l, std::optional<double> tolerance, Positions& u) {
     const bool is_freed =
         l == 0 && !weights_.needsBarrier() && std::exchange(result_.report.added_barrier, false);
-    const double relative_tolerance = l > 0 ? kLevelTolerance : kGraphTolerance;
     Positions solved = u;
-    NewtonReport newton = solve(l, energyAt(l, u), is_freed ? kFreedTolerance : relative_tolerance,
-                                tolerance, solved);
+    NewtonReport newton =
+        solve(l, energyAt(l, u), is_freed ? kFreedTolerance : toleranceOf(l), tolerance, solved);
     if (isCollapsed(solved, masses_[l]) && !result_.report.added_barrier) {
       result_.report.added_barrier = true;
+      hardly_pulls_ = false;
       solved = u;
-      newton = solve(l, energyAt(l, u), relative_tolerance, tolerance, solved);
+      newton = solve(l, energyAt(l, u), toleranceOf(l), tolerance, solved);
     }
     u = std::move(solved);
     return newton;
@@ -418,6 +421,8 @@ private:
       NewtonReport newton = solveUncollapsed(0, options_.tolerance, u);
       report.residuals = std::move(newton.residuals);
     }
+    if (hardly_pulls_)
+      report.added_barrier = false;
     report.residual = residualOf(0, u);
     levels()[0].residual = report.residual;
     report.iterations = report.residuals.empty() ? levels()[0].newton_iterations
@@ -445,6 +450,8 @@ private:
   /// Of the centroid of each level; empty: all nodes alike.
   std::vector<Eigen::VectorXd> masses_;
   Embedding result_;
+  /// The barrier is on coarser levels alone, and hardly pulls there: no finding.
+  bool hardly_pulls_ = false;
   Index best_center_ = 0;  ///< of the start that solveStarts() kept last
 };
 

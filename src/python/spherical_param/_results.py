@@ -164,7 +164,7 @@ class Embedding:
     levels: tuple[EmbeddingLevel, ...]  #: of the multilevel embedding, the finest first
     starts: int  #: of the coarsest level that were tried
     collapsed_starts: int  #: of these, rejected
-    added_barrier: bool  #: all starts collapsed, and a barrier was added
+    added_barrier: bool  #: a barrier holds it, which would collapse without
     energy: float  #: that of the weights, without the barrier
 
     @property
