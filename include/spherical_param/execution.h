@@ -27,8 +27,8 @@ struct Execution {
   std::function<bool(const Progress&)> progress = {};
   /// Wall time after which the optimisation ends with the best mesh so far [s]; [0, 1e9]. Unset:
   /// none. What comes before the optimisation is not cut short; with smoothing, the optimisation
-  /// before it has half of what is left. Where it ended the work and the mesh is folded, handles
-  /// are not looked for. The same limit may give another mesh on another machine.
+  /// before it has half of what is left. Where it ended the work, handles are not told from
+  /// folds. The same limit may give another mesh on another machine.
   std::optional<double> time_limit = {};
 };
 

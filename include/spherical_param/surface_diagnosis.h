@@ -37,8 +37,9 @@ struct DiagnosisOptions {
   /// Maximum number of vertices listed with each finding; FilledHole::loops are complete even so.
   std::size_t max_vertices = 64;
   bool mark_triangles = false;  ///< fill SurfaceDiagnosis::triangle_marks
-  /// Look for handles also where the mesh is folded, which takes longer than all the rest.
-  bool find_handles_of_folded = true;
+  /// Count the graph's cycles, which tell handles from folds. Where a mesh is folded, that takes
+  /// longer than all the rest; without it, what may be either is SurfaceKind::Unclear.
+  bool count_cycles = true;
 };
 
 /// Connected triangles over a place without points that is wide against the distance of the points

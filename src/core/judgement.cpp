@@ -81,7 +81,7 @@ SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::s
                           const NeighborGraph& graph, bool is_out_of_time, const Options& options) {
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
-  of_diagnosis.find_handles_of_folded = !is_out_of_time;
+  of_diagnosis.count_cycles = !is_out_of_time;
   SurfaceDiagnosis diagnosis = diagnoseSurface(points, mesh, graph.graph, graph.report.bridges,
                                                of_diagnosis, options.threads);
   if (boundaries > 0) {

@@ -856,7 +856,9 @@ std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
   if (!diagnosis.handles.empty()) {
     const CollapsedHandle& handle = diagnosis.handles.front();
     add("a surface with " +
-        (has_handles ? counted(static_cast<std::size_t>(*diagnosis.genus), "handle") : "handles") +
+        (has_handles ? counted(static_cast<std::size_t>(*diagnosis.genus), "handle")
+         : diagnosis.kind == SurfaceKind::Unclear ? "handles or a folded mesh"
+                                                  : "handles") +
         ", cut in " + counted(diagnosis.handles.size(), "place") + ": " +
         counted(handle.edges, "pair") + " of neighbours torn apart within " + number(handle.size) +
         " " + place(handle.center));
@@ -982,14 +984,14 @@ private:
     if (!result_.bridges.empty())
       return;
     if (is_folded_) {
-      if (options_.find_handles_of_folded && !hasRim(surface_, graph_.size()))
+      if (options_.count_cycles && !hasRim(surface_, graph_.size()))
         result_.genus = genusOf(graph_, 0);
       return;
     }
     result_.handles =
         handlesOf(surface_, tornEdges(surface_, differences_.edges, regions_, wide_count_,
                                       triangle_count_, bridges_, graph_.size()));
-    if (result_.handles.empty())
+    if (result_.handles.empty() || !options_.count_cycles)
       return;
     const auto wide_end = regions_.begin() + static_cast<std::ptrdiff_t>(wide_count_);
     const auto openings = std::count_if(regions_.begin(), wide_end,
@@ -1031,9 +1033,10 @@ private:
   SurfaceKind kind() const {
     if (!result_.bridges.empty())
       return SurfaceKind::SeveralParts;
-    if (!result_.handles.empty() || result_.genus.value_or(0) > 0)
+    const bool is_torn = !result_.handles.empty();
+    if (is_folded_ ? result_.genus.value_or(0) > 0 : is_torn && options_.count_cycles)
       return SurfaceKind::Handles;
-    if (is_folded_)
+    if (is_folded_ || is_torn)
       return SurfaceKind::Unclear;
     return result_.openings() > 0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0;
   }

@@ -271,9 +271,9 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
   expect(folded(starShaped(open, open)), SurfaceKind::Unclear, std::nullopt);
 }
 
-TEST(SurfaceDiagnosis, HandlesUnderAFoldedMeshAreLookedForUnlessToldNotTo) {
+TEST(SurfaceDiagnosis, WithoutCyclesHandlesAreNotToldFromFolds) {
   DiagnosisOptions options;
-  options.find_handles_of_folded = false;
+  options.count_cycles = false;
   const auto expect = [&](const Scene& scene, SurfaceKind kind, std::optional<int> genus) {
     const SurfaceDiagnosis diagnosis = diagnoseSurface(
         scene.points, scene.triangles, scene.graph.graph, scene.graph.report.bridges, options);
@@ -281,7 +281,9 @@ TEST(SurfaceDiagnosis, HandlesUnderAFoldedMeshAreLookedForUnlessToldNotTo) {
     EXPECT_EQ(diagnosis.genus, genus);
   };
   expect(folded(cutTorus(60, 24, 0.4)), SurfaceKind::Unclear, std::nullopt);
-  expect(cutTorus(60, 24, 0.4), SurfaceKind::Handles, 1);
+  expect(cutTorus(60, 24, 0.4), SurfaceKind::Unclear, std::nullopt);
+  const Positions ball = spiralSphere(1000);
+  expect(starShaped(ball, ball), SurfaceKind::ClosedGenus0, std::nullopt);
 }
 
 TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
