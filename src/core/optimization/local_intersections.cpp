@@ -49,7 +49,7 @@ int LocalIntersections::addToCounts(const Face& face, int change) {
   if (!has_counts_)
     return kUnknown;
   int found = 0;
-  forEachIntersecting(face, [&](const Face& other) {
+  forEachIntersecting(face, face.triangle, [&](const Face& other) {
     ++found;
     int& count = counts_[at(places_[at(other.triangle)])];
     count += count == kUnknown ? 0 : change;
@@ -67,7 +67,7 @@ int LocalIntersections::countOf(Index triangle) {
 }
 
 void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {
-  forEachIntersecting(face, [&](const Face& other) {
+  forEachIntersecting(face, face.triangle, [&](const Face& other) {
     triangles.push_back(other.triangle);
     return true;
   });
@@ -75,10 +75,7 @@ void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>
 
 int LocalIntersections::count(const Face& face, Index without, int most) const {
   int found = 0;
-  forEachIntersecting(face, [&](const Face& other) {
-    found += other.triangle == without ? 0 : 1;
-    return found <= most;
-  });
+  forEachIntersecting(face, without, [&](const Face&) { return ++found <= most; });
   return found;
 }
 

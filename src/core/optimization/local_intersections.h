@@ -45,13 +45,14 @@ public:
 
 private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  /// Calls with each triangle that intersects another one, but for that itself, until that returns
-  /// false.
+  /// Calls with each triangle that intersects another one, without that itself and one more, until
+  /// that returns false.
   template <typename Work>
-  void forEachIntersecting(const Face& face, const Work& work) const {
+  void forEachIntersecting(const Face& face, Index without, const Work& work) const {
     const Plane plane(face);
     forEachIn(boxOf(face.corners), [&](const Face& other) {
-      return other.triangle == face.triangle || !intersect(face, plane, other) || work(other);
+      return other.triangle == face.triangle || other.triangle == without ||
+             !intersect(face, plane, other) || work(other);
     });
   }
 
