@@ -5,6 +5,7 @@
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
+#include "common/findings.h"
 #include "common/json_report.h"
 #include "common/mesh_writer.h"
 #include "common/names.h"
@@ -14,6 +15,7 @@
 #include "common/point_data.h"
 #include "common/point_pairs.h"
 #include "common/product_input.h"
+#include "common/reconstruction_report.h"
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "spherical_param/map/morphing.h"
@@ -83,7 +85,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"Twenty meshes from one scan to another", "scan.ply other.ply morph.ply"},
 };
 
-std::string helpText() {
+std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " first second output [options]\n\n"
          "Meshes the points of two objects without holes through them, and changes one into the\n"
@@ -93,9 +95,11 @@ std::string helpText() {
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets; those of\n"
          "the meshes and the map hold for both clouds):\n" +
-         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also warnings),\n"
-         "2 wrong usage.\n";
+         describeOptions(option_table, with_experts) + "\n" +
+         describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also if the mesh is "
+         "unfit),\n"
+         "2 wrong usage, 3 written but not usable: more than 1 % of the triangles intersect.\n";
 }
 
 /// What the user asked for.
@@ -486,29 +490,17 @@ Json report(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
     Json& of_side = json[side == 0 ? "first" : "second"];
     addMapToJson(clouds[side], of_side);
     of_side["stages"] = toJson(clouds[side].cloud.stages);
-    of_side["warnings"] = warningsOf(clouds[side].cloud);
+    of_side["findings"] = toJson(clouds[side].cloud.result.findings);
   }
   json["stages"] = toJson(morph.stages);
   json["peak_memory"] = peakMemoryToJson();
   return json;
 }
 
-/// What there is to be said about the pairs.
-std::vector<std::string> warningsOf(const Morph& morph) {
-  std::vector<std::string> warnings;
-  for (const LostPair& lost : morph.lost) {
-    warnings.push_back("the pair of line " + std::to_string(lost.pair.line) +
-                       " is impossible: " + lost.reason);
-  }
-  return warnings;
-}
-
-void printVerdict(const std::array<MappedCloud, 2>& clouds, const Morph& morph, Console& console) {
+void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
+                  const Morph& morph, Console& console) {
   for (const MappedCloud& mapped : clouds) {
     printMap(mapped, console);
-    for (const std::string& warning : warningsOf(mapped.cloud)) {
-      console.entry("warning", oneLine(warning));
-    }
   }
   console.entry("alignment error", formatted(morph.result.alignment_error, 4));
   console.entry("morph", std::to_string(morph.result.first.cols()) + " vertices, " +
@@ -518,20 +510,34 @@ void printVerdict(const std::array<MappedCloud, 2>& clouds, const Morph& morph, 
     console.entry("pairs", std::to_string(morph.pairs.size() - morph.lost.size()) + " of " +
                                std::to_string(morph.pairs.size()) + " honoured");
   }
-  for (const std::string& warning : warningsOf(morph)) {
-    console.entry("warning", oneLine(warning));
+  Summary summary;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const CloudReconstruction& cloud = clouds[side].cloud;
+    const auto add = [side](std::string& text, const std::string& more) {
+      text += (side == 0 ? "" : "; ") + more;
+    };
+    add(summary.read, settings.inputs[side] + ", " + counted(cloud.data->points.size(), "point"));
+    add(summary.verdict, cloud.result.verdict);
+    add(summary.left_out, leftOut(cloud, cloud.result.duplicates()));
   }
+  summary.made =
+      counted(static_cast<std::size_t>(morph.result.first.cols()), "vertex", "vertices") + ", " +
+      counted(static_cast<std::size_t>(morph.result.triangles.cols()), "triangle");
+  summary.written = {settings.frames.front() +
+                     (settings.frames.size() > 1 ? " to " + settings.frames.back() : "")};
+  addReport(settings.report, summary.written);
+  console.summary(summary);
 }
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
     return;
   }
   const Settings settings = parseSettings(command_line);
   checkFiles(settings);
 
-  Console console(settings.report.printsText());
+  Console console(settings.report.detail());
   printParameters(settings, console);
 
   std::array<MappedCloud, 2> clouds;
@@ -552,11 +558,22 @@ void run(const std::vector<std::string>& words) {
   store(settings, clouds, morph, files, console);
   publish(
       settings.report, files, console, [&] { return report(settings, clouds, morph); },
-      [&] { printVerdict(clouds, morph, console); });
-  requireNoWarnings(settings.product.reconstruction,
-                    {{settings.inputs[0], warningsOf(clouds[0].cloud)},
-                     {settings.inputs[1], warningsOf(clouds[1].cloud)},
-                     {settings.pairs, warningsOf(morph)}});
+      [&] { printVerdict(settings, clouds, morph, console); });
+  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, true);
+  std::size_t intersecting = 0;
+  std::size_t triangles = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const spherical_param::Result& result = clouds[side].cloud.result;
+    findings.add(settings.inputs[side], result.findings);
+    intersecting += result.intersecting_triangles;
+    triangles += static_cast<std::size_t>(result.triangles.cols());
+  }
+  for (const LostPair& lost : morph.lost) {
+    findings.add("the pair of line " + std::to_string(lost.pair.line) +
+                 " is impossible: " + lost.reason);
+  }
+  findings.print();
+  findings.requireSoundness(intersecting, triangles);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
+#include "common/findings.h"
 #include "common/geometry_image_file.h"
 #include "common/json_report.h"
 #include "common/mesh_distance.h"
@@ -16,6 +17,7 @@
 #include "common/output_options.h"
 #include "common/point_data.h"
 #include "common/product_input.h"
+#include "common/reconstruction_report.h"
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "spherical_param/map/resampling.h"
@@ -93,7 +95,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A mesh of that image", "geometry.tif mesh.ply"},
 };
 
-std::string helpText() {
+std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
          "Meshes the points of an object without holes through it, and samples its surface anew.\n"
@@ -104,9 +106,11 @@ std::string helpText() {
          "\n          with -grid even a cloud: " + extensionsFor(FileUse::WriteCloud) +
          "\n          a geometry image: .tif .tiff"
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also warnings),\n"
-         "2 wrong usage.\n";
+         describeOptions(option_table, with_experts) + "\n" +
+         describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also if the mesh is "
+         "unfit),\n"
+         "2 wrong usage, 3 written but not usable: more than 1 % of the triangles intersect.\n";
 }
 
 /// What the user asked for.
@@ -468,20 +472,34 @@ void makeFromImage(const Settings& settings, Output& output, Console& console) {
       {"resample", console.end(std::to_string(output.pointCount()) + " points")});
 }
 
-std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud& mapped,
-                                    const Output& output) {
-  std::vector<std::string> warnings;
+std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
+                                                 const MappedCloud& mapped, const Output& output) {
+  std::vector<spherical_param::Finding> findings;
   if (!settings.reads_image) {
-    warnings = warningsOf(mapped.cloud);
+    findings = mapped.cloud.result.findings;
   }
   if (!output.self_intersections.empty()) {
-    warnings.push_back("The output intersects itself at " +
-                       counted(output.self_intersections.size(), "pair") + " of triangles" +
-                       (settings.reads_image || settings.series
-                            ? "."
-                            : ": more points (-points), or a smaller -area-weight, may help."));
+    findings.push_back({"the output has self-intersections" +
+                            std::string(settings.reads_image || settings.series
+                                            ? ""
+                                            : ": try more -points, or a smaller -area-weight"),
+                        "", "", true});
   }
-  return warnings;
+  return findings;
+}
+
+/// Whether the output is sound.
+std::string verdictOf(const Output& output) {
+  if (output.isCloud()) {
+    return "Points spread evenly over the surface.";
+  }
+  if (output.self_intersections.empty()) {
+    return "A sound mesh.";
+  }
+  return "The mesh has faults: " +
+         grouped(spherical_param::countTriangles(output.self_intersections)) + " of " +
+         counted(static_cast<std::size_t>(output.mesh.triangles.cols()), "triangle") +
+         " intersect.";
 }
 
 /// The series, one line for each coefficient.
@@ -560,7 +578,7 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   }
   json["stages"] = toJson(output.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
-  json["warnings"] = warningsOf(settings, mapped, output);
+  json["findings"] = toJson(findingsOf(settings, mapped, output));
   return json;
 }
 
@@ -607,9 +625,19 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
                                   formatted(output.distance->max, 4) +
                                   " (mean, RMS, max; of the cloud's mesh, at its vertices)");
   }
-  for (const std::string& warning : warningsOf(settings, mapped, output)) {
-    console.entry("warning", oneLine(warning));
+  const CloudReconstruction& cloud = mapped.cloud;
+  Summary summary;
+  summary.read = settings.input;
+  summary.verdict = verdictOf(output);
+  summary.made = counted(output.pointCount(), "vertex", "vertices") + ", " +
+                 counted(static_cast<std::size_t>(output.mesh.triangles.cols()), "triangle");
+  summary.left_out = "nothing";
+  if (!settings.reads_image) {
+    summary.read += ", " + counted(cloud.data->points.size(), "point");
+    summary.left_out = leftOut(cloud, cloud.result.duplicates());
   }
+  summary.written = outputsOf(settings);
+  console.summary(summary);
 }
 
 PointData toVertices(const Output& output, const MappedCloud& mapped) {
@@ -657,13 +685,13 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
     return;
   }
   const Settings settings = parseSettings(command_line);
   checkOutputs({settings.input}, outputsOf(settings));
 
-  Console console(settings.report.printsText());
+  Console console(settings.report.detail());
   printParameters(settings, console);
   MappedCloud mapped;
   Output output;
@@ -679,8 +707,11 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, mapped, output); },
       [&] { printVerdict(settings, mapped, output, console); });
-  requireNoWarnings(settings.product.reconstruction,
-                    {{settings.input, warningsOf(settings, mapped, output)}});
+  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, true);
+  findings.add("", findingsOf(settings, mapped, output));
+  findings.print();
+  findings.requireSoundness(spherical_param::countTriangles(output.self_intersections),
+                            static_cast<std::size_t>(output.mesh.triangles.cols()));
 }
 
 }  // namespace

@@ -46,23 +46,22 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
      "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
 };
 
-std::string helpText() {
+std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " SHAPE output [options]\n\n"
          "Writes points that are spread evenly over a generated surface.\n"
          "  SHAPE:  a shape or preset, see -list\n  output: " +
          extensionsFor(FileUse::WriteCloud) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
+         describeOptions(option_table, with_experts) + "\n" +
+         describeExamples(tool_name, example_table) +
          "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
 std::string listText() {
   const auto line = [](std::string_view name, const std::string& text) {
-    constexpr std::size_t name_width = 12;
-    std::string padded(name);
-    padded.resize(std::max(name_width, padded.size()), ' ');
-    return "  " + padded + text + "\n";
+    constexpr std::size_t name_width = 14;
+    return "  " + std::string(name) + std::string(name_width - name.size(), ' ') + text + "\n";
   };
   std::string text = "Shapes:\n";
   for (const ShapeInfo& shape : allShapes()) {
@@ -136,7 +135,7 @@ Settings parseSettings(const CommandLine& command_line) {
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
     return;
   }
   if (command_line.has("list")) {

@@ -5,12 +5,14 @@
 #include "common/console.h"
 #include "common/errors.h"
 #include "common/file_formats.h"
+#include "common/findings.h"
 #include "common/json_report.h"
 #include "common/names.h"
 #include "common/numbers.h"
 #include "common/output_file.h"
 #include "common/output_options.h"
 #include "common/product_input.h"
+#include "common/reconstruction_report.h"
 #include "common/run_tool.h"
 #include "common/text.h"
 #include "common/textured_mesh.h"
@@ -73,7 +75,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A checkerboard, which shows the map", "scan.ply checker.glb -checker 16"},
 };
 
-std::string helpText() {
+std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
          "Meshes the points of an object without holes through it, and paints their colours into "
@@ -83,9 +85,11 @@ std::string helpText() {
          "\n  output: .glb, with the image in it; .obj, with .mtl and .png beside it; .ply, with "
          ".png\n"
          "\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
-         describeOptions(option_table) + "\n" + describeExamples(tool_name, example_table) +
-         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also warnings),\n"
-         "2 wrong usage.\n";
+         describeOptions(option_table, with_experts) + "\n" +
+         describeExamples(tool_name, example_table) +
+         "\nExit code: 0 done (also with warnings), 1 failed (with -strict also if the mesh is "
+         "unfit),\n"
+         "2 wrong usage, 3 written but not usable: more than 1 % of the triangles intersect.\n";
 }
 
 /// What the user asked for.
@@ -278,12 +282,13 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
                                                 std::to_string(output.image.height) + " pixels")});
 }
 
-std::vector<std::string> warningsOf(const Settings& settings, const MappedCloud& mapped) {
-  std::vector<std::string> warnings = warningsOf(mapped.cloud);
+std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
+                                                 const MappedCloud& mapped) {
+  std::vector<spherical_param::Finding> findings = mapped.cloud.result.findings;
   if (mapped.colors.empty() && !settings.cells) {
-    warnings.emplace_back("The cloud has no colours: the texture is a checkerboard.");
+    findings.push_back({"the cloud has no colours: the texture is a checkerboard", "", "", false});
   }
-  return warnings;
+  return findings;
 }
 
 Json report(const Settings& settings, const MappedCloud& mapped, const Output& output) {
@@ -305,7 +310,7 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   json["triangles"] = output.atlas.triangles.cols();
   json["stages"] = toJson(output.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
-  json["warnings"] = warningsOf(settings, mapped);
+  json["findings"] = toJson(findingsOf(settings, mapped));
   return json;
 }
 
@@ -320,9 +325,14 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
                                                static_cast<std::size_t>(mapped.points.cols())));
   console.entry("coordinates", std::to_string(output.atlas.coordinates.cols()));
   console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
-  for (const std::string& warning : warningsOf(settings, mapped)) {
-    console.entry("warning", oneLine(warning));
-  }
+  const CloudReconstruction& cloud = mapped.cloud;
+  console.summary(
+      {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.result.verdict,
+       counted(output.atlas.vertices.size(), "vertex", "vertices") + ", " +
+           counted(static_cast<std::size_t>(output.atlas.triangles.cols()), "triangle") + ", " +
+           std::to_string(output.image.width) + " x " + std::to_string(output.image.height) +
+           " pixels",
+       leftOut(cloud, cloud.result.duplicates()), outputsOf(settings)});
 }
 
 /// Stores all files but the report, none of them under its name yet.
@@ -363,13 +373,13 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText())) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
     return;
   }
   const Settings settings = parseSettings(command_line);
   checkOutputs({settings.input}, outputsOf(settings));
 
-  Console console(settings.report.printsText());
+  Console console(settings.report.detail());
   printParameters(settings, console);
   MappedCloud mapped;
   Output output;
@@ -379,8 +389,11 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, mapped, output); },
       [&] { printVerdict(settings, mapped, output, console); });
-  requireNoWarnings(settings.product.reconstruction,
-                    {{settings.input, warningsOf(settings, mapped)}});
+  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, true);
+  findings.add("", findingsOf(settings, mapped));
+  findings.print();
+  findings.requireSoundness(mapped.cloud.result.intersecting_triangles,
+                            static_cast<std::size_t>(mapped.triangles().cols()));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "spherical_param/embedding.h"
 #include "spherical_param/execution.h"
+#include "spherical_param/finding.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
@@ -103,13 +104,24 @@ struct Result {
   OptimizationReport optimization;    ///< how the mesh was optimised
   SmoothingReport smoothing;          ///< all zero without smoothing
 
-  std::vector<StageTime> stages;      ///< in the order of the work
-  std::vector<std::string> warnings;  ///< one sentence each; empty if there is nothing to say
+  std::vector<StageTime> stages;  ///< in the order of the work
+
+  /// Triangles that intersect another one, on the smoothed points if there are some.
+  std::size_t intersecting_triangles = 0;
+  std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
+  std::vector<Finding> findings;  ///< what to know, and what to do; empty if all is well
 
   /// Number of distinct points. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
   /// Whether the mesh is closed. \return true if it has no boundary
   bool isClosed() const { return boundary.empty(); }
+  /// Whether the mesh can be worked with. \return true if at most 1 % of its triangles intersect
+  bool isUsable() const {
+    return 100 * intersecting_triangles <= static_cast<std::size_t>(triangles.cols());
+  }
+  /// Whether the mesh encloses something: volume, centroid and inertia of `measures` mean nothing
+  /// else. \return true if it is usable, and not folded
+  bool hasVolume() const { return isUsable() && !diagnosis.isFolded(); }
   /// Points that were merged into an earlier one. \return n - v
   std::size_t duplicates() const { return vertex_of_input.size() - input_of_vertex.size(); }
 };
@@ -137,7 +149,7 @@ void checkOptions(const Options& options);
 /// bit, whatever the number of threads. Reentrant: no state is shared between calls.
 ///
 /// Not guaranteed: that the mesh is free of self-intersections or near the sampled surface;
-/// `self_intersections`, `diagnosis` and `warnings` say how far to trust it.
+/// `verdict`, `findings` and `diagnosis` say how far to trust it.
 /// Cost: O(n log n), typically; with the iterative embedding iterations * O(n k) more. Below 2 KB
 /// of memory a point; 3 KB for the multilevel embedding with a tolerance on a graph of 25
 /// neighbours.

@@ -4,6 +4,7 @@
 #include "spherical_param/types.h"
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace spherical_param {
@@ -48,6 +49,12 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const Triangles& triangles,
                                                           const std::vector<Index>& of,
                                                           const Execution& execution = {});
+
+/// The number of different triangles in some pairs.
+///
+/// \param pairs in any order.
+/// \return 0 if there are none.
+std::size_t countTriangles(const std::vector<std::array<Index, 2>>& pairs);
 
 /// @}
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace spherical_param {
@@ -92,23 +91,18 @@ struct SurfaceDiagnosis {
   /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
   /// none where that was not needed, as neighbours are nowhere torn apart, or unknown.
   std::optional<int> genus;
-  std::size_t outliers = 0;  ///< vertices that belong to no surface; set by reconstruct()
-  std::string summary;       ///< one sentence
   /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless
   /// DiagnosisOptions::mark_triangles asks for it.
   std::vector<std::uint8_t> triangle_marks;
 
   /// Whether nothing speaks against a closed genus-0 surface. \return true if nothing does
   bool looksClosedGenus0() const { return kind == SurfaceKind::ClosedGenus0; }
+  /// Whether the mesh leaves the graph in too many places to show the surface, whatever that is.
+  /// \return true if more than a tenth of its edges do
+  bool isFolded() const;
   /// Filled holes that are a trace of nothing else. \return their number
   std::size_t openings() const;
 };
-
-/// Composes SurfaceDiagnosis::summary anew, for callers who have changed the unit of the findings.
-///
-/// \param diagnosis its summary is not read.
-/// \return one sentence.
-std::string summaryOf(const SurfaceDiagnosis& diagnosis);
 
 /// Decides whether a cloud looks like a closed genus-0 surface: the mesh always is one, whatever
 /// the cloud shows. An opening is closed by triangles that leave the graph and are long against the

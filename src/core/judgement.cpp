@@ -88,7 +88,6 @@ SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::s
     diagnosis.boundaries = boundaries;
     if (diagnosis.kind == SurfaceKind::ClosedGenus0)
       diagnosis.kind = SurfaceKind::Open;
-    diagnosis.summary = summaryOf(diagnosis);
   }
   return diagnosis;
 }
@@ -108,11 +107,9 @@ Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openi
   if (openings.isOneSided()) {
     result.diagnosis.is_one_sided = true;
     result.diagnosis.kind = SurfaceKind::Unclear;
-    result.diagnosis.summary = summaryOf(result.diagnosis);
   }
   for (const StrayPoint& stray : mesh.graph.report.stray_points)
     result.outliers.push_back(stray.point);
-  result.diagnosis.outliers = result.outliers.size();
   reportFraction(report, 0.5);
   result.measures = measureMesh(points, result.triangles, options.threads);
   reportFraction(report, 0.6);
@@ -128,6 +125,8 @@ Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openi
         result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
             TriangleMarks::self_intersection;
   }
+  result.intersecting_triangles = mesh.isSmoothed() ? mesh.smoothed.intersecting_triangles
+                                                    : countTriangles(result.self_intersections);
   result.smoothing = mesh.smoothed.report;
   result.smoothed = std::move(mesh.smoothed.points);
   result.sphere = std::move(mesh.embedding.directions);

@@ -106,12 +106,12 @@ OptionRow usedWith(std::vector<std::pair<std::string, std::string>> conditions, 
 std::vector<OptionRow> graphRows() {
   return {
       choice<GraphMethod>(
-          "graph", "graph.method", "how points become neighbours, in the paper knn", Everybody,
+          "graph", "graph.method", "how points become neighbours, in the paper knn", Expert,
           {{"delaunay", GraphMethod::LocalDelaunay}, {"knn", GraphMethod::NearestNeighbors}},
           [](Options & o) -> auto& { return o.graph.method; }),
       number(
           "k", "graph.k", "nearest neighbours of each point, unset: 25 for knn, 12 for delaunay",
-          Everybody, 3, kMaxInt, [](Options & o) -> auto& { return o.graph.k; }),
+          Expert, 3, kMaxInt, [](Options & o) -> auto& { return o.graph.k; }),
   };
 }
 
@@ -119,11 +119,11 @@ std::vector<OptionRow> embeddingRows() {
   return {
       choice<EmbeddingMethod>(
           "embedding", "embedding.method", "how the graph is embedded, in the paper iterative",
-          Everybody,
+          Expert,
           {{"multilevel", EmbeddingMethod::Multilevel}, {"iterative", EmbeddingMethod::Iterative}},
           [](Options & o) -> auto& { return o.embedding.method; }),
       choice<EdgeWeights>(
-          "weights", "embedding.weights", "weights of the Laplacian", Everybody,
+          "weights", "embedding.weights", "weights of the Laplacian", Expert,
           {{"adaptive", EdgeWeights::Adaptive},
            {"inverse", EdgeWeights::InverseLength},
            {"uniform", EdgeWeights::Uniform}},
@@ -137,8 +137,8 @@ std::vector<OptionRow> embeddingRows() {
           1, [](Options & o) -> auto& { return o.embedding.damping; })),
       number(
           "tolerance", "embedding.tolerance",
-          "mean tangential Laplacian at convergence, unset: 1e-8 for iterative, else none",
-          Everybody, 0, 1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
+          "mean tangential Laplacian at convergence, unset: 1e-8 for iterative, else none", Expert,
+          0, 1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
       usedWith({{"embedding", "iterative"}},
                number(
                    "max_iterations", "embedding.max_iterations", "maximum number of iterations",
@@ -167,13 +167,13 @@ std::vector<OptionRow> meshRows() {
   return {
       choice<TriangulationMethod>(
           "triangulation", "triangulation.method",
-          "how the sphere is triangulated, in the paper qhull", Everybody,
+          "how the sphere is triangulated, in the paper qhull", Expert,
           {{"incremental", TriangulationMethod::Incremental},
            {"qhull", TriangulationMethod::Qhull}},
           [](Options & o) -> auto& { return o.triangulation.method; }),
       choice<OptimizationMethod>(
           "optimization", "optimization.method", "how far the mesh is optimised on the points",
-          Everybody,
+          Expert,
           {{"full", OptimizationMethod::Full},
            {"flips", OptimizationMethod::Flips},
            {"none", OptimizationMethod::None}},
@@ -197,7 +197,7 @@ std::vector<OptionRow> surfaceRows() {
       usedWith({{"graph", "delaunay"}},
                number(
                    "fill_holes", "fill_holes", "openings of up to this number of edges are filled",
-                   Everybody, 0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
+                   Expert, 0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
       usedWith({{"graph", "delaunay"}},
                number(
                    "fill_holes_area", "fill_holes_area", "openings of up to this area are filled",
@@ -208,7 +208,7 @@ std::vector<OptionRow> surfaceRows() {
 std::vector<OptionRow> runRows() {
   return {
       number(
-          "seed", "seed", "seed of all random choices", Everybody, 0, kMaxSeed,
+          "seed", "seed", "seed of all random choices", Expert, 0, kMaxSeed,
           [](Options & o) -> auto& { return o.seed; }),
       usedWith({{"optimization", "full"}},
                number(
@@ -216,7 +216,7 @@ std::vector<OptionRow> runRows() {
                    "seconds until the work ends with the best mesh so far, unset: no limit",
                    Everybody, 0, kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
       number(
-          "threads", "threads", "threads, 0: as many as OpenMP would use", Everybody, 0, 1024,
+          "threads", "threads", "threads, 0: as many as OpenMP would use", Expert, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),
   };
 }

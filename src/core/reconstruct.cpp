@@ -2,6 +2,7 @@
 
 #include "caller_neighbors.h"
 #include "exact_predicates.h"
+#include "findings.h"
 #include "judgement.h"
 #include "open_mesh.h"
 #include "open_surface.h"
@@ -9,7 +10,6 @@
 #include "result_units.h"
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
-#include "warnings.h"
 
 #include <cmath>
 #include <functional>
@@ -137,7 +137,8 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
     throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "
                        "as a defect of the library");
   result.stages = clock.take();
-  result.warnings = internal::warningsOf(options, result);
+  result.findings = internal::findingsOf(options, result);
+  result.verdict = internal::verdictOf(result);
   return result;
 }
 

@@ -62,7 +62,6 @@ void scaleBack(int exponent, Result& result) {
     scale(bridge.spacing);
     scale_all(bridge.center);
   }
-  result.diagnosis.summary = summaryOf(result.diagnosis);
 }
 
 /// Gives the result, computed on nodes, the numbers of the vertices.

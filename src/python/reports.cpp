@@ -19,10 +19,6 @@ py::list listOf(const Items& items, const Convert& convert) {
   return list;
 }
 
-py::list textsOf(const std::vector<std::string>& texts) {
-  return listOf(texts, [](const std::string& text) { return py::str(text); });
-}
-
 /// What was not asked for is empty in the core.
 template <typename Value>
 py::object orNone(const std::vector<Value>& values) {
@@ -81,7 +77,7 @@ py::dict toDict(const SurfaceDiagnosis& diagnosis) {
                     "gap"_a = bridge.gap, "spacing"_a = bridge.spacing,
                     "center"_a = toArray(bridge.center), "vertices"_a = toArray(bridge.vertices));
   });
-  return py::dict("kind"_a = nameOf(diagnosis.kind), "summary"_a = diagnosis.summary,
+  return py::dict("kind"_a = nameOf(diagnosis.kind),
                   "genus"_a = diagnosis.genus ? py::cast(*diagnosis.genus) : py::none(),
                   "looks_closed_genus0"_a = diagnosis.looksClosedGenus0(),
                   "openings"_a = diagnosis.openings(), "boundaries"_a = diagnosis.boundaries,
@@ -196,7 +192,13 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
   dict["stages"] = stages;
   dict["history"] = toObject(result.history);
   dict["vertex_residuals"] = orNone(result.vertex_residuals);
-  dict["warnings"] = textsOf(result.warnings);
+  dict["intersecting_triangles"] = result.intersecting_triangles;
+  dict["usable"] = result.isUsable();
+  dict["verdict"] = result.verdict;
+  dict["findings"] = listOf(result.findings, [](const Finding& finding) {
+    return py::dict("text"_a = finding.text, "option"_a = finding.option, "value"_a = finding.value,
+                    "is_fault"_a = finding.is_fault);
+  });
   return dict;
 }
 

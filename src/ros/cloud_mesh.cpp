@@ -242,9 +242,12 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   const Result result = spherical_param::reconstruct(points.positions, options);
   outcome.mesh = makeMesh(cloud, points, result);
   outcome.status = Status::Done;
-  outcome.message = result.diagnosis.summary;
+  outcome.message = result.verdict;
   outcome.looks_closed = result.diagnosis.looksClosedGenus0();
-  outcome.warnings = result.warnings;
+  for (const spherical_param::Finding& finding : result.findings)
+    outcome.warnings.push_back(finding.option.empty() ? finding.text
+                                                      : finding.text + ": try " + finding.option +
+                                                            " = " + finding.value);
   outcome.duplicates = result.duplicates();
   outcome.self_intersections = result.self_intersections.size();
 }

@@ -72,10 +72,10 @@ inline Positions verticesOf(const Positions& points, const Result& result) {
   return vertices;
 }
 
-inline bool isWarnedOf(const Result& result, const std::string& text) {
-  return std::any_of(
-      result.warnings.begin(), result.warnings.end(),
-      [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+inline bool isFound(const Result& result, const std::string& text) {
+  return std::any_of(result.findings.begin(), result.findings.end(), [&](const Finding& finding) {
+    return finding.text.find(text) != std::string::npos;
+  });
 }
 
 /// Everything that is promised for any input.
@@ -96,7 +96,7 @@ inline void expectGuarantees(const Positions& points, const Result& result) {
   EXPECT_EQ(result.duplicates(), static_cast<std::size_t>(points.cols() - v));
   Positions vertices = verticesOf(points, result);
   EXPECT_EQ(result.self_intersections, findSelfIntersections(vertices, result.triangles));
-  EXPECT_FALSE(result.diagnosis.summary.empty());
+  EXPECT_FALSE(result.verdict.empty());
   vertices.colwise() -= Eigen::Vector3d(vertices.col(0));
   const double rounding = 1e-9 * std::pow(vertices.colwise().norm().maxCoeff(), 3.0);
   EXPECT_NEAR(result.measures.volume, volumeOf(vertices, result.triangles), rounding);

@@ -244,7 +244,7 @@ TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);
-    EXPECT_FALSE(result.warnings.empty());
+    EXPECT_FALSE(result.findings.empty());
   }
 }
 

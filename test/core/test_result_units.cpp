@@ -101,7 +101,6 @@ TEST(ResultUnits, EveryQuantityIsScaledByItsPowerOfTheUnit) {
   visitQuantities(result, [](const char* name, double number, int power) {
     EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
   });
-  EXPECT_EQ(result.diagnosis.summary, summaryOf(result.diagnosis));
 }
 
 TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
@@ -152,7 +151,7 @@ TEST(ResultUnits, ResultOfAScaledCloudIsTheScaledResult) {
     SCOPED_TRACE(scale);
     Result scaled = test::mesh(scale * points, options);
     expectScaled(result, scaled, scale);
-    EXPECT_NE(scaled.diagnosis.summary, result.diagnosis.summary);
+    EXPECT_EQ(scaled.verdict, result.verdict);
     // Other factors round the coordinates, but no decision is so close.
     EXPECT_EQ(test::canonical(scaled.triangles), test::canonical(result.triangles));
     if (scale == 4.0 || scale < 1.0) {

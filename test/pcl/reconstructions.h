@@ -99,11 +99,11 @@ inline void expectNothingLeft(const Reconstruction& reconstruction, const pcl::P
   EXPECT_NE(reconstruction.getErrorMessage(), "");
   const Result& result = reconstruction.getResult();
   EXPECT_EQ(result.triangles.cols() + result.sphere.cols(), 0);
-  EXPECT_TRUE(result.vertex_of_input.empty() && result.warnings.empty());
+  EXPECT_TRUE(result.vertex_of_input.empty() && result.findings.empty());
   EXPECT_TRUE(reconstruction.getUsedIndices().empty());
   EXPECT_TRUE(reconstruction.getVertexIndices().empty());
   EXPECT_EQ(reconstruction.getIgnoredPointCount(), 0U);
-  EXPECT_TRUE(reconstruction.getDiagnosis().summary.empty());
+  EXPECT_TRUE(result.verdict.empty());
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
   EXPECT_TRUE(reconstruction.getSmoothedPoints()->empty());
 }

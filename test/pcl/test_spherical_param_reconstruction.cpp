@@ -48,7 +48,7 @@ TEST_F(SphericalParamReconstruction, MeshIsThatOfTheCoreInIndicesOfTheCloud) {
     EXPECT_EQ(reconstruction.getResult().sphere, expected.sphere);
     EXPECT_EQ(reconstruction.getResult().smoothed, expected.smoothed);
     EXPECT_EQ(reconstruction.getSelfIntersections(), expected.self_intersections);
-    EXPECT_EQ(reconstruction.getDiagnosis().summary, expected.diagnosis.summary);
+    EXPECT_EQ(reconstruction.getResult().verdict, expected.verdict);
   }
 }
 

@@ -155,8 +155,9 @@ inline std::string bytesOf(const spherical_param::Result& result) {
   add(result.embedding.residuals);
   add(std::array{result.measures.volume, result.measures.area, result.embedding.energy,
                  result.optimization.energy, result.smoothing.volume_after});
-  for (const std::string& warning : result.warnings)
-    add(warning);
+  add(result.verdict);
+  for (const spherical_param::Finding& finding : result.findings)
+    add(finding.text);
   return bytes;
 }
 

@@ -154,20 +154,20 @@ Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, 
       std::any_of(truth.openings.begin(), truth.openings.end(),
                   [&](const Opening& o) { return diameterOf(o.area) >= 8.0 * spacing; });
   if (found.kind != truth.kind && is_wide)
-    complaints.push_back("not of the true kind: " + found.summary);
+    complaints.push_back("not of the true kind: " + result.verdict);
   if (truth.handles > 0 ? found.genus != truth.handles
                         : !found.handles.empty() || found.genus.value_or(0) != 0)
-    complaints.push_back("not of genus " + std::to_string(truth.handles) + ": " + found.summary);
+    complaints.push_back("not of genus " + std::to_string(truth.handles) + ": " + result.verdict);
   if (found.bridges.size() != (truth.kind == SurfaceKind::SeveralParts ? 1 : 0))
     complaints.push_back(std::to_string(found.bridges.size()) + " bridges");
   checkOpenings(found.filled_holes, truth, points(Eigen::all, result.input_of_vertex), spacing,
                 complaints);
   const bool is_closed = truth.kind == SurfaceKind::ClosedGenus0;
-  if (!is_closed && is_wide && result.warnings.empty())
-    complaints.emplace_back("no warning");
-  // Fewer points are too coarse for some of the shapes, of which there is a warning.
-  if (is_closed && points.cols() >= 3000 && !result.warnings.empty())
-    complaints.push_back("a false alarm: " + result.warnings.front());
+  if (!is_closed && is_wide && result.findings.empty())
+    complaints.emplace_back("nothing is said of it");
+  // Fewer points are too coarse for some of the shapes, which is said.
+  if (is_closed && points.cols() >= 3000 && !result.findings.empty())
+    complaints.push_back("a false alarm: " + result.findings.front().text);
   return complaints;
 }
 

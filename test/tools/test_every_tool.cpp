@@ -74,7 +74,7 @@ protected:
 TEST_F(EveryTool, HelpListsEveryOptionAndHelpAndVersionSucceed) {
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    const RunResult help = run(tool.program, {"-h"});
+    const RunResult help = run(tool.program, {"-h", "expert"});
     EXPECT_EQ(help.exit_code, 0);
     Words options = tool.further_options;
     for (const spherical_param::OptionRow& row : spherical_param::optionTable())
@@ -130,7 +130,7 @@ TEST_F(EveryTool, QuietPrintsNothingAndWritesTheSameBytesByAnyNumberOfThreads) {
   }
 }
 
-TEST_F(EveryTool, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
+TEST_F(EveryTool, StrictMakesFaultsAFailureAndWritesTheFiles) {
   ASSERT_EQ(run(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"}).exit_code, 0);
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
@@ -150,11 +150,13 @@ TEST_F(EveryTool, StrictMakesWarningsAFailureAndWritesTheFilesAllTheSame) {
     EXPECT_TRUE(strict_files == files);
     const json report = json::parse(content("report.json"));
     EXPECT_EQ(report["options"]["strict"], true);
-    // Morphing has warnings of each object.
-    const json& warnings = (tool.name == "morph" ? report["first"] : report)["warnings"];
-    EXPECT_FALSE(warnings.empty());
-    for (const json& warning : warnings)
-      EXPECT_NE(lines[0].find(warning.get<std::string>()), std::string::npos) << warning;
+    // Morphing has findings of each object.
+    const json& findings = (tool.name == "morph" ? report["first"] : report)["findings"];
+    EXPECT_FALSE(findings.empty());
+    for (const json& finding : findings)
+      if (finding["fault"] == true) {
+        EXPECT_NE(lines[0].find(finding["text"].get<std::string>()), std::string::npos) << finding;
+      }
   }
   // Where there is none, nothing changes.
   EXPECT_EQ(run(RECONSTRUCTION_TOOL, {"other.ply", "out.ply", "-strict", "-quiet"}).exit_code, 0);

@@ -81,6 +81,22 @@ void StageProgress::finish() {
   }
 }
 
+std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates) {
+  std::string text;
+  const auto add = [&text](std::size_t count, const std::string& one, const std::string& many) {
+    if (count > 0) {
+      text += (text.empty() ? "" : ", ") + counted(count, one, many);
+    }
+  };
+  const std::size_t outliers = cloud.outliers ? cloud.outliers->points.size() : 0;
+  add(duplicates, "duplicate", "duplicates");
+  add(cloud.ignored, "point that is not finite", "points that are not finite");
+  add(outliers, "outlier", "outliers");
+  add(cloud.data->points.size() - cloud.ignored - outliers - cloud.meshed.size(),
+      "point in other parts", "points in other parts");
+  return text.empty() ? "nothing" : text;
+}
+
 namespace {
 
 /// Takes the points apart that will be meshed.
@@ -95,16 +111,10 @@ void findPartsOf(const ReconstructionSettings& settings, CloudReconstruction& cl
   cloud.parts = std::move(parts);
 }
 
-/// What was left out of the cloud, for the message of a failure.
-std::string leftOut(const CloudReconstruction& cloud) {
-  std::string text;
-  if (cloud.ignored > 0) {
-    text += " (without " + counted(cloud.ignored, "point") + " that are not finite)";
-  }
-  if (cloud.outliers && !cloud.outliers->points.empty()) {
-    text += " (without " + counted(cloud.outliers->points.size(), "outlier") + ")";
-  }
-  return text;
+/// The same for the message of a failure; empty if nothing was left out.
+std::string leftOutNote(const CloudReconstruction& cloud) {
+  const std::string text = leftOut(cloud, 0);
+  return text == "nothing" ? "" : " (left out: " + text + ")";
 }
 
 /// Reads a cloud and finds what will be meshed of it.
@@ -135,7 +145,7 @@ void prepareCloud(const std::string& path, const ReconstructionSettings& setting
       {"parts", console.end(counted(parts, "part") + ", " +
                             counted(cloud.parts->left_out.size(), "point") + " left out")});
   if (parts == 0) {
-    throw Failure("no part of " + inQuotes(path) + leftOut(cloud) + " has " +
+    throw Failure("no part of " + inQuotes(path) + leftOutNote(cloud) + " has " +
                       counted(static_cast<std::size_t>(settings.min_points), "point"),
                   "give a lower -min-points, or leave -parts out");
   }
@@ -185,7 +195,7 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
     cloud.meshed = cloud.parts->parts.front().points;
   }
   StageProgress progress(console);
-  runLibrary("cannot mesh " + inQuotes(path) + leftOut(cloud),
+  runLibrary("cannot mesh " + inQuotes(path) + leftOutNote(cloud),
              "check that the file holds the cloud you mean",
              [&] { meshChosen(settings, time_left(), progress, cloud); });
 }
@@ -234,26 +244,12 @@ void reconstructParts(const std::string& path, const ReconstructionSettings& set
                   "check that the file holds the cloud you mean");
   }
   found = std::move(meshed);
-  std::sort(cloud.parts->left_out.begin(), cloud.parts->left_out.end());
-}
-
-std::vector<std::string> warningsOf(const CloudReconstruction& cloud) {
-  std::vector<std::string> warnings;
-  if (cloud.ignored > 0) {
-    warnings.push_back(counted(cloud.ignored, "point") + (cloud.ignored == 1 ? " was" : " were") +
-                       " left out: the coordinates are not finite.");
-  }
-  const std::vector<std::string>& further = cloud.result.warnings;
-  warnings.insert(warnings.end(), further.begin(), further.end());
-  return warnings;
-}
-
-std::vector<std::string> warningsOf(const PartsReconstruction& reconstruction) {
-  std::vector<std::string> warnings = warningsOf(reconstruction.cloud);
-  for (const std::string& failure : reconstruction.failures) {
-    warnings.push_back(failure + ".");
-  }
-  return warnings;
+  std::vector<Index>& left_out = cloud.parts->left_out;
+  std::sort(left_out.begin(), left_out.end());
+  std::vector<Index> rest;
+  std::set_difference(cloud.meshed.begin(), cloud.meshed.end(), left_out.begin(), left_out.end(),
+                      std::back_inserter(rest));
+  cloud.meshed = std::move(rest);
 }
 
 Positions vertexPositions(const CloudReconstruction& cloud) {

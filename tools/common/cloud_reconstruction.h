@@ -65,11 +65,8 @@ private:
   std::string stage_;
 };
 
-/// The warnings on the cloud and its mesh, one sentence each.
-std::vector<std::string> warningsOf(const CloudReconstruction& cloud);
-
-/// The warnings on the cloud, without those on the meshes of its parts.
-std::vector<std::string> warningsOf(const PartsReconstruction& reconstruction);
+/// What was left out of a cloud and why, or "nothing".
+std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates);
 
 /// The positions of the vertices: smoothed, if that was asked for [unit of the file].
 Positions vertexPositions(const CloudReconstruction& cloud);

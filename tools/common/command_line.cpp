@@ -9,16 +9,44 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 namespace spherical_param::tools {
 namespace {
 
 namespace po = boost::program_options;
 
+constexpr std::size_t help_width = 100;
+
 /// Options that every tool has.
 std::vector<OptionInfo> commonOptions() {
-  return {{"h", "", "show this help (also -help)", false},
-          {"version", "", "show the version", false}};
+  return {{"h", "", "", false}, {"help", "", "", false}, {"version", "", "", false}};
+}
+
+/// The least number of letters to insert, leave out or replace that makes one word of another.
+std::size_t editDistance(const std::string& from, const std::string& to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
+      diagonal = std::exchange(row[j + 1], std::min({replaced, row[j] + 1, row[j + 1] + 1}));
+    }
+  }
+  return row.back();
+}
+
+/// \param word as it was given, with dashes and perhaps a value.
+UsageError unknownOption(const std::string& word, const std::vector<OptionInfo>& options) {
+  const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
+  const std::string name = word.substr(begin, word.find('=') - begin);
+  const auto nearest = std::min_element(
+      options.begin(), options.end(), [&name](const OptionInfo& a, const OptionInfo& b) {
+        return editDistance(name, a.name) < editDistance(name, b.name);
+      });
+  return {"unrecognised option " + inQuotes(word),
+          "did you mean -" + nearest->name + "? -h shows the options, -h expert all of them"};
 }
 
 /// Whether a word is one of the options. Boost would take it for the value of the one before.
@@ -31,7 +59,8 @@ bool isKnown(const std::string& word, const std::vector<OptionInfo>& options) {
 /// Boost takes an unknown option with one dash for a word like any other. Words after "--" may
 /// begin with a dash, and a lone dash is no option.
 void refuseUnknownOptions(const std::vector<std::string>& words,
-                          const std::vector<std::string>& others) {
+                          const std::vector<std::string>& others,
+                          const std::vector<OptionInfo>& options) {
   const auto terminator = std::find(words.begin(), words.end(), "--");
   const auto after = terminator == words.end() ? 0 : words.end() - terminator - 1;
   const auto end = others.end() - std::min<std::ptrdiff_t>(after, others.end() - others.begin());
@@ -39,8 +68,7 @@ void refuseUnknownOptions(const std::vector<std::string>& words,
     return word.size() > 1 && word[0] == '-';
   });
   if (unknown != end) {
-    throw UsageError("unrecognised option " + inQuotes(*unknown),
-                     "run the tool with -h for the options and their values");
+    throw unknownOption(*unknown, options);
   }
 }
 
@@ -49,7 +77,6 @@ void refuseUnknownOptions(const std::vector<std::string>& words,
 CommandLine::CommandLine(const std::vector<std::string>& words,
                          const std::vector<OptionInfo>& options) {
   std::vector<OptionInfo> known = commonOptions();
-  known.push_back({"help", "", "", false});
   known.insert(known.end(), options.begin(), options.end());
   po::options_description description;
   for (const OptionInfo& option : known) {
@@ -79,6 +106,8 @@ CommandLine::CommandLine(const std::vector<std::string>& words,
                          "give it once");
       }
     }
+  } catch (const po::unknown_option& error) {
+    throw unknownOption(error.get_option_name(), known);
   } catch (const po::error& error) {
     // Boost writes all names with two dashes.
     std::string message = error.what();
@@ -88,7 +117,7 @@ CommandLine::CommandLine(const std::vector<std::string>& words,
     }
     throw UsageError(message, "run the tool with -h for the options and their values");
   }
-  refuseUnknownOptions(words, others_);
+  refuseUnknownOptions(words, others_, known);
 }
 
 std::string CommandLine::value(const std::string& option, const std::string& fallback) const {
@@ -116,29 +145,39 @@ std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> ta
   return all;
 }
 
-std::string describeOptions(const std::vector<OptionInfo>& options) {
-  std::vector<OptionInfo> listed = options;
-  for (OptionInfo& option : commonOptions()) {
-    listed.push_back(std::move(option));
-  }
+std::string describeOptions(const std::vector<OptionInfo>& options, bool with_experts) {
   std::size_t width = 0;
-  for (const OptionInfo& option : listed) {
-    width = std::max(width, option.name.size() + option.argument.size());
-  }
-  std::stable_partition(listed.begin(), listed.end(),
-                        [](const OptionInfo& option) { return !option.expert; });
-  std::string text;
-  bool expert = false;
-  for (const OptionInfo& option : listed) {
-    if (option.expert && !expert) {
-      text += "\nExpert options:\n";
+  for (const OptionInfo& option : options) {
+    if (with_experts || !option.expert) {
+      width = std::max(width, option.name.size() + option.argument.size());
     }
-    expert = option.expert;
-    const std::string left =
-        "  -" + option.name + (option.argument.empty() ? "" : " " + option.argument);
-    text += left + std::string(width + 6 - left.size(), ' ') + option.help + "\n";
   }
-  return text;
+  const auto list = [&](bool of_experts) {
+    std::string text;
+    for (const OptionInfo& option : options) {
+      if (option.expert == of_experts) {
+        const std::string left =
+            "  -" + option.name + (option.argument.empty() ? "" : " " + option.argument);
+        text += left + std::string(width + 6 - left.size(), ' ');
+        std::size_t column = width + 6;
+        for (const std::string_view word : split(option.help, " ")) {
+          if (column + word.size() > help_width) {
+            text += "\n" + std::string(width + 6, ' ');
+            column = width + 6;
+          }
+          text += std::string(word) + " ";
+          column += word.size() + 1;
+        }
+        text.back() = '\n';
+      }
+    }
+    return text;
+  };
+  const bool has_experts = std::any_of(options.begin(), options.end(),
+                                       [](const OptionInfo& option) { return option.expert; });
+  return list(false) + (!has_experts   ? ""
+                        : with_experts ? "\nExpert options:\n" + list(true)
+                                       : "\nAll options: -h expert\n");
 }
 
 std::string describeExamples(const std::string& tool,

@@ -13,7 +13,7 @@ struct OptionInfo {
   std::string name;      ///< without dash
   std::string argument;  ///< what follows it, e.g. "N"; empty for a switch
   std::string help;      ///< one line
-  bool expert = false;   ///< listed apart
+  bool expert = false;   ///< listed by `-h expert` alone
 };
 
 /// A command line in the style of the PCL tools: `-opt value`, `--opt value`, `-opt=value` and
@@ -34,6 +34,10 @@ public:
   const std::vector<std::string>& others() const { return others_; }
 
   bool wantsHelp() const { return has("h") || has("help"); }
+  /// Whether that of all options is wanted: `-h expert`.
+  bool wantsExpertHelp() const {
+    return wantsHelp() && others_.size() == 1 && others_.front() == "expert";
+  }
   bool wantsVersion() const { return has("version"); }
 
 private:
@@ -49,8 +53,10 @@ std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_li
 /// Tables of options one after the other.
 std::vector<OptionInfo> joined(std::initializer_list<std::vector<OptionInfo>> tables);
 
-/// The lines of a help text that list the options, with -h and -version; those of experts last.
-std::string describeOptions(const std::vector<OptionInfo>& options);
+/// The lines of a help text that list the options.
+///
+/// \param with_experts those of experts, too, in a list of their own; else a line that leads to it.
+std::string describeOptions(const std::vector<OptionInfo>& options, bool with_experts);
 
 /// The lines of a help text with examples: of each what it does, and the words after the tool's
 /// name.

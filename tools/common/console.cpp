@@ -15,7 +15,10 @@ namespace spherical_param::tools {
 namespace {
 
 constexpr std::size_t label_width = 20;
+constexpr std::size_t line_width = 10;
 constexpr std::size_t bar_width = 24;
+/// A run that is shorter needs no bar.
+constexpr std::chrono::milliseconds quiet_start{500};
 constexpr std::chrono::milliseconds redraw_interval{50};
 /// A stage without a report for this long is drawn again, with the time that has passed.
 constexpr std::chrono::milliseconds longest_silence{1000};
@@ -34,8 +37,8 @@ void flushStandardOutput() {
 
 }  // namespace
 
-Console::Console(bool enabled)
-    : enabled_(enabled), terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
+Console::Console(Detail detail)
+    : detail_(detail), terminal_(isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
 
 Console::~Console() {
   if (drawer_.joinable()) {
@@ -46,25 +49,42 @@ Console::~Console() {
     ending_.notify_all();
     drawer_.join();
   }
-  if (bar_drawn_) {
-    // An error message begins on a line of its own.
-    print("\n");
-    std::fflush(stdout);
-  }
+  // An error message begins on a line of its own.
+  clearBar();
+  std::fflush(stdout);
 }
 
 void Console::print(const std::string& text) {
-  if (enabled_) {
+  if (detail_ != Detail::Nothing) {
     std::fwrite(text.data(), 1, text.size(), stdout);
   }
 }
 
+void Console::summary(const Summary& summary) {
+  const auto line = [this](const std::string& label, const std::string& value) {
+    print(label + std::string(line_width - label.size(), ' ') + oneLine(value) + "\n");
+  };
+  std::string files;
+  for (const std::string& file : summary.written) {
+    files += (files.empty() ? "" : ", ") + file;
+  }
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  line("read", summary.read);
+  line("verdict", summary.verdict);
+  line("made", summary.made);
+  line("time", formatted(seconds, 3) + " s");
+  line("left out", summary.left_out);
+  line("written", files);
+}
+
 void Console::heading(const std::string& text) {
-  print(text + "\n");
+  if (detail_ == Detail::All) {
+    print(text + "\n");
+  }
 }
 
 void Console::entry(const std::string& label, const std::string& value) {
-  print("  " + padded(label) + value + "\n");
+  heading("  " + padded(label) + value);
 }
 
 void Console::begin(const std::string& stage) {
@@ -76,19 +96,20 @@ void Console::begin(const std::string& stage) {
     begin_ = Clock::now();
     drawn_ = begin_ - 2 * redraw_interval;
   }
-  if (enabled_ && terminal_ && !drawer_.joinable()) {
+  if (detail_ != Detail::Nothing && terminal_ && !drawer_.joinable()) {
     drawer_ = std::thread([this] { keepDrawing(); });
   }
   update(0.0);
 }
 
 void Console::update(double fraction) {
-  if (!enabled_ || !terminal_) {
+  if (detail_ == Detail::Nothing || !terminal_) {
     return;
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   fraction_ = std::clamp(fraction, 0.0, 1.0);
-  if (Clock::now() - drawn_ >= redraw_interval) {
+  const Clock::time_point now = Clock::now();
+  if (now - drawn_ >= redraw_interval && now - start_ >= quiet_start) {
     draw();
   }
 }
@@ -107,6 +128,13 @@ void Console::draw() {
   std::fflush(stdout);
 }
 
+void Console::clearBar() {
+  if (bar_drawn_) {
+    print("\r\033[K");
+    bar_drawn_ = false;
+  }
+}
+
 void Console::keepDrawing() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!ending_.wait_for(lock, longest_silence, [this] { return ended_; })) {
@@ -121,16 +149,15 @@ double Console::end(const std::string& detail) {
   const double seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   std::array<char, 32> time;
   std::snprintf(time.data(), time.size(), "%8.3f s", seconds);
-  print((bar_drawn_ ? "\r  " : "  ") + padded(stage_) + time.data() +
-        (detail.empty() ? "" : "  " + detail) + (bar_drawn_ ? "\033[K\n" : "\n"));
-  bar_drawn_ = false;
+  clearBar();
+  entry(stage_, time.data() + (detail.empty() ? "" : "  " + detail));
   in_stage_ = false;
   std::fflush(stdout);
   return seconds;
 }
 
 void Console::flush() {
-  if (enabled_) {
+  if (detail_ != Detail::Nothing) {
     flushStandardOutput();
   }
 }

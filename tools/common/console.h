@@ -5,23 +5,40 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace spherical_param::tools {
 
-/// The standard output of a tool: pairs of label and value, and stages of work with their time. A
-/// stage is a progress bar on a terminal, which is drawn again every second even without a report,
-/// else one line at its end.
+/// How much a tool prints on its standard output.
+enum class Detail {
+  Nothing,
+  Summary,  ///< some lines at the end
+  All,      ///< options, stages and tables before these lines
+};
+
+/// What a run has come to.
+struct Summary {
+  std::string read;                  ///< the inputs and their size
+  std::string verdict;               ///< one sentence
+  std::string made;                  ///< the size of the output
+  std::string left_out;              ///< of the input
+  std::vector<std::string> written;  ///< names of files
+};
+
+/// The standard output of a tool: pairs of label and value, and stages of work with their time. On
+/// a terminal a stage is a progress bar, which is drawn again every second even without a report.
 class Console {
 public:
-  /// \param enabled false: nothing is printed, times are measured nevertheless.
-  explicit Console(bool enabled);
+  explicit Console(Detail detail);
   ~Console();
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Prints a line of its own.
+  /// Prints the six lines of a run, with its time.
+  void summary(const Summary& summary);
+  /// Prints a line of its own with Detail::All.
   void heading(const std::string& text);
-  /// Prints a label and its value.
+  /// Prints a label and its value with Detail::All.
   void entry(const std::string& label, const std::string& value);
 
   /// Begins a stage.
@@ -40,10 +57,11 @@ private:
   void print(const std::string& text);
   /// Draws the bar, with the mutex locked.
   void draw();
+  void clearBar();
   /// Draws the bar now and then, until the end.
   void keepDrawing();
 
-  bool enabled_;
+  Detail detail_;
   bool terminal_;
   Clock::time_point start_;
 

@@ -9,8 +9,9 @@
 
 namespace spherical_param::tools {
 
-/// What a tool returns to its caller.
-enum class ExitCode { Done = 0, Failed = 1, Usage = 2 };
+/// What a tool returns to its caller. NotUsable: all was written, but more than 1 % of the
+/// triangles intersect.
+enum class ExitCode { Done = 0, Failed = 1, Usage = 2, NotUsable = 3 };
 
 /// An error as the user sees it: one line of cause, one of remedy.
 class ToolError : public std::runtime_error {

@@ -8,9 +8,10 @@ namespace spherical_param::tools {
 
 std::vector<OptionInfo> outputOptions() {
   return {
-      {"json", "FILE", "write a report, - for the standard output and nothing else there"},
-      {"ascii", "", "write PLY, STL and VTK as text"},
-      {"quiet", "", "print nothing"},
+      {"json", "FILE", "write a report, - for the standard output and nothing else there", false},
+      {"verbose", "", "print options, stages and tables before the summary", false},
+      {"quiet", "", "print nothing but errors", true},
+      {"ascii", "", "write PLY, STL and VTK as text", true},
   };
 }
 
@@ -22,6 +23,10 @@ OutputSettings parseOutputOptions(const CommandLine& command_line) {
   }
   settings.encoding = command_line.has("ascii") ? Encoding::Ascii : Encoding::Binary;
   settings.quiet = command_line.has("quiet");
+  settings.verbose = command_line.has("verbose");
+  if (settings.quiet && settings.verbose) {
+    throw UsageError("-quiet and -verbose exclude each other", "give one of them");
+  }
   return settings;
 }
 
@@ -29,6 +34,7 @@ void addToJson(const OutputSettings& settings, Json& json) {
   json["json"] = settings.json;
   json["ascii"] = settings.encoding == Encoding::Ascii;
   json["quiet"] = settings.quiet;
+  json["verbose"] = settings.verbose;
 }
 
 void addReport(const OutputSettings& settings, std::vector<std::string>& outputs) {

@@ -18,19 +18,24 @@ struct OutputSettings {
   std::string json;  ///< file of the report, empty: not wanted
   Encoding encoding = Encoding::Binary;
   bool quiet = false;
+  bool verbose = false;
 
   bool jsonToStandardOutput() const { return json == "-"; }
-  /// Whether the console may be used.
-  bool printsText() const { return !quiet && !jsonToStandardOutput(); }
+  /// What the console prints.
+  Detail detail() const {
+    return quiet || jsonToStandardOutput() ? Detail::Nothing
+           : verbose                       ? Detail::All
+                                           : Detail::Summary;
+  }
 };
 
-/// The lines of -json, -ascii and -quiet.
+/// The lines of -json, -verbose, -quiet and -ascii.
 std::vector<OptionInfo> outputOptions();
 
 /// \throw UsageError
 OutputSettings parseOutputOptions(const CommandLine& command_line);
 
-/// Adds the members `json`, `ascii` and `quiet`.
+/// Adds the members `json`, `ascii`, `quiet` and `verbose`.
 void addToJson(const OutputSettings& settings, Json& json);
 
 /// Adds the file of the report, if there is one, to the names of those that will be written.

@@ -119,26 +119,34 @@ std::vector<OptionInfo> reconstructionOptions() {
   std::vector<OptionInfo> lines;
   const Options defaults;
   for (const OptionRow& row : toolRows()) {
-    const std::string argument = !row.choices.empty() ? "NAME" : row.is_integer ? "N" : "X";
-    lines.push_back(
-        {flagOf(row), argument,
-         row.help + "; " + rangeOf(row) + " (" + spherical_param::textOf(row.get(defaults)) + ")",
-         row.expert});
+    const bool is_number = row.choices.empty();
+    std::string argument = row.is_integer ? "N" : "X";
+    for (const std::string& choice : row.choices) {
+      argument = (choice == row.choices.front() ? "" : argument + "|") + choice;
+    }
+    lines.push_back({flagOf(row), argument,
+                     row.help + (is_number ? "; " + rangeOf(row) : "") + " (" +
+                         spherical_param::textOf(row.get(defaults)) + ")",
+                     row.expert});
   }
   lines.push_back({"outliers", "auto|SIGMA",
                    "leave out stray points, or those that lie this number of standard deviations "
                    "off, 0 to 1000 (off)",
                    false});
-  lines.push_back({"parts", "NAME",
-                   "which parts of the cloud are meshed; all (as one surface), largest or each "
-                   "(by itself; a file each if the output's name holds %03d) (all)",
-                   false});
+  lines.push_back(
+      {"parts", "all|largest|each",
+       "parts of the cloud that are meshed: all as one surface, that of most points, or "
+       "each by itself, to files of its own if the output's name holds %03d (all)",
+       false});
   lines.push_back({"min-points", "N",
                    "parts of fewer points are left out; 4 to 1000000000 (" +
                        std::to_string(ReconstructionSettings().min_points) + ")",
-                   false});
+                   true});
   lines.push_back(
-      {"strict", "", "end with exit code 1 after a warning; all files are written", false});
+      {"strict", "",
+       "end with exit code 1 if the mesh has self-intersections or folds, fills openings, "
+       "cuts handles or joins parts",
+       false});
   return lines;
 }
 
@@ -181,7 +189,7 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
                                counted(static_cast<std::size_t>(settings.min_points), "point"));
   }
   if (settings.strict) {
-    console.entry("strict", "warnings are a failure");
+    console.entry("strict", "faults are a failure");
   }
 }
 
@@ -198,27 +206,6 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   json["min_points"] = settings.parts == PartsMode::All ? Json(nullptr) : Json(settings.min_points);
   json["strict"] = settings.strict;
   return json;
-}
-
-void requireNoWarnings(
-    const ReconstructionSettings& settings,
-    const std::vector<std::pair<std::string, std::vector<std::string>>>& warnings) {
-  std::string cause;
-  for (const auto& [input, of_input] : warnings) {
-    if (of_input.empty()) {
-      continue;
-    }
-    cause += (cause.empty() ? "" : " ") + inQuotes(input) + ":";
-    if (of_input.size() > 1) {
-      cause += " " + std::to_string(of_input.size()) + " warnings:";
-    }
-    for (const std::string& warning : of_input) {
-      cause += " " + warning;
-    }
-  }
-  if (settings.strict && !cause.empty()) {
-    throw Failure(cause, "the files were written; look at them, or leave out -strict");
-  }
 }
 
 }  // namespace spherical_param::tools

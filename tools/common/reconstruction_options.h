@@ -25,7 +25,7 @@ struct ReconstructionSettings {
   Options options;                        ///< the number of threads is never 0
   PartsMode parts = PartsMode::All;       ///< which are meshed
   int min_points = 50;                    ///< of a part, unless all are meshed together
-  bool strict = false;                    ///< warnings are a failure, see requireNoWarnings()
+  bool strict = false;                    ///< faults are a failure, see Findings
 };
 
 /// The lines of the options of the reconstruction: those of the library's table, and a few more.
@@ -42,13 +42,5 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings);
 
 /// The value in force of an option of the library's table, as text.
 std::string optionText(const Options& options, const std::string& name);
-
-/// With -strict, ends the tool with exit code 1 if there is a warning. To be called last, when all
-/// files are written. \throw Failure
-///
-/// \param warnings of each input, which is named with them.
-void requireNoWarnings(
-    const ReconstructionSettings& settings,
-    const std::vector<std::pair<std::string, std::vector<std::string>>>& warnings);
 
 }  // namespace spherical_param::tools

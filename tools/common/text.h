@@ -26,8 +26,12 @@ void split(std::string_view text, std::string_view separators,
 
 std::string yesOrNo(bool value);
 
-/// A number with its noun, e.g. "1 point", "2 points".
+/// A number as people write it, e.g. "49,996".
+std::string grouped(std::size_t number);
+
+/// A number with its noun, e.g. "1 point", "2,000 points".
 std::string counted(std::size_t count, const std::string& noun);
+std::string counted(std::size_t count, const std::string& one, const std::string& many);
 
 /// Text of an errno value.
 std::string systemMessage(int error_number);

@@ -336,7 +336,7 @@ public:
    * indices are vertices, which getVertexIndices() maps to the cloud.
    * \param[in] part below getPartCount()
    * \note The mesh is a sphere whatever the cloud shows; the diagnosis says whether it should be.
-   * \return what was found, with one sentence in `summary` */
+   * \return what was found; getResult().verdict and getResult().findings say it in words */
   inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
     return getResult(part).diagnosis;
   }

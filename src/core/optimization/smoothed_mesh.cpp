@@ -1,6 +1,7 @@
 #include "smoothed_mesh.h"
 
 #include "open_mesh.h"
+#include "spherical_param/self_intersection.h"
 #include "time_left.h"
 
 #include <utility>
@@ -13,20 +14,21 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
   const TimeLeft time_left(execution.time_limit);
   Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
-  std::size_t& count = result.report.self_intersections;
   OptimizationOptions none;
   none.method = OptimizationMethod::None;
-  count = optimizeMesh(result.points, triangles, graph, openings, none, seed, execution)
-              .self_intersections.size();
-  if (count > 0 && method == OptimizationMethod::Full) {
+  auto pairs = optimizeMesh(result.points, triangles, graph, openings, none, seed, execution)
+                   .self_intersections;
+  if (!pairs.empty() && method == OptimizationMethod::Full) {
     Execution rest = execution;
     rest.time_limit = time_left();
     MeshOptimization outcome =
         optimizeMesh(result.points, triangles, graph, openings, {}, seed, rest);
     result.triangles = std::move(outcome.triangles);
-    count = outcome.self_intersections.size();
+    pairs = std::move(outcome.self_intersections);
     result.is_out_of_time = outcome.report.is_out_of_time;
   }
+  result.report.self_intersections = pairs.size();
+  result.intersecting_triangles = countTriangles(pairs);
   return result;
 }
 

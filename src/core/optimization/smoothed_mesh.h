@@ -11,10 +11,11 @@ namespace spherical_param::internal {
 
 /// A mesh and smoothed positions of its points.
 struct SmoothedMesh {
-  Triangles triangles;          ///< optimised on the smoothed points
-  Positions points;             ///< 3 x n
-  SmoothingReport report;       ///< with the self-intersections on the smoothed points
-  bool is_out_of_time = false;  ///< the time limit ended the optimisation early
+  Triangles triangles;                     ///< optimised on the smoothed points
+  Positions points;                        ///< 3 x n
+  SmoothingReport report;                  ///< with the self-intersections on the smoothed points
+  std::size_t intersecting_triangles = 0;  ///< of those self-intersections
+  bool is_out_of_time = false;             ///< the time limit ended the optimisation early
 };
 
 /// Smooths the points and, with OptimizationMethod::Full, optimises the mesh on the smoothed ones

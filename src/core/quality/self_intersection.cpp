@@ -590,4 +590,14 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   return pairs;
 }
 
+std::size_t countTriangles(const Pairs& pairs) {
+  std::vector<Index> triangles;
+  triangles.reserve(2 * pairs.size());
+  for (const auto& pair : pairs)
+    triangles.insert(triangles.end(), pair.begin(), pair.end());
+  std::sort(triangles.begin(), triangles.end());
+  const auto end = std::unique(triangles.begin(), triangles.end());
+  return static_cast<std::size_t>(end - triangles.begin());
+}
+
 }  // namespace spherical_param

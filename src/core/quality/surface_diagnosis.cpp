@@ -793,20 +793,6 @@ private:
   std::vector<std::uint8_t> marks_;
 };
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
-
-std::string place(const Eigen::Vector3d& point) {
-  return "at (" + number(point.x()) + ", " + number(point.y()) + ", " + number(point.z()) + ")";
-}
-
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 void checkInput(const Positions& points, const Triangles& triangles, const Graph& graph,
                 const std::vector<Bridge>& bridges) {
   const auto n = static_cast<std::size_t>(points.cols());
@@ -833,59 +819,8 @@ std::size_t SurfaceDiagnosis::openings() const {
                     [](const FilledHole& hole) { return hole.cause == SurfaceKind::Open; }));
 }
 
-std::string summaryOf(const SurfaceDiagnosis& diagnosis) {
-  std::string text;
-  const auto add = [&](const std::string& finding) {
-    text += (text.empty() ? "Looks like " : "; ") + finding;
-  };
-  if (!diagnosis.bridges.empty()) {
-    const PartBridge& joint = diagnosis.bridges.front();
-    add(counted(diagnosis.bridges.size() + 1, "separate part") + ": " +
-        std::to_string(joint.points) + " and " + counted(joint.other_points, "point") + ", " +
-        number(joint.gap) + " apart " + place(joint.center));
-  }
-  const bool has_handles = diagnosis.genus && *diagnosis.genus > 0;
-  if (diagnosis.edges_outside_graph > kMaxOutsideGraph)
-    add((has_handles
-             ? "a surface with " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle") +
-                   ", over which the mesh is folded: "
-         : diagnosis.genus ? "strong noise or a folded mesh: "
-                           : "strong noise, a folded mesh or a surface with handles: ") +
-        number(100.0 * diagnosis.edges_outside_graph) +
-        " % of the mesh's edges join points that are not near each other in the cloud");
-  if (!diagnosis.handles.empty()) {
-    const CollapsedHandle& handle = diagnosis.handles.front();
-    add("a surface with " +
-        (has_handles ? counted(static_cast<std::size_t>(*diagnosis.genus), "handle")
-         : diagnosis.kind == SurfaceKind::Unclear ? "handles or a folded mesh"
-                                                  : "handles") +
-        ", cut in " + counted(diagnosis.handles.size(), "place") + ": " +
-        counted(handle.edges, "pair") + " of neighbours torn apart within " + number(handle.size) +
-        " " + place(handle.center));
-  }
-  if (diagnosis.is_one_sided)
-    add("a surface with one side only, like a band of Moebius, which the mesh tears");
-  if (diagnosis.boundaries > 0)
-    add("a surface with " + counted(diagnosis.boundaries, "opening") + ", left open");
-  const std::size_t openings = diagnosis.openings();
-  if (openings > 0) {
-    const auto hole =
-        std::find_if(diagnosis.filled_holes.begin(), diagnosis.filled_holes.end(),
-                     [](const FilledHole& each) { return each.cause == SurfaceKind::Open; });
-    add("a surface with " + counted(openings, "opening") +
-        (openings == 1 ? ": filled hole of " : ": largest filled hole of ") +
-        counted(hole->triangles, "triangle") + ", area " + number(hole->area) + ", about " +
-        number(hole->diameter) + " across, " +
-        (hole->loops.empty() ? std::string()
-                             : "rim of " + counted(hole->loops.front().size(), "point") + ", " +
-                                   number(hole->boundary_length) + " long, ") +
-        place(hole->center));
-  }
-  if (text.empty())
-    text = "Looks like a closed genus-0 surface";
-  if (diagnosis.outliers > 0)
-    text += ", with " + counted(diagnosis.outliers, "outlier");
-  return text + ".";
+bool SurfaceDiagnosis::isFolded() const {
+  return edges_outside_graph > kMaxOutsideGraph;
 }
 
 namespace {
@@ -947,7 +882,6 @@ public:
   SurfaceDiagnosis run() {
     result_.edges_outside_graph = static_cast<double>(differences_.sides.size()) /
                                   (1.5 * static_cast<double>(triangle_count_));
-    is_folded_ = result_.edges_outside_graph > kMaxOutsideGraph;
     findRegions();
     findParts();
     findHandles();
@@ -955,7 +889,6 @@ public:
     if (options_.mark_triangles)
       markTriangles();
     result_.kind = kind();
-    result_.summary = summaryOf(result_);
     shortenLists();
     return std::move(result_);
   }
@@ -967,7 +900,7 @@ private:
     const auto wide_end = std::stable_partition(
         regions_.begin(), regions_.end(), [](const Region& region) { return region.isWide(); });
     // A folded mesh leaves the graph everywhere, whether the surface has holes or not.
-    wide_count_ = is_folded_ ? 0 : static_cast<std::size_t>(wide_end - regions_.begin());
+    wide_count_ = result_.isFolded() ? 0 : static_cast<std::size_t>(wide_end - regions_.begin());
   }
 
   /// Only graphs with bridges may be in parts.
@@ -983,7 +916,7 @@ private:
   void findHandles() {
     if (!result_.bridges.empty())
       return;
-    if (is_folded_) {
+    if (result_.isFolded()) {
       if (options_.count_cycles && !hasRim(surface_, graph_.size()))
         result_.genus = genusOf(graph_, 0);
       return;
@@ -1034,9 +967,9 @@ private:
     if (!result_.bridges.empty())
       return SurfaceKind::SeveralParts;
     const bool is_torn = !result_.handles.empty();
-    if (is_folded_ ? result_.genus.value_or(0) > 0 : is_torn && options_.count_cycles)
+    if (result_.isFolded() ? result_.genus.value_or(0) > 0 : is_torn && options_.count_cycles)
       return SurfaceKind::Handles;
-    if (is_folded_ || is_torn)
+    if (result_.isFolded() || is_torn)
       return SurfaceKind::Unclear;
     return result_.openings() > 0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0;
   }
@@ -1056,7 +989,6 @@ private:
   Surface surface_;
   Differences differences_;
   RegionSearch search_;
-  bool is_folded_ = false;
   std::vector<Region> regions_;
   std::size_t wide_count_ = 0;  ///< of regions_, at the front
   std::optional<Parts> parts_;  ///< with bridges only

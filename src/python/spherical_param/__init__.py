@@ -41,6 +41,7 @@ from ._reconstruct import reconstruct
 from ._results import (
     Bridge,
     Diagnosis,
+    Finding,
     Embedding,
     EmbeddingLevel,
     Graph,
@@ -63,6 +64,7 @@ __all__ = [
     "Cancelled",
     "ComputeError",
     "Diagnosis",
+    "Finding",
     "Distortion",
     "Embedding",
     "EmbeddingLevel",

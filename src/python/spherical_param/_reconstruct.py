@@ -39,7 +39,7 @@ OPTIONS
     Returns
     -------
     Result
-        Mesh and map to the sphere; ``diagnosis``, ``self_intersections`` and ``warnings`` say how
+        Mesh and map to the sphere; ``verdict``, ``findings`` and ``diagnosis`` say how
         far to trust them.
 
     Raises

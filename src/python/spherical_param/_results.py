@@ -94,12 +94,27 @@ class PartBridge:
     vertices: IndexArray  #: (r,) the ends of its bridges, ascending, at most 64
 
 
+@dataclass(frozen=True)
+class Finding:
+    """What to know of a mesh, and the keyword that deals with it."""
+
+    text: str  #: "2 separate parts (395 and 5,633 points)"
+    option: str  #: a keyword of reconstruct(); empty if none deals with it
+    value: str  #: of that keyword
+    is_fault: bool  #: a self-intersection, fold, filled opening, cut handle or joined part
+
+    def __str__(self) -> str:
+        if not self.option:
+            return self.text
+        value = self.value if self.value.replace(".", "").isdigit() else repr(self.value)
+        return f"{self.text}: try {self.option}={value}"
+
+
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
     """Does the cloud look like a closed surface without handles? The mesh always is one."""
 
     kind: str  #: "closed_genus0", "open", "handles", "several_parts" or "unclear"
-    summary: str  #: one sentence
     looks_closed_genus0: bool
     openings: int  #: filled holes that are a trace of nothing else
     is_one_sided: bool  #: like a band of Moebius; found with openings alone
@@ -278,7 +293,10 @@ class Result(MeshExport):
     vertex_residuals: Optional[FloatArray]
     """(v,) with ``details`` the length of the tangential Laplacian of ``sphere`` [radius]; else
     None"""
-    warnings: tuple[str, ...]  #: one sentence each
+    intersecting_triangles: int  #: that intersect another, on the smoothed points if there are any
+    usable: bool  #: at most 1 % of the triangles intersect
+    verdict: str  #: a headline: "A sound mesh with 2 openings."
+    findings: tuple[Finding, ...]  #: what to know, and what to do; empty if all is well
 
     def _export_points(self) -> FloatArray:
         return self.vertices if self.smoothed is None else self.smoothed
@@ -286,7 +304,7 @@ class Result(MeshExport):
     def __repr__(self) -> str:
         crossings = len(self.self_intersections)
         return (
-            f"<spherical_param.Result: {len(self.vertices)} vertices, "
+            f"<spherical_param.Result: {self.verdict} {len(self.vertices)} vertices, "
             f"{len(self.triangles)} triangles, "
             f"volume {self.measures.volume:.6g}, area {self.measures.area:.6g}, "
             f"{crossings} self-intersection{'' if crossings == 1 else 's'}, "
@@ -320,6 +338,6 @@ def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
         triangulation=Triangulation(**fields["triangulation"]),
         optimization=Optimization(**optimization),
         smoothing=Smoothing(**fields["smoothing"]),
-        warnings=tuple(fields["warnings"]),
+        findings=tuple(Finding(**finding) for finding in fields["findings"]),
     )
     return Result(vertices=points[fields["input_of_vertex"]], **fields)

@@ -30,11 +30,11 @@ SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = 
 
 void expectClosed(const char* what, const Scene& scene) {
   const SurfaceDiagnosis diagnosis = diagnose(scene);
-  EXPECT_EQ(diagnosis.kind, SurfaceKind::ClosedGenus0) << what << ": " << diagnosis.summary;
+  EXPECT_EQ(diagnosis.kind, SurfaceKind::ClosedGenus0) << what;
   EXPECT_TRUE(diagnosis.looksClosedGenus0());
+  EXPECT_FALSE(diagnosis.isFolded());
   EXPECT_TRUE(diagnosis.filled_holes.empty() && diagnosis.handles.empty() &&
               diagnosis.bridges.empty());
-  EXPECT_EQ(diagnosis.summary, "Looks like a closed genus-0 surface.");
 }
 
 TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
@@ -153,8 +153,6 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
     EXPECT_GE(hole.triangles, hole.vertices.size() - 2);
     expectLoopsOfBoundary(scene, hole);
     ASSERT_EQ(hole.loops.size(), 1U);
-    const std::string rim = "rim of " + std::to_string(hole.loops.front().size()) + " points";
-    EXPECT_NE(diagnosis.summary.find(rim), std::string::npos) << diagnosis.summary;
     // Seen from outside, the loop goes around counter-clockwise.
     const Eigen::Vector3d doubled = doubledArea(scene.points, hole.loops.front());
     EXPECT_GT(doubled.x(), 0.0);
@@ -185,7 +183,7 @@ TEST(SurfaceDiagnosis, FilledHoleAroundAnIslandHasTwoLoops) {
   DiagnosisOptions options;
   options.max_vertices = 100000;
   const SurfaceDiagnosis diagnosis = diagnose(scene, options);
-  ASSERT_EQ(diagnosis.filled_holes.size(), 1U) << diagnosis.summary;
+  ASSERT_EQ(diagnosis.filled_holes.size(), 1U);
   const FilledHole& hole = diagnosis.filled_holes.front();
   expectLoopsOfBoundary(scene, hole);
   ASSERT_EQ(hole.loops.size(), 2U);
@@ -199,13 +197,11 @@ TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
   });
   const SurfaceDiagnosis diagnosis = diagnose(starShaped(open, open));
   EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
-  ASSERT_EQ(diagnosis.openings(), 3U) << diagnosis.summary;
+  ASSERT_EQ(diagnosis.openings(), 3U);
   // By falling area.
   EXPECT_LT(diagnosis.filled_holes[0].center.z(), -0.75);
   EXPECT_LT(diagnosis.filled_holes[1].center.y(), -0.8);
   EXPECT_GT(diagnosis.filled_holes[2].center.x(), 0.85);
-  EXPECT_NE(summaryOf(diagnosis).find("3 openings"), std::string::npos) << diagnosis.summary;
-  EXPECT_EQ(diagnosis.summary, summaryOf(diagnosis));
 }
 
 // --- Handles, parts and folds --------------------------------------------------------------------
@@ -216,10 +212,8 @@ TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
     const Scene torus = cutTorus(5 * ring / 2, ring, tube_radius);
     ASSERT_TRUE(isSphereOverAll(torus.triangles, static_cast<Index>(torus.points.cols())));
     const SurfaceDiagnosis diagnosis = diagnose(torus);
-    EXPECT_EQ(diagnosis.kind, SurfaceKind::Handles) << diagnosis.summary;
+    EXPECT_EQ(diagnosis.kind, SurfaceKind::Handles);
     EXPECT_EQ(diagnosis.genus, 1);
-    EXPECT_NE(diagnosis.summary.find("a surface with 1 handle, cut in 1 place"), std::string::npos)
-        << diagnosis.summary;
     ASSERT_EQ(diagnosis.handles.size(), 1U);
     const CollapsedHandle& handle = diagnosis.handles.front();
     EXPECT_EQ(handle.edges, static_cast<std::size_t>(2 * ring));
@@ -255,9 +249,10 @@ TEST(SurfaceDiagnosis, TornNeighborsWithoutACycleAreNoHandle) {
 TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
   const auto expect = [](const Scene& scene, SurfaceKind kind, std::optional<int> genus) {
     const SurfaceDiagnosis diagnosis = diagnose(scene);
-    EXPECT_EQ(diagnosis.kind, kind) << diagnosis.summary;
+    EXPECT_EQ(diagnosis.kind, kind);
     EXPECT_EQ(diagnosis.genus, genus);
     EXPECT_TRUE(diagnosis.filled_holes.empty() && diagnosis.handles.empty());
+    EXPECT_TRUE(diagnosis.isFolded());
     EXPECT_GT(diagnosis.edges_outside_graph, 0.5);
     EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,
                      fractionBeyondTwoSteps(scene.graph.graph, scene.triangles));
@@ -277,7 +272,7 @@ TEST(SurfaceDiagnosis, WithoutCyclesHandlesAreNotToldFromFolds) {
   const auto expect = [&](const Scene& scene, SurfaceKind kind, std::optional<int> genus) {
     const SurfaceDiagnosis diagnosis = diagnoseSurface(
         scene.points, scene.triangles, scene.graph.graph, scene.graph.report.bridges, options);
-    EXPECT_EQ(diagnosis.kind, kind) << diagnosis.summary;
+    EXPECT_EQ(diagnosis.kind, kind);
     EXPECT_EQ(diagnosis.genus, genus);
   };
   expect(folded(cutTorus(60, 24, 0.4)), SurfaceKind::Unclear, std::nullopt);
@@ -293,7 +288,6 @@ TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
   ASSERT_TRUE(isSphereOverAll(scene.triangles, n + m));
   const SurfaceDiagnosis diagnosis = diagnose(scene);
   EXPECT_EQ(diagnosis.kind, SurfaceKind::SeveralParts);
-  EXPECT_NE(diagnosis.summary.find("2 separate parts: 400 and 600 points"), std::string::npos);
   ASSERT_EQ(diagnosis.bridges.size(), 1U);
   const PartBridge& bridge = diagnosis.bridges.front();
   EXPECT_EQ(bridge.points, static_cast<std::size_t>(m));
@@ -382,7 +376,6 @@ TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
   const Scene torus = cutTorus(2100, 24, 0.05);
   const SurfaceDiagnosis one = diagnose(torus, {}, 1);
   const SurfaceDiagnosis several = diagnose(torus, {}, 3);
-  EXPECT_EQ(several.summary, one.summary);
   EXPECT_EQ(several.edges_outside_graph, one.edges_outside_graph);
   EXPECT_EQ(several.handles.at(0).edges, one.handles.at(0).edges);
   EXPECT_EQ(several.handles[0].vertices, one.handles[0].vertices);

@@ -53,11 +53,29 @@ TEST(CommandLine, RefusesWhatMakesNoSense) {
     EXPECT_THROW(CommandLine(words, kOptions), UsageError) << testing::PrintToString(words);
 }
 
-TEST(CommandLine, HelpListsEveryOptionThoseOfExpertsLast) {
-  const std::string help = describeOptions(kOptions);
+TEST(CommandLine, UnknownOptionsAreAnsweredWithTheNearest) {
+  const auto remedy = [](const std::string& word) -> std::string {
+    try {
+      CommandLine({word}, kOptions);
+    } catch (const UsageError& error) {
+      return error.remedy();
+    }
+    return "";
+  };
+  EXPECT_EQ(remedy("-quite").rfind("did you mean -quiet? ", 0), 0U);
+  EXPECT_EQ(remedy("--kinds=x").rfind("did you mean -kind? ", 0), 0U);
+  EXPECT_EQ(remedy("-verson").rfind("did you mean -version? ", 0), 0U);
+}
+
+TEST(CommandLine, HelpOfAllOptionsIsThatForExperts) {
+  EXPECT_TRUE(CommandLine({"-h", "expert"}, kOptions).wantsExpertHelp());
+  EXPECT_FALSE(CommandLine({"-h"}, kOptions).wantsExpertHelp());
+  const std::string brief = describeOptions(kOptions, false);
+  EXPECT_EQ(brief.find("-kind"), std::string::npos);
+  EXPECT_NE(brief.find("-h expert"), std::string::npos);
+  const std::string help = describeOptions(kOptions, true);
   std::size_t last = 0;
-  for (const char* line :
-       {"  -k N ", "  -quiet ", "  -version ", "\nExpert options:\n", "  -kind NAME "}) {
+  for (const char* line : {"  -k N ", "  -quiet ", "\nExpert options:\n", "  -kind NAME "}) {
     const std::size_t place = help.find(line);
     ASSERT_NE(place, std::string::npos) << line;
     EXPECT_GE(place, last) << line;

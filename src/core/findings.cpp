@@ -1,0 +1,163 @@
+#include "findings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Above this fraction of edges beyond the graph's 2-ring a mesh that nothing optimises is folded.
+/// Unfolded embeddings of closed surfaces have 0.0005 and less, folded limbs 0.003 and more, the
+/// filled hole of a bowl of some thousand points 0.002. Measured on local Delaunay neighbourhoods.
+constexpr double kMaxEdgesOutside = 0.001;
+/// Parts of this fraction of the largest are objects of their own, smaller ones what lies beside.
+constexpr double kMinFractionOfLargest = 0.25;
+/// Steps of smoothing that take off noise of a quarter of the spacing.
+constexpr const char* kSteps = "5";
+
+/// A number as people write it: 49,996.
+std::string grouped(std::size_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t end = text.size(); end > 3; end -= 3)
+    text.insert(end - 3, ",");
+  return text;
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return grouped(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string percent(double fraction) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2g %%", 100.0 * fraction);
+  return text.data();
+}
+
+/// Folds look like noise.
+bool isNoisy(const Result& result) {
+  return result.optimization.noise_steps > 0 && result.smoothed.cols() == 0 &&
+         !result.diagnosis.isFolded() && result.diagnosis.bridges.empty();
+}
+
+Finding partsOf(const std::vector<PartBridge>& bridges) {
+  const PartBridge& bridge = bridges.front();
+  const bool are_alike = static_cast<double>(bridge.points) >=
+                         kMinFractionOfLargest * static_cast<double>(bridge.other_points);
+  return {counted(bridges.size() + 1, "separate part") + " (" +
+              (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) + " and " +
+              counted(bridge.other_points, "point") + ")",
+          "parts", are_alike ? "each" : "largest", true};
+}
+
+/// How many handles the cloud has, or what may be some.
+std::optional<Finding> handlesOf(const SurfaceDiagnosis& diagnosis) {
+  const auto handles = static_cast<std::size_t>(diagnosis.genus.value_or(0));
+  if (handles > 0)
+    return Finding{counted(handles, "handle") + ", cut: the mesh is a sphere", "", "", true};
+  if (!diagnosis.handles.empty())
+    return Finding{"neighbours torn apart in " + counted(diagnosis.handles.size(), "place") +
+                       ": a handle, cut, or a fold",
+                   "", "", true};
+  return std::nullopt;
+}
+
+/// Openings that the mesh fills. Those that were to be filled are no fault.
+Finding filledOf(const SurfaceDiagnosis& diagnosis, const Options& options) {
+  std::size_t points = 0;
+  for (const FilledHole& hole : diagnosis.filled_holes)
+    if (hole.cause == SurfaceKind::Open && !hole.loops.empty())
+      points = std::max(points, hole.loops.front().size());
+  const std::string of = points > 0 ? " of " + counted(points, "point") : std::string();
+  const std::size_t count = diagnosis.openings();
+  const bool is_open = options.surface == SurfaceMode::Open;
+  return {(count == 1 ? "opening" + of : grouped(count) + " openings, the largest" + of) +
+              ", filled",
+          is_open ? "" : "surface", is_open ? "" : "open",
+          options.fill_holes == 0 && options.fill_holes_area == 0.0};
+}
+
+void addOfEmbedding(const Options& options, const Result& result, std::vector<Finding>& findings) {
+  const EmbeddingReport& embedding = result.embedding;
+  const bool is_iterative = options.embedding.method == EmbeddingMethod::Iterative;
+  if (embedding.fallback_start)
+    findings.push_back({"the embedding has collapsed, and another one of lesser quality was used",
+                        is_iterative ? "embedding" : "", is_iterative ? "multilevel" : "", false});
+  else if (embedding.stop_reason == StopReason::IterationLimit)
+    findings.push_back({"the embedding has not converged", "max_iterations",
+                        std::to_string(2 * options.embedding.max_iterations), false});
+  else if (embedding.stop_reason == StopReason::Stagnated)
+    findings.push_back(
+        {"the embedding has not converged: its residual no longer falls", "", "", false});
+}
+
+}  // namespace
+
+std::vector<Finding> findingsOf(const Options& options, const Result& result) {
+  const SurfaceDiagnosis& diagnosis = result.diagnosis;
+  std::vector<Finding> findings;
+  const std::size_t outliers = result.outliers.size();
+  if (outliers > 0)
+    findings.push_back({grouped(outliers) + (outliers == 1 ? " point looks like an outlier"
+                                                           : " points look like outliers"),
+                        "outliers", "auto", false});
+  if (!diagnosis.bridges.empty())
+    findings.push_back(partsOf(diagnosis.bridges));
+  if (diagnosis.openings() > 0)
+    findings.push_back(filledOf(diagnosis, options));
+  if (isNoisy(result))
+    findings.push_back({"the points are noisy", "smoothing", kSteps, false});
+  if (const std::optional<Finding> handles = handlesOf(diagnosis))
+    findings.push_back(*handles);
+  if (diagnosis.is_one_sided)
+    findings.push_back(
+        {"the surface has one side only, like a Moebius strip: the mesh tears it", "", "", true});
+  const bool is_raw = options.optimization.method == OptimizationMethod::None;
+  if (diagnosis.isFolded() || (is_raw && diagnosis.edges_outside_graph > kMaxEdgesOutside)) {
+    const bool may_unfold = is_raw && result.embedding.stop_reason == StopReason::Unfinished;
+    findings.push_back({"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
+                            " of its edges join points that are far apart in the cloud",
+                        may_unfold ? "tolerance" : "", may_unfold ? "1e-8" : "", true});
+  }
+  addOfEmbedding(options, result, findings);
+  if (result.optimization.is_out_of_time)
+    findings.push_back(
+        {"the time limit ended the work early: this is the best mesh so far", "", "", false});
+  if (result.intersecting_triangles > 0)
+    findings.push_back({"self-intersections", "", "", true});
+  return findings;
+}
+
+std::string verdictOf(const Result& result) {
+  if (result.intersecting_triangles > 0)
+    return "The mesh has faults: " + grouped(result.intersecting_triangles) + " of " +
+           counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";
+  const SurfaceDiagnosis& diagnosis = result.diagnosis;
+  std::string text = "A sound mesh";
+  if (!result.boundary.empty())
+    text += " with " + counted(result.boundary.size(), "opening");
+  std::vector<std::string> doubts;
+  if (!diagnosis.bridges.empty())
+    doubts.push_back("joins " + counted(diagnosis.bridges.size() + 1, "separate part"));
+  if (diagnosis.openings() > 0)
+    doubts.push_back("fills " + counted(diagnosis.openings(), "opening"));
+  if (diagnosis.is_one_sided)
+    doubts.push_back("tears a surface with one side");
+  else if (diagnosis.genus.value_or(0) > 0)
+    doubts.push_back("cuts " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle"));
+  else if (!diagnosis.handles.empty())
+    doubts.push_back("may cut a handle");
+  else if (diagnosis.isFolded())
+    doubts.push_back("is folded");
+  for (std::size_t i = 0; i < doubts.size(); ++i)
+    text += (i == 0 ? ", but it " : i + 1 < doubts.size() ? ", " : " and ") + doubts[i];
+  return text + ".";
+}
+
+}  // namespace spherical_param::internal

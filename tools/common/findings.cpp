@@ -1,0 +1,80 @@
+#include "common/findings.h"
+
+#include "common/errors.h"
+#include "common/text.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace spherical_param::tools {
+
+void Findings::add(const std::string& of, const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings) {
+    // What is true of several parts is said once.
+    const auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+      return entry.finding.text == finding.text && entry.finding.value == finding.value;
+    });
+    if (same == entries_.end()) {
+      entries_.push_back({of, finding});
+    } else {
+      same->of += ", " + of;
+    }
+  }
+}
+
+void Findings::add(const std::string& text) {
+  entries_.push_back({"", {text, "", "", false}});
+}
+
+std::string Findings::textOf(const Entry& entry) const {
+  const auto& [text, option, value, is_fault] = entry.finding;
+  std::string line = (entry.of.empty() ? "" : entry.of + ": ") + text;
+  if (!option.empty()) {
+    std::string flag = option;
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    line += ": try -" + flag + " " + value;
+  } else if (is_fault && !has_page_) {
+    line += ": try -report report.html to see where";
+  }
+  return oneLine(line);
+}
+
+void Findings::print() const {
+  if (quiet_) {
+    return;
+  }
+  std::fflush(stdout);
+  // What no option deals with by itself is mostly a consequence of what one does.
+  const bool has_option = std::any_of(entries_.begin(), entries_.end(), [](const Entry& entry) {
+    return !entry.finding.option.empty();
+  });
+  for (const Entry& entry : entries_) {
+    const auto& [text, option, value, is_fault] = entry.finding;
+    const bool is_consequence = has_option && is_fault && option.empty();
+    if (!is_consequence && (!strict_ || !is_fault)) {
+      std::fprintf(stderr, "warning: %s\n", textOf(entry).c_str());
+    }
+  }
+}
+
+void Findings::requireSoundness(std::size_t intersecting_triangles, std::size_t triangles) const {
+  const bool is_usable = 100 * intersecting_triangles <= triangles;
+  std::string faults;
+  for (const Entry& entry : entries_) {
+    if (entry.finding.is_fault) {
+      faults += (faults.empty() ? "" : "; ") + textOf(entry);
+    }
+  }
+  if (strict_ && !faults.empty()) {
+    throw ToolError(is_usable ? ExitCode::Failed : ExitCode::NotUsable, faults,
+                    "the files were written; look at them, or leave out -strict");
+  }
+  if (!is_usable) {
+    throw ToolError(
+        ExitCode::NotUsable,
+        "the mesh was written but is not usable: more than 1 % of its triangles intersect",
+        "try what the warnings say, or leave out what is not of the object");
+  }
+}
+
+}  // namespace spherical_param::tools
