@@ -77,7 +77,7 @@ class SourceDistribution(sdist):
 
     def make_distribution(self) -> None:
         self.filelist.append("CMakeLists.txt")
-        for folder in ("cmake", "include", "src"):
+        for folder in ("cmake", "include", "src", "tools"):
             self.filelist.extend(
                 str(path)
                 for path in Path(folder).rglob("*")
