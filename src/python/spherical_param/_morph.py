@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Optional, SupportsFloat, SupportsIndex, Union, get_args
+from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -170,12 +170,12 @@ def morph(
         fields["second"] = scale * (fields["second"] - own_center) + center
     fields["impossible"] = tuple(ImpossiblePair(**pair) for pair in fields["impossible"])
     colors: list[Optional[FloatArray]] = [None, None]
-    own = [each.colors for each in maps]
-    if own[0] is not None and own[1] is not None:
-        colors = [
-            each.interpolate(of_each, fields[f"{name}_triangle"], fields[f"{name}_weights"])
-            for each, of_each, name in zip(maps, own, ("first", "second"))
-        ]
+    if all(each.colors is not None for each in maps):
+        for side, name in enumerate(("first", "second")):
+            values: Any = maps[side].colors
+            colors[side] = maps[side].interpolate(
+                values, fields[f"{name}_triangle"], fields[f"{name}_weights"]
+            )
     return Morph(**fields, first_colors=colors[0], second_colors=colors[1])
 
 
