@@ -177,7 +177,7 @@ class ReportPage(unittest.TestCase):
 
     def test_says_the_verdict_its_reasons_and_the_numbers_of_the_report(self):
         self.open(SOUND)
-        self.assertEqual(self.text("verdict-words"), "A sound mesh")
+        self.assertEqual(self.text("verdict-words"), "A sound mesh.")
         for finding in ("Closed", "Manifold", "Oriented", "Genus 0", "No self-intersections"):
             self.assertIn(f"✓ {finding}", self.text("findings"))
         for part in ("stages", "numbers", "options", "levels"):
@@ -186,10 +186,11 @@ class ReportPage(unittest.TestCase):
         report = json.loads(self.run_script(
             "const json = document.getElementById('json'); json.open = true;"
             "json.dispatchEvent(new Event('toggle')); return json.lastChild.textContent;"))
+        self.assertEqual(self.text("verdict-words"), report["verdict"])
         for row in ("Vertices", "Triangles", "Volume", "Area", "Mean edge length", "Residual"):
             self.assertIn(row, self.text("numbers"))
         self.open(OPEN)
-        self.assertEqual(self.text("verdict-words"), "A sound mesh, with doubts about the input")
+        self.assertEqual(self.text("verdict-words"), "A sound mesh, but it fills 1 opening.")
         self.assertIn("opening", self.text("warnings"))
         self.assertIn("outlier", self.text("cloud-note"))
 
@@ -361,7 +362,7 @@ class ReportPage(unittest.TestCase):
             self.assertEqual(browser.open(SOUND), state)
             self.assertIn(words, browser.find_element(By.ID, place).text)
             if state == "text":  # all else is shown
-                self.assertEqual(browser.find_element(By.ID, "verdict-words").text, "A sound mesh")
+                self.assertEqual(browser.find_element(By.ID, "verdict-words").text, "A sound mesh.")
 
 
 if __name__ == "__main__":
