@@ -24,7 +24,7 @@ function(spherical_param_script_hash script result)
 endfunction()
 
 set(report_folder ${CMAKE_CURRENT_LIST_DIR}/report)
-set(report_inputs page.html style.css loader.js text.js views.js main.js)
+set(report_inputs page.html style.css loader.js text.js first_view.js views.js main.js)
 list(TRANSFORM report_inputs PREPEND ${report_folder}/)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${report_inputs})
 
@@ -38,7 +38,8 @@ elseif(NOT EXISTS "${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitContro
 else()
   foreach(script ${SPHERICAL_PARAM_THREE_DIR}/three.min.js
                  ${SPHERICAL_PARAM_THREE_DIR}/examples/js/controls/OrbitControls.js
-                 ${report_folder}/text.js ${report_folder}/views.js ${report_folder}/main.js)
+                 ${report_folder}/text.js ${report_folder}/first_view.js
+                 ${report_folder}/views.js ${report_folder}/main.js)
     file(READ ${script} text)
     string(APPEND report_program "${text}\n")
   endforeach()

@@ -29,12 +29,8 @@ clean_up() {
 }
 trap clean_up EXIT
 
-# page <n>: runs the n-th block of commands of the page, in the folder of the scans.
-page() {
-  awk -v wanted="$1" '/^```$/ { inside = 0 } inside && block == wanted
-    /^```sh$/ { inside = 1; ++block }' "$root/doc/many_scans.md" >"$work/commands"
-  (cd "$work/here" && bash -eu "$work/commands")
-}
+# here <commands>: runs commands of the page, in the folder of the scans.
+here() { (cd "$work/here" && bash -euc "$1"); }
 
 # Five scans with their meshes; one of the scans is broken, its name has blanks.
 scans() (
@@ -79,8 +75,8 @@ resumes() {
   "$1" && five_meshes && [ "$before" = "$(files_of_the_four)" ]
 }
 
-one_machine() { page 1; }
-several_machines() { page 2; }
+one_machine() { here "$(doc_block "$root/doc/many_scans.md" 1)"; }
+several_machines() { here "$(doc_block "$root/doc/many_scans.md" 2)"; }
 
 # wait_for <seconds> <command>...
 wait_for() {
@@ -129,7 +125,7 @@ print(*(s.getsockname()[1] for s in sockets))')"
 # The array job of the page; fails if one of its tasks does.
 array_job() {
   local job
-  job="$(page 3)" || return 2
+  job="$(here "$(doc_block "$root/doc/many_scans.md" 3)")" || return 2
   wait_for 90 sh -c 'queue="$(squeue -h)" && [ -z "$queue" ]' || return 2
   tail -n 5 "$work"/here/slurm-*.log
   [[ "$(scontrol show job "${job##* }")" != *JobState=FAILED* ]]

@@ -16,34 +16,50 @@ fi
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
 
-prefix="$PWD/build/docs/prefix"
+clone="$PWD/build/docs/clone"
+prefix="$PWD/build/docs/root/usr/local"
 
-# shellcheck disable=SC2317  # called by name, by check
-install_build() {
-  rm -rf "$prefix"
-  cmake --install build/release --prefix "$prefix"
+# as_printed <page> <n>: the n-th block of commands of a page, in a clone, into a root of its own.
+as_printed() {
+  (cd "$clone" && DESTDIR="$PWD/../root" CMAKE_BUILD_PARALLEL_LEVEL="$jobs" bash -euc "$1")
 }
 
-# shellcheck disable=SC2317  # called by name, by check
+cloned() {
+  rm -rf build/docs
+  mkdir -p build/docs
+  git clone -q . "$clone"
+}
+
 demo() {
   local file
-  rm -rf build/demo
-  tools/demo.sh build/demo || return 1
+  as_printed "$(doc_block README.md 1)" || return 1
   for file in scan.ply mesh.ply sphere.ply report.json demo.png; do
-    [ -s "build/demo/$file" ] || {
-      echo "build/demo/$file is missing or empty"
+    [ -s "$clone/demo_output/$file" ] || {
+      echo "$file is missing or empty"
       return 1
     }
   done
 }
 
+installed() {
+  as_printed "$(doc_block README.md 3)" && as_printed "$(doc_block doc/install.md 1)" &&
+    [ -x "$prefix/bin/pcl_spherical_param_reconstruction" ]
+}
+
+# The program of README's example, without CMake.
+compiled_by_pkg_config() {
+  sed -n '/^```cpp$/,/^```$/p' README.md | sed '/^```/d' >build/docs/main.cpp
+  (cd build/docs && PKG_CONFIG_SYSROOT_DIR="$PWD/root" bash -euc "$(doc_block ../../doc/install.md 4)")
+}
+
 need_packages docs
 check "links" doc/check_links.py . || true
-if check "build" build_release; then
+if check "build" build_release && check "clone" cloned; then
+  check "site: built without warnings" bash -euc "$(doc_block doc/README.md 1)" || true
   check "demo" demo || true
-  check "site: built without warnings" cmake --build build/release --target doc || true
-  if check "installation" install_build; then
-    for page in README.md doc/*.md; do
+  if check "installation" installed; then
+    check "compiled by pkg-config" compiled_by_pkg_config || true
+    for page in README.md doc/*.md doc/*/*.md; do
       if grep -q '^<!-- test' "$page"; then
         check "examples of $page" test/doc/run_examples.py "$prefix" build/release/python "$page" ||
           true

@@ -25,9 +25,7 @@ mkdir -p "$work" "${bare%/*}"
 trap '"${as_root[@]}" rm -rf "$work"' EXIT
 
 made() {
-  cmake --preset package -DSPHERICAL_PARAM_WERROR=ON &&
-    cmake --build --preset package -j "$jobs" && rm -rf "$packages" &&
-    cpack --config build/package/CPackConfig.cmake &&
+  rm -rf "$packages" && CMAKE_BUILD_PARALLEL_LEVEL="$jobs" bash -euc "$(doc_block doc/install.md 2)" &&
     [ "$(find "$packages" -maxdepth 1 -name '*.deb' | wc -l)" -eq 6 ]
 }
 
@@ -95,10 +93,12 @@ bare_root() {
 installed_and_used() {
   mkdir -p "$root" && "${as_root[@]}" tar -xf "$bare" -C "$root" --exclude=./dev/* &&
     { "${as_root[@]}" mknod -m 666 "$root/dev/null" c 1 3 || true; } &&
-    "${as_root[@]}" cp "$packages"/*.deb "$root" && "${as_root[@]}" rm "$root"/libpcl*-dev_* &&
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 chroot "$root" sh -euc '
+    "${as_root[@]}" mkdir -p "$root/build/package/packages" &&
+    "${as_root[@]}" cp "$packages"/*.deb "$root/build/package/packages" &&
+    "${as_root[@]}" rm "$root"/build/package/packages/libpcl*-dev_* &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 chroot "$root" sh -euc "
       apt-get update
-      apt-get -y --no-install-recommends install /*.deb
+      $(doc_block doc/install.md 3)"'
       pcl_spherical_param_scan hand scan.ply
       pcl_spherical_param_reconstruction scan.ply mesh.ply -json report.json -report report.html
       grep -q "\"closed\": true" report.json && grep -q "\"vertices\": 5000" report.json

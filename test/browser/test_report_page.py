@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Reports of the tool in Chromium: test_report_page.py SOUND.html OPEN.html FOLDER
+"""Reports of the tool in Chromium: test_report_page.py SOUND.html OPEN.html CAMERA.html FOLDER
 
 SOUND is the report of a sound mesh whose input has a name that tries to be HTML, OPEN that of a
-cloud with an opening and outliers. FOLDER gets the pictures.
+cloud with an opening and outliers, CAMERA that of the open mesh of what a depth camera saw of a
+ball. FOLDER gets the pictures.
 """
 import json
 import pathlib
@@ -15,7 +16,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-SOUND, OPEN, FOLDER = (pathlib.Path(name).resolve() for name in sys.argv[1:4])
+SOUND, OPEN, CAMERA, FOLDER = (pathlib.Path(name).resolve() for name in sys.argv[1:5])
 VIEWS = ("mesh", "cloud", "sphere")
 
 # Of each view a hash of its pixels, how many colours it has and the part that is not background.
@@ -35,6 +36,57 @@ PICTURES = """
       return [name, { hash: pixels.reduce((hash, x) => (Math.imul(hash, 31) + x) | 0, 7),
                       colors: new Set(pixels).size, covered }];
     }));"""
+
+# The view of the mesh after a change of its points and of where the input's origin is, and the
+# area of its triangles that faces the camera there less that of which the back does. The change is
+# a rotation by rows; `flip` turns the triangles inside out.
+FIRST_VIEW = """
+    const [rows, flip, closed] = arguments;
+    const turn = new THREE.Matrix3().set(...rows);
+    const {positions, triangles, origin} = report_views;
+    const at = (i) => new THREE.Vector3().fromArray(positions, 3 * i).applyMatrix3(turn);
+    const points = Float32Array.from(positions, (x, i) => at(Math.floor(i / 3)).toArray()[i % 3]);
+    const corners = flip ? triangles.slice().reverse() : triangles;
+    const view = firstView(points, corners, new Uint8Array(triangles.length / 3),
+                           origin.clone().applyMatrix3(turn), closed);
+    let facing = 0;
+    for (let t = 0; t < corners.length; t += 3) {
+      const [a, b, c] = [0, 1, 2].map((k) => at(corners[t + k]));
+      facing += b.sub(a).cross(c.sub(a)).dot(view.toward);
+    }
+    return [view.up.toArray(), view.toward.toArray(), facing];"""
+
+# Of the cloud: the median distance of points to their nearest, by brute force; pixels that a unit
+# at a distance of 1 has; and how wide its first point is drawn at some distances.
+POINT_WIDTHS = """
+    const views = report_views;
+    const points = [];
+    for (let i = 0; i < views.positions.length; i += 3) {
+      points.push(new THREE.Vector3().fromArray(views.positions, i));
+    }
+    const nearest = points.map((p) => points.reduce((least, q) =>
+      (q === p ? least : Math.min(least, p.distanceToSquared(q))), Infinity));
+    const spacing = Math.sqrt(nearest.sort((a, b) => a - b)[Math.floor(nearest.length / 2)]);
+    views.groups.cloud.children[0].geometry.setDrawRange(0, 1);
+    const panel = document.getElementById('view-cloud').getBoundingClientRect();
+    const all = views.canvas.getBoundingClientRect();
+    const toward = views.camera.position.clone().normalize();
+    const widths = arguments[0].map((distance) => {
+      views.camera.position.copy(points[0]).addScaledVector(toward, distance);
+      views.draw();
+      const copy = document.createElement('canvas');
+      [copy.width, copy.height] = [views.canvas.width, views.canvas.height];
+      const context = copy.getContext('2d');
+      context.drawImage(views.canvas, 0, 0);
+      const {width, height} = panel;
+      const {data} = context.getImageData(panel.left - all.left, panel.top - all.top, width, height);
+      const columns = new Set();
+      for (let i = 3; i < data.length; i += 4) {
+        if (data[i] !== 0) columns.add(((i - 3) / 4) % Math.floor(width));
+      }
+      return columns.size;
+    });
+    return [spacing, panel.height / (2 * Math.tan(views.camera.fov * Math.PI / 360)), widths];"""
 
 
 class Browser(webdriver.Chrome):
@@ -100,7 +152,7 @@ class ReportPage(unittest.TestCase):
     def test_loads_in_silence_and_asks_the_network_for_nothing(self):
         for kind in ("browser", "performance"):
             self.browser.get_log(kind)  # of other tests
-        for page in (SOUND, OPEN):
+        for page in (SOUND, OPEN, CAMERA):
             self.open(page)
             self.assertEqual([entry for entry in self.browser.get_log("browser")
                               if entry["source"] != "rendering"], [])  # remarks on its speed
@@ -110,7 +162,7 @@ class ReportPage(unittest.TestCase):
                 if message["method"] == "Network.requestWillBeSent"
                 and not message["params"]["documentURL"].startswith("chrome")]
         self.assertEqual({url for url in urls if not url.startswith(("data:", "blob:"))},
-                         {SOUND.as_uri(), OPEN.as_uri()})
+                         {page.as_uri() for page in (SOUND, OPEN, CAMERA)})
 
     def test_names_stay_text(self):
         self.open(SOUND)
@@ -125,7 +177,7 @@ class ReportPage(unittest.TestCase):
 
     def test_says_the_verdict_its_reasons_and_the_numbers_of_the_report(self):
         self.open(SOUND)
-        self.assertEqual(self.text("verdict-words"), "A sound mesh")
+        self.assertEqual(self.text("verdict-words"), "A sound mesh.")
         for finding in ("Closed", "Manifold", "Oriented", "Genus 0", "No self-intersections"):
             self.assertIn(f"✓ {finding}", self.text("findings"))
         for part in ("stages", "numbers", "options", "levels"):
@@ -134,21 +186,89 @@ class ReportPage(unittest.TestCase):
         report = json.loads(self.run_script(
             "const json = document.getElementById('json'); json.open = true;"
             "json.dispatchEvent(new Event('toggle')); return json.lastChild.textContent;"))
+        self.assertEqual(self.text("verdict-words"), report["verdict"])
         for row in ("Vertices", "Triangles", "Volume", "Area", "Mean edge length", "Residual"):
             self.assertIn(row, self.text("numbers"))
         self.open(OPEN)
-        self.assertEqual(self.text("verdict-words"), "A sound mesh, with doubts about the input")
+        self.assertEqual(self.text("verdict-words"), "A sound mesh, but it fills 1 opening.")
         self.assertIn("opening", self.text("warnings"))
         self.assertIn("outlier", self.text("cloud-note"))
 
     def test_each_view_shows_its_object(self):
-        for page, name in ((SOUND, "sound"), (OPEN, "open")):
+        for page, name in ((SOUND, "sound"), (OPEN, "open"), (CAMERA, "camera")):
             self.open(page)
             for view, picture in self.pictures().items():
-                self.assertGreater(picture["colors"], 200, view)
+                self.assertGreater(picture["colors"], 100, view)
                 self.assertGreater(picture["covered"], 0.05, view)
                 self.assertLess(picture["covered"], 0.95, view)
             self.save(name)
+
+    def assert_near(self, vector, other):
+        for x, y in zip(vector, other, strict=True):
+            self.assertAlmostEqual(x, y, delta=0.02)
+
+    def camera(self):
+        return self.run_script("const {up, position} = report_views.camera;"
+                               "return [up.toArray(), position.clone().normalize().toArray()]")
+
+    def test_opens_upright_and_from_the_side_that_shows_most(self):
+        self.open(SOUND)
+        up, toward = self.camera()
+        self.assertEqual(up, [0, 0, 1])
+        # The hand is flat, and its fingers are next to each other along x.
+        self.assertLess(toward[1], -0.8)
+        self.assertGreater(toward[2], 0)
+        self.run_script("report_views.lookAt(0)")
+        self.element("reset").click()
+        self.assertEqual(self.camera(), [up, toward])
+        # The same hand with y up.
+        turned_up, turned_toward, _ = self.run_script(
+            FIRST_VIEW, [1, 0, 0, 0, 0, 1, 0, -1, 0], False, True)
+        self.assertEqual(turned_up, [0, 1, 0])
+        self.assert_near(turned_toward, (toward[0], toward[2], -toward[1]))
+        # Where its side is in front, it is turned to show the palm or the back.
+        up, toward, _ = self.run_script(FIRST_VIEW, [0, 1, 0, -1, 0, 0, 0, 0, 1], False, True)
+        self.assertEqual(up, [0, 0, 1])
+        self.assertGreater(abs(toward[0]), 0.5)
+
+    def test_what_a_depth_camera_saw_is_looked_at_from_there(self):
+        self.open(CAMERA)
+        up, toward = self.camera()
+        self.assertEqual(up, [0, -1, 0])
+        self.assert_near(toward, (0, 0, -1))
+        # Along -z y points up.
+        up, toward, _ = self.run_script(
+            FIRST_VIEW, [1, 0, 0, 0, -1, 0, 0, 0, -1], False, False)
+        self.assertEqual(up, [0, 1, 0])
+        self.assert_near(toward, (0, 0, 1))
+
+    def test_the_front_of_an_open_mesh_faces_the_viewer(self):
+        self.open(CAMERA)
+        for flip in (False, True):
+            for rows in ([1, 0, 0, 0, 1, 0, 0, 0, 1],
+                         [0, 0, 1, 1, 0, 0, 0, 1, 0], [0, 0, -1, 1, 0, 0, 0, -1, 0],
+                         [1, 0, 0, 0, 0, -1, 0, 1, 0], [1, 0, 0, 0, 0, 1, 0, -1, 0]):
+                _, _, facing = self.run_script(FIRST_VIEW, rows, flip, False)
+                self.assertGreater(facing, 0, (rows, flip))
+
+    def test_opens_with_the_faults_if_there_are_any(self):
+        for page, mode in ((SOUND, "place"), (OPEN, "suspicious")):
+            self.open(page)
+            self.assertEqual(self.element("color").get_property("value"), mode)
+        first_mode = "return firstMode(findFlags(new Uint8Array([arguments[0]]), [0, 1, 2]))"
+        for marks, mode in ((0, "place"), (1, "suspicious"), (2, "suspicious"), (4, "suspicious"),
+                            (8, "suspicious"), (16, "place"), (17, "suspicious")):
+            self.assertEqual(self.run_script(first_mode, marks), mode, marks)
+
+    def test_points_of_the_cloud_are_as_large_as_their_spacing(self):
+        self.open(SOUND)
+        distances = (0.2, 4, 8, 45)
+        spacing, scale, widths = self.run_script(POINT_WIDTHS, distances)
+        sizes = [2 ** 0.5 * spacing * scale / distance for distance in distances]
+        self.assertGreater(sizes[0], 12)
+        self.assertLess(sizes[3], 1)
+        for width, size in zip(widths, sizes, strict=True):  # pixels at the edge count or do not
+            self.assertAlmostEqual(width, min(max(size, 1), 12), delta=1.1)
 
     def test_turning_or_zooming_one_view_does_so_in_all(self):
         self.open(SOUND)
@@ -242,7 +362,7 @@ class ReportPage(unittest.TestCase):
             self.assertEqual(browser.open(SOUND), state)
             self.assertIn(words, browser.find_element(By.ID, place).text)
             if state == "text":  # all else is shown
-                self.assertEqual(browser.find_element(By.ID, "verdict-words").text, "A sound mesh")
+                self.assertEqual(browser.find_element(By.ID, "verdict-words").text, "A sound mesh.")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ An example is a fenced block of sh, cpp or python with the comment
 
 in the line before it (blank lines may be between). Its exit code must be 0. A sh block runs by
 "bash -euo pipefail" with PREFIX/bin on the PATH. A cpp block is main.cpp of the CMakeLists.txt in the cmake
-block after it. A python block is a script. Both run with ARGUMENTS, none by default.
+block after it, or else in that of README.md. A python block is a script. Both run with ARGUMENTS, none by default.
 
 The examples of a page run one after the other in a scratch folder, which has scan.ply (a hand of
 4,000 points), scan.xyz (the same as text), head.ply and animal.ply (2,000 points each), and what
@@ -23,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 MARK = re.compile(r"^<!-- test(?:: (?P<arguments>[^\n]*))? -->\n+(?:```(?P<language>\w+)\n(?P<text>.*?)^```$)?",
                   re.MULTILINE | re.DOTALL)  # fmt: skip
 CMAKE = re.compile(r"\n*```cmake\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -71,9 +72,7 @@ def main(prefix, module_folder, *pages):
                 place = f"{page}:{text.count(chr(10), 0, mark.start()) + 1}"
                 if mark["language"] not in ("sh", "cpp", "python"):
                     sys.exit(f"{place}: no block of sh, cpp or python follows the mark")
-                project = CMAKE.match(text, mark.end())
-                if mark["language"] == "cpp" and not project:
-                    sys.exit(f"{place}: no cmake block follows the program")
+                project = CMAKE.match(text, mark.end()) or CMAKE.search((ROOT / "README.md").read_text())
                 good = (number > 0 or run(["bash", "-ec", SCANS], folder)) and run_example(
                     mark["language"], mark["text"], project and project[1], (mark["arguments"] or "").split(),
                     folder, number, prefix)  # fmt: skip

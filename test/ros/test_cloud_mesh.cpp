@@ -191,7 +191,8 @@ TEST(RosCloudMesh, StrayPointsAreLeftOutAutomatically) {
   pcl::PCLPointCloud2 cloud = ellipsoid(1500);
   setPoint(cloud, 100, 20.0, 0.0, 0.0);
   Settings settings;
-  EXPECT_NE(meshed(cloud, settings).message.find("1 outlier"), std::string::npos);
+  EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 point looks like an outlier"),
+            std::string::npos);
   settings.outliers = kAuto;
   const Outcome outcome = meshed(cloud, settings);
   EXPECT_EQ(outcome.outliers, 1U);

@@ -132,8 +132,9 @@ TEST_F(MorphTool, PairsAreHonouredOrSaidToBeImpossible) {
 }
 
 TEST_F(MorphTool, ResampledFramesMatchInAreaAndHaveTheNamesOfThePattern) {
-  const RunResult result = tool({"a.ply", "b.ply", "m%02d.ply", "-frames", "3", "-connectivity",
-                                 "resampled", "-samples", "642", "-match", "-align", "none"});
+  const RunResult result =
+      tool({"a.ply", "b.ply", "m%02d.ply", "-frames", "3", "-connectivity", "resampled", "-samples",
+            "642", "-match", "-align", "none", "-verbose"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("align               none\n"), std::string::npos);
   std::vector<MeshFile> frames;

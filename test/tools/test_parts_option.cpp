@@ -76,8 +76,9 @@ TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
   const json report = json::parse(content("report.json"));
   EXPECT_EQ(report["parts"].size(), 2U);
   EXPECT_EQ(report["left_out"].size(), 60U);
-  EXPECT_NE(report["warnings"].dump().find("cannot mesh part 3 of 3 (60 points)"),
-            std::string::npos);
+  const std::string failure = "cannot mesh part 3 of 3 (60 points)";
+  EXPECT_NE(report["failures"].dump().find(failure), std::string::npos);
+  EXPECT_NE(result.errors.find("warning: " + failure), std::string::npos);
   EXPECT_EQ(tool({"three.xyz", "out.ply", "-parts", "each", "-strict"}).exit_code, 1);
   ASSERT_EQ(tool({"three.xyz", "open.ply", "-parts", "each", "-surface", "open"}).exit_code, 0);
   EXPECT_EQ(mesh("open.ply").points().cols(), 560);

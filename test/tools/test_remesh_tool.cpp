@@ -217,13 +217,14 @@ TEST_F(RemeshTool, OptionsOfTheMapAndTheFitReachThem) {
   EXPECT_LT(deviation("smooth"), 0.5 * deviation("linear"));
 }
 
-TEST_F(RemeshTool, PrintsStagesAndVerdict) {
-  const RunResult result = tool({"in.ply", "out.ply", "-points", "1000"});
+TEST_F(RemeshTool, VerbosePrintsStagesAndVerdict) {
+  const RunResult result = tool({"in.ply", "out.ply", "-points", "1000", "-verbose"});
   ASSERT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.errors, "");
   for (const char* text :
        {"\n  map ", "\n  resample ", "(the nearest possible to 1000)", "area distortion",
-        "flipped on sphere   0", "closed              yes", "self-intersections  0", "distance"})
+        "flipped on sphere   0", "closed              yes", "self-intersections  0", "distance",
+        "\nverdict   A sound mesh.\n", "\nwritten   out.ply\n"})
     EXPECT_NE(result.output.find(text), std::string::npos) << text;
 }
 

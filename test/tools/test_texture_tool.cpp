@@ -346,23 +346,23 @@ TEST_F(TextureTool, ReportTellsOfTheMapAndTheTexture) {
   EXPECT_EQ(report["options"]["gutter"], 3);
   EXPECT_EQ(report["options"]["checker"], nullptr);
   EXPECT_EQ(report["options"]["image"], "out.png");
-  EXPECT_TRUE(report["warnings"].empty());
+  EXPECT_TRUE(report["findings"].empty());
   std::string stages;
   for (const json& stage : report["stages"])
     stages += stage["name"].get<std::string>() + " ";
   EXPECT_NE(stages.find("map atlas image write "), std::string::npos) << stages;
 }
 
-TEST_F(TextureTool, WithoutColoursThereIsACheckerboardAndAWarning) {
+TEST_F(TextureTool, WithoutColoursThereIsACheckerboardAndThatIsSaid) {
   const json plain = reportOf(TEXTURE_TOOL, {"plain.ply", "plain.glb", "-size", "64"});
   EXPECT_EQ(plain["texture"], "checkerboard");
-  ASSERT_EQ(plain["warnings"].size(), 1U);
-  EXPECT_NE(plain["warnings"][0].get<std::string>().find("no colours"), std::string::npos);
+  ASSERT_EQ(plain["findings"].size(), 1U);
+  EXPECT_NE(plain["findings"][0]["text"].get<std::string>().find("no colours"), std::string::npos);
   // Asked for, it is the same, and needs no warning.
   for (const char* input : {"plain.ply", "in.ply"}) {
     const json asked = reportOf(TEXTURE_TOOL, {input, "asked.glb", "-size", "64", "-checker", "8"});
     EXPECT_TRUE(content("asked.glb") == content("plain.glb")) << input;
-    EXPECT_TRUE(asked["warnings"].empty());
+    EXPECT_TRUE(asked["findings"].empty());
   }
 }
 

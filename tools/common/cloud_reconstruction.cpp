@@ -9,6 +9,7 @@
 #include <chrono>
 #include <iterator>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace spherical_param::tools {
@@ -34,24 +35,39 @@ std::vector<Index> finitePoints(const PointData& data) {
   return finite;
 }
 
+/// How the library works, with its progress as that of the console's stage. All but its last step
+/// is the search for neighbours.
+Execution executionOf(const ReconstructionSettings& settings, Console& console) {
+  Execution execution = settings.options;
+  execution.progress = [&console](const Progress& progress) {
+    console.update((std::string_view(progress.stage) == "neighbors" ? 0.0 : 0.5) +
+                   0.5 * progress.fraction);
+    return true;
+  };
+  return execution;
+}
+
 /// Finds the points that are left out, by their positions in the list of meshed points.
-OutlierRemoval outliersOf(const Positions& points, const ReconstructionSettings& settings) {
+OutlierRemoval outliersOf(const Positions& points, const ReconstructionSettings& settings,
+                          const Execution& execution) {
   OutlierRemoval found;
   if (settings.outliers->sigma) {
     OutlierOptions options;
     options.sigma = *settings.outliers->sigma;
-    Outliers outliers = findOutliers(points, options, settings.options);
+    Outliers outliers = findOutliers(points, options, execution);
     found.threshold = outliers.threshold;
     found.points = std::move(outliers.indices);
   } else {
-    found.points = findStrayPoints(points, settings.options).indices;
+    found.points = findStrayPoints(points, execution).indices;
   }
   return found;
 }
 
 /// Takes the outliers out of the points that will be meshed.
-void removeOutliers(const ReconstructionSettings& settings, CloudReconstruction& cloud) {
-  cloud.outliers = outliersOf(positionsOf(*cloud.data, cloud.meshed), settings);
+void removeOutliers(const ReconstructionSettings& settings, Console& console,
+                    CloudReconstruction& cloud) {
+  cloud.outliers =
+      outliersOf(positionsOf(*cloud.data, cloud.meshed), settings, executionOf(settings, console));
   std::vector<Index>& outliers = cloud.outliers->points;
   for (Index& i : outliers) {
     i = cloud.meshed[static_cast<std::size_t>(i)];
@@ -100,9 +116,10 @@ std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates) {
 namespace {
 
 /// Takes the points apart that will be meshed.
-void findPartsOf(const ReconstructionSettings& settings, CloudReconstruction& cloud) {
-  Parts parts =
-      findParts(positionsOf(*cloud.data, cloud.meshed), settings.min_points, settings.options);
+void findPartsOf(const ReconstructionSettings& settings, Console& console,
+                 CloudReconstruction& cloud) {
+  Parts parts = findParts(positionsOf(*cloud.data, cloud.meshed), settings.min_points,
+                          executionOf(settings, console));
   const auto number = [&](Index& point) { point = cloud.meshed[static_cast<std::size_t>(point)]; };
   for (Part& part : parts.parts) {
     std::for_each(part.points.begin(), part.points.end(), number);
@@ -130,7 +147,7 @@ void prepareCloud(const std::string& path, const ReconstructionSettings& setting
   if (settings.outliers) {
     console.begin("outliers");
     runLibrary("cannot look for outliers in " + inQuotes(path), "leave -outliers out",
-               [&] { removeOutliers(settings, cloud); });
+               [&] { removeOutliers(settings, console, cloud); });
     cloud.stages.push_back(
         {"outliers", console.end(counted(cloud.outliers->points.size(), "point") + " left out")});
   }
@@ -139,7 +156,7 @@ void prepareCloud(const std::string& path, const ReconstructionSettings& setting
   }
   console.begin("parts");
   runLibrary("cannot find the parts of " + inQuotes(path), "leave -parts out",
-             [&] { findPartsOf(settings, cloud); });
+             [&] { findPartsOf(settings, console, cloud); });
   const std::size_t parts = cloud.parts->parts.size();
   cloud.stages.push_back(
       {"parts", console.end(counted(parts, "part") + ", " +

@@ -23,7 +23,7 @@ void Findings::add(const std::string& of, const std::vector<Finding>& findings) 
 }
 
 void Findings::add(const std::string& text) {
-  entries_.push_back({"", {text, "", "", false}});
+  entries_.push_back({"", {text, "", "", true}});
 }
 
 std::string Findings::textOf(const Entry& entry) const {

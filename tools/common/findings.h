@@ -20,7 +20,7 @@ public:
 
   /// Adds those of an input, or of a part of it; `of` names it where there are several.
   void add(const std::string& of, const std::vector<Finding>& findings);
-  /// Adds one that no option deals with.
+  /// Adds a fault of the input that no option deals with.
   void add(const std::string& text);
 
   /// Prints a line a finding; those that end the tool are left to that.

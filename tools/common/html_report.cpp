@@ -5,6 +5,7 @@
 #include "common/report_page.h"
 #include "common/text.h"
 #include "spherical_param/embedding.h"
+#include "spherical_param/neighbor_search.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
 
@@ -208,8 +209,34 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   arrays.add("suspicious", 1, mesh.marks);
 }
 
-/// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
-void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& arrays) {
+/// The median distance of points to their nearest [their unit].
+double spacingOf(const Positions& points, int threads) {
+  const Eigen::AlignedBox3d box = boxOf(points);
+  const double size = box.sizes().maxCoeff();
+  // The search wants an extent of about 1.
+  const Positions scaled = (points.colwise() - box.center()) / size;
+  Execution execution;
+  execution.threads = threads;
+  const NeighborLists lists = findNearestNeighbors(scaled, 1, execution);
+  std::vector<double> distances;
+  distances.reserve(lists.size());
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    for (std::size_t k = lists.offsets[i]; k < lists.offsets[i + 1]; ++k) {
+      const Index other = lists.indices[k];
+      if (other != static_cast<Index>(i)) {
+        distances.push_back((scaled.col(other) - scaled.col(static_cast<Index>(i))).norm());
+      }
+    }
+  }
+  const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), median, distances.end());
+  return *median * size;
+}
+
+/// What the cloud has beside the mesh: colours, the points before smoothing, outliers. Returns the
+/// spacing of its points.
+double addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, int threads,
+                Arrays& arrays) {
   const auto input = [&](Index vertex) {
     return static_cast<std::size_t>(cloud.point_of_vertex[static_cast<std::size_t>(vertex)]);
   };
@@ -222,8 +249,8 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
     arrays.add("colors", 3, colors);
   }
   const Eigen::AlignedBox3d box = boxOf(mesh.positions);
+  Positions points = mesh.positions;
   if (cloud.result.smoothed.cols() != 0) {
-    Positions points(3, mesh.positions.cols());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       points.col(static_cast<Eigen::Index>(i)) = cloud.data->position(input(mesh.vertices[i]));
     }
@@ -232,15 +259,16 @@ void addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, Arrays& 
   if (cloud.outliers && !cloud.outliers->points.empty()) {
     const std::size_t all = cloud.outliers->points.size();
     const std::size_t count = std::min(all, max_outliers);
-    Positions points(3, static_cast<Eigen::Index>(count));
+    Positions outliers(3, static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
-      points.col(static_cast<Eigen::Index>(i)) =
+      outliers.col(static_cast<Eigen::Index>(i)) =
           cloud.data->position(static_cast<std::size_t>(cloud.outliers->points[i * all / count]));
     }
     // One far off comes to the side of a box around the mesh, where it can be seen.
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
-    arrays.addPoints("outliers", points, {box.min() - margin, box.max() + margin});
+    arrays.addPoints("outliers", outliers, {box.min() - margin, box.max() + margin});
   }
+  return spacingOf(points, threads);
 }
 
 /// Adds the unfolding, and returns its frames.
@@ -371,7 +399,7 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
   const ReportMesh mesh = reportMesh(cloud, max_triangles, input.threads);
   Arrays arrays;
   addMesh(mesh, arrays);
-  addCloud(cloud, mesh, arrays);
+  const double spacing = addCloud(cloud, mesh, input.threads, arrays);
   // The sphere is shown turned so that its points are about where those of the object are.
   const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false);
   Json json;
@@ -382,6 +410,7 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
                   {"triangles", cloud.result.triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
                   {"shown_triangles", mesh.triangles.cols()}};
+  json["spacing"] = spacing;
   json["outliers"] = cloud.outliers ? cloud.outliers->points.size() : 0;
   json["sphere_turn"] = Json::array();
   for (Eigen::Index i = 0; i < 9; ++i) {

@@ -397,6 +397,7 @@ void printMeasures(const Result& result, Console& console) {
            formatted(vector.z(), 6);
   };
   const MeshMeasures& measures = result.measures;
+  console.entry("mean edge", formatted(measures.mean_edge_length, 4));
   console.entry("area", formatted(measures.area, 6));
   console.entry("bounding box", listed(measures.box_min) + " to " + listed(measures.box_max));
   if (result.hasVolume()) {

@@ -120,6 +120,12 @@ configure_and_build() {
     cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} -- -k 0
 }
 
+# doc_block <page> <n>: prints the n-th block of commands of a page.
+doc_block() {
+  awk -v wanted="$2" '/^```$/ { inside = 0 } inside && block == wanted
+    /^```sh$/ { inside = 1; ++block }' "$1"
+}
+
 # skip <step> <reason>: a step that cannot be made here; loud, and counted.
 skip() {
   skipped=$((skipped + 1))

@@ -6,7 +6,7 @@ const flag_kinds = [
   { bit: 2, name: 'Filled hole', color: '#006ebe' },
   { bit: 4, name: 'Cut handle', color: '#c85aa5' },
   { bit: 8, name: 'Bridge between parts', color: '#00966e' },
-  { bit: 16, name: "Edge outside the graph's 2-ring", color: '#d79600' },
+  { bit: 16, name: "Edge outside the graph's 2-ring", color: '#d79600', harmless: true },
 ];
 
 /** The arrays of the data: {values: integers, numbers(), low, high}. */
@@ -135,6 +135,9 @@ function findFlags(marks, triangles) {
   }).filter((kind) => kind.triangles.length > 0);
 }
 
+/** The way to colour by at first: faults are not to be overlooked. */
+const firstMode = (kinds) => (kinds.every((kind) => kind.harmless) ? 'place' : 'suspicious');
+
 function showFlags(kinds, views, select) {
   byId('flags').replaceChildren(kinds.length === 0 ? 'No suspicious triangles.' : 'Suspicious:',
     ...kinds.map((kind) => {
@@ -207,13 +210,14 @@ function makePlayer(views, frames, changed) {
 }
 
 function showViews(data, arrays, context) {
-  const views = new Views(byId('canvas'), context, arrays, data.sphere_turn);
+  const views = new Views(byId('canvas'), context, arrays, data);
   window.report_views = views; // for tests
   const modes = makeModes(arrays, views);
   const kinds = findFlags(arrays.suspicious.values, views.triangles);
   const select = byId('color');
   select.replaceChildren(...Object.entries(modes).map(([key, mode]) =>
     make('option', { value: key }, mode.name)));
+  select.value = firstMode(kinds);
   const unfolding = {
     colors: () => placeColors(views.positions, views.box),
     about: 'During the unfolding colours mean the position on the object. Parts of the sphere ' +

@@ -51,31 +51,23 @@ function showVerdict(data) {
   byId('size').textContent = `${counted(data.mesh.vertices, 'vertex', 'vertices')}, ` +
     counted(data.mesh.triangles, 'triangle');
 
-  const crossing = report.self_intersections;
-  const made = report.smoothing?.self_intersections ?? 0;
-  const findings = [
-    [report.closed, 'Closed', 'Not closed'],
+  const crossing = report.intersecting_triangles;
+  const checks = [
     [report.manifold, 'Manifold', 'Not manifold'],
     [report.oriented, 'Oriented', 'Not oriented'],
-    [report.genus === 0, 'Genus 0', `Genus ${report.genus}`],
     [report.components === 1, 'One component', counted(report.components, 'component')],
-    [crossing === 0, 'No self-intersections', `${counted(crossing, 'pair')} of triangles intersect`],
+    [crossing === 0, 'No self-intersections',
+      `${number(crossing)} of ${counted(data.mesh.triangles, 'triangle')} intersect`],
   ];
-  if (made > crossing) {
-    findings.push([false, '', `Smoothing made ${counted(made, 'self-intersection')}`]);
-  }
-  const sound = findings.every(([good]) => good);
-  const warnings = report.warnings ?? [];
-  const clear = report.diagnosis?.looks_closed_genus0 !== false && warnings.length === 0;
-  byId('verdict').dataset.kind = !sound ? 'bad' : clear ? 'good' : 'fair';
-  byId('verdict-words').textContent = !sound ? 'The mesh has faults'
-    : clear ? 'A sound mesh' : 'A sound mesh, with doubts about the input';
-  // Where it is a warning, too, once is enough.
-  const summary = report.diagnosis?.summary ?? '';
-  byId('summary').textContent = warnings.some((text) => text.startsWith(summary)) ? '' : summary;
-  byId('findings').replaceChildren(...findings.map(([good, yes, no]) =>
+  if (report.closed) checks.unshift([true, 'Closed', ''], [report.genus === 0, 'Genus 0', '']);
+  const findings = report.findings ?? [];
+  byId('verdict').dataset.kind = !checks.every(([good]) => good) ? 'bad'
+    : findings.some((finding) => finding.fault) ? 'fair' : 'good';
+  byId('verdict-words').textContent = report.verdict ?? '';
+  byId('findings').replaceChildren(...checks.map(([good, yes, no]) =>
     make('li', { 'data-good': String(good) }, good ? `✓ ${yes}` : `✗ ${no}`)));
-  byId('warnings').replaceChildren(...warnings.map((text) => make('li', {}, text)));
+  byId('warnings').replaceChildren(...findings.map(({ text, option, value }) => make('li', {}, text,
+    ...(option === '' ? [] : [': try ', make('code', {}, `-${option.replaceAll('_', '-')} ${value}`)]))));
 }
 
 const headRow = (name, ...cells) =>

@@ -3,19 +3,21 @@
 
 const view_names = ['mesh', 'cloud', 'sphere'];
 const field_of_view = 28; // degrees
-const start = new THREE.Vector3(0, -1, 0.25)
-  .setLength(1.04 / Math.sin((field_of_view * Math.PI) / 360)); // a ball of radius 1 fits
+// A ball of radius 1 fits.
+const start_distance = 1.04 / Math.sin((field_of_view * Math.PI) / 360);
+const point_pixels = [1, 12]; // diameters of the cloud's points
 
-/** Discs of a diameter in units of the object, or in pixels if `pixels` is given. */
-function discMaterial({ size = 0, pixels = 0, lit = false, color = '#ffffff', on_top = false }) {
+/** Discs of a diameter in units of the object, within limits in pixels. */
+function discMaterial({ size = 0, pixels, lit = false, color = '#ffffff', on_top = false }) {
   return new THREE.ShaderMaterial({
     vertexShader: `
-      uniform float size, pixels, scale;
+      uniform float size, scale;
+      uniform vec2 pixels;
       varying vec3 shade;
       void main() {
         vec4 place = modelViewMatrix * vec4(position, 1.0);
         gl_Position = projectionMatrix * place;
-        gl_PointSize = max(size * scale / -place.z, pixels);
+        gl_PointSize = clamp(size * scale / -place.z, pixels.x, pixels.y);
         float facing = dot(normalize(normalMatrix * normal), normalize(-place.xyz));
         shade = ${lit ? 'color * (facing > 0.0 ? 0.45 + 0.6 * facing : 0.35)' : 'vec3(1.0)'};
       }`,
@@ -28,7 +30,8 @@ function discMaterial({ size = 0, pixels = 0, lit = false, color = '#ffffff', on
         gl_FragColor = vec4(${lit ? 'shade' : 'radius > 0.75 ? vec3(0.0) : tint'}, 1.0);
       }`,
     uniforms: {
-      size: { value: size }, pixels: { value: pixels * devicePixelRatio }, scale: { value: 1 },
+      size: { value: size }, scale: { value: 1 },
+      pixels: { value: new THREE.Vector2(...pixels).multiplyScalar(devicePixelRatio) },
       tint: { value: new THREE.Color(color) },
     },
     vertexColors: lit ? THREE.VertexColors : THREE.NoColors,
@@ -72,34 +75,38 @@ const colorsOf = (vertices) =>
   new THREE.BufferAttribute(new Uint8Array(3 * vertices), 3, true).setUsage(THREE.DynamicDrawUsage);
 
 class Views {
-  constructor(canvas, context, arrays, sphere_turn) {
+  constructor(canvas, context, arrays, { sphere_turn, spacing, report }) {
     this.canvas = canvas;
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.setPixelRatio(devicePixelRatio);
     this.renderer.setScissorTest(true);
     this.renderer.setClearColor(0, 0);
     this.camera = new THREE.PerspectiveCamera(field_of_view, 1, 0.01, 50);
-    this.camera.up.set(0, 0, 1);
     this.frame_at = null; // frame of the unfolding; null: the result
     this.drawn = 0; // frames
-    this.makeScene(arrays);
+    this.makeScene(arrays, spacing);
     const [a, b, c, d, e, f, g, h, i] = sphere_turn;
     this.align = new THREE.Quaternion().setFromRotationMatrix(
       new THREE.Matrix4().set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1));
     if (arrays.history_frames) this.makeHistory(arrays);
+    const { up, toward } = firstView(this.positions, this.triangles, arrays.suspicious.values,
+      this.origin, report.closed);
+    this.camera.up.copy(up);
+    this.start = toward.multiplyScalar(start_distance);
     this.target = new THREE.Vector3();
     this.controls = view_names.map((name) => this.makeControls(name));
     this.reset();
     new ResizeObserver(() => this.request()).observe(canvas);
   }
 
-  makeScene(arrays) {
+  makeScene(arrays, spacing) {
     const { low, high } = arrays.positions;
     const center = low.map((x, c) => (x + high[c]) / 2);
     const radius = Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) || 1;
     /** Rows of points with the object's middle at 0 and the corners of its box at distance 1. */
     this.normalized = (array) =>
       array.numbers().map((x, i) => (x - center[i % 3]) / radius);
+    this.origin = new THREE.Vector3(...center).divideScalar(-radius); // of the input
     this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
     this.positions = this.normalized(arrays.positions);
     this.sphere = arrays.sphere.numbers();
@@ -129,19 +136,21 @@ class Views {
       edges += this.vector(this.triangles[t]).distanceTo(this.vector(this.triangles[t + 1]));
     }
     this.edge = edges / (this.triangles.length / 3);
+    // Discs that just cover a square grid of points.
+    const size = (Math.SQRT2 * spacing) / radius;
     this.addPoints('cloud', {
       position: arrays.cloud ? rowsOf(this.normalized(arrays.cloud)) : position,
       normal: this.normal, color: this.color,
-    }, discMaterial({ size: 1.5 * this.edge, pixels: 1.5, lit: true }));
+    }, discMaterial({ size, pixels: point_pixels, lit: true }));
     if (arrays.outliers) {
       const points = rowsOf(this.normalized(arrays.outliers));
       this.addPoints('cloud', { position: points, normal: points },
-        discMaterial({ pixels: 6, color: outlier_color }));
+        discMaterial({ pixels: [6, 6], color: outlier_color }));
     }
     this.marks = Object.fromEntries(view_names.map((name) => [name,
       this.addPoints(name, { position: rowsOf(new Float32Array(3)),
         normal: rowsOf(new Float32Array(3)) },
-      discMaterial({ pixels: 13, color: '#ffd600', on_top: true }))]));
+      discMaterial({ pixels: [13, 13], color: '#ffd600', on_top: true }))]));
     this.flags = [];
   }
 
@@ -239,7 +248,7 @@ class Views {
     this.groups.sphere.position.copy(place).sub(normal);
     this.target.copy(place);
     this.camera.position.copy(place).addScaledVector(normal,
-      Math.min(Math.max(60 * this.edge, 0.1), start.length()));
+      Math.min(Math.max(60 * this.edge, 0.1), start_distance));
     this.mark(vertex);
     this.controls[0].update();
   }
@@ -248,7 +257,7 @@ class Views {
     this.groups.sphere.quaternion.copy(this.align);
     this.groups.sphere.position.set(0, 0, 0);
     this.target.set(0, 0, 0);
-    this.camera.position.copy(start);
+    this.camera.position.copy(this.start);
     this.mark(null);
     this.controls[0].update();
   }

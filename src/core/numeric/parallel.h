@@ -105,10 +105,13 @@ void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& w
 
 /// The same in a few dozen parallel regions, if there is a report to make
 /// after each: the blocks and their numbers are those of one region.
+///
+/// \param items_per_report at least: fewer where an item takes long.
 template <typename Work>
-void forEachBlock(std::size_t count, int threads, const FractionReport& report, const Work& work) {
+void forEachBlock(std::size_t count, int threads, const FractionReport& report, const Work& work,
+                  std::size_t items_per_report = kReportedItems) {
   const std::size_t blocks = count / kMaxReports / kBlockSize + 1;
-  const std::size_t most = report ? std::max(kReportedItems, blocks * kBlockSize) : count;
+  const std::size_t most = report ? std::max(items_per_report, blocks * kBlockSize) : count;
   for (std::size_t first = 0; first < count; first += most) {
     const std::size_t size = std::min(most, count - first);
     forEachBlock(size, threads, [&](std::size_t block, std::size_t begin, std::size_t end) {

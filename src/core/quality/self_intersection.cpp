@@ -505,12 +505,16 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
 /// Runs find(i, pairs) for i in [0, count) and joins what it appends.
 template <typename Find>
 Pairs collect(std::size_t count, int threads, const FractionReport& report, const Find& find) {
+  // Where the mesh is a tangle, a block takes a tenth of a second.
+  constexpr std::size_t items_per_report = 8 * internal::kBlockSize;
   std::vector<Pairs> parts((count + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachBlock(count, threads, report,
-                         [&](std::size_t block, std::size_t begin, std::size_t end) {
-                           for (std::size_t i = begin; i < end; ++i)
-                             find(i, parts[block]);
-                         });
+  internal::forEachBlock(
+      count, threads, report,
+      [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          find(i, parts[block]);
+      },
+      items_per_report);
   Pairs pairs;
   for (const Pairs& part : parts)
     pairs.insert(pairs.end(), part.begin(), part.end());

@@ -275,6 +275,25 @@ TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
   EXPECT_NEAR(areasAround(shown.mesh).sum(), area, 0.1 * area);
 }
 
+TEST(HtmlReport, HasTheSpacingOfTheShownPointsOfTheInput) {
+  ReconstructionSettings smoothed = flipsAlone();
+  smoothed.options.smoothing.steps = 5;
+  const Positions points = 1e6 * scanned(Shape::Bird, 1500);
+  for (const std::size_t max_triangles : {kMaxReportTriangles, std::size_t{800}}) {
+    const Shown shown = show(points, smoothed, 0, max_triangles);
+    const Positions cloud = picked(points, shown.mesh.vertices);
+    const NeighborLists nearest = test::bruteForceNeighbors(cloud, 1);
+    std::vector<double> distances;
+    for (Eigen::Index i = 0; i < cloud.cols(); ++i) {
+      const Index other = nearest.indices[static_cast<std::size_t>(i)];
+      distances.push_back((cloud.col(i) - cloud.col(other)).norm());
+    }
+    std::sort(distances.begin(), distances.end());
+    const double median = distances[distances.size() / 2];
+    EXPECT_NEAR(shown.page.data["spacing"].get<double>(), median, 1e-12 * median);
+  }
+}
+
 TEST(HtmlReport, TinyCloudsHaveAPage) {
   for (const std::size_t points : {4U, 5U, 12U})
     expectShown(show(scanned(Shape::Sphere, points)));
