@@ -23,7 +23,8 @@ wrong_use_is_found() {
   cat >"$work/wrong.py" <<'END'
 import spherical_param
 
-mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
+spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
+mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]])
 mesh.polygons
 text: str = mesh.volume
 both = spherical_param.reconstruct("scan.ply", parts="each")
@@ -33,8 +34,8 @@ END
   MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
     --cache-dir "$work/mypy" "$work/wrong.py" >"$work/wrong.log" && return 1
   cat "$work/wrong.log"
-  [ "$(grep -c '^[^ ]*wrong.py:[3457]: error' "$work/wrong.log")" -eq 4 ] &&
-    ! grep -q 'wrong.py:8:' "$work/wrong.log"
+  [ "$(grep -c '^[^ ]*wrong.py:[3568]: error' "$work/wrong.log")" -eq 4 ] &&
+    ! grep -q 'wrong.py:9:' "$work/wrong.log"
 }
 
 stub_is_that_of_the_extension() {
