@@ -1,6 +1,7 @@
 """What reconstruct() takes besides an array, with colours and normals."""
 
 import tempfile
+import types
 import unittest
 from importlib import util
 from pathlib import Path
@@ -100,6 +101,16 @@ class Clouds(unittest.TestCase):
         self.check(self.expected.to_trimesh(), colors=False, normals=False)
         self.check(sp.reconstruct(shapes.record(self.points, self.colors)).to_trimesh(),
                    normals=False)  # fmt: skip
+
+    def test_clouds_of_trimesh_are_taken_by_their_attributes(self):
+        # What they have in trimesh 4, which Debian 12 does not have.
+        visual = types.SimpleNamespace(
+            kind="vertex", vertex_colors=np.insert(self.colors, 3, 255, axis=1)
+        )
+        for attributes in ({}, {"visual": visual}):
+            cloud = type("PointCloud", (), {"__module__": "trimesh.points"})()
+            vars(cloud).update(vertices=self.points, **attributes)
+            self.check(cloud, colors=bool(attributes), normals=False)
 
     def test_normals_of_the_mesh_point_outward_and_colors_follow_the_vertices(self):
         truth = self.normals
