@@ -110,7 +110,9 @@ wheel_needs_no_folder_of_the_build() {
 
 open3d_has_the_same_mesh() {
   PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_package.py -v \
-    Conversions.test_open3d_has_the_same_mesh
+    Conversions.test_open3d_has_the_same_mesh &&
+    PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_clouds.py -v \
+      Clouds.test_clouds_and_meshes_of_open3d_are_taken
 }
 
 source_distribution_builds() {
@@ -133,7 +135,7 @@ if check "python: module" build_release spherical_param_python; then
   check "python: stub is that of the extension" stub_is_that_of_the_extension || true
 fi
 if run "python: Open3D" tools/setup.sh open3d; then
-  check "python: Open3D has the same mesh" open3d_has_the_same_mesh || true
+  check "python: Open3D has the same mesh, and its clouds are taken" open3d_has_the_same_mesh || true
 else
   skip "python: Open3D has the same mesh" "python3-open3d cannot be had"
 fi
