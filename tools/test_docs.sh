@@ -49,7 +49,7 @@ installed() {
 # The program of README's example, without CMake.
 compiled_by_pkg_config() {
   sed -n '/^```cpp$/,/^```$/p' README.md | sed '/^```/d' >build/docs/main.cpp
-  (cd build/docs && PKG_CONFIG_SYSROOT_DIR="$PWD/root" bash -euc "$(doc_block ../../doc/install.md 4)")
+  (cd build/docs && PKG_CONFIG_PATH="$prefix/lib/pkgconfig" bash -euc "$(doc_block ../../doc/install.md 4)")
 }
 
 need_packages docs

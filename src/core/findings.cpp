@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -40,16 +41,18 @@ std::string percent(double fraction) {
   return text.data();
 }
 
-/// Folds look like noise.
-bool isNoisy(const Result& result) {
+/// Whether the mesh is as rough as noise makes it, and nothing else is known that does.
+bool isRough(const Result& result) {
   return result.optimization.noise_steps > 0 && result.smoothed.cols() == 0 &&
-         !result.diagnosis.isFolded() && result.diagnosis.bridges.empty();
+         result.diagnosis.bridges.empty() && result.diagnosis.genus.value_or(0) == 0;
 }
 
 Finding partsOf(const std::vector<PartBridge>& bridges) {
   const PartBridge& bridge = bridges.front();
-  const bool are_alike = static_cast<double>(bridge.points) >=
-                         kMinFractionOfLargest * static_cast<double>(bridge.other_points);
+  // Many parts are a scene, of which the largest is mostly the object.
+  const bool are_alike =
+      bridges.size() == 1 && static_cast<double>(bridge.points) >=
+                                 kMinFractionOfLargest * static_cast<double>(bridge.other_points);
   return {counted(bridges.size() + 1, "separate part") + " (" +
               (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) + " and " +
               counted(bridge.other_points, "point") + ")",
@@ -111,7 +114,7 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
     findings.push_back(partsOf(diagnosis.bridges));
   if (diagnosis.openings() > 0)
     findings.push_back(filledOf(diagnosis, options));
-  if (isNoisy(result))
+  if (isRough(result) && !diagnosis.isFolded())
     findings.push_back({"the points are noisy", "smoothing", kSteps, false});
   if (const std::optional<Finding> handles = handlesOf(diagnosis))
     findings.push_back(*handles);
@@ -121,9 +124,14 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
   const bool is_raw = options.optimization.method == OptimizationMethod::None;
   if (diagnosis.isFolded() || (is_raw && diagnosis.edges_outside_graph > kMaxEdgesOutside)) {
     const bool may_unfold = is_raw && result.embedding.stop_reason == StopReason::Unfinished;
-    findings.push_back({"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
-                            " of its edges join points that are far apart in the cloud",
-                        may_unfold ? "tolerance" : "", may_unfold ? "1e-8" : "", true});
+    Finding fold{"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
+                     " of its edges join points that are far apart in the cloud",
+                 "", "", true};
+    if (may_unfold)
+      std::tie(fold.option, fold.value) = std::pair("tolerance", "1e-8");
+    else if (isRough(result))
+      std::tie(fold.option, fold.value) = std::pair("smoothing", kSteps);
+    findings.push_back(fold);
   }
   addOfEmbedding(options, result, findings);
   if (result.optimization.is_out_of_time)

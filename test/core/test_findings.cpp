@@ -68,7 +68,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
        [](Result& r) { addBridge(r, 395, 5633); }},
       {{"2 separate parts (2,395 and 5,633 points)", "parts", "each", true},
        [](Result& r) { addBridge(r, 2395, 5633); }},
-      {{"3 separate parts (two of them of 1 and 4 points)", "parts", "each", true},
+      {{"3 separate parts (two of them of 1 and 4 points)", "parts", "largest", true},
        [](Result& r) {
          addBridge(r, 1, 4);
          addBridge(r, 1, 3);
@@ -101,7 +101,14 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   });
 }
 
-TEST(Findings, OfAFoldedMeshAreNoNoise) {
+TEST(Findings, OfAFoldedMeshAreNoNoiseButSmoothingMayHelp) {
+  expectFindings(
+      {{{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud",
+         "smoothing", "5", true},
+        [](Result& r) {
+          r.optimization.noise_steps = 3;
+          r.diagnosis.edges_outside_graph = 0.12;
+        }}});
   Result result = soundResult();
   result.optimization.noise_steps = 3;
   result.diagnosis.edges_outside_graph = 0.5;

@@ -13,7 +13,7 @@ block after it, or else in that of README.md. A python block is a script. Both r
 
 The examples of a page run one after the other in a scratch folder, which has scan.ply (a hand of
 4,000 points), scan.xyz (the same as text), head.ply and animal.ply (2,000 points each), and what
-earlier examples of the page left there.
+earlier examples of the page left there; and depth.pcd, what a depth camera sees of a person in a room.
 """
 
 import os
@@ -31,6 +31,7 @@ SCANS = """pcl_spherical_param_scan hand scan.ply -points 4000
 pcl_spherical_param_scan hand scan.xyz -points 4000
 pcl_spherical_param_scan head head.ply -points 2000
 pcl_spherical_param_scan animal animal.ply -points 2000
+{depth_image} depth.pcd
 """
 
 
@@ -73,7 +74,7 @@ def main(prefix, module_folder, *pages):
                 if mark["language"] not in ("sh", "cpp", "python"):
                     sys.exit(f"{place}: no block of sh, cpp or python follows the mark")
                 project = CMAKE.match(text, mark.end()) or CMAKE.search((ROOT / "README.md").read_text())
-                good = (number > 0 or run(["bash", "-ec", SCANS], folder)) and run_example(
+                good = (number > 0 or run(["bash", "-ec", SCANS.format(depth_image=ROOT / "test/doc/depth_image.py")], folder)) and run_example(
                     mark["language"], mark["text"], project and project[1], (mark["arguments"] or "").split(),
                     folder, number, prefix)  # fmt: skip
                 print(f"{place}: {'passed' if good else 'FAILED'}", flush=True)

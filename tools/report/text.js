@@ -55,11 +55,13 @@ function showVerdict(data) {
   const checks = [
     [report.manifold, 'Manifold', 'Not manifold'],
     [report.oriented, 'Oriented', 'Not oriented'],
-    [report.components === 1, 'One component', counted(report.components, 'component')],
     [crossing === 0, 'No self-intersections',
       `${number(crossing)} of ${counted(data.mesh.triangles, 'triangle')} intersect`],
   ];
-  if (report.closed) checks.unshift([true, 'Closed', ''], [report.genus === 0, 'Genus 0', '']);
+  if (report.closed) {
+    checks.unshift([true, 'Closed', ''], [report.genus === 0, 'Genus 0', ''],
+      [report.components === 1, 'One component', counted(report.components, 'component')]);
+  }
   const findings = report.findings ?? [];
   byId('verdict').dataset.kind = !checks.every(([good]) => good) ? 'bad'
     : findings.some((finding) => finding.fault) ? 'fair' : 'good';
