@@ -39,6 +39,8 @@ class CMakeBuild(build_ext):
             "SPHERICAL_PARAM_BUILD_PCL": "OFF",
             "SPHERICAL_PARAM_BUILD_TOOLS": "OFF",
             "SPHERICAL_PARAM_PYTHON_INSTALL_DIR": ".",
+            # By make, too, the libraries are compiled side by side.
+            "CMAKE_OPTIMIZE_DEPENDENCIES": "ON",
             "Python3_EXECUTABLE": sys.executable,
         }
         try:
@@ -77,7 +79,7 @@ class SourceDistribution(sdist):
 
     def make_distribution(self) -> None:
         self.filelist.append("CMakeLists.txt")
-        for folder in ("cmake", "include", "src"):
+        for folder in ("cmake", "include", "src", "tools"):
             self.filelist.extend(
                 str(path)
                 for path in Path(folder).rglob("*")

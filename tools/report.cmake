@@ -1,5 +1,5 @@
-# The page of -report: the files of tools/report with Debian's three.js, put into the tools library as
-# text. Without three.js the tools are built without -report.
+# The page of -report: the files of tools/report with Debian's three.js, put into the library
+# of files as text. Without three.js the tools are built without -report.
 option(SPHERICAL_PARAM_BUILD_REPORT "Build the tools with -report, if three.js is found" ON)
 find_path(SPHERICAL_PARAM_THREE_DIR three.min.js
   PATHS /usr/share/javascript/three /usr/local/share/javascript/three)
@@ -56,4 +56,4 @@ else()
     DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
 endif()
 configure_file(${report_folder}/report_page.cpp.in report/report_page.cpp @ONLY)
-target_sources(spherical_param_tools PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/report/report_page.cpp)
+target_sources(spherical_param_files PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/report/report_page.cpp)

@@ -23,14 +23,19 @@ wrong_use_is_found() {
   cat >"$work/wrong.py" <<'END'
 import spherical_param
 
-mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
+spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
+mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]])
 mesh.polygons
 text: str = mesh.volume
+both = spherical_param.reconstruct("scan.ply", parts="each")
+both.vertices
+good: spherical_param.Result = spherical_param.reconstruct("scan.ply", parts="largest")
 END
   MYPYPATH=build/release/python mypy --config-file pyproject.toml --strict \
     --cache-dir "$work/mypy" "$work/wrong.py" >"$work/wrong.log" && return 1
   cat "$work/wrong.log"
-  [ "$(grep -c '^[^ ]*wrong.py:[345]: error' "$work/wrong.log")" -eq 3 ]
+  [ "$(grep -c '^[^ ]*wrong.py:[3568]: error' "$work/wrong.log")" -eq 4 ] &&
+    ! grep -q 'wrong.py:9:' "$work/wrong.log"
 }
 
 stub_is_that_of_the_extension() {
@@ -38,10 +43,13 @@ stub_is_that_of_the_extension() {
     --mypy-config-file "$OLDPWD/pyproject.toml" spherical_param._core)
 }
 
-wheel_builds() {
-  CMAKE_BUILD_PARALLEL_LEVEL="$jobs" \
-    CMAKE_ARGS="-DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON" \
-    "$python" -m pip wheel . --no-build-isolation --no-deps --no-index -w "$work/wheels"
+# As printed, in a clone and an environment of its own.
+wheel_builds_and_installs() {
+  git clone -q . "$work/clone" && "$python" -m venv --system-site-packages "$work/venv" &&
+    (cd "$work/clone" && CCACHE_BASEDIR="$PWD" CMAKE_BUILD_PARALLEL_LEVEL="$jobs" \
+      CMAKE_ARGS="-DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON" \
+      PATH="$work/venv/bin:$PATH" bash -euc "$(doc_block doc/install.md 5)") &&
+    mkdir "$work/wheels" && mv "$work"/clone/*.whl "$work/wheels" && rm -rf "$work/clone"
 }
 
 wheel_holds_what_it_must() {
@@ -55,11 +63,8 @@ wheel_holds_what_it_must() {
     ! grep -q -E 'CMake|\.cpp|\.a ' <<<"$list"
 }
 
-wheel_installs() {
-  "$python" -m venv --system-site-packages --without-pip "$work/venv" &&
-    "$python" -m pip --python "$work/venv/bin/python" install --no-index --no-deps \
-      "$work"/wheels/*.whl &&
-    "$work/venv/bin/python" -c '
+wheel_says_what_it_is() {
+  "$work/venv/bin/python" -c '
 from importlib.metadata import metadata
 import spherical_param
 found = metadata("spherical-param")
@@ -69,23 +74,45 @@ assert "Pcl" not in found["Requires-Dist"] and "numpy" in found["Requires-Dist"]
 '
 }
 
-# All the tests of the module once more, of that in the environment.
+# All the tests of the module once more, of that in the environment: files, report and morph, too.
 wheel_works() {
   (cd test/python && unset PYTHONPATH && PYTHONDONTWRITEBYTECODE=1 \
-    "$work/venv/bin/python" -m unittest test_maps test_package test_reconstruct)
+    "$work/venv/bin/python" -m unittest test_clouds test_maps test_package test_reconstruct)
+}
+
+# Without any other package than NumPy.
+wheel_needs_numpy_alone() {
+  mkdir "$work/bare" && ln -s "$work"/venv/lib/python3*/site-packages/spherical_param \
+    /usr/lib/python3/dist-packages/numpy "$work/bare" &&
+    (cd "$work" && PYTHONPATH="$work/bare" "$python" -S -c '
+import sys
+import numpy as np
+import spherical_param
+points = np.random.default_rng(1).normal(size=(500, 3))
+np.savetxt("scan.xyz", points / np.linalg.norm(points, axis=1, keepdims=True))
+mesh = spherical_param.reconstruct("scan.xyz", progress=True)
+mesh.write("mesh.obj")
+mesh.report("page.html")
+half = spherical_param.morph(mesh, spherical_param.reconstruct("mesh.obj")).at(0.5)
+assert len(half.triangles) >= 996
+others = {"matplotlib", "open3d", "meshio", "trimesh", "tqdm"} & set(sys.modules)
+assert not others, others
+')
 }
 
 wheel_needs_no_folder_of_the_build() {
   local module
   module="$(echo "$work"/venv/lib/python3*/site-packages/spherical_param/_core*.so)"
   readelf -d "$module"
-  ! readelf -d "$module" | grep -q -E 'RPATH|RUNPATH|libspherical_param|libpcl' &&
+  ! readelf -d "$module" | grep -q -E 'RPATH|RUNPATH|libspherical_param|libpcl|libboost|libpng' &&
     ! ldd "$module" | grep "not found" && ! grep -q "$PWD" "$module"
 }
 
 open3d_has_the_same_mesh() {
   PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_package.py -v \
-    Conversions.test_open3d_has_the_same_mesh
+    Conversions.test_open3d_has_the_same_mesh &&
+    PYTHONPATH="$PWD/build/release/python" "$python" test/python/test_clouds.py -v \
+      Clouds.test_clouds_and_meshes_of_open3d_are_taken
 }
 
 source_distribution_builds() {
@@ -108,19 +135,19 @@ if check "python: module" build_release spherical_param_python; then
   check "python: stub is that of the extension" stub_is_that_of_the_extension || true
 fi
 if run "python: Open3D" tools/setup.sh open3d; then
-  check "python: Open3D has the same mesh" open3d_has_the_same_mesh || true
+  check "python: Open3D has the same mesh, and its clouds are taken" open3d_has_the_same_mesh || true
 else
   skip "python: Open3D has the same mesh" "python3-open3d cannot be had"
 fi
 if ! "$python" -c 'import trimesh' 2>/dev/null; then
   skip "python: trimesh has the same mesh" "Debian 12 has no trimesh, and it is not installed"
 fi
-if check "wheel: builds" wheel_builds; then
+if check "wheel: builds and installs" wheel_builds_and_installs; then
   check "wheel: holds what it must" wheel_holds_what_it_must || true
-  if check "wheel: installs" wheel_installs; then
-    check "wheel: works" wheel_works || true
-    check "wheel: needs no folder of the build" wheel_needs_no_folder_of_the_build || true
-  fi
+  check "wheel: says what it is" wheel_says_what_it_is || true
+  check "wheel: works" wheel_works || true
+  check "wheel: needs NumPy alone" wheel_needs_numpy_alone || true
+  check "wheel: needs no folder of the build" wheel_needs_no_folder_of_the_build || true
 fi
 check "source distribution: can be configured" source_distribution_builds || true
 finish

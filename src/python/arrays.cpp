@@ -38,12 +38,13 @@ py::array_t<Scalar, py::array::c_style> column(const std::vector<Scalar>& values
   return array;
 }
 
-template <std::size_t Columns>
-IndexArray rowsOf(const std::vector<std::array<Index, Columns>>& values) {
-  IndexArray array(std::vector<std::size_t>{values.size(), Columns});
-  Index* place = array.mutable_data();
-  for (const std::array<Index, Columns>& row : values)
-    place = std::copy(row.begin(), row.end(), place);
+/// The first columns of rows in another type.
+template <typename Scalar, std::size_t Columns, typename Row>
+py::array_t<Scalar, py::array::c_style> firstColumns(const std::vector<Row>& values) {
+  py::array_t<Scalar, py::array::c_style> array(std::vector<std::size_t>{values.size(), Columns});
+  Scalar* place = array.mutable_data();
+  for (const Row& row : values)
+    place = std::copy_n(row.begin(), Columns, place);
   return array;
 }
 
@@ -70,11 +71,23 @@ IndexArray toArray(const Triangles& triangles) {
 }
 
 IndexArray toArray(const std::vector<std::array<Index, 2>>& pairs) {
-  return rowsOf(pairs);
+  return firstColumns<Index, 2>(pairs);
 }
 
 IndexArray toArray(const std::vector<std::array<Index, 3>>& triples) {
-  return rowsOf(triples);
+  return firstColumns<Index, 3>(triples);
+}
+
+DoubleArray toArray(const std::vector<std::array<double, 3>>& rows) {
+  return firstColumns<double, 3>(rows);
+}
+
+DoubleArray toArray(const std::vector<std::array<float, 3>>& rows) {
+  return firstColumns<double, 3>(rows);
+}
+
+ByteArray toArray(const std::vector<std::array<std::uint8_t, 4>>& rows) {
+  return firstColumns<std::uint8_t, 3>(rows);
 }
 
 IndexArray toArray(const std::vector<Index>& values) {

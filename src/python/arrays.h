@@ -21,15 +21,18 @@ using IndexArray = pybind11::array_t<Index, pybind11::array::c_style>;
 Positions toPositions(const DoubleArray& array);
 Triangles toTriangles(const IndexArray& array);
 
-DoubleArray toArray(const Positions& positions);                         ///< (n, 3)
-DoubleArray toArray(const Eigen::Matrix<double, 2, Eigen::Dynamic>& m);  ///< (n, 2)
-IndexArray toArray(const Triangles& triangles);                          ///< (m, 3)
-IndexArray toArray(const std::vector<std::array<Index, 2>>& pairs);      ///< (n, 2)
-IndexArray toArray(const std::vector<std::array<Index, 3>>& triples);    ///< (n, 3)
-IndexArray toArray(const std::vector<Index>& values);                    ///< (n,)
-DoubleArray toArray(const std::vector<double>& values);                  ///< (n,)
-ByteArray toArray(const std::vector<std::uint8_t>& values);              ///< (n,)
-DoubleArray toArray(const Eigen::Vector3d& vector);                      ///< (3,)
-DoubleArray toArray(const Eigen::Matrix3d& matrix);                      ///< (3, 3)
+DoubleArray toArray(const Positions& positions);                          ///< (n, 3)
+DoubleArray toArray(const Eigen::Matrix<double, 2, Eigen::Dynamic>& m);   ///< (n, 2)
+IndexArray toArray(const Triangles& triangles);                           ///< (m, 3)
+IndexArray toArray(const std::vector<std::array<Index, 2>>& pairs);       ///< (n, 2)
+IndexArray toArray(const std::vector<std::array<Index, 3>>& triples);     ///< (n, 3)
+DoubleArray toArray(const std::vector<std::array<double, 3>>& rows);      ///< (n, 3)
+DoubleArray toArray(const std::vector<std::array<float, 3>>& rows);       ///< (n, 3)
+ByteArray toArray(const std::vector<std::array<std::uint8_t, 4>>& rows);  ///< (n, 3): no alpha
+IndexArray toArray(const std::vector<Index>& values);                     ///< (n,)
+DoubleArray toArray(const std::vector<double>& values);                   ///< (n,)
+ByteArray toArray(const std::vector<std::uint8_t>& values);               ///< (n,)
+DoubleArray toArray(const Eigen::Vector3d& vector);                       ///< (3,)
+DoubleArray toArray(const Eigen::Matrix3d& matrix);                       ///< (3, 3)
 
 }  // namespace spherical_param::python

@@ -2,16 +2,19 @@
 // them out. The options of reconstruct() are those of optionTable(); all other names, defaults,
 // checks of types and documentation are the package's, in Python.
 
+#include "common/errors.h"
 #include "python/arrays.h"
+#include "python/files.h"
 #include "python/listener.h"
 #include "python/names.h"
+#include "python/options.h"
 #include "python/reports.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
-#include "spherical_param/option_table.h"
 #include "spherical_param/outliers.h"
 #include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
@@ -30,9 +33,7 @@
 #include <exception>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace spherical_param::python {
@@ -49,87 +50,21 @@ std::string withoutFunctionName(const std::string& message) {
   return length > 0 && message.compare(length, 2, ": ") == 0 ? message.substr(length + 2) : message;
 }
 
-/// The rows that are finite numbers, and which they are.
-struct FinitePoints {
-  explicit FinitePoints(const DoubleArray& array) {
-    const Positions all = toPositions(array);
-    rows.reserve(static_cast<std::size_t>(all.cols()));
-    for (Eigen::Index i = 0; i < all.cols(); ++i)
-      if (all.col(i).allFinite())
-        rows.push_back(static_cast<Index>(i));
-    points = rows.size() == static_cast<std::size_t>(all.cols()) ? all
-                                                                 : Positions(all(Eigen::all, rows));
-    given = static_cast<std::size_t>(all.cols());
-  }
-
-  std::size_t ignored() const { return given - rows.size(); }
-
-  Positions points;
-  std::vector<Index> rows;  ///< of each point in the array
-  std::size_t given = 0;    ///< rows of the array
-};
-
-/// A value of an option. Whatever Python takes for an integer or a number is one.
-OptionValue toValue(const OptionRow& row, const py::handle& value) {
-  if (value.is_none())
-    return {};
-  if (py::isinstance<py::str>(value))
-    return value.cast<std::string>();
-  try {
-    if (PyIndex_Check(value.ptr()) != 0) {
-      PyObject* const index = PyNumber_Index(value.ptr());  // none for an array of two numbers
-      if (index == nullptr)
-        throw py::error_already_set();
-      return py::reinterpret_steal<py::int_>(index).cast<std::int64_t>();
-    }
-    if (!py::isinstance<py::bytes>(value))
-      return py::float_(py::reinterpret_borrow<py::object>(value)).cast<double>();
-  } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): no number, or too large
-  }
-  throw InvalidInput(row.name + " = " + py::repr(value).cast<std::string>() +
-                     " cannot be used; use " + rangeOf(row));
-}
-
-py::object toObject(const OptionValue& value) {
-  return std::visit(
-      [](const auto& known) -> py::object {
-        if constexpr (std::is_same_v<std::decay_t<decltype(known)>, std::monostate>)
-          return py::none();
-        else
-          return py::cast(known);
-      },
-      value);
-}
-
-/// The rows of optionTable() as the package in Python needs them.
-py::list optionRows() {
-  py::list rows;
-  for (const OptionRow& row : optionTable())
-    rows.append(py::dict("name"_a = row.name, "help"_a = row.help, "range"_a = rangeOf(row),
-                         "choices"_a = row.choices, "is_integer"_a = row.is_integer,
-                         "optional"_a = row.optional, "default"_a = toObject(row.get({}))));
-  return rows;
-}
-
-py::dict reconstructPoints(const DoubleArray& array, const py::dict& values, bool details,
-                           const py::object& progress) {
-  Options options;
-  for (const auto& [name, value] : values) {
-    const OptionRow& row = findOption(name.cast<std::string>());
-    setOption(options, row.name, toValue(row, value));
-  }
+/// \param rows that are meshed; none: all of them.
+py::dict reconstructPoints(const DoubleArray& array, const std::optional<IndexArray>& rows,
+                           const py::dict& values, bool details, const py::object& progress) {
+  Options options = toOptions(values);
   options.details = details;
   Listener listener(progress);
-  static_cast<Execution&>(options) = listener.execution(options.threads);
-  const FinitePoints finite(array);
+  static_cast<Execution&>(options) = listener.execution(options.threads, options.time_limit);
+  const FinitePoints finite(array, rows);
   try {
-    const Result result = listener.run([&] { return reconstruct(finite.points, options); });
-    return toDict(result, finite.rows, finite.given);
+    return toDict(listener.run([&] { return reconstruct(finite.points, options); }), finite);
   } catch (const InvalidInput& error) {
-    if (finite.ignored() == 0)
+    if (finite.ignored == 0)
       throw;
     throw InvalidInput(std::string(error.what()) + " (of the points, " +
-                       std::to_string(finite.ignored()) + " are not finite)");
+                       std::to_string(finite.ignored) + " are not finite)");
   }
 }
 
@@ -197,15 +132,15 @@ py::dict measureDistortion(const DoubleArray& points, const IndexArray& triangle
 }
 
 /// Places in a mesh, as two arrays.
-void addLocations(const std::vector<SphereLocation>& locations, py::dict& dict) {
+void addLocations(const std::vector<SphereLocation>& locations, const char* of, py::dict& dict) {
   std::vector<Index> triangles(locations.size());
   Positions weights(3, static_cast<Eigen::Index>(locations.size()));
   for (std::size_t i = 0; i < locations.size(); ++i) {
     triangles[i] = locations[i].triangle;
     weights.col(static_cast<Eigen::Index>(i)) = locations[i].weights;
   }
-  dict["source_triangle"] = toArray(triangles);
-  dict["source_weights"] = toArray(weights);
+  dict[py::str(of + std::string("_triangle"))] = toArray(triangles);
+  dict[py::str(of + std::string("_weights"))] = toArray(weights);
 }
 
 /// What remeshing gives, before it is taken to Python.
@@ -302,7 +237,7 @@ py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
                 "self_intersections"_a = toArray(remeshed.self_intersections),
                 "self_intersections_before"_a = remeshed.untangling.before,
                 "moved"_a = remeshed.untangling.moved, "flipped_edges"_a = remeshed.flipped_edges);
-  addLocations(remeshed.locations, dict);
+  addLocations(remeshed.locations, "source", dict);
   return dict;
 }
 
@@ -329,6 +264,53 @@ py::dict textureAtlas(const IndexArray& triangles, const DoubleArray& sphere,
                   "source_vertices"_a = toArray(corners), "source_weights"_a = toArray(weights));
 }
 
+/// A mesh with its map to the sphere, as Python gives it: points, triangles, directions, caps.
+struct MappedMesh {
+  explicit MappedMesh(const py::tuple& arrays)
+      : points(toPositions(arrays[0].cast<DoubleArray>())),
+        triangles(toTriangles(arrays[1].cast<IndexArray>())),
+        directions(toPositions(arrays[2].cast<DoubleArray>())),
+        caps(toPositions(arrays[3].cast<DoubleArray>())) {}
+
+  Positions points;
+  Triangles triangles;
+  Positions directions;
+  Positions caps;
+};
+
+py::dict morphMeshes(const py::tuple& first, const py::tuple& second, const IndexArray& pairs,
+                     bool align, const std::string& connectivity, std::size_t samples,
+                     const std::string& fit, int threads, const py::object& progress) {
+  Listener listener(progress);
+  MorphOptions options;
+  static_cast<Execution&>(options) = listener.execution(threads);
+  options.align = align;
+  options.connectivity = valueOf("connectivity", connectivity, kConnectivityNames);
+  options.samples = samples;
+  const auto rows = pairs.unchecked<2>();
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+    options.pairs.push_back({rows(i, 0), rows(i, 1)});
+  const SurfaceFit surface_fit = valueOf("fit", fit, kFitNames);
+  const MappedMesh from(first);
+  const MappedMesh to(second);
+  const auto surface = [&](const MappedMesh& mesh) {
+    return SphereSurface(mesh.points, mesh.triangles, mesh.directions,
+                         {surface_fit, threads, mesh.caps});
+  };
+  const MorphResult morph =
+      listener.run([&] { return morphSurfaces(surface(from), surface(to), options); });
+  py::list impossible;
+  for (const ImpossiblePair& pair : morph.impossible)
+    impossible.append(py::dict("pair"_a = pair.pair, "reason"_a = pair.reason));
+  py::dict dict("triangles"_a = toArray(morph.triangles), "first"_a = toArray(morph.first),
+                "second"_a = toArray(morph.second), "directions"_a = toArray(morph.sphere),
+                "rotation"_a = toArray(morph.rotation), "alignment_error"_a = morph.alignment_error,
+                "impossible"_a = impossible, "worst_pair"_a = morph.worst_pair);
+  addLocations(morph.first_places, "first", dict);
+  addLocations(morph.second_places, "second", dict);
+  return dict;
+}
+
 /// The package's exceptions, in the place of pybind11's choice for their bases in C++.
 void registerErrors() {
   py::register_exception_translator([](std::exception_ptr error) {
@@ -345,6 +327,12 @@ void registerErrors() {
       raise("ComputeError", cause);
     } catch (const Cancelled& cause) {
       raise("Cancelled", cause);
+    } catch (const tools::ToolError& cause) {
+      const std::string message = std::string(cause.what()) + "; " + cause.remedy();
+      if (cause.exitCode() == tools::ExitCode::Usage)
+        raise("InvalidInput", InvalidInput(message));
+      else
+        PyErr_SetString(PyExc_OSError, message.c_str());
     }
   });
 }
@@ -364,8 +352,15 @@ PYBIND11_MODULE(_core, module) {
   const auto triangles = py::arg("triangles").noconvert();
   const auto sphere = py::arg("sphere").noconvert();
   module.def("option_table", &optionRows);
-  module.def("reconstruct", &reconstructPoints, points, "options"_a, py::kw_only(), "details"_a,
-             "progress"_a);
+  module.attr("has_report") = hasReportPage();
+  module.def("reconstruct", &reconstructPoints, points, "rows"_a, "options"_a, py::kw_only(),
+             "details"_a, "progress"_a);
+  module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "progress"_a);
+  module.def("write_mesh", &writeMeshFile, "path"_a, points, triangles, "normals"_a, "colors"_a);
+  module.def("write_report", &writeReportFile, "path"_a, points, "colors"_a, "rows"_a, "outliers"_a,
+             "left_out"_a, "keywords"_a, py::kw_only(), "input"_a, "command"_a, "progress"_a);
+  module.def("morph", &morphMeshes, "first"_a, "second"_a, py::kw_only(), "pairs"_a, "align"_a,
+             "connectivity"_a, "samples"_a, "fit"_a, "threads"_a, "progress"_a);
   module.def("find_outliers", &findOutlierPoints, points, py::kw_only(), "sigma"_a, "k"_a,
              "threads"_a, "progress"_a);
   module.def("find_parts", &findPartsOfPoints, points, py::kw_only(), "min_points"_a, "threads"_a,

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <exception>
+#include <optional>
 #include <utility>
 
 namespace spherical_param::python {
@@ -23,9 +24,10 @@ public:
   bool report(const char* stage, double fraction);
 
   /// Threads, and this listener's report as the progress callback.
-  Execution execution(int threads) {
+  Execution execution(int threads, std::optional<double> time_limit = std::nullopt) {
     Execution execution;
     execution.threads = threads;
+    execution.time_limit = time_limit;
     execution.progress = [this](const Progress& state) {
       return report(state.stage, state.fraction);
     };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_param/errors.h"
+#include "spherical_param/map/morphing.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/reconstruct.h"
@@ -23,6 +24,10 @@ inline constexpr Names<SphereChart, 3> kChartNames = {{
     {"octahedral", SphereChart::Octahedral},
     {"equirectangular", SphereChart::Equirectangular},
     {"cube", SphereChart::CubeMap},
+}};
+inline constexpr Names<MorphConnectivity, 2> kConnectivityNames = {{
+    {"all", MorphConnectivity::AllVertices},
+    {"resampled", MorphConnectivity::Resampled},
 }};
 inline constexpr Names<SurfaceKind, 5> kKindNames = {{
     {"closed_genus0", SurfaceKind::ClosedGenus0},

@@ -154,9 +154,9 @@ py::dict toDict(const DistortionStatistics& statistics) {
 
 }  // namespace
 
-py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
-                std::size_t points_given) {
-  std::vector<Index> vertex_of_input(points_given, -1);
+py::dict toDict(const Result& result, const FinitePoints& finite) {
+  const std::vector<Index>& input_of_kept = finite.rows;
+  std::vector<Index> vertex_of_input(finite.given, -1);
   for (std::size_t i = 0; i < input_of_kept.size(); ++i)
     vertex_of_input[static_cast<std::size_t>(input_of_kept[i])] = result.vertex_of_input[i];
   std::vector<Index> outliers;
@@ -169,8 +169,7 @@ py::dict toDict(const Result& result, const std::vector<Index>& input_of_kept,
   py::dict dict("triangles"_a = toArray(result.triangles), "sphere"_a = toArray(result.sphere),
                 "vertex_of_input"_a = toArray(vertex_of_input),
                 "input_of_vertex"_a = toArray(input_of_vertex), "outliers"_a = toArray(outliers),
-                "duplicates"_a = result.duplicates(),
-                "ignored"_a = points_given - input_of_kept.size(),
+                "duplicates"_a = result.duplicates(), "ignored"_a = finite.ignored,
                 "self_intersections"_a = toArray(result.self_intersections),
                 "smoothed"_a =
                     result.smoothed.cols() > 0 ? py::object(toArray(result.smoothed)) : py::none());

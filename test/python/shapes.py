@@ -34,15 +34,39 @@ def volume(vertices, triangles):
 
 
 def read_ply(path):
-    """Vertices and triangles of a binary PLY with properties of type double."""
-    data = path.read_bytes()
-    header, body = data.split(b"end_header\n", 1)
-    lines = header.decode("ascii").splitlines()
-    counts = [int(line.split()[2]) for line in lines if line.startswith("element ")]
-    width = sum(line.startswith("property double") for line in lines)
-    vertices = np.frombuffer(body, dtype="<f8", count=counts[0] * width).reshape(-1, width)
+    """Vertices, a structured array, and triangles of a binary PLY."""
+    types = {"float": "<f4", "double": "<f8", "uchar": "u1"}
+    header, body = path.read_bytes().split(b"end_header\n", 1)
+    lines = [line.split() for line in header.decode("ascii").splitlines()]
+    counts = [int(line[2]) for line in lines if line[0] == "element"] + [0]
+    record = [(line[2], types[line[1]]) for line in lines if line[:1] == ["property"] and len(line) == 3]
+    vertices = np.frombuffer(body, dtype=record, count=counts[0])
     faces = np.frombuffer(
-        body, dtype=[("count", "u1"), ("vertices", "<i4", (3,))], offset=counts[0] * width * 8
+        body, dtype=[("count", "u1"), ("vertices", "<i4", (3,))], offset=vertices.nbytes
     )
     assert len(faces) == counts[1] and (faces["count"] == 3).all()
     return vertices, faces["vertices"]
+
+
+def columns(record, *names):
+    """Fields of a structured array, one a column."""
+    return np.column_stack([record[name] for name in names])
+
+
+def colors_of(points):
+    """A colour for each point, which depends on its place."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    return np.rint(255 * (points - low) / (high - low)).astype(np.uint8)
+
+
+def record(points, colors=None, normals=None):
+    """The same as a structured array."""
+    fields = list(zip("xyz", points.T))
+    if colors is not None:
+        fields += zip(("red", "green", "blue"), colors.T)
+    if normals is not None:
+        fields += zip(("nx", "ny", "nz"), normals.T)
+    array = np.empty(len(points), dtype=[(name, column.dtype) for name, column in fields])
+    for name, column in fields:
+        array[name] = column
+    return array

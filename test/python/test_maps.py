@@ -1,4 +1,4 @@
-"""What sphere_map(), remesh() and texture_coordinates() make of arrays and options."""
+"""What sphere_map(), remesh(), morph() and texture_coordinates() make of arrays and options."""
 
 import unittest
 
@@ -116,6 +116,44 @@ class Maps(unittest.TestCase):
                 d, e = u[:, 1] - u[:, 0], u[:, 2] - u[:, 0]
                 signs = np.sign(d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0])
                 self.assertGreater(abs(signs[signs != 0].mean()), 0.99)
+
+    def test_a_morph_is_both_shapes_at_its_ends(self):
+        points = shapes.ellipsoid(400)
+        other = sp.reconstruct(shapes.record(points, shapes.colors_of(points)))
+        first = sp.reconstruct(shapes.record(self.points, shapes.colors_of(self.points)))
+        pairs = [[np.argmax(mesh.vertices[:, 0]) for mesh in (first, other)]]
+        morph = sp.morph(first, other, pairs=pairs)
+        self.assertEqual((morph.impossible, len(morph.rotation)), ((), 3))
+        count = len(morph.first)
+        shapes.check_closed(self, count, morph.triangles)
+        for end, mesh in ((0, first), (1, other)):
+            frame = morph.at(end)
+            # The triangles are parts of those of the mesh.
+            volume = shapes.volume(frame.vertices, frame.triangles)
+            self.assertAlmostEqual(volume, mesh.measures.volume, delta=1e-9)
+            self.assertEqual(len(np.unique(np.round(frame.vertices, 9), axis=0)), count)
+            places = np.abs(frame.vertices[:, None] - mesh.vertices).sum(axis=2)
+            rows, vertices = np.nonzero(places < 1e-9)
+            self.assertEqual(set(vertices), set(range(len(mesh.vertices))))
+            np.testing.assert_array_equal(frame.colors[rows], mesh.colors[vertices])
+        half = morph.at(0.5)
+        np.testing.assert_allclose(half.vertices, (morph.first + morph.second) / 2, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.norm(half.normals, axis=1), 1.0, atol=1e-12)
+        joint = np.flatnonzero((np.abs(morph.first - first.vertices[pairs[0][0]]) < 1e-9).all(axis=1))
+        np.testing.assert_allclose(morph.second[joint], other.vertices[pairs[0][1]][None], atol=1e-9)
+        large = sp.reconstruct(3 * points + 5)
+        matched = sp.morph(first, large, match=True, connectivity="resampled", samples=642)
+        self.assertEqual(len(matched.first), 642)
+        self.assertIsNone(matched.at(0.5).colors)
+        self.assertLess(np.abs(matched.second.mean(axis=0)).max(), 0.3)
+        for option, value in (("align", "best"), ("connectivity", 1), ("fit", "spline"),
+                              ("samples", 3), ("match", 1), ("pairs", [1, 2])):  # fmt: skip
+            with self.assertRaisesRegex(sp.InvalidInput, f"{option} .*; "):
+                sp.morph(first, other, **{option: value})
+        with self.assertRaisesRegex(sp.InvalidInput, "; give the Results"):
+            sp.morph(points, other)
+        (lost,) = sp.morph(first, other, pairs=[[10**6, 0]]).impossible
+        self.assertEqual(lost.pair, 0)
 
     def test_wrong_meshes_and_options_are_refused(self):
         mesh, map_, points, sphere = self.mesh, self.map, self.mesh.vertices, self.mesh.sphere

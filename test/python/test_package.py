@@ -1,19 +1,26 @@
 """The package as its users read it: documentation, types, example, version, files."""
 
 import ast
+import base64
+import html
 import inspect
+import json
+import os
 import re
 import subprocess
 import sys
 import tempfile
 import typing
 import unittest
+import unittest.mock
+import zlib
 from importlib import util
 from pathlib import Path
 
 import numpy as np
 import shapes
 import spherical_param as sp
+from spherical_param import _core
 
 SOURCE = Path(__file__).resolve().parents[2]
 EXAMPLE = SOURCE / "src/python/examples/mesh_points.py"
@@ -36,7 +43,7 @@ class Documentation(unittest.TestCase):
                     self.assertEqual(set(typing.get_type_hints(thing)), parameters | {"return"})
 
     def test_help_names_every_parameter_and_what_is_raised(self):
-        for function in (sp.reconstruct, sp.sphere_map, sp.remesh, sp.find_outliers):
+        for function in (sp.reconstruct, sp.sphere_map, sp.remesh, sp.morph, sp.find_outliers):
             text = inspect.getdoc(function)
             for parameter in inspect.signature(function).parameters:
                 self.assertRegex(text, rf"(?m)(^|[ ,;]){parameter}( :|, |$)", function.__name__)
@@ -44,9 +51,15 @@ class Documentation(unittest.TestCase):
 
     def test_type_checkers_read_the_signature_of_reconstruct(self):
         stub = ast.parse((Path(sp.__file__).parent / "_reconstruct.pyi").read_text())
-        (function,) = (node for node in stub.body if isinstance(node, ast.FunctionDef))
-        names = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
-        self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
+        overloads = [node for node in stub.body if isinstance(node, ast.FunctionDef)]
+        self.assertEqual(len(overloads), 2)
+        for function in overloads:
+            names = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
+            self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
+
+    def test_help_explains_the_marks_of_triangles(self):
+        for mark in sp.TriangleMark:
+            self.assertIn(f"TriangleMark.{mark.name}`` ({mark.value})", inspect.getdoc(sp.Diagnosis))
 
     def test_there_is_one_version(self):
         cmake = (SOURCE / "CMakeLists.txt").read_text()
@@ -59,7 +72,8 @@ class Documentation(unittest.TestCase):
 class Files(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.mesh = sp.reconstruct(shapes.bumpy(300), smoothing=1)
+        points = shapes.bumpy(300)
+        cls.mesh = sp.reconstruct(shapes.record(points, shapes.colors_of(points)), smoothing=1)
         cls.new = sp.remesh(cls.mesh, points=162)
         cls.even = sp.remesh(cls.mesh, points=100, grid="even")
 
@@ -68,74 +82,168 @@ class Files(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def test_the_example_writes_a_ply(self):
+    def test_the_example_writes_a_mesh_and_its_page(self):
         points = shapes.bumpy(300)
         np.savetxt(self.folder / "scan.xyz", points, fmt="%.17g")
         run = subprocess.run(
-            [sys.executable, EXAMPLE, "scan.xyz", "mesh.ply"],
+            [sys.executable, EXAMPLE, "scan.xyz", "mesh.ply", "page.html"],
             cwd=self.folder, capture_output=True, text=True, check=False,
         )  # fmt: skip
-        self.assertEqual((run.returncode, run.stderr), (0, ""))
-        self.assertIn("300 vertices, 596 triangles", run.stdout)
-        self.assertIn("Looks like a closed genus-0 surface.", run.stdout)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("A sound mesh. 300 vertices, 596 triangles", run.stdout)
         vertices, triangles = shapes.read_ply(self.folder / "mesh.ply")
-        np.testing.assert_array_equal(vertices, points)
+        np.testing.assert_array_equal(
+            shapes.columns(vertices, "x", "y", "z"), points.astype(np.float32)
+        )
         shapes.check_closed(self, 300, triangles)
+        self.assertIn("</html>", (self.folder / "page.html").read_text(encoding="utf-8"))
 
-    def test_ply_has_smoothed_points_or_normals_in_double_precision(self):
-        path = self.folder / "m.ply"
-        for mesh, columns in (
-            (self.mesh, [self.mesh.smoothed]),
-            (self.new, [self.new.vertices, self.new.normals]),
-            (self.even, [self.even.vertices, self.even.normals]),
+    def test_files_have_points_normals_and_colors(self):
+        for mesh, points in (
+            (self.mesh, self.mesh.smoothed),
+            (self.new, self.new.vertices),
+            (self.even, self.even.vertices),
         ):
-            mesh.write(str(path))
-            vertices, triangles = shapes.read_ply(path)
-            np.testing.assert_array_equal(vertices, np.hstack(columns))
-            np.testing.assert_array_equal(triangles, mesh.triangles)
+            mesh.write(self.folder / "m.ply")
+            if len(mesh.triangles):
+                vertices, triangles = shapes.read_ply(self.folder / "m.ply")
+                np.testing.assert_array_equal(triangles, mesh.triangles)
+                np.testing.assert_array_equal(
+                    shapes.columns(vertices, "red", "green", "blue"), mesh.colors
+                )
+            for format_ in ("ply", "obj", "pcd")[: 3 if len(mesh.triangles) == 0 else 2]:
+                mesh.write(str(self.folder / f"m.{format_}"))
+                cloud = sp.reconstruct(self.folder / f"m.{format_}")
+                np.testing.assert_allclose(cloud.vertices, points.astype(np.float32), atol=1e-8)
+                np.testing.assert_allclose(cloud.normals, mesh.normals, atol=1e-6)
+                np.testing.assert_array_equal(cloud.colors, mesh.colors)
+        far = sp.reconstruct(shapes.bumpy(50) + 1e7)
+        far.write(self.folder / "far.ply")
+        vertices, _ = shapes.read_ply(self.folder / "far.ply")
+        np.testing.assert_array_equal(shapes.columns(vertices, "x", "y", "z"), far.vertices)
 
-    def test_what_cannot_be_written_leaves_nothing(self):
-        for name in ("mesh.docx", "mesh"):
-            with self.assertRaisesRegex(sp.InvalidInput, "; give one ending in .ply"):
+    def test_every_format_is_written_whole_or_not_at_all(self):
+        for name in ("mesh.ply", "mesh.obj", "mesh.vtk", "mesh.stl", "mesh.off"):
+            self.mesh.write(self.folder / name)
+            self.assertGreater((self.folder / name).stat().st_size, 3 * 4 * 300)
+            (self.folder / name).unlink()
+        for name in ("mesh.docx", "mesh", "mesh.pcd"):
+            with self.assertRaisesRegex(sp.InvalidInput, "; use one of .ply"):
                 self.mesh.write(self.folder / name)
         with self.assertRaises(OSError):
             self.mesh.write(self.folder / "missing" / "mesh.ply")
         self.assertEqual([*self.folder.iterdir()], [])
 
-    @unittest.skipUnless(util.find_spec("meshio"), "meshio is not installed")
-    def test_other_formats_are_written_by_meshio(self):
-        import meshio
-
-        self.mesh.write(self.folder / "mesh.vtk")
-        mesh = meshio.read(self.folder / "mesh.vtk")
-        np.testing.assert_array_equal(mesh.points, self.mesh.smoothed)
-        np.testing.assert_array_equal(mesh.cells_dict["triangle"], self.mesh.triangles)
-        self.assertEqual([file.name for file in self.folder.iterdir()], ["mesh.vtk"])
-
 
 class Conversions(unittest.TestCase):
     def check(self, library, vertices, others):
-        mesh = sp.reconstruct(shapes.ellipsoid(300))
+        points = shapes.ellipsoid(300)
+        mesh = sp.reconstruct(shapes.record(points, shapes.colors_of(points)))
         source = sp.remesh(mesh, points=162)
         if util.find_spec(library) is None:
             with self.assertRaises(ImportError):
                 getattr(source, f"to_{library}")()
             return
-        other = getattr(source, f"to_{library}")()
-        triangles, normals = others(other)
-        np.testing.assert_array_equal(getattr(other, vertices), source.vertices)
-        np.testing.assert_array_equal(triangles, source.triangles)
-        np.testing.assert_allclose(normals, source.normals, atol=1e-12)
-        self.assertEqual(len(getattr(getattr(mesh, f"to_{library}")(), vertices)), 300)
+        for each in (mesh, source):
+            other = getattr(each, f"to_{library}")()
+            triangles, normals, colors = others(other)
+            np.testing.assert_array_equal(getattr(other, vertices), each.vertices)
+            np.testing.assert_array_equal(triangles, each.triangles)
+            np.testing.assert_allclose(normals, each.normals, atol=1e-12)
+            np.testing.assert_allclose(colors, each.colors, atol=1e-9)
 
     def test_meshio_has_the_same_mesh(self):
-        self.check("meshio", "points", lambda mesh: (mesh.cells[0].data, mesh.point_data["normals"]))
+        self.check("meshio", "points", lambda mesh: (
+            mesh.cells[0].data, mesh.point_data["normals"], mesh.point_data["colors"]))  # fmt: skip
 
     def test_trimesh_has_the_same_mesh(self):
-        self.check("trimesh", "vertices", lambda mesh: (mesh.faces, mesh.vertex_normals))
+        self.check("trimesh", "vertices", lambda mesh: (
+            mesh.faces, mesh.vertex_normals, mesh.visual.vertex_colors[:, :3]))  # fmt: skip
 
     def test_open3d_has_the_same_mesh(self):
-        self.check("open3d", "vertices", lambda mesh: (mesh.triangles, mesh.vertex_normals))
+        self.check("open3d", "vertices", lambda mesh: (
+            mesh.triangles, mesh.vertex_normals,
+            255 * np.asarray(mesh.vertex_colors)))  # fmt: skip
+
+
+class Views(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.page = Path(folder.name, "page.html")
+
+    def data(self):
+        """The data of the page, as its script unpacks them."""
+        element = re.search(r'id="data">([^<]*)<', self.page.read_text(encoding="utf-8"))
+        return json.loads(zlib.decompress(base64.b64decode(element[1])))
+
+    @unittest.skipUnless(_core.has_report, "three.js was not there when the module was built")
+    def test_the_report_is_on_the_result_and_shows_what_it_does_not_hold(self):
+        points = shapes.bumpy(300)
+        cloud = np.concatenate([points, shapes.bumpy(100) + [9, 0, 0], [[0, 0, 99]]])
+        mesh = sp.reconstruct(cloud, parts="largest", outliers="auto", k=12)
+        self.assertIsNone(mesh.diagnosis.triangle_marks)
+        mesh.report(self.page)
+        data = self.data()
+        self.assertEqual(data["report"]["verdict"], mesh.verdict)
+        self.assertEqual(data["report"]["measures"]["volume"], mesh.measures.volume)
+        self.assertEqual((data["report"]["points"], data["report"]["vertices"]), (401, 300))
+        self.assertEqual(data["report"]["outliers"]["indices"], [400])
+        self.assertEqual(data["report"]["left_out"], [*range(300, 400)])
+        self.assertEqual(data["report"]["options"]["parts"], "largest")
+        self.assertGreater(len(data["frames"]), 2)
+        self.assertEqual(
+            data["command"],
+            "spherical_param.reconstruct(points, k=12, outliers='auto', parts='largest', "
+            "min_points=50)",
+        )
+        embedded = re.fullmatch(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>', mesh._repr_html_())
+        self.assertIn('id="data"', html.unescape(embedded[1]))
+
+    def test_reports_of_other_names_or_changed_points_are_refused(self):
+        points = shapes.bumpy(50)
+        mesh = sp.reconstruct(points)
+        with self.assertRaisesRegex(sp.InvalidInput, "; give one with .html"):
+            mesh.report("page.txt")
+        with self.assertRaises(OSError):
+            mesh.report(self.page.parent / "missing" / "page.html")
+        points += 1
+        with self.assertRaisesRegex(sp.InvalidInput, "points were changed"):
+            mesh.report(self.page)
+
+    def show(self, mesh, environment):
+        with unittest.mock.patch.dict(os.environ, environment):
+            for name in {"DISPLAY", "WAYLAND_DISPLAY"} - set(environment):
+                os.environ.pop(name, None)
+            mesh.show()
+
+    @unittest.skipUnless(util.find_spec("matplotlib"), "matplotlib is not installed")
+    def test_show_draws_by_matplotlib_without_a_display(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+
+        points = shapes.bumpy(100)
+        mesh = sp.reconstruct(shapes.record(points, shapes.colors_of(points)))
+        for each in (mesh, sp.remesh(mesh, points=50, grid="even")):
+            self.show(each, {"MPLBACKEND": "Agg"})
+            pyplot.gcf().canvas.draw()
+            (drawn,) = pyplot.gcf().axes[0].collections
+            colors = drawn.get_facecolor()
+            self.assertEqual(len(colors), len(each.triangles) or 50)
+            self.assertGreater(len(np.unique(colors, axis=0)), 10)
+            pyplot.close("all")
+
+    def test_show_opens_a_window_of_open3d_or_pyvista_with_a_display(self):
+        mesh, shown = sp.reconstruct(shapes.bumpy(50)), unittest.mock.MagicMock()
+        for libraries, call in (
+            ({"open3d": shown, "pyvista": None}, shown.visualization.draw_geometries),
+            ({"open3d": None, "pyvista": shown}, shown.PolyData().plot),
+        ):
+            with unittest.mock.patch.dict(sys.modules, libraries):
+                self.show(mesh, {"DISPLAY": ":0"})
+            call.assert_called_once()
 
 
 if __name__ == "__main__":

@@ -12,7 +12,13 @@ import spherical_param as sp
 from spherical_param import _core
 
 #: Keywords that are no rows of the table, and wrong values of them.
-OTHERS = {"details": (1, "yes", None), "progress": (1, "print")}
+OTHERS = {
+    "details": (1, "yes", None),
+    "parts": ("most", 1, None),
+    "min_points": (3, 1.5, None),
+    "outliers": ("most", -1, 1001),
+    "progress": (1, "print"),
+}
 
 
 class Mesh(unittest.TestCase):
@@ -86,7 +92,6 @@ class Mesh(unittest.TestCase):
         np.testing.assert_array_equal(dirty[mesh.input_of_vertex], points)
         np.testing.assert_array_equal(mesh.vertex_of_input[303:], np.arange(50))
         np.testing.assert_array_equal(mesh.triangles, sp.reconstruct(points).triangles)
-        self.assertIn("50 points repeat", mesh.warnings[0])
 
     def test_results_can_be_pickled_and_shown(self):
         mesh = sp.reconstruct(shapes.ellipsoid(300))
@@ -164,6 +169,7 @@ class Options(unittest.TestCase):
         self.assertNotEqual(run(graph="knn", k=5).graph.edges, run(graph="knn").graph.edges)
         self.assertFalse(np.array_equal(run(exponent=4).sphere, usual.sphere))
         self.assertEqual(usual.embedding.stop_reason, "unfinished")
+        self.assertTrue(run(time_limit=0).optimization.is_out_of_time)
         solved = run(tolerance=1e-9)
         self.assertTrue(solved.embedding.converged)
         self.assertLessEqual(solved.embedding.residuals[-1], 1e-9)
@@ -212,11 +218,15 @@ class Options(unittest.TestCase):
                         sp.reconstruct(self.points, **{name: value})
 
 
+class Unknown:
+    points = [[0.0, 0.0, 0.0]]
+
+
 class Input(unittest.TestCase):
     def test_points_that_cannot_be_meshed_are_refused_with_cause_and_remedy(self):
         self.assertTrue(issubclass(sp.InvalidInput, ValueError))
         points = shapes.ellipsoid(50)
-        record = np.zeros(50, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4")])
+        record = np.zeros(50, dtype=[("x", "f4"), ("y", "f4"), ("w", "f4")])
         for wrong, message in (
             (points.T, r"shape \(3, 50\).*; it looks transposed, give its \.T"),
             (points.ravel(), r"shape \(150,\).*; give an array of shape"),
@@ -226,7 +236,8 @@ class Input(unittest.TestCase):
             (points.astype(complex), r"complex128; give"),
             (points.astype(str), r"<U\d+; give"),
             (points > 0, r"bool; give"),
-            (record, r"fields x, y, z; give"),
+            (record, r"fields x, y, w; give one with x, y and z"),
+            (Unknown(), r"a Unknown, which is not known; pass np.asarray\(pcd.points\)"),
             ([[1.0, 2.0, 3.0], [1.0]], r"cannot be made an array.*; give"),
             (None, r"; give"),
             (points[:0], r"4 distinct finite points are needed, but there are 0"),
@@ -272,6 +283,60 @@ class Outliers(unittest.TestCase):
         for wrong in ({"min_points": 3}, {"threads": -1}):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
                 sp.find_parts(cloud, **wrong)
+
+
+class Parts(unittest.TestCase):
+    """Rows 1 to 200 are small, 201 to 600 large, 601 is stray, 0 is not finite."""
+
+    large, small = shapes.ellipsoid(400), shapes.ellipsoid(200) + [9.0, 0.0, 0.0]
+    cloud = np.concatenate([[[np.nan] * 3], small, large, [[50.0, 0.0, 0.0]]])
+
+    def check(self, mesh, first, points):
+        alone = sp.reconstruct(points)
+        self.assertEqual(mesh.triangles.tobytes(), alone.triangles.tobytes())
+        np.testing.assert_array_equal(mesh.input_of_vertex, np.arange(first, first + len(points)))
+        expected = np.full(len(self.cloud), -1)
+        expected[mesh.input_of_vertex] = np.arange(len(points))
+        np.testing.assert_array_equal(mesh.vertex_of_input, expected)
+        self.assertEqual((mesh.ignored, len(mesh.outliers)), (1, 0))
+
+    def test_parts_are_meshed_each_or_the_largest_and_refer_to_the_whole_input(self):
+        both = sp.reconstruct(self.cloud, parts="each")
+        self.assertIsInstance(both, tuple)
+        self.check(both[0], 201, self.large)
+        self.check(both[1], 1, self.small)
+        self.check(sp.reconstruct(self.cloud, parts="largest"), 201, self.large)
+        (one,) = sp.reconstruct(self.cloud, parts="each", min_points=201)
+        self.check(one, 201, self.large)
+        with self.assertRaisesRegex(sp.InvalidInput, "no part has 500 points; give a lower min_p"):
+            sp.reconstruct(self.cloud, parts="largest", min_points=500)
+
+    def test_outliers_are_left_out(self):
+        cloud = np.delete(self.cloud, np.s_[1:201], axis=0)
+        self.assertEqual(len(sp.reconstruct(cloud).outliers), 1)
+        for choice in ("auto", 8):
+            mesh = sp.reconstruct(cloud, outliers=choice)
+            self.assertEqual(mesh.triangles.tobytes(), sp.reconstruct(self.large).triangles.tobytes())
+            np.testing.assert_array_equal(np.flatnonzero(mesh.vertex_of_input < 0), [0, 401])
+
+    def test_a_part_that_cannot_be_meshed_is_a_warning(self):
+        side = np.arange(10.0)
+        flat = np.stack(np.meshgrid(side, side, [50.0]), axis=-1).reshape(-1, 3) / 10
+        cloud = np.concatenate([self.large, flat])
+        with self.assertWarnsRegex(UserWarning, r"part 2 of 2 \(100 points\) cannot be meshed"):
+            (mesh,) = sp.reconstruct(cloud, parts="each")
+        self.assertEqual(len(mesh.vertices), 400)
+
+    def test_findings_can_be_pasted(self):
+        mesh = sp.reconstruct(np.concatenate([self.small[:100], self.large]))
+        finding = next(finding for finding in mesh.findings if finding.option == "parts")
+        self.assertEqual(
+            str(finding), '2 separate parts (100 and 400 points): try parts="each"'
+        )
+        for value, text in (("1e-8", "1e-8"), ("5", "5"), ("auto", '"auto"')):
+            finding = sp.Finding("a text", "option", value, False)
+            self.assertEqual(str(finding), f"a text: try option={text}")
+        self.assertEqual(str(sp.Finding("a text", "", "", False)), "a text")
 
 
 if __name__ == "__main__":

@@ -120,11 +120,6 @@ CommandLine::CommandLine(const std::vector<std::string>& words,
   refuseUnknownOptions(words, others_, known);
 }
 
-std::string CommandLine::value(const std::string& option, const std::string& fallback) const {
-  const auto found = values_.find(option);
-  return found == values_.end() ? fallback : found->second;
-}
-
 std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_line,
                                                    const std::string& tool) {
   const std::vector<std::string>& files = command_line.others();

@@ -27,7 +27,10 @@ public:
   /// Whether the option was given.
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   /// The option's value, or the fallback if it was not given.
-  std::string value(const std::string& option, const std::string& fallback) const;
+  std::string value(const std::string& option, const std::string& fallback) const {
+    const auto found = values_.find(option);
+    return found == values_.end() ? fallback : found->second;
+  }
   /// All options that were given, with their values; those of switches are empty.
   const std::map<std::string, std::string>& values() const { return values_; }
   /// The words that belong to no option, in their order.

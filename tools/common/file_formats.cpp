@@ -20,7 +20,7 @@ bool isUsable(const FormatRow& row, FileUse use) {
   return false;
 }
 
-std::string nameOf(FileUse use) {
+std::string purposeOf(FileUse use) {
   return use == FileUse::ReadCloud    ? "points are read from"
          : use == FileUse::WriteCloud ? "points are written to"
                                       : "meshes are written to";
@@ -53,7 +53,7 @@ FileFormat requireFormat(const std::string& path, FileUse use, const std::string
   if (format != nullptr && isUsable(*format, use)) {
     return format;
   }
-  throw UsageError(inQuotes(path) + " has an extension that no " + nameOf(use),
+  throw UsageError(inQuotes(path) + " has an extension that no " + purposeOf(use),
                    format != nullptr && format->extension == ".vtk"
                        ? "convert it to .pcd with PCL's tool: pcl_vtk2pcd in.vtk out.pcd"
                        : "use one of " + extensionsFor(use) + others);

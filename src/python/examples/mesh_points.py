@@ -1,10 +1,9 @@
-"""Meshes the points of a text file: mesh_points.py scan.xyz mesh.ply"""
+"""Meshes the points of a file: mesh_points.py scan.pcd mesh.ply page.html"""
 import sys
 
-import numpy as np
 import spherical_param
 
-points = np.loadtxt(sys.argv[1], usecols=(0, 1, 2))  # any array of shape (n, 3) will do
-mesh = spherical_param.reconstruct(points)
+mesh = spherical_param.reconstruct(sys.argv[1], progress=True)  # or an array of shape (n, 3)
 print(mesh, *mesh.findings, sep="\n")
-mesh.write(sys.argv[2])  # .ply by itself, other formats by meshio, trimesh or Open3D
+mesh.write(sys.argv[2])
+mesh.report(sys.argv[3])

@@ -11,8 +11,8 @@
 triangle mesh through every point, and a map to the sphere; with ``surface="open"`` the openings of
 the scan stay open. ``sphere_map`` makes that map one to one
 and of low distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it
-out in the plane. ``find_outliers`` finds points to leave out before, ``find_parts`` the surfaces of
-a cloud.
+out in the plane, ``morph`` changes it into another. ``find_outliers`` finds points to leave out
+before, ``find_parts`` the surfaces of a cloud.
 
 Arrays are NumPy's: points (n, 3) float64, triangles (m, 3) int32, counter-clockwise seen from
 outside. All functions let other Python threads run while they work, may be called from several
@@ -35,20 +35,21 @@ from ._maps import (
     sphere_map,
     texture_coordinates,
 )
+from ._morph import ImpossiblePair, Morph, MorphFrame, morph
 from ._outliers import Outliers, find_outliers
 from ._parts import find_parts
 from ._reconstruct import reconstruct
 from ._results import (
     Bridge,
     Diagnosis,
-    Finding,
     Embedding,
     EmbeddingLevel,
+    FilledHole,
+    Finding,
     Graph,
     Handle,
     History,
     HistoryFrame,
-    FilledHole,
     Measures,
     Optimization,
     OptimizationPhase,
@@ -56,6 +57,7 @@ from ._results import (
     Result,
     Smoothing,
     Topology,
+    TriangleMark,
     Triangulation,
 )
 
@@ -64,17 +66,20 @@ __all__ = [
     "Cancelled",
     "ComputeError",
     "Diagnosis",
-    "Finding",
     "Distortion",
     "Embedding",
     "EmbeddingLevel",
+    "FilledHole",
+    "Finding",
     "Graph",
     "Handle",
     "History",
     "HistoryFrame",
+    "ImpossiblePair",
     "InvalidInput",
-    "FilledHole",
     "Measures",
+    "Morph",
+    "MorphFrame",
     "Optimization",
     "OptimizationPhase",
     "Outliers",
@@ -87,11 +92,13 @@ __all__ = [
     "Statistics",
     "TextureCoordinates",
     "Topology",
+    "TriangleMark",
     "Triangulation",
     "__version__",
     "find_outliers",
     "find_parts",
     "measure_map_distortion",
+    "morph",
     "reconstruct",
     "remesh",
     "sphere_map",

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import operator
 import os
-from typing import Any, Callable, Optional, SupportsFloat, SupportsIndex
+from typing import Any, SupportsFloat, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import InvalidInput
 
-#: Called with (stage, fraction); False ends the work.
-ProgressFunction = Callable[[str, float], object]
-
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
+ByteArray = NDArray[np.uint8]
 
 _openmp_used = False
 _openmp_lost = False
@@ -61,11 +59,12 @@ def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) ->
             array = array.astype(np.float64)
         except (TypeError, ValueError):
             pass
-    if array.dtype.names is not None:
-        raise InvalidInput(
-            f"{name} is a structured array with the fields {', '.join(array.dtype.names)}; give "
-            "numpy.lib.recfunctions.structured_to_unstructured(array[['x', 'y', 'z']])"
-        )
+    for attribute in ("points", "vertices"):
+        if array.dtype.kind == "O" and hasattr(value, attribute):
+            raise InvalidInput(
+                f"{name} is a {type(value).__name__}, which is not known; pass "
+                f"np.asarray(pcd.{attribute})"
+            )
     if array.dtype.kind not in kinds:
         raise InvalidInput(f"{name} is an array of {array.dtype}; give {what} of {remedy}")
     if array.ndim != 2 or array.shape[1] != 3:
@@ -139,20 +138,3 @@ def choice(name: str, value: str, choices: tuple[str, ...]) -> str:
         known = ", ".join(repr(known) for known in choices)
         raise InvalidInput(f"{name} = {value!r} is not known; use one of {known}")
     return value
-
-
-def progress_function(progress: Optional[ProgressFunction]) -> Optional[ProgressFunction]:
-    """What the core may call: it ends its work for False alone."""
-    if progress is None:
-        return None
-    if not callable(progress):
-        raise InvalidInput(
-            f"progress = {progress!r} cannot be called; give a function of (stage, fraction)"
-        )
-    listener = progress
-
-    def report(stage: str, fraction: float) -> bool:
-        answer = listener(stage, fraction)
-        return not (isinstance(answer, (bool, np.bool_)) and not answer)
-
-    return report

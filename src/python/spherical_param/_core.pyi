@@ -6,13 +6,52 @@ import numpy as np
 from numpy.typing import NDArray
 
 __version__: str
+has_report: bool
 
 def option_table() -> list[dict[str, Any]]: ...
 def reconstruct(
     points: NDArray[np.float64],
+    rows: Optional[NDArray[np.int32]],
     options: dict[str, object],
     *,
     details: bool,
+    progress: Optional[Callable[[str, float], object]],
+) -> dict[str, Any]: ...
+def read_cloud(
+    path: bytes,
+    *,
+    progress: Optional[Callable[[str, float], object]],
+) -> dict[str, Any]: ...
+def write_mesh(
+    path: bytes,
+    points: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    normals: Optional[NDArray[np.float64]],
+    colors: Optional[NDArray[np.uint8]],
+) -> None: ...
+def write_report(
+    path: bytes,
+    points: NDArray[np.float64],
+    colors: Optional[NDArray[np.uint8]],
+    rows: Optional[NDArray[np.int32]],
+    outliers: Optional[NDArray[np.int32]],
+    left_out: Optional[NDArray[np.int32]],
+    keywords: dict[str, object],
+    *,
+    input: str,
+    command: str,
+    progress: Optional[Callable[[str, float], object]],
+) -> None: ...
+def morph(
+    first: tuple[Any, ...],
+    second: tuple[Any, ...],
+    *,
+    pairs: NDArray[np.int32],
+    align: bool,
+    connectivity: str,
+    samples: int,
+    fit: str,
+    threads: int,
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def find_outliers(

@@ -1,15 +1,34 @@
-"""Meshes for other libraries, and into files."""
+"""Meshes for other libraries, into files, and to look at."""
 
 from __future__ import annotations
 
 import os
-import tempfile
+import sys
 from typing import Any, Optional, Union
 
 import numpy as np
 
-from ._arguments import FloatArray, IndexArray
-from ._errors import InvalidInput
+from . import _core
+from ._arguments import ByteArray, FloatArray, IndexArray
+
+
+def vertex_normals(points: FloatArray, triangles: IndexArray) -> FloatArray:
+    """Unit normals: those of the triangles, weighted by their angles; 0 where all are degenerate."""
+    sums = np.zeros_like(points)
+    corners = points[triangles]
+    for k in range(3):
+        a = corners[:, (k + 1) % 3] - corners[:, k]
+        b = corners[:, (k + 2) % 3] - corners[:, k]
+        normals = np.cross(a, b)
+        lengths = np.linalg.norm(normals, axis=1)
+        angles = np.arctan2(lengths, (a * b).sum(axis=1))
+        weights = np.divide(angles, lengths, out=np.zeros_like(angles), where=lengths > 0)
+        for axis in range(3):
+            sums[:, axis] += np.bincount(
+                triangles[:, k], weights=weights * normals[:, axis], minlength=len(points)
+            )
+    lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+    return np.divide(sums, lengths, out=np.zeros_like(sums), where=lengths > 0)
 
 
 class MeshExport:
@@ -22,8 +41,11 @@ class MeshExport:
         """The points that the mesh has elsewhere."""
         return self.vertices
 
-    def _export_normals(self) -> Optional[FloatArray]:
-        return None
+    def _export_normals(self) -> FloatArray:
+        raise NotImplementedError
+
+    def _export_colors(self) -> Optional[ByteArray]:
+        raise NotImplementedError
 
     def to_trimesh(self) -> Any:
         """The mesh as a ``trimesh.Trimesh``, vertices and triangles as they are.
@@ -36,6 +58,7 @@ class MeshExport:
             self._export_points(),
             self.triangles,
             vertex_normals=self._export_normals(),
+            vertex_colors=self._export_colors(),
             process=False,
         )
 
@@ -47,93 +70,82 @@ class MeshExport:
             open3d.utility.Vector3dVector(self._export_points()),
             open3d.utility.Vector3iVector(self.triangles),
         )
-        normals = self._export_normals()
-        if normals is not None:
-            mesh.vertex_normals = open3d.utility.Vector3dVector(normals)
+        mesh.vertex_normals = open3d.utility.Vector3dVector(self._export_normals())
+        colors = self._export_colors()
+        if colors is not None:
+            mesh.vertex_colors = open3d.utility.Vector3dVector(colors / 255)
         return mesh
 
     def to_meshio(self) -> Any:
         """The mesh as a ``meshio.Mesh``. Raises ImportError without meshio."""
         import meshio
 
-        normals = self._export_normals()
+        data: dict[str, Any] = {"normals": self._export_normals()}
+        colors = self._export_colors()
+        if colors is not None:
+            data["colors"] = colors
         return meshio.Mesh(
-            self._export_points(),
-            [("triangle", self.triangles)],
-            point_data={} if normals is None else {"normals": normals},
+            self._export_points(), [("triangle", self.triangles)], point_data=data
         )
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Write the mesh into a file.
+        """Write the mesh into a file: .ply, .obj, .vtk, .stl or .off, with what it has room for.
 
-        A .ply is written by the package itself, binary and in double precision; other formats are
-        left to meshio, trimesh or Open3D, the first of them that is installed. Under the given name
-        the file is whole, or not there.
+        Points without triangles go to .pcd, .ply, .obj, .vtk, .xyz or .txt. Coordinates are in
+        single precision, or in double where that would move points by more than a millionth of
+        their extent (but for .stl). Under the given name the file is whole, or not there.
 
         Raises
         ------
         InvalidInput
-            The format is not .ply, and none of these libraries is installed, or that one does not
-            know it.
+            There is no such format.
         OSError
             The file cannot be written.
         """
-        name = os.fspath(path)
-        folder, base = os.path.split(os.path.abspath(name))
-        extension = os.path.splitext(base)[1].lower()
-        # Of the same extension: other libraries take the format from it.
-        with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as scratch:
-            part = os.path.join(scratch, "mesh" + extension)
-            if extension == ".ply":
-                self._write_ply(part)
-            else:
-                self._write_by_others(part, extension)
-            os.replace(part, name)
-
-    def _write_ply(self, path: str) -> None:
-        columns = [self._export_points()]
-        names = ["x", "y", "z"]
-        normals = self._export_normals()
-        if normals is not None:
-            columns.append(normals)
-            names += ["nx", "ny", "nz"]
-        header = "ply\nformat binary_little_endian 1.0\ncomment spherical_param\n"
-        header += f"element vertex {len(self.vertices)}\n"
-        header += "".join(f"property double {name}\n" for name in names)
-        header += f"element face {len(self.triangles)}\n"
-        header += "property list uchar int vertex_indices\nend_header\n"
-        faces = np.empty(len(self.triangles), dtype=[("count", "u1"), ("vertices", "<i4", (3,))])
-        faces["count"] = 3
-        faces["vertices"] = self.triangles
-        with open(path, "wb") as file:
-            file.write(header.encode("ascii"))
-            file.write(np.hstack(columns).astype("<f8").tobytes())
-            file.write(faces.tobytes())
-
-    def _write_by_others(self, path: str, extension: str) -> None:
-        failures = []
-        for library in ("meshio", "trimesh", "open3d"):
-            try:
-                if library == "meshio":
-                    self.to_meshio().write(path)
-                elif library == "trimesh":
-                    self.to_trimesh().export(path)
-                else:
-                    import open3d
-
-                    open3d.io.write_triangle_mesh(path, self.to_open3d())
-            except ImportError:
-                continue
-            except OSError:
-                raise
-            except Exception as error:  # each has its own
-                failures.append(f"{library}: {error}")
-                continue
-            if os.path.exists(path):
-                return
-            failures.append(f"{library} wrote nothing")
-        reason = "; ".join(failures) or "meshio, trimesh and Open3D are not installed"
-        raise InvalidInput(
-            f"a file {extension or 'without an extension'} cannot be written ({reason}); give one "
-            "ending in .ply, or install meshio"
+        _core.write_mesh(
+            os.fsencode(path),
+            np.ascontiguousarray(self._export_points()),
+            np.ascontiguousarray(self.triangles),
+            np.ascontiguousarray(self._export_normals()),
+            self._export_colors(),
         )
+
+    def show(self) -> None:
+        """Show the mesh in a window of Open3D or PyVista, or else by matplotlib.
+
+        The first of them that is installed; without a display, matplotlib, which also draws in
+        notebooks, and takes its time from 100,000 triangles on. Raises ImportError without any.
+        """
+        if sys.platform in ("win32", "darwin") or {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
+            try:
+                import open3d
+            except ImportError:
+                pass
+            else:
+                open3d.visualization.draw_geometries([self.to_open3d()])
+                return
+            try:
+                import pyvista
+            except ImportError:
+                pass
+            else:
+                faces = np.insert(self.triangles, 0, 3, axis=1)
+                pyvista.PolyData(self._export_points(), faces.ravel()).plot(
+                    scalars=self._export_colors(), rgb=True
+                )
+                return
+        self._plot()
+
+    def _plot(self) -> None:
+        import matplotlib.pyplot as pyplot
+
+        points, colors = self._export_points(), self._export_colors()
+        axes: Any = pyplot.figure().add_subplot(projection="3d")
+        axes.set_box_aspect(np.ptp(points, axis=0) + 1e-300)
+        if len(self.triangles):
+            surface = axes.plot_trisurf(*points.T, triangles=self.triangles, color="lightsteelblue")
+            if colors is not None:
+                surface.set_facecolor(colors[self.triangles].mean(axis=1) / 255)
+        else:
+            axes.scatter(*points.T, s=1, c=None if colors is None else colors / 255)
+        pyplot.show()

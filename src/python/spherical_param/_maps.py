@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union, get_args
 
 import numpy as np
@@ -10,9 +11,10 @@ from numpy.typing import ArrayLike
 
 from . import _arguments as arguments
 from . import _core
-from ._arguments import FloatArray, IndexArray, ProgressFunction
+from ._arguments import ByteArray, FloatArray, IndexArray
 from ._errors import InvalidInput
 from ._files import MeshExport
+from ._progress import Progress, listening
 from ._results import Result
 
 GridName = Literal["icosahedral", "octahedral", "even"]
@@ -61,6 +63,15 @@ class SphereMap:
     distortion: Distortion  #: of the map
     before: Distortion  #: of the embedding that it was made from
     levels: tuple[SphereMapLevel, ...]  #: finest first
+    colors: Optional[ByteArray] = None  #: (v, 3), if the points of the mesh had some
+
+    def interpolate(
+        self, values: ArrayLike, triangles: IndexArray, weights: FloatArray
+    ) -> FloatArray:
+        """Values of the vertices, (v,) or (v, c), at places in ``triangles``: (w,) or (w, c)."""
+        corners = np.asarray(values, dtype=np.float64)[self.triangles[triangles]]
+        places: FloatArray = np.einsum("ij...,ij->i...", corners, weights)
+        return places
 
     def __repr__(self) -> str:
         return (
@@ -112,7 +123,7 @@ def sphere_map(
     area_weight: SupportsFloat = 0.85,
     sweeps: SupportsIndex = 15,
     threads: SupportsIndex = 0,
-    progress: Optional[ProgressFunction] = None,
+    progress: Progress = None,
 ) -> SphereMap:
     """Make a map of low distortion from a mesh to the sphere: one to one, no triangle flipped.
 
@@ -133,7 +144,7 @@ def sphere_map(
         Sweeps of each level, at most; 0: the map is only made valid.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
-    progress : callable(stage, fraction)
+    progress : True, or callable(stage, fraction)
         As for ``reconstruct``; the stage is "map".
 
     Raises
@@ -143,15 +154,16 @@ def sphere_map(
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt
     """
     points, indices, start = _mesh(mesh, triangles, sphere)
-    fields = _core.sphere_map(
-        points,
-        indices,
-        start,
-        area_weight=arguments.real("area_weight", area_weight),
-        sweeps=arguments.integer("sweeps", sweeps),
-        threads=arguments.thread_count(threads),
-        progress=arguments.progress_function(progress),
-    )
+    with listening(progress) as listener:
+        fields = _core.sphere_map(
+            points,
+            indices,
+            start,
+            area_weight=arguments.real("area_weight", area_weight),
+            sweeps=arguments.integer("sweeps", sweeps),
+            threads=arguments.thread_count(threads),
+            progress=listener,
+        )
     return SphereMap(
         vertices=points.copy(),
         triangles=indices.copy(),
@@ -160,6 +172,7 @@ def sphere_map(
         distortion=_distortion(fields["distortion"]),
         before=_distortion(fields["before"]),
         levels=tuple(SphereMapLevel(**level) for level in fields["levels"]),
+        colors=mesh.colors if isinstance(mesh, (Result, SphereMap)) else None,
     )
 
 
@@ -209,16 +222,26 @@ class Remeshed(MeshExport):
     source_weights: FloatArray  #: (w, 3) barycentric coordinates in it
     map: SphereMap  #: the surface that was sampled, with its map
 
+    @cached_property
+    def colors(self) -> Optional[ByteArray]:
+        """(w, 3), if the points of the mesh had some."""
+        if self.map.colors is None:
+            return None
+        return np.rint(self.transfer(self.map.colors)).astype(np.uint8)
+
     def _export_normals(self) -> FloatArray:
         return self.normals
 
+    def _export_colors(self) -> Optional[ByteArray]:
+        return self.colors
+
     def transfer(self, values: ArrayLike) -> FloatArray:
-        """Carry values, such as colours, from the vertices of ``map`` to these vertices.
+        """Carry values from the vertices of ``map`` to these vertices.
 
         Parameters
         ----------
         values : array-like, (v,) or (v, c)
-            For a ``Result`` that was made of coloured points: ``colors[result.input_of_vertex]``.
+            For a ``Result`` of points that have values: ``values[result.input_of_vertex]``.
 
         Returns
         -------
@@ -238,11 +261,9 @@ class Remeshed(MeshExport):
         if len(array) != len(self.map.vertices):
             raise InvalidInput(
                 f"there are {len(array)} values for {len(self.map.vertices)} vertices; give one "
-                "for each vertex of map, such as colors[result.input_of_vertex]"
+                "for each vertex of map, such as values[result.input_of_vertex]"
             )
-        corners = array.astype(np.float64)[self.map.triangles[self.source_triangle]]
-        transferred: FloatArray = np.einsum("ij...,ij->i...", corners, self.source_weights)
-        return transferred
+        return self.map.interpolate(array, self.source_triangle, self.source_weights)
 
     def __repr__(self) -> str:
         return (
@@ -263,7 +284,7 @@ def remesh(
     sweeps: SupportsIndex = 40,
     seed: SupportsIndex = 1,
     threads: SupportsIndex = 0,
-    progress: Optional[ProgressFunction] = None,
+    progress: Progress = None,
 ) -> Remeshed:
     """Sample a surface anew: with regular triangles or as an even cloud, any number of points.
 
@@ -289,7 +310,7 @@ def remesh(
         Of an even cloud.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
-    progress : callable(stage, fraction)
+    progress : True, or callable(stage, fraction)
         As for ``reconstruct``; the stages are "map", "surface", "resample", "untangle" and
         "intersections".
 
@@ -320,16 +341,17 @@ def remesh(
             progress=progress,
         )
     )
-    fields = _core.remesh(
-        *_mesh(mapped, None, None),
-        caps=mapped.caps,
-        grid=grid,
-        count=len(mapped.vertices) if count is None else count,
-        fit=fit,
-        seed=random_seed,
-        threads=arguments.thread_count(threads),
-        progress=arguments.progress_function(progress),
-    )
+    with listening(progress) as listener:
+        fields = _core.remesh(
+            *_mesh(mapped, None, None),
+            caps=mapped.caps,
+            grid=grid,
+            count=len(mapped.vertices) if count is None else count,
+            fit=fit,
+            seed=random_seed,
+            threads=arguments.thread_count(threads),
+            progress=listener,
+        )
     return Remeshed(map=mapped, **fields)
 
 

@@ -17,14 +17,37 @@ OTHERS = (
         "Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``.",
     ),
     (
-        "progress",
-        "Optional[ProgressFunction]",
+        "parts",
+        'Literal["all", "largest", "each"]',
+        "all",
+        "all, largest or each",
+        """Surfaces of the cloud that are meshed: all as one, that of most points, or each by itself:
+        then a tuple of results is returned, the largest first. See find_parts.""",
+    ),
+    (
+        "min_points",
+        "SupportsIndex",
+        50,
+        "an integer from 4 up",
+        "Parts of fewer points are left out, unless all are meshed as one.",
+    ),
+    (
+        "outliers",
+        'Union[SupportsFloat, Literal["auto"], None]',
         None,
-        "callable(stage, fraction)",
-        """Called from the calling thread during the work. ``stage`` is "neighbors", "graph",
-        "embedding", "triangulation", "optimization", "smoothing" or "quality"; ``fraction``, in
-        [0, 1], is that of the stage's current loop. If it returns False, the work ends with
-        Cancelled; if it raises, with that exception.""",
+        '"auto" or a number from 0 to 1000',
+        "Leave out stray points, or those that find_outliers finds by this ``sigma``.",
+    ),
+    (
+        "progress",
+        "Progress",
+        None,
+        "True, or callable(stage, fraction)",
+        """True: a bar on the standard error. A function is called from the calling thread during the
+        work. ``stage`` is "read", "neighbors", "graph", "outliers", "openings", "embedding",
+        "triangulation", "optimization", "smoothing" or "quality"; ``fraction``, in [0, 1], is that
+        of the stage's current loop. If it returns False, the work ends with Cancelled; if it
+        raises, with that exception.""",
     ),
 )
 
@@ -52,21 +75,23 @@ def documentation(table: list[dict[str, Any]]) -> str:
 
 def stub(table: list[dict[str, Any]]) -> str:
     """What type checkers read of _reconstruct.py."""
-    parameters = "".join(
-        f"    {name}: {kind} = ...,\n" for name, kind, *_ in keywords(table)
-    )
-    return f'''from typing import Literal, Optional, SupportsFloat, SupportsIndex
 
-from numpy.typing import ArrayLike
+    def overload(parts: str, result: str) -> str:
+        parameters = [
+            parts if name == "parts" else f"{name}: {kind} = ..."
+            for name, kind, *_ in keywords(table)
+        ]
+        lines = "".join(f"    {parameter},\n" for parameter in ["points: CloudLike", "*", *parameters])
+        return f"@overload\ndef reconstruct(\n{lines}) -> {result}: ...\n"
 
-from ._arguments import ProgressFunction
+    return f'''from typing import Literal, Optional, SupportsFloat, SupportsIndex, Union, overload
+
+from ._clouds import CloudLike
+from ._progress import Progress
 from ._results import Result
 
-def reconstruct(
-    points: ArrayLike,
-    *,
-{parameters}) -> Result: ...
-'''
+{overload('parts: Literal["all", "largest"] = ...', "Result")}
+{overload('parts: Literal["each"]', "tuple[Result, ...]")}'''
 
 
 if __name__ == "__main__":

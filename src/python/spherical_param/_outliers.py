@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
-
 from . import _arguments as arguments
-from . import _core
-from ._arguments import FloatArray, IndexArray, ProgressFunction
+from . import _clouds, _core
+from ._arguments import FloatArray, IndexArray
+from ._clouds import CloudLike
 from ._errors import InvalidInput
+from ._progress import Progress, listening
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,22 +37,25 @@ class Outliers:
         )
 
 
-def _deviations(sigma: Union[SupportsFloat, str]) -> Optional[float]:
+def deviations(name: str, sigma: Union[SupportsFloat, str]) -> Optional[float]:
     """None: stray points."""
     if not isinstance(sigma, str):
-        return arguments.real("sigma", sigma)
+        number = arguments.real(name, sigma)
+        if not 0 <= number <= 1000:
+            raise InvalidInput(f'{name} = {number} is out of range; use 0 to 1000, or "auto"')
+        return number
     if sigma == "auto":
         return None
-    raise InvalidInput(f'sigma = "{sigma}" is no number; use 0 to 1000, or "auto"')
+    raise InvalidInput(f'{name} = "{sigma}" is no number; use 0 to 1000, or "auto"')
 
 
 def find_outliers(
-    points: ArrayLike,
+    points: CloudLike,
     *,
     sigma: Union[SupportsFloat, Literal["auto"]] = 4.0,
     k: SupportsIndex = 16,
     threads: SupportsIndex = 0,
-    progress: Optional[ProgressFunction] = None,
+    progress: Progress = None,
 ) -> Outliers:
     """Find points that are off the surface of their neighbours (section 4.2 of the paper).
 
@@ -61,7 +64,7 @@ def find_outliers(
 
     Parameters
     ----------
-    points : array-like, (n, 3)
+    points : array-like (n, 3), path, or cloud of Open3D or trimesh
         As for ``reconstruct``.
     sigma : float, 0 to 1000, or "auto"
         Outliers are farther off than the mean by this number of standard deviations. "auto": stray
@@ -71,7 +74,7 @@ def find_outliers(
         Neighbours of each point that make its surface.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
-    progress : callable(stage, fraction)
+    progress : True, or callable(stage, fraction)
         As for ``reconstruct``; the stages are "neighbors" and "outliers", with "auto"
         "neighbors", "graph" and "outliers".
 
@@ -84,12 +87,13 @@ def find_outliers(
     No guarantees: a group of outliers as dense as the surface is a surface of its own, and beyond
     the tip of a thin limb an outlier may be in the plane of its neighbours.
     """
-    return Outliers(
-        **_core.find_outliers(
-            arguments.positions("points", points),
-            sigma=_deviations(sigma),
-            k=arguments.integer("k", k, 3),
-            threads=arguments.thread_count(threads),
-            progress=arguments.progress_function(progress),
+    with listening(progress) as listener:
+        return Outliers(
+            **_core.find_outliers(
+                _clouds.read("points", points, listener).points,
+                sigma=deviations("sigma", sigma),
+                k=arguments.integer("k", k, 3),
+                threads=arguments.thread_count(threads),
+                progress=listener,
+            )
         )
-    )

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import html
+import json
+import os
+import tempfile
 from dataclasses import dataclass
-from typing import Any, Optional
+from enum import IntFlag
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arguments import FloatArray, IndexArray
-from ._files import MeshExport
+from . import _arguments as arguments
+from . import _core
+from ._arguments import ByteArray, FloatArray, IndexArray
+from ._clouds import Cloud
+from ._errors import InvalidInput
+from ._files import MeshExport, vertex_normals
+from ._progress import Progress, listening
 
 
 @dataclass(frozen=True)
@@ -106,13 +118,40 @@ class Finding:
     def __str__(self) -> str:
         if not self.option:
             return self.text
-        value = self.value if self.value.replace(".", "").isdigit() else repr(self.value)
-        return f"{self.text}: try {self.option}={value}"
+        try:
+            float(self.value)
+        except ValueError:
+            return f"{self.text}: try {self.option}={json.dumps(self.value)}"
+        return f"{self.text}: try {self.option}={self.value}"
+
+
+class TriangleMark(IntFlag):
+    """What is wrong at a triangle: ``Diagnosis.triangle_marks`` has the sum for each of them."""
+
+    SELF_INTERSECTION = 1  #: it intersects another
+    FILLED_HOLE = 2  #: it is part of a filled hole
+    HANDLE = 4  #: at the ends of torn edges of a handle
+    PART_BRIDGE = 8  #: at the ends of bridges between parts
+    OUTSIDE_GRAPH = 16  #: at an edge between points that are no near neighbours
 
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """Does the cloud look like a closed surface without handles? The mesh always is one."""
+    """Does the cloud look like a closed surface without handles? The mesh always is one.
+
+    ``triangle_marks``, with ``details``, has for each triangle the sum of
+
+    ========================================  ==================================================
+    ``TriangleMark.SELF_INTERSECTION`` (1)    it intersects another triangle
+    ``TriangleMark.FILLED_HOLE`` (2)          it is part of a filled hole
+    ``TriangleMark.HANDLE`` (4)               it is at the torn edges of a handle
+    ``TriangleMark.PART_BRIDGE`` (8)          it is at a bridge between parts
+    ``TriangleMark.OUTSIDE_GRAPH`` (16)       an edge joins points that are no near neighbours
+    ========================================  ==================================================
+
+    ``mesh.triangles[mesh.diagnosis.triangle_marks & TriangleMark.FILLED_HOLE > 0]`` are those over
+    openings.
+    """
 
     kind: str  #: "closed_genus0", "open", "handles", "several_parts" or "unclear"
     looks_closed_genus0: bool
@@ -127,9 +166,7 @@ class Diagnosis:
     """Handles of the surface, counted by the cycles of the neighbour graph; None where that was not
     needed or unknown"""
     triangle_marks: Optional[NDArray[np.uint8]]
-    """(m,) with ``details``, for each triangle the sum of 1: intersects another, 2: part of a hole,
-    4: at the torn edges of a handle, 8: at a bridge between parts, 16: at an edge outside the
-    graph's 2-ring; else None"""
+    """(m,) with ``details``, for each triangle the sum of its ``TriangleMark``; else None"""
 
 
 @dataclass(frozen=True)
@@ -257,14 +294,43 @@ class History:
     frames: tuple[HistoryFrame, ...]  #: in the order of the work; the last is the embedding
 
 
+@dataclass(frozen=True, eq=False)
+class Source:
+    """What a result was made of, for its report."""
+
+    cloud: Cloud
+    keywords: dict[str, Any]
+    rows: Optional[IndexArray]  #: that were meshed; None: all
+    outliers: Optional[IndexArray]  #: rows that were left out; None: not looked for
+
+    @property
+    def left_out(self) -> Optional[IndexArray]:
+        """Rows of other parts; None: not looked for."""
+        if self.rows is None or "parts" not in self.keywords:
+            return None
+        is_left_out = np.isfinite(self.cloud.points).all(axis=1)
+        is_left_out[self.rows] = False
+        if self.outliers is not None:
+            is_left_out[self.outliers] = False
+        return np.flatnonzero(is_left_out).astype(np.int32)
+
+    @property
+    def command(self) -> str:
+        """The call that made the result."""
+        name = "points" if self.cloud.name is None else repr(self.cloud.name)
+        keywords = (f", {key}={value!r}" for key, value in self.keywords.items())
+        return f"spherical_param.reconstruct({name}{''.join(keywords)})"
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(MeshExport):
     """A genus-0 mesh through all points, closed or open, its map to the sphere, and their quality.
 
     Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
-    ``input_of_vertex`` carry anything that points have, such as colours, to the vertices and back:
-    ``colors[mesh.input_of_vertex]``. What is written or given to other libraries has the smoothed
-    points, if there are any.
+    ``input_of_vertex`` carry anything that points have to the vertices and back:
+    ``values[mesh.input_of_vertex]``. What is written or given to other libraries has the smoothed
+    points, if there are any, with normals and colours. In a notebook a result is shown by its
+    report.
     """
 
     vertices: FloatArray  #: (v, 3) the points[input_of_vertex] [unit of the input]
@@ -273,7 +339,7 @@ class Result(MeshExport):
     boundary: tuple[IndexArray, ...]
     """(l,) each: closed loops of vertices, with the surface on the left; empty of a closed mesh"""
     openings: tuple[Opening, ...]  #: of the surface, filled or not; none with ``surface="closed"``
-    vertex_of_input: IndexArray  #: (n,) vertex of each input point; -1: not finite, ignored
+    vertex_of_input: IndexArray  #: (n,) vertex of each input point; -1: left out
     input_of_vertex: IndexArray  #: (v,) first input point at that position
     outliers: IndexArray  #: points that belong to no surface but are vertices; see find_outliers
     duplicates: int  #: points that repeat an earlier one
@@ -297,6 +363,79 @@ class Result(MeshExport):
     usable: bool  #: at most 1 % of the triangles intersect
     verdict: str  #: a headline: "A sound mesh with 2 openings."
     findings: tuple[Finding, ...]  #: what to know, and what to do; empty if all is well
+    colors: Optional[ByteArray]  #: (v, 3) of the points; None if they have none
+    _source: Source
+
+    @cached_property
+    def normals(self) -> FloatArray:
+        """(v, 3) of the points; if they have none, those of the mesh, weighted by angles."""
+        given = self._source.cloud.normals
+        if given is not None:
+            return given[self.input_of_vertex]
+        return vertex_normals(self._export_points(), self.triangles)
+
+    def _export_normals(self) -> FloatArray:
+        return self.normals
+
+    def _export_colors(self) -> Optional[ByteArray]:
+        return self.colors
+
+    def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
+        """Write a page to look at: mesh, sphere, unfolding and findings, in one file.
+
+        It opens in a browser without a network. The points are meshed once more, with what the page
+        shows: until then nothing of that takes memory.
+
+        Parameters
+        ----------
+        path
+            A name that ends in .html.
+        progress : True, or callable(stage, fraction)
+            As for ``reconstruct``.
+
+        Raises
+        ------
+        InvalidInput
+            The name does not end in .html, the array of points was changed since, or the package
+            was built without the page.
+        OSError
+            The file cannot be written.
+        Cancelled, MemoryError, KeyboardInterrupt
+        """
+        if not os.fspath(path).lower().endswith(".html"):
+            raise InvalidInput(f"{os.fspath(path)!r} is no name of a page; give one with .html")
+        if not _core.has_report:
+            raise InvalidInput(
+                "this package was built without the page; install three.js (libjs-three) and build "
+                "it again"
+            )
+        source = self._source
+        if not np.array_equal(source.cloud.points[self.input_of_vertex], self.vertices):
+            raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
+        threads = arguments.thread_count(source.keywords.get("threads", 0))
+        with listening(progress) as listener:
+            _core.write_report(
+                os.fsencode(path),
+                source.cloud.points,
+                source.cloud.colors,
+                source.rows,
+                source.outliers,
+                source.left_out,
+                {**source.keywords, "threads": threads},
+                input=source.cloud.name or "points",
+                command=source.command,
+                progress=listener,
+            )
+
+    def _repr_html_(self) -> Optional[str]:
+        """The report, as notebooks show it."""
+        if not _core.has_report:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            page = Path(folder, "page.html")
+            self.report(page)
+            text = html.escape(page.read_text(encoding="utf-8"))
+        return f'<iframe srcdoc="{text}" width="100%" height="700" style="border: 0"></iframe>'
 
     def _export_points(self) -> FloatArray:
         return self.vertices if self.smoothed is None else self.smoothed
@@ -312,7 +451,7 @@ class Result(MeshExport):
         )
 
 
-def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
+def make_result(fields: dict[str, Any], source: Source) -> Result:
     fields["boundary"] = tuple(fields["boundary"])
     fields["openings"] = tuple(Opening(**opening) for opening in fields["openings"])
     diagnosis = fields["diagnosis"]
@@ -340,4 +479,11 @@ def make_result(fields: dict[str, Any], points: FloatArray) -> Result:
         smoothing=Smoothing(**fields["smoothing"]),
         findings=tuple(Finding(**finding) for finding in fields["findings"]),
     )
-    return Result(vertices=points[fields["input_of_vertex"]], **fields)
+    vertices = fields["input_of_vertex"]
+    colors = source.cloud.colors
+    return Result(
+        vertices=source.cloud.points[vertices],
+        colors=None if colors is None else colors[vertices],
+        _source=source,
+        **fields,
+    )
