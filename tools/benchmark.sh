@@ -3,8 +3,8 @@
 # time and memory over the number of points. Installs missing packages, builds, and writes tables,
 # plots, pictures and report.md to a folder.
 #
-#   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--only paper|comparison|maps|scaling]
-#                      [--update-doc]
+#   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--update-doc]
+#                      [--only paper|comparison|maps|scaling|gallery]
 #
 #   OUT           folder for the report
 #   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply.
@@ -12,20 +12,21 @@
 #   --quick       small clouds, and of the other libraries PCL alone: a minute or two
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated
-#   --update-doc  also put the tables into doc/benchmarks.md and README.md
+#   --update-doc  also put the tables into doc/benchmarks.md and README.md, and the gallery into
+#                 doc/gallery
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 build="$root/build/release"
 
 if [ "$#" -eq 0 ] || [ "$1" = "-h" ] || [ "$1" = "--help" ]; then
-  sed -n -e '2,15s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+  sed -n -e '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   [ "$#" -eq 1 ] && exit 0
   exit 2
 fi
 
 # CGAL alone compiles for minutes.
-packages=(peers)
+packages=(peers gallery)
 without_peers=OFF
 for word in "$@"; do
   if [ "$word" = "--quick" ]; then

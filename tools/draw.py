@@ -28,6 +28,7 @@ ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 # Drawn this many times larger, without antialiasing, and reduced at the end: triangles that are
 # antialiased one by one show seams.
 SCALE = 3
+BACK = (0.95, 0.62, 0.42)  # the colour of triangles seen from behind, with --back
 
 
 def read_element(data, at, count, properties):
@@ -105,7 +106,7 @@ def direction_colors(points):
     return 0.66 + 0.32 * away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-300)
 
 
-def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None, zoom=1.0, edges=False):
+def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None, zoom=1.0, edges=False, back=False):
     """Draws one cloud or mesh; azimuth and elevation of the view in degrees."""
     turn = {"x": [1, 2, 0], "y": [2, 0, 1], "z": [0, 1, 2]}[up]
     a, e = np.radians(view)
@@ -128,11 +129,16 @@ def draw_view(axes, points, colors, triangles, view=(25, 20), up="z", focus=None
         triangles = triangles[np.argsort(seen[triangles][:, :, 2].mean(axis=1))]
         corners = seen[triangles]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        # An open sheet has no outside: it is turned to show its front. Of a closed mesh as much faces away.
+        if normals[:, 2].sum() < -0.1 * np.abs(normals[:, 2]).sum():
+            normals = -normals
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
         # Both sides are lit alike, because meshes of other programs need not be oriented.
-        normals *= np.where(normals[:, 2:] < 0, -1.0, 1.0)
+        behind = normals[:, 2:] < 0
+        normals *= np.where(behind, -1.0, 1.0)
+        tints = np.where(behind & back, BACK, colors[triangles].mean(axis=1))
         shade = 0.5 + 0.33 * normals[:, 2:] + 0.25 * np.clip(normals @ [[-0.48], [0.6], [0.64]], 0, 1)
-        faces = np.clip(colors[triangles].mean(axis=1) * shade, 0, 1)
+        faces = np.clip(tints * shade, 0, 1)
         axes.add_collection(collections.PolyCollection(
             corners[:, :, :2], facecolors=faces, antialiaseds=False, closed=False,
             edgecolors=faces * 0.75 if edges else "none", linewidths=0.4 * SCALE if edges else 0))  # fmt: skip
@@ -189,6 +195,7 @@ def main(arguments=None):
     parser.add_argument("--focus", action="append", type=numbers, metavar="X,Y,Z", help="middle of the view")
     parser.add_argument("--zoom", action="append", type=numbers, metavar="F", help="times larger (default 1)")
     parser.add_argument("--edges", action="store_true", help="draw the edges of the triangles")
+    parser.add_argument("--back", action="store_true", help="draw triangles seen from behind in another colour")
     words = parser.parse_intermixed_args(arguments)
     size = [int(pixels) for pixels in words.size or (440 * len(words.files), 440)]
     if len(size) != 2 or not all(50 <= pixels <= 5000 for pixels in size):
@@ -204,7 +211,7 @@ def main(arguments=None):
         views = []
         for i, path in enumerate(words.files):
             points, colors, triangles = read_ply(path)
-            view = {"points": points, "triangles": triangles, "up": words.up, "edges": words.edges,
+            view = {"points": points, "triangles": triangles, "up": words.up, "edges": words.edges, "back": words.back,
                     "colors": tints if len(tints) == len(points) else colors}  # fmt: skip
             for name in ("view", "focus", "zoom"):
                 if getattr(words, name):

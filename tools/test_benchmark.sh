@@ -11,18 +11,21 @@ rm -rf "$report"
 
 # Every table, plot and picture that the report links to is there.
 report_is_whole() {
-  local section link links=0
-  for section in "The paper" "Quality and peers" "The map to the sphere" "Scaling"; do
+  local section page link links
+  for section in "The paper" "Quality and peers" "The map to the sphere" "Scaling" "Gallery"; do
     grep -qxF "## $section" "$report/report.md" || return 1
   done
-  while read -r link; do
-    links=$((links + 1))
-    [ -s "$report/$link" ] || {
-      echo "$report/$link is missing or empty"
-      return 1
-    }
-  done < <(grep -oE '\]\([^)]+\)' "$report/report.md" | sed 's/^](\(.*\))$/\1/')
-  [ "$links" -gt 0 ]
+  for page in "$report/report.md" "$report/gallery/README.md"; do
+    links=0
+    while read -r link; do
+      links=$((links + 1))
+      [ -s "$(dirname "$page")/$link" ] || {
+        echo "$page: $link is missing or empty"
+        return 1
+      }
+    done < <(grep -oE '\]\([^)]+\)' "$page" | sed 's/^](\(.*\))$/\1/')
+    [ "$links" -gt 0 ] || return 1
+  done
 }
 
 check "benchmark.sh --quick" bash -euc "$(doc_block doc/benchmarks.md 1)" || finish

@@ -96,6 +96,21 @@ class Draw(unittest.TestCase):
                 self.assertTrue((other == first).all())
         self.assertLess(first[75, 150].max(), 0.99)  # the mesh, in the middle
 
+    def test_triangles_from_behind_have_another_colour_and_an_open_mesh_shows_its_front(self):
+        def drawn(triangles, *words):
+            faces = b"".join(struct.pack("<B3i", 3, *corners) for corners in triangles)
+            head = cloud("binary_little_endian", FACES.replace("4", str(len(triangles))))
+            return self.picture(self.write("file.ply", head + BINARY + faces), *words)
+
+        def difference(*pictures):
+            return np.abs(pictures[0] - pictures[1]).max()
+
+        inside_out, front = [t[::-1] for t in TRIANGLES], drawn(TRIANGLES)
+        self.assertLess(difference(drawn(TRIANGLES, "--back"), front), 0.1)  # at the silhouette only
+        self.assertGreater(difference(drawn(inside_out, "--back"), front), 0.2)
+        for triangle in (TRIANGLES[3], TRIANGLES[3][::-1]):
+            self.assertEqual(difference(drawn([triangle], "--back"), drawn([triangle])), 0)
+
     def test_the_picture_has_the_size_that_was_asked_for(self):
         good = self.write("good.ply", cloud("ascii") + TEXT)
         for width, height in ((340, 113), (57, 51)):

@@ -2,11 +2,12 @@
 
 import argparse
 import pathlib
+import shutil
 import sys
 import tempfile
 import time
 
-from . import comparison, machine, maps, paper, scaling
+from . import comparison, gallery, machine, maps, paper, scaling
 from .programs import Failure, Programs, load_clouds
 from .report import Report
 
@@ -15,6 +16,7 @@ SECTIONS = {
     "comparison": comparison.section,
     "maps": maps.section,
     "scaling": scaling.section,
+    "gallery": gallery.section,
 }
 
 
@@ -54,17 +56,18 @@ def main(words):
     root = pathlib.Path(__file__).resolve().parents[3]
     with tempfile.TemporaryDirectory(prefix="work_", dir=out) as work:
         context = Context(arguments, work)
-        provenance = machine.describe(root, arguments.build)
+        report = context.report
+        report.facts["provenance"] = machine.describe(root, arguments.build)
         for name, make in SECTIONS.items():
             if not arguments.only or name in arguments.only:
                 make(context)
-    minutes = (time.monotonic() - context.started) / 60
-    report = context.report
-    report.facts.update(provenance=provenance, minutes=minutes)
+    report.facts["minutes"] = (time.monotonic() - context.started) / 60
     report.write()
     if arguments.update_doc:
-        for page in ("README.md", "doc/benchmarks.md"):
+        for page in ("README.md", "doc/benchmarks.md") if report.tables else ():
             report.update_doc(root / page)
+        if "gallery" in report.facts:
+            shutil.copytree(out / "gallery", root / "doc" / "gallery", dirs_exist_ok=True)
     context.say(f"report: {out / 'report.md'}")
 
 

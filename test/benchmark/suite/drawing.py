@@ -14,6 +14,7 @@ _spec = importlib.util.spec_from_file_location(
     "draw", pathlib.Path(__file__).parents[3] / "tools" / "draw.py")  # fmt: skip
 _draw = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(_draw)
+read_ply = _draw.read_ply
 
 # Colours that differ for colour-blind readers as well (Okabe and Ito 2008).
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
@@ -63,21 +64,21 @@ def vertices(path):
 class Pictures:
     """Rows of views of meshes in one picture."""
 
-    SIZE = 300  # of a view [pixels]
-
-    def __init__(self, path):
+    def __init__(self, path, size=300):
         self.path = path
+        self.size = size  # of a view [pixels]
         self.rows = []
 
     def row(self, files, captions, view=((25, 15),), focus=(), zoom=(), up="z", colors=None,
-            edges=False):  # fmt: skip
+            edges=False, back=False):  # fmt: skip
         """Options are those of tools/draw.py; a list has a value for each file, or one for all."""
-        words = [self.path, *files, "--up", up, "--size", f"{self.SIZE * len(files)}x{self.SIZE}"]
+        words = [self.path, *files, "--up", up, "--size", f"{self.size * len(files)}x{self.size}"]
         words += [f"--caption={caption}" for caption in captions]
         for name, values in (("view", view), ("focus", focus), ("zoom", zoom)):
             words += [f"--{name}={','.join(f'{x:.6f}' for x in value)}" for value in values]
         words += ["--colors", colors] if colors else []
         words += ["--edges"] if edges else []
+        words += ["--back"] if back else []
         _draw.main([str(word) for word in words])
         self.rows.append(plt.imread(self.path)[:, :, :3])
 
