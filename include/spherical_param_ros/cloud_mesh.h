@@ -15,14 +15,15 @@
 
 namespace spherical_param_ros {
 
-/// A closed mesh without any middleware's types. All are in the order of the vertices, which is
-/// that of the first points of the cloud at their positions.
+/// A mesh without any middleware's types: one surface, or those of several parts after one another.
+/// All are in the order of the vertices, which is, in each part, that of the first points of the
+/// cloud at their positions.
 struct Mesh {
   /// Header and every field of the cloud, one record a vertex; coordinates are the smoothed ones
   /// where smoothing is asked for.
   pcl::PCLPointCloud2 cloud;
   std::vector<std::array<double, 3>> vertices;  ///< [unit of the cloud]
-  /// Indices of vertices, counter-clockwise from outside.
+  /// Indices of vertices, counter-clockwise from outside, or from one side of an open surface.
   std::vector<std::array<std::uint32_t, 3>> triangles;
   /// Red, green, blue, alpha; alpha is 255 for clouds without. Empty for clouds without colours.
   std::vector<std::array<std::uint8_t, 4>> colors;
@@ -45,12 +46,14 @@ struct Outcome {
   Status status = Status::Failed;
   std::string message;               ///< the verdict on the mesh, or "cause; remedy"
   std::shared_ptr<const Mesh> mesh;  ///< of Status::Done
-  bool looks_closed = false;         ///< nothing speaks against a closed genus-0 surface
+  bool has_faults = false;           ///< a finding is a fault: see spherical_param::Finding
   std::vector<std::string> warnings;
-  std::size_t points = 0;      ///< of the cloud
-  std::size_t ignored = 0;     ///< not finite
-  std::size_t outliers = 0;    ///< left out
-  std::size_t duplicates = 0;  ///< merged into an earlier point
+  std::size_t parts = 0;         ///< that were meshed; 1 where they are not told apart
+  std::size_t points = 0;        ///< of the cloud
+  std::size_t ignored = 0;       ///< not finite
+  std::size_t outliers = 0;      ///< left out
+  std::size_t other_points = 0;  ///< of parts that are not meshed, or of none
+  std::size_t duplicates = 0;    ///< merged into an earlier point
   std::size_t self_intersections = 0;
   double seconds = 0.0;  ///< of the reconstruction, wall time
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>
@@ -11,11 +12,18 @@
 
 namespace spherical_param_ros {
 
+/// Which points are left out.
+struct OutlierChoice {
+  /// OutlierOptions::sigma of findOutliers(); unset: those of findStrayPoints().
+  std::optional<double> sigma;
+};
+
 /// How clouds are meshed, and how they wait for it.
 struct Settings {
-  spherical_param::Options options;  ///< `progress` is ignored
-  /// OutlierOptions::sigma, or kAuto: stray points; unset: outliers are not looked for.
-  std::optional<double> outliers;
+  spherical_param::Options options;       ///< `progress` is ignored
+  std::optional<OutlierChoice> outliers;  ///< unset: they are not looked for
+  spherical_param::PartsMode parts = spherical_param::PartsMode::All;  ///< which are meshed
+  int min_points = 50;  ///< distinct points of a part, unless all are meshed together; 4 and up
   /// Larger clouds are refused, so that no cloud takes all memory; 0: none is.
   std::size_t max_points = 5000000;
   std::size_t queue_depth = 1;  ///< clouds that wait, at most; 1 and up
@@ -29,9 +37,6 @@ using Value = std::variant<bool, std::int64_t, double, std::string>;
 /// The value of an optional parameter that is not set.
 inline constexpr int kUnset = -1;
 
-/// The value of `outliers` for stray points: findStrayPoints().
-inline constexpr int kAuto = -2;
-
 /// A parameter, for declarations and documentation.
 struct ParameterInfo {
   std::string name;
@@ -42,7 +47,7 @@ struct ParameterInfo {
   std::vector<std::string> choices;  ///< of strings
 };
 
-/// All parameters: the rows of spherical_param::optionTable(), then outliers and the queue.
+/// All parameters: the rows of spherical_param::optionTable(), then those of Settings.
 const std::vector<ParameterInfo>& parameters();
 
 /// Changes one setting; the others stay.

@@ -152,17 +152,17 @@ std::string verdictOf(const Result& result) {
     text += " with " + counted(result.boundary.size(), "opening");
   std::vector<std::string> doubts;
   if (!diagnosis.bridges.empty())
-    doubts.push_back("joins " + counted(diagnosis.bridges.size() + 1, "separate part"));
+    doubts.emplace_back("joins " + counted(diagnosis.bridges.size() + 1, "separate part"));
   if (diagnosis.openings() > 0)
-    doubts.push_back("fills " + counted(diagnosis.openings(), "opening"));
+    doubts.emplace_back("fills " + counted(diagnosis.openings(), "opening"));
   if (diagnosis.is_one_sided)
-    doubts.push_back("tears a surface with one side");
+    doubts.emplace_back("tears a surface with one side");
   else if (diagnosis.genus.value_or(0) > 0)
-    doubts.push_back("cuts " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle"));
+    doubts.emplace_back("cuts " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle"));
   else if (!diagnosis.handles.empty())
-    doubts.push_back("may cut a handle");
+    doubts.emplace_back("may cut a handle");
   else if (diagnosis.isFolded())
-    doubts.push_back("is folded");
+    doubts.emplace_back("is folded");
   for (std::size_t i = 0; i < doubts.size(); ++i)
     text += (i == 0 ? ", but it " : i + 1 < doubts.size() ? ", " : " and ") + doubts[i];
   return text + ".";

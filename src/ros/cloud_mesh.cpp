@@ -2,6 +2,7 @@
 
 #include "spherical_param/errors.h"
 #include "spherical_param/outliers.h"
+#include "spherical_param/parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <pcl/PCLPointField.h>
@@ -18,6 +19,7 @@ namespace spherical_param_ros {
 namespace {
 
 using spherical_param::Index;
+using spherical_param::PartsMode;
 using spherical_param::Positions;
 using spherical_param::Result;
 
@@ -139,21 +141,30 @@ Points finitePoints(const pcl::PCLPointCloud2& cloud) {
   return points;
 }
 
-/// \param sigma of the settings
-std::vector<Index> outliersOf(const Positions& points, double sigma,
+/// Those at some places of the list, ascending.
+Points subset(const Points& points, const std::vector<Index>& places) {
+  Points some;
+  some.positions = points.positions(Eigen::all, places);
+  some.of_record.reserve(places.size());
+  for (const Index place : places)
+    some.of_record.push_back(points.of_record[static_cast<std::size_t>(place)]);
+  return some;
+}
+
+std::vector<Index> outliersOf(const Positions& points, const OutlierChoice& choice,
                               const spherical_param::Execution& execution) {
-  if (sigma == kAuto)
+  if (!choice.sigma)
     return spherical_param::findStrayPoints(points, execution).indices;
   spherical_param::OutlierOptions options;
-  options.sigma = sigma;
+  options.sigma = *choice.sigma;
   return spherical_param::findOutliers(points, options, execution).indices;
 }
 
 /// Removes outliers. \return their number \throw BadCloud, Cancelled
-std::size_t removeOutliers(Points& points, double sigma,
+std::size_t removeOutliers(Points& points, const OutlierChoice& choice,
                            const spherical_param::Execution& execution) {
   constexpr std::size_t min_points = 4;
-  const std::vector<Index> outliers = outliersOf(points.positions, sigma, execution);
+  const std::vector<Index> outliers = outliersOf(points.positions, choice, execution);
   if (outliers.empty())
     return 0;
   const std::size_t count = points.of_record.size();
@@ -164,12 +175,35 @@ std::size_t removeOutliers(Points& points, double sigma,
   for (std::size_t i = 0; i < count; ++i)
     if (!std::binary_search(outliers.begin(), outliers.end(), static_cast<Index>(i)))
       kept.push_back(static_cast<Index>(i));
-  points.positions = Positions(points.positions(Eigen::all, kept));
-  for (Index& point : kept)
-    point = points.of_record[static_cast<std::size_t>(point)];
-  points.of_record = std::move(kept);
+  points = subset(points, kept);
   return outliers.size();
 }
+
+/// The points of each surface that is meshed. \throw BadCloud if there are none
+std::vector<Points> takeApart(Points points, const Settings& settings,
+                              const spherical_param::Execution& execution) {
+  std::vector<Points> parts;
+  if (settings.parts == PartsMode::All) {
+    parts.push_back(std::move(points));
+    return parts;
+  }
+  for (const spherical_param::Part& part :
+       spherical_param::findParts(points.positions, settings.min_points, execution).parts) {
+    parts.push_back(subset(points, part.points));
+    if (settings.parts == PartsMode::Largest)
+      break;
+  }
+  if (parts.empty())
+    throw BadCloud("no part of the cloud has min_points, " + std::to_string(settings.min_points) +
+                   ", points; lower min_points, or set parts to all");
+  return parts;
+}
+
+/// A surface and the record of each of its vertices.
+struct PartMesh {
+  Result result;
+  std::vector<Index> record_of_vertex;
+};
 
 /// PCL packs colours as blue, green, red, alpha, in an integer or in the bits of a float.
 void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
@@ -188,46 +222,126 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
   }
 }
 
-std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud, const Points& points,
-                                     const Result& result) {
+/// Appends a surface. \param mesh has space for its records
+void append(const pcl::PCLPointCloud2& cloud, const PartMesh& part, Mesh& mesh) {
+  const Axes axes = axesOf(cloud);
+  const Result& result = part.result;
+  const std::size_t first = mesh.vertices.size();
+  for (std::size_t i = 0; i < result.vertexCount(); ++i) {
+    std::uint8_t* record = mesh.cloud.data.data() + (first + i) * mesh.cloud.point_step;
+    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(part.record_of_vertex[i])),
+                mesh.cloud.point_step);
+    mesh.vertices.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (result.smoothed.cols() > 0)
+        setCoordinate(
+            record, *axes[axis],
+            result.smoothed(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)));
+      mesh.vertices.back()[axis] = coordinate(record, *axes[axis]);
+    }
+  }
+  const auto vertex = [&](Index of_part) {
+    return static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(of_part);
+  };
+  for (const auto triangle : result.triangles.colwise())
+    mesh.triangles.push_back({vertex(triangle[0]), vertex(triangle[1]), vertex(triangle[2])});
+}
+
+std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
+                                     const std::vector<PartMesh>& parts) {
   auto mesh = std::make_shared<Mesh>();
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  for (const PartMesh& part : parts) {
+    vertices += part.result.vertexCount();
+    triangles += static_cast<std::size_t>(part.result.triangles.cols());
+  }
   pcl::PCLPointCloud2& kept = mesh->cloud;
   kept.header = cloud.header;
   kept.fields = cloud.fields;
   kept.is_bigendian = cloud.is_bigendian;
   kept.point_step = cloud.point_step;
   kept.height = 1;
-  kept.width = static_cast<std::uint32_t>(result.vertexCount());
+  kept.width = static_cast<std::uint32_t>(vertices);
   kept.row_step = kept.width * kept.point_step;
   kept.is_dense = 1;
-  kept.data.resize(result.vertexCount() * kept.point_step);
-
-  const Axes axes = axesOf(cloud);
-  mesh->vertices.resize(result.vertexCount());
-  for (std::size_t i = 0; i < result.vertexCount(); ++i) {
-    std::uint8_t* record = kept.data.data() + i * kept.point_step;
-    const auto point = static_cast<std::size_t>(result.input_of_vertex[i]);
-    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(points.of_record[point])),
-                kept.point_step);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (result.smoothed.cols() > 0)
-        setCoordinate(
-            record, *axes[axis],
-            result.smoothed(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)));
-      mesh->vertices[i][axis] = coordinate(record, *axes[axis]);
-    }
-  }
-  mesh->triangles.reserve(static_cast<std::size_t>(result.triangles.cols()));
-  for (Eigen::Index t = 0; t < result.triangles.cols(); ++t)
-    mesh->triangles.push_back({static_cast<std::uint32_t>(result.triangles(0, t)),
-                               static_cast<std::uint32_t>(result.triangles(1, t)),
-                               static_cast<std::uint32_t>(result.triangles(2, t))});
+  kept.data.resize(vertices * kept.point_step);
+  mesh->vertices.reserve(vertices);
+  mesh->triangles.reserve(triangles);
+  for (const PartMesh& part : parts)
+    append(cloud, part, *mesh);
   copyColors(cloud, *mesh);
   return mesh;
 }
 
+PartMesh meshPart(const Points& points, const spherical_param::Options& options) {
+  PartMesh part;
+  part.result = spherical_param::reconstruct(points.positions, options);
+  part.record_of_vertex.reserve(part.result.vertexCount());
+  for (const Index point : part.result.input_of_vertex)
+    part.record_of_vertex.push_back(points.of_record[static_cast<std::size_t>(point)]);
+  return part;
+}
+
+/// Adds what is to be said of a surface. \return whether it has a fault
+bool addFindings(const Result& result, Outcome& outcome) {
+  bool has_faults = false;
+  for (const spherical_param::Finding& finding : result.findings) {
+    outcome.warnings.push_back(finding.option.empty() ? finding.text
+                                                      : finding.text + ": try " + finding.option +
+                                                            " = " + finding.value);
+    has_faults = has_faults || finding.is_fault;
+  }
+  outcome.duplicates += result.duplicates();
+  outcome.self_intersections += result.self_intersections.size();
+  return has_faults;
+}
+
+/// Meshes each part by itself. A part that cannot be meshed is left out with a warning.
+/// \throw InvalidInput if none can be, Cancelled
+std::vector<PartMesh> meshParts(const std::vector<Points>& parts,
+                                const spherical_param::Options& options,
+                                const std::function<double()>& passed, Outcome& outcome) {
+  std::size_t points_left = 0;
+  for (const Points& part : parts)
+    points_left += part.of_record.size();
+  std::vector<PartMesh> meshes;
+  std::exception_ptr failure;
+  std::size_t faulty = 0;
+  for (const Points& part : parts) {
+    const std::size_t count = part.of_record.size();
+    spherical_param::Options of_part = options;
+    // Each part has its share of the time that is left.
+    if (of_part.time_limit)
+      of_part.time_limit = std::max(0.0, *options.time_limit - passed()) *
+                           static_cast<double>(count) / static_cast<double>(points_left);
+    points_left -= count;
+    try {
+      meshes.push_back(meshPart(part, of_part));
+    } catch (const spherical_param::InvalidInput& error) {
+      failure = failure ? failure : std::current_exception();
+      outcome.other_points += count;
+      outcome.warnings.push_back("a part of " + std::to_string(count) +
+                                 " points is left out: " + error.what());
+      continue;
+    }
+    faulty += addFindings(meshes.back().result, outcome) ? 1 : 0;
+  }
+  if (meshes.empty())
+    std::rethrow_exception(failure);
+  outcome.parts = meshes.size();
+  outcome.has_faults = faulty > 0;
+  outcome.message = meshes.front().result.verdict;
+  if (meshes.size() > 1)
+    outcome.message =
+        std::to_string(meshes.size()) + " meshes, " +
+        (faulty == 0 ? "all sound." : std::to_string(faulty) + " of them with faults.");
+  return meshes;
+}
+
 void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
-                 const std::function<bool()>& is_wanted, Outcome& outcome) {
+                 const std::function<bool()>& is_wanted, const std::function<double()>& passed,
+                 Outcome& outcome) {
   outcome.points = std::size_t{cloud.width} * cloud.height;
   checkLayout(cloud, settings.max_points);
   spherical_param::Options options = settings.options;
@@ -239,17 +353,12 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
     throw BadCloud("all points are not finite; check the scanner and the filters before this node");
   if (settings.outliers)
     outcome.outliers = removeOutliers(points, *settings.outliers, options);
-  const Result result = spherical_param::reconstruct(points.positions, options);
-  outcome.mesh = makeMesh(cloud, points, result);
+  outcome.other_points = points.of_record.size();
+  const std::vector<Points> parts = takeApart(std::move(points), settings, options);
+  for (const Points& part : parts)
+    outcome.other_points -= part.of_record.size();
+  outcome.mesh = makeMesh(cloud, meshParts(parts, options, passed, outcome));
   outcome.status = Status::Done;
-  outcome.message = result.verdict;
-  outcome.looks_closed = result.diagnosis.looksClosedGenus0();
-  for (const spherical_param::Finding& finding : result.findings)
-    outcome.warnings.push_back(finding.option.empty() ? finding.text
-                                                      : finding.text + ": try " + finding.option +
-                                                            " = " + finding.value);
-  outcome.duplicates = result.duplicates();
-  outcome.self_intersections = result.self_intersections.size();
 }
 
 }  // namespace
@@ -272,10 +381,12 @@ const char* nameOf(Status status) {
 
 Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                   const std::function<bool()>& is_wanted) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto passed = [start = std::chrono::steady_clock::now()] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   Outcome outcome;
   try {
-    reconstruct(cloud, settings, is_wanted, outcome);
+    reconstruct(cloud, settings, is_wanted, passed, outcome);
   } catch (const BadCloud& error) {
     outcome.message = error.what();
   } catch (const spherical_param::Cancelled&) {
@@ -291,7 +402,7 @@ Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
     if (outcome.message.find("; ") == std::string::npos)
       outcome.message += "; check the scanner and the filters before this node";
   }
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.seconds = passed();
   return outcome;
 }
 

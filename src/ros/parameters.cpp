@@ -3,6 +3,7 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
+#include <charconv>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -87,25 +88,79 @@ Parameter integer(const std::string& name, const std::string& description, int m
           }};
 }
 
+/// A number, or its text; NaN if it is none.
+double numberOf(const Value& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value))
+    return static_cast<double>(*integer);
+  if (const auto* number = std::get_if<double>(&value))
+    return *number;
+  double number = std::numeric_limits<double>::quiet_NaN();
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const char* end = text->data() + text->size();
+    if (std::from_chars(text->data(), end, number).ptr != end)
+      return std::numeric_limits<double>::quiet_NaN();
+  }
+  return number;
+}
+
+/// The shortest text that is read as the same number.
+std::string shortest(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof(text), number).ptr};
+}
+
+// Not "off": in YAML that is the truth value false.
+constexpr const char* kNone = "none";
+
 Parameter outliers() {
   const std::string name = "outliers";
-  const std::string range = "a number from 0 to 1000, or -1: off, or -2: automatic";
+  const std::string range = "none, auto or a number from 0 to 1000";
   return {{name,
-           "leave out points that many deviations off the others, or stray ones; " + range,
-           double{kUnset},
-           double{kAuto},
-           1000.0,
+           "points that are left out: stray ones (auto), or those that many deviations off the "
+           "others; " +
+               range,
+           std::string(kNone),
+           0.0,
+           0.0,
            {}},
-          [](const Settings& settings) { return Value(settings.outliers.value_or(kUnset)); },
+          [](const Settings& settings) -> Value {
+            if (!settings.outliers)
+              return std::string(kNone);
+            const std::optional<double>& sigma = settings.outliers->sigma;
+            return sigma ? shortest(*sigma) : std::string("auto");
+          },
           [=](Settings& settings, const Value& value) {
-            const auto* integer = std::get_if<std::int64_t>(&value);
-            const auto* real = std::get_if<double>(&value);
-            const double number = integer != nullptr ? static_cast<double>(*integer)
-                                  : real != nullptr  ? *real
-                                                     : std::numeric_limits<double>::quiet_NaN();
-            if (number != kUnset && number != kAuto && !(number >= 0.0 && number <= 1000.0))
-              refuse(name, value, range);
-            settings.outliers = number == kUnset ? std::optional<double>() : number;
+            if (value == Value(std::string(kNone))) {
+              settings.outliers.reset();
+            } else if (value == Value(std::string("auto"))) {
+              settings.outliers = OutlierChoice();
+            } else {
+              const double sigma = numberOf(value);
+              if (!(sigma >= 0.0 && sigma <= 1000.0))
+                refuse(name, value, range);
+              settings.outliers = OutlierChoice{sigma};
+            }
+          }};
+}
+
+Parameter parts() {
+  const std::string name = "parts";
+  // In the order of PartsMode.
+  const std::vector<std::string> names = {"all", "largest", "each"};
+  return {{name,
+           "which parts are meshed: all as one surface, that of most points, or each by itself; "
+           "all, largest or each",
+           names.front(), 0.0, 0.0, names},
+          [=](const Settings& settings) {
+            return Value(names[static_cast<std::size_t>(settings.parts)]);
+          },
+          [=](Settings& settings, const Value& value) {
+            for (std::size_t i = 0; i < names.size(); ++i)
+              if (value == Value(names[i])) {
+                settings.parts = static_cast<spherical_param::PartsMode>(i);
+                return;
+              }
+            refuse(name, value, "all, largest or each");
           }};
 }
 
@@ -130,6 +185,10 @@ std::vector<Parameter> makeParameters() {
   for (const OptionRow& row : spherical_param::optionTable())
     all.push_back(option(row));
   all.push_back(outliers());
+  all.push_back(parts());
+  all.push_back(integer(
+      "min_points", "points of a part, at least, unless parts is all", 4,
+      [](Settings & s) -> auto& { return s.min_points; }));
   all.push_back(integer(
       "max_points", "larger clouds are refused; 0: none is", 0,
       [](Settings & s) -> auto& { return s.max_points; }));

@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -68,7 +70,8 @@ void expectCoresMesh(const Outcome& outcome, const Positions& points, const Sett
       EXPECT_EQ(static_cast<spherical_param::Index>(mesh.triangles[t][corner]),
                 result.triangles(static_cast<int>(corner), static_cast<int>(t)));
   EXPECT_EQ(outcome.message, result.verdict);
-  EXPECT_EQ(outcome.looks_closed, result.diagnosis.looksClosedGenus0());
+  EXPECT_EQ(outcome.has_faults, std::any_of(result.findings.begin(), result.findings.end(),
+                                            [](const auto& finding) { return finding.is_fault; }));
   EXPECT_EQ(outcome.warnings.size(), result.findings.size());
   EXPECT_EQ(outcome.self_intersections, result.self_intersections.size());
 }
@@ -170,7 +173,7 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
   setPoint(cloud, 20, kNan, 0.0, 0.0);
   setPoint(cloud, 100, 20.0, 0.0, 0.0);
   Settings settings;
-  settings.outliers = 4.0;
+  settings.outliers = OutlierChoice{4.0};
   const Outcome outcome = meshed(cloud, settings);
   EXPECT_EQ(outcome.outliers, 1U);
   ASSERT_EQ(outcome.mesh->vertices.size(), 1498U);
@@ -191,13 +194,112 @@ TEST(RosCloudMesh, StrayPointsAreLeftOutAutomatically) {
   pcl::PCLPointCloud2 cloud = ellipsoid(1500);
   setPoint(cloud, 100, 20.0, 0.0, 0.0);
   Settings settings;
+  EXPECT_EQ(meshed(cloud, settings).outliers, 0U);
   EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 point looks like an outlier"),
             std::string::npos);
-  settings.outliers = kAuto;
+  settings.outliers = OutlierChoice();
   const Outcome outcome = meshed(cloud, settings);
   EXPECT_EQ(outcome.outliers, 1U);
   EXPECT_EQ(outcome.mesh->vertices.size(), 1499U);
-  EXPECT_EQ(outcome.message.find("outlier"), std::string::npos);
+}
+
+/// Takes some records of a cloud.
+pcl::PCLPointCloud2 some(pcl::PCLPointCloud2 cloud, std::uint32_t first, std::uint32_t count) {
+  const auto begin = cloud.data.begin() + std::ptrdiff_t{first} * cloud.point_step;
+  cloud.data = Record(begin, begin + std::ptrdiff_t{count} * cloud.point_step);
+  cloud.width = count;
+  cloud.row_step = count * cloud.point_step;
+  return cloud;
+}
+
+/// An ellipsoid of 400 points, one of 700 in some distance, a disc of 60, and three single points.
+pcl::PCLPointCloud2 severalParts() {
+  pcl::PCLPointCloud2 cloud = ellipsoid(1163);
+  const Positions unit = positionsOf<float>(cloud);
+  const Positions small = positionsOf<float>(ellipsoid(400));
+  const Positions large = positionsOf<float>(ellipsoid(700));
+  for (std::uint32_t i = 0; i < cloud.width; ++i) {
+    Eigen::Vector3d p(100.0 * (i - 1159.0), 50.0, 0.0);
+    if (i < 400)
+      p = small.col(i);
+    else if (i < 1100)
+      p = large.col(i - 400) + Eigen::Vector3d(6.0, 0.0, 0.0);
+    else if (i < 1160)
+      p = std::sqrt((i - 1099.5) / 60.0) *
+              Eigen::Vector3d(std::cos(2.4 * i), std::sin(2.4 * i), 0.0) +
+          Eigen::Vector3d(12.0, 0.0, 0.0);
+    setPoint(cloud, i, p.x(), p.y(), p.z());
+  }
+  return cloud;
+}
+
+TEST(RosCloudMesh, LargestMeshesThePartOfMostPointsAlone) {
+  const pcl::PCLPointCloud2 cloud = severalParts();
+  Settings settings;
+  settings.parts = spherical_param::PartsMode::Largest;
+  const Outcome outcome = meshed(cloud, settings);
+  EXPECT_EQ(outcome.parts, 1U);
+  EXPECT_EQ(outcome.other_points, 463U);
+  const pcl::PCLPointCloud2 part = some(cloud, 400, 700);
+  EXPECT_EQ(outcome.mesh->cloud.data, part.data);
+  expectCoresMesh<float>(outcome, positionsOf<float>(part), settings);
+}
+
+TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
+  const pcl::PCLPointCloud2 cloud = severalParts();
+  Settings settings;
+  settings.parts = spherical_param::PartsMode::Each;
+  settings.options.smoothing.steps = 3;
+  const Outcome outcome = meshed(cloud, settings);
+  // The disc is a plane, which cannot be meshed; the three points are no part.
+  EXPECT_EQ(outcome.parts, 2U);
+  EXPECT_EQ(outcome.other_points, 63U);
+  EXPECT_EQ(outcome.message, "2 meshes, all sound.");
+  ASSERT_EQ(outcome.warnings.size(), 1U);
+  EXPECT_NE(outcome.warnings[0].find("60 points is left out"), std::string::npos);
+  const Mesh& mesh = *outcome.mesh;
+  ASSERT_EQ(mesh.vertices.size(), 1100U);
+  EXPECT_EQ(mesh.colors.size(), 1100U);
+  settings.parts = spherical_param::PartsMode::All;
+  std::uint32_t first = 0;
+  std::size_t first_triangle = 0;
+  for (const auto& [from, count] : {std::pair(400U, 700U), std::pair(0U, 400U)}) {
+    const Outcome alone = meshed(some(cloud, from, count), settings);
+    EXPECT_EQ(some(mesh.cloud, first, count).data, alone.mesh->cloud.data);
+    for (std::size_t i = 0; i < count; ++i)
+      EXPECT_EQ(mesh.vertices[first + i], alone.mesh->vertices[i]);
+    for (std::size_t t = 0; t < alone.mesh->triangles.size(); ++t)
+      for (std::size_t corner = 0; corner < 3; ++corner)
+        EXPECT_EQ(mesh.triangles.at(first_triangle + t)[corner],
+                  alone.mesh->triangles[t][corner] + first);
+    first += count;
+    first_triangle += alone.mesh->triangles.size();
+  }
+  EXPECT_EQ(mesh.triangles.size(), first_triangle);
+}
+
+TEST(RosCloudMesh, CloudsWithoutPartsAreRefusedAndPointsOfSmallPartsCounted) {
+  const pcl::PCLPointCloud2 cloud = severalParts();
+  Settings settings;
+  settings.parts = spherical_param::PartsMode::Each;
+  settings.min_points = 500;
+  EXPECT_EQ(meshed(cloud, settings).other_points, 463U);
+  settings.min_points = 1000;
+  const Outcome refused = meshCloud(cloud, settings, {});
+  EXPECT_EQ(refused.status, Status::Failed);
+  EXPECT_NE(refused.message.find("min_points, 1000, points; lower"), std::string::npos)
+      << refused.message;
+  EXPECT_EQ(refused.other_points, 1163U);
+}
+
+TEST(RosCloudMesh, AnOpenSurfaceIsNoFaultUnlessItsOpeningsAreFilled) {
+  const pcl::PCLPointCloud2 bowl = some(ellipsoid(1500), 500, 1000);
+  Settings settings;
+  EXPECT_TRUE(meshed(bowl, settings).has_faults);
+  settings.options.surface = spherical_param::SurfaceMode::Open;
+  const Outcome outcome = meshed(bowl, settings);
+  EXPECT_FALSE(outcome.has_faults);
+  expectCoresMesh<float>(outcome, positionsOf<float>(bowl), settings);
 }
 
 TEST(RosCloudMesh, ACloudOfTheLimitIsMeshedAndZeroIsNoLimit) {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,9 +17,9 @@ namespace {
 
 using Values = std::vector<std::pair<std::string, Value>>;
 
-TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheQueue) {
+TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
   const auto& rows = spherical_param::optionTable();
-  ASSERT_EQ(parameters().size(), rows.size() + 5);
+  ASSERT_EQ(parameters().size(), rows.size() + 7);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ParameterInfo& info = parameters()[i];
     EXPECT_EQ(info.name, rows[i].name);
@@ -32,10 +33,9 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheQueue) {
 }
 
 TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
-  const Values own = {{"outliers", -1.0},
-                      {"max_points", std::int64_t{5000000}},
-                      {"queue_depth", std::int64_t{1}},
-                      {"cancel_running", true},
+  const Values own = {{"outliers", std::string("none")},     {"parts", std::string("all")},
+                      {"min_points", std::int64_t{50}},      {"max_points", std::int64_t{5000000}},
+                      {"queue_depth", std::int64_t{1}},      {"cancel_running", true},
                       {"max_cancellations", std::int64_t{3}}};
   for (const auto& [name, value] : own)
     EXPECT_EQ(parameterOf({}, name), value) << name;
@@ -48,10 +48,9 @@ TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
 }
 
 TEST(RosParameters, EachChangesWhatItNamesOnly) {
-  Values values = {{"outliers", 4.0},
-                   {"max_points", std::int64_t{1000}},
-                   {"queue_depth", std::int64_t{4}},
-                   {"cancel_running", false},
+  Values values = {{"outliers", std::string("4.25")},     {"parts", std::string("each")},
+                   {"min_points", std::int64_t{7}},       {"max_points", std::int64_t{1000}},
+                   {"queue_depth", std::int64_t{4}},      {"cancel_running", false},
                    {"max_cancellations", std::int64_t{9}}};
   for (const spherical_param::OptionRow& row : spherical_param::optionTable()) {
     if (!row.choices.empty())
@@ -70,16 +69,20 @@ TEST(RosParameters, EachChangesWhatItNamesOnly) {
   }
 }
 
-TEST(RosParameters, AnIntegerWillDoForANumberAndMinusOneUnsets) {
+TEST(RosParameters, AnIntegerWillDoForANumberAndWhatIsSetCanBeUnset) {
   Settings settings;
   setParameter(settings, "exponent", 4);
   EXPECT_EQ(settings.options.embedding.exponent, 4.0);
-  setParameter(settings, "outliers", 4);
-  EXPECT_EQ(settings.outliers, 4.0);
-  setParameter(settings, "outliers", kAuto);
-  EXPECT_EQ(settings.outliers, double{kAuto});
+  for (const Value& number : {Value(4), Value(4.0), Value(std::string("4"))}) {
+    setParameter(settings, "outliers", number);
+    EXPECT_EQ(settings.outliers.value().sigma, 4.0);
+    setParameter(settings, "outliers", std::string("auto"));
+    EXPECT_EQ(settings.outliers.value().sigma, std::nullopt);
+    setParameter(settings, "outliers", std::string("none"));
+    EXPECT_FALSE(settings.outliers.has_value());
+  }
   for (const Value& unset : {Value(std::int64_t{kUnset}), Value(-1.0)})
-    for (const char* name : {"k", "tolerance", "outliers"}) {
+    for (const char* name : {"k", "tolerance"}) {
       setParameter(settings, name, name == std::string("k") ? 3 : 1);
       setParameter(settings, name, unset);
       EXPECT_EQ(parameterOf(settings, name), parameterOf({}, name)) << name;
@@ -95,9 +98,12 @@ TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
                         {"damping", true},
                         {"outliers", 1000.5},
                         {"outliers", -0.5},
-                        {"outliers", -3.0},
+                        {"outliers", false},
                         {"outliers", nan},
-                        {"outliers", std::string("many")},
+                        {"outliers", std::string("4 or 5")},
+                        {"parts", std::string("some")},
+                        {"parts", 1},
+                        {"min_points", 3},
                         {"max_points", -1},
                         {"max_points", std::int64_t{1} << 40},
                         {"queue_depth", 0},

@@ -3,8 +3,9 @@
 
     test_ros1.py [-j FILE] [Ros1.test_name...]
 
-The environment must have the package: setup.bash of its install space. With -j, FILE is given the
-numbers of tests, and of those that did not pass. Which mesh a cloud has is tested elsewhere.
+The environment must have the package: setup.bash of its install space, which is that of the first
+example of doc/ros.md, below HOME. With -j, FILE is given the numbers of tests, and of those that did
+not pass. Which mesh a cloud has is tested elsewhere.
 """
 
 import contextlib
@@ -13,13 +14,15 @@ import pathlib
 import signal
 import socket
 import subprocess
-import sys
 import tempfile
 import threading
 import time
 import unittest
 
 import numpy as np
+import yaml
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 with socket.socket() as probe:
     probe.bind(("localhost", 0))
@@ -40,6 +43,8 @@ from std_msgs.msg import Header  # noqa: E402
 from visualization_msgs.msg import Marker  # noqa: E402
 
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"), ("rgba", "<u4")])
+# The commands of doc/ros.md, from tools/test_ros.sh.
+DEPTH_CAMERA, RVIZ, SCANNER = (os.environ[name] for name in ("DEPTH_CAMERA", "RVIZ", "SCANNER"))
 TIMEOUT = 120  # of whatever should take seconds at most [s]
 # A reconstruction that would take weeks.
 ENDLESS = ("_embedding:=iterative", "_max_iterations:=2000000000", "_stagnation_window:=0", "_tolerance:=0.0")
@@ -91,6 +96,28 @@ def message_of(points, number=0):
     return PointCloud2(header=Header(stamp=rospy.Time(12, number), frame_id="scanner"), fields=fields,
                        width=len(points), height=1, point_step=POINT.itemsize,
                        row_step=POINT.itemsize * len(points), data=points.tobytes())
+
+
+# Centre and half axes of what the camera sees in front of a wall [m].
+OBJECTS = (((0.0, 0.0, 0.8), (0.15, 0.12, 0.12)), ((0.3, 0.05, 0.9), (0.06, 0.06, 0.06)))
+
+
+def seen_by_a_camera():
+    """The cloud of a depth image: organized, in the camera's frame, with a wall at 2 m and pixels that saw nothing."""
+    v, u = np.mgrid[-59.5:60.0, -79.5:80.0] / 140.0
+    rays = np.stack([u, v, np.ones_like(u)], axis=-1)
+    depth = np.full(u.shape, 2.0)
+    for center, axes in OBJECTS:
+        ray, start = rays / axes, np.array(center) / axes
+        a, b, c = (ray**2).sum(-1), ray @ start, start @ start - 1.0
+        with np.errstate(invalid="ignore"):
+            depth = np.fmin(depth, (b - np.sqrt(b**2 - a * c)) / a)
+    depth[::17, ::13] = np.nan
+    points = np.zeros((*depth.shape, 4), "<f4")
+    points[..., :3] = rays * depth[..., None]
+    fields = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate(("x", "y", "z", "rgb"))]
+    return PointCloud2(header=Header(frame_id="camera_depth_optical_frame"), fields=fields, height=len(points),
+                       width=points.shape[1], point_step=16, row_step=points[0].nbytes, data=points.tobytes())
 
 
 def assert_mesh(test, mesh, cloud, points):
@@ -171,6 +198,9 @@ class Ros1(unittest.TestCase):
             threading.Thread(target=call, args=(self.service(),), daemon=True).start()
             watch.wait_until({"state": "working"})
         return answers
+
+    def run_example(self, example, **options):
+        return start("bash", "-eo", "pipefail", "-c", example, **options)
 
     def publisher(self, name="/spherical_param/cloud"):
         publisher = rospy.Publisher(name, PointCloud2, queue_size=1000)
@@ -255,9 +285,11 @@ class Ros1(unittest.TestCase):
         client.update_configuration({"smoothing": 0})
         self.assertEqual(rospy.get_param("/spherical_param/smoothing"), 0)
         assert_mesh(self, reconstruct(cloud).mesh, cloud, points)
-        for name, value in (("embedding", "simplex"), ("exponent", 2.0), ("k", 2)):  # refused
+        for name, value in (("embedding", "simplex"), ("outliers", "many"), ("exponent", 2.0), ("k", 2)):  # refused
             client.update_configuration({name: value})
             self.assertNotEqual(client.get_configuration(TIMEOUT)[name], value)
+        client.update_configuration({"outliers": "auto", "parts": "each", "min_points": 1000})
+        self.assertIn("min_points, 1000, points; ", reconstruct(cloud).message)
         client.update_configuration({"max_points": 100})
         self.assertIn("max_points", reconstruct(cloud).message)
 
@@ -275,7 +307,7 @@ class Ros1(unittest.TestCase):
         watch, reconstruct, good = Watch(self), self.service(), bumpy(2000)
         for number, (cloud, level, summary, result) in enumerate((
                 (message_of(good), 0, "idle", "done"),
-                (message_of(good[good["z"] < 0.2]), 1, "does not look like a closed surface", "done"),
+                (message_of(good[good["z"] < 0.2]), 1, "the last mesh has faults", "done"),
                 (message_of(bumpy(3)), 1, "could not be meshed", "failed")), 1):
             answer = reconstruct(cloud)
             counts, found = watch.idle(number), watch.diagnosis()
@@ -307,6 +339,74 @@ class Ros1(unittest.TestCase):
                 state = rosgraph.Master("/test_ros1").getSystemState
                 wait_for(lambda: "/meshes/reconstruct" not in dict(state()[2]), "the end")
                 self.assertIsNone(manager.poll())
+
+    def test_examples_of_the_page_mesh_and_show_what_a_depth_camera_sees(self):
+        self.run_example(DEPTH_CAMERA)
+        publisher, watch, cloud = self.publisher("/camera/depth/points"), Watch(self), seen_by_a_camera()
+        end = threading.Event()
+        self.addCleanup(end.set)
+
+        def film():
+            while not end.wait(0.1):
+                cloud.header.stamp = rospy.Time.now()
+                publisher.publish(cloud)
+
+        threading.Thread(target=film, daemon=True).start()
+        mesh = watch.one("mesh")
+        self.assertEqual(mesh.header.frame_id, "camera_depth_optical_frame")
+        layout = np.dtype({"names": "xyz", "formats": ["<f4"] * 3, "itemsize": mesh.cloud.point_step,
+                           "offsets": [field.offset for field in mesh.cloud.fields[:3]]})
+        points = np.frombuffer(mesh.cloud.data, layout)
+        points = np.stack([points[axis] for axis in "xyz"], axis=1)
+        # The larger object alone, thinned out: a point of each cube of 1 cm is at most 2 cm off it.
+        center, axes = OBJECTS[0]
+        self.assertLess(np.abs(np.linalg.norm((points - center) / axes, axis=1) - 1.0).max() * min(axes), 0.02)
+        self.assertTrue(400 < len(points) < 1500, len(points))
+        # A disc: what the camera does not see stays open.
+        triangles = np.array([polygon.vertices for polygon in mesh.polygons])
+        self.assertEqual(set(triangles.ravel().tolist()), set(range(len(points))))
+        directed = [(t[i], t[(i + 1) % 3]) for t in triangles.tolist() for i in range(3)]
+        self.assertEqual(len(set(directed)), len(directed))
+        edges = {tuple(sorted(edge)) for edge in directed}
+        self.assertEqual(len(points) - len(edges) + len(triangles), 1)
+        self.assertEqual(watch.one("marker").header.frame_id, mesh.header.frame_id)
+        wait_for(lambda: watch.diagnosis().get("last result") == "done", "diagnostics")
+        found = watch.diagnosis()
+        self.assertEqual((found["level"], found["last parts"]), (0, "1"), found)
+        self.assertGreater(int(found["last other parts [points]"]), 50)  # the smaller object
+
+        screen = start("Xvfb", "-displayfd", "1", "-screen", "0", "800x600x24", stdout=subprocess.PIPE, text=True)
+        self.run_example(RVIZ, env=dict(os.environ, DISPLAY=":" + screen.stdout.readline().strip()))
+        state = rosgraph.Master("/test_ros1").getSystemState
+        for topic in ("/spherical_param_voxels/output", "/spherical_param/marker"):
+            wait_for(lambda t=topic: any("rviz" in node for node in dict(state()[1]).get(t, [])), f"RViz at {topic}")
+
+    def test_example_of_the_page_meshes_the_clouds_of_a_topic(self):
+        self.run_example(SCANNER)
+        watch, points = Watch(self), bumpy(300, 2)
+        cloud = message_of(points)
+        self.publisher("/scan/points").publish(cloud)
+        assert_mesh(self, watch.one("mesh"), cloud, points)
+
+    def test_parameters_of_the_depth_camera_arrive_and_are_those_of_the_page(self):
+        def parameters(*words):
+            command = ["roslaunch", "--dump-params", "pcl_spherical_param", "depth_camera.launch", *words]
+            return yaml.safe_load(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+        text = (ROOT / "src/ros/ros1/config/depth_camera.yaml").read_text()
+        self.assertIn(f"```yaml\n{text}```\n", PAGE)
+        of_node = {f"/spherical_param/{name}": value for name, value in yaml.safe_load(text).items()}
+        self.assertLessEqual(of_node.items(), parameters().items())
+        limits = {f"{side}_{axis}": 0.125 * i for i, (side, axis) in
+                  enumerate((side, axis) for side in ("min", "max") for axis in "xyz")}
+        file = pathlib.Path(_folder.name, "own.yaml")
+        file.write_text("parts: each\n")
+        found = parameters(*[f"{name}:={value}" for name, value in limits.items()], "leaf_size:=0.5", f"params:={file}")
+        self.assertEqual(found, {"/spherical_param/parts": "each", "/spherical_param_voxels/leaf_size": 0.5,
+                                 "/spherical_param_voxels/filter_field_name": "z",
+                                 "/spherical_param_voxels/filter_limit_min": limits["min_z"],
+                                 "/spherical_param_voxels/filter_limit_max": limits["max_z"]}
+                         | {f"/spherical_param_crop/{name}": value for name, value in limits.items()})
 
     def test_refuses_requests_beyond_eight_and_ends_at_once_while_it_works(self):
         for run, callers in ((self.run_node, 0), (self.run_node, 20), (self.run_nodelet, 3)):

@@ -126,11 +126,11 @@ void ReconstructionServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper&
   const Statistics statistics = worker_->statistics();
   const Outcome& last = statistics.last;
   const char* state = statistics.is_working ? "working" : "idle";
-  if (statistics.failed > failed_when_diagnosed_ || (statistics.has_last && !last.looks_closed)) {
+  if (statistics.failed > failed_when_diagnosed_ || last.has_faults) {
     status.summary(Level::WARN, last.status == Status::Failed ? "the last cloud could not be meshed"
                                 : statistics.failed > failed_when_diagnosed_
                                     ? "a cloud could not be meshed"
-                                    : "the last cloud does not look like a closed surface");
+                                    : "the last mesh has faults");
   } else {
     status.summary(Level::OK, state);
   }
@@ -140,6 +140,9 @@ void ReconstructionServer::diagnose(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("last message", last.message);
   status.add("last time [s]", last.seconds);
   status.add("last cloud [points]", last.points);
+  status.add("last parts", last.parts);
+  status.add("last outliers [points]", last.outliers);
+  status.add("last other parts [points]", last.other_points);
   status.add("last self-intersections", last.self_intersections);
   status.add("received clouds", statistics.received);
   status.add("done clouds", statistics.done);

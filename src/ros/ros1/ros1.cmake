@@ -43,6 +43,7 @@ install(TARGETS spherical_param_nodelet
 install(TARGETS spherical_param_node
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} COMPONENT ros)
 install(FILES src/ros/ros1/nodelets.xml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
-install(DIRECTORY src/ros/ros1/launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
+install(DIRECTORY src/ros/ros1/launch src/ros/ros1/config
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} COMPONENT ros)
 install(FILES src/ros/srv/Reconstruct.srv
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/srv COMPONENT ros)

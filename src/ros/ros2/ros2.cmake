@@ -24,5 +24,5 @@ file(RELATIVE_PATH libdir_from_node /prefix/lib/${PROJECT_NAME} /prefix/${CMAKE_
 set_target_properties(spherical_param_node PROPERTIES INSTALL_RPATH "$ORIGIN/${libdir_from_node}")
 install(TARGETS spherical_param_node
   RUNTIME DESTINATION lib/${PROJECT_NAME} COMPONENT ros)
-install(DIRECTORY src/ros/ros2/launch
+install(DIRECTORY src/ros/ros2/launch src/ros/ros2/config
   DESTINATION ${CMAKE_INSTALL_DATADIR}/${PROJECT_NAME} COMPONENT ros)

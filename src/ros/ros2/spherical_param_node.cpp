@@ -56,10 +56,12 @@ Value neutralValue(const std::string& name, const rclcpp::ParameterValue& value)
   }
 }
 
-/// Its description has the range, too: not every range of ours is one of ROS.
+/// Its description has the range, too: not every range of ours is one of ROS. setParameter() checks
+/// the type: an integer will do for a number, and a number for the text of `outliers`.
 rcl_interfaces::msg::ParameterDescriptor descriptorOf(const ParameterInfo& info) {
   rcl_interfaces::msg::ParameterDescriptor descriptor;
   descriptor.description = info.description;
+  descriptor.dynamic_typing = true;
   return descriptor;
 }
 
@@ -204,14 +206,19 @@ private:
     const std::string state = statistics.is_working ? "working" : "idle";
     if (statistics.has_last && last.status == Status::Failed)
       status.summary(Level::WARN, "the last cloud could not be meshed");
-    else if (statistics.has_last && !last.looks_closed)
-      status.summary(Level::WARN, "the last cloud does not look like a closed surface");
+    else if (last.has_faults)
+      status.summary(Level::WARN, "the last mesh has faults");
     else
       status.summary(Level::OK, state);
     status.add("state", state);
     status.add("last result", std::string(statistics.has_last ? nameOf(last.status) : "none"));
     status.add("last message", last.message);
     status.add("last time [s]", last.seconds);
+    status.add("last cloud [points]", last.points);
+    status.add("last parts", last.parts);
+    status.add("last outliers [points]", last.outliers);
+    status.add("last other parts [points]", last.other_points);
+    status.add("last self-intersections", last.self_intersections);
     status.add("received clouds", statistics.received);
     status.add("done clouds", statistics.done);
     status.add("failed clouds", statistics.failed);

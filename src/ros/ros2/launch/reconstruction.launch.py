@@ -2,9 +2,17 @@
 ros2 launch pcl_spherical_param reconstruction.launch.py cloud:=/camera/depth/points"""
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+
+
+def node(context):
+    params = LaunchConfiguration('params').perform(context)
+    return [Node(package='pcl_spherical_param', executable='spherical_param_node',
+                 name=LaunchConfiguration('name'), output='screen',
+                 parameters=[params] if params else [],
+                 remappings=[('~/cloud', LaunchConfiguration('cloud'))])]
 
 
 def generate_launch_description():
@@ -13,7 +21,7 @@ def generate_launch_description():
                               description='topic of sensor_msgs/PointCloud2'),
         DeclareLaunchArgument('name', default_value='spherical_param',
                               description='name of the node'),
-        Node(package='pcl_spherical_param', executable='spherical_param_node',
-             name=LaunchConfiguration('name'), output='screen',
-             remappings=[('~/cloud', LaunchConfiguration('cloud'))]),
+        DeclareLaunchArgument('params', default_value='',
+                              description='YAML file of parameters; see doc/ros.md'),
+        OpaqueFunction(function=node),
     ])
