@@ -10,7 +10,7 @@ if(NOT SPHERICAL_PARAM_PACKAGES)
   return()
 endif()
 
-# Manual pages, from what the tools print with -h.
+# Manual pages, from what the tools print with -h expert.
 find_program(HELP2MAN help2man)
 if(NOT HELP2MAN)
   message(FATAL_ERROR "help2man was not found, which makes the manual pages: install help2man")
@@ -20,7 +20,7 @@ foreach(tool morph reconstruction remesh scan texture)
   set(name pcl_spherical_param_${tool})
   set(page ${PROJECT_BINARY_DIR}/man/${name}.1)
   add_custom_command(OUTPUT ${page}.gz
-    COMMAND ${HELP2MAN} --no-info --name "meshing by spherical parameterisation"
+    COMMAND ${HELP2MAN} --no-info --help-option "-h expert" --name "meshing by spherical parameterisation"
             --output ${page} $<TARGET_FILE:${name}>
     COMMAND gzip -9nf ${page}
     DEPENDS ${name} COMMENT "Manual page of ${name}" VERBATIM)

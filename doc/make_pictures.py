@@ -156,7 +156,7 @@ def symptoms():
         ("parts", scan("pair", 4000), ["-parts", "each"], "--view=20,15"),
         ("opening", scan("bowl", 4000), ["-surface", "open"], "--view=30,20"),
         ("outliers", "stray.xyz", ["-outliers", "auto"], FRONT),
-        ("noise", scan("animal", 12000, "-noise", 1), ["-smoothing", "5"], SIDE),
+        ("noise", scan("animal", 12000, "-noise", 0.6), ["-smoothing", "5"], SIDE),
     ):
         mesh(cloud, "before")
         run("reconstruction", cloud, "after.ply", *options)

@@ -513,12 +513,10 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
   Summary summary;
   for (std::size_t side = 0; side < 2; ++side) {
     const CloudReconstruction& cloud = clouds[side].cloud;
-    const auto add = [side](std::string& text, const std::string& more) {
-      text += (side == 0 ? "" : "; ") + more;
-    };
-    add(summary.read, settings.inputs[side] + ", " + counted(cloud.data->points.size(), "point"));
-    add(summary.verdict, cloud.result.verdict);
-    add(summary.left_out, leftOut(cloud, cloud.result.duplicates()));
+    const std::string of = (side == 0 ? "" : "; ") + settings.inputs[side] + ": ";
+    summary.read += of + counted(cloud.data->points.size(), "point");
+    summary.verdict += (side == 0 ? "" : " ") + settings.inputs[side] + ": " + cloud.result.verdict;
+    summary.left_out += of + leftOut(cloud, cloud.result.duplicates());
   }
   summary.made =
       counted(static_cast<std::size_t>(morph.result.first.cols()), "vertex", "vertices") + ", " +
@@ -559,21 +557,18 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, clouds, morph); },
       [&] { printVerdict(settings, clouds, morph, console); });
-  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, true);
-  std::size_t intersecting = 0;
-  std::size_t triangles = 0;
+  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, false);
+  bool is_usable = true;
   for (std::size_t side = 0; side < 2; ++side) {
-    const spherical_param::Result& result = clouds[side].cloud.result;
-    findings.add(settings.inputs[side], result.findings);
-    intersecting += result.intersecting_triangles;
-    triangles += static_cast<std::size_t>(result.triangles.cols());
+    findings.add(settings.inputs[side], findingsOf(clouds[side]));
+    is_usable = is_usable && clouds[side].cloud.result.isUsable();
   }
   for (const LostPair& lost : morph.lost) {
     findings.add("the pair of line " + std::to_string(lost.pair.line) +
                  " is impossible: " + lost.reason);
   }
   findings.print();
-  findings.requireSoundness(intersecting, triangles);
+  findings.requireSoundness(is_usable);
 }
 
 }  // namespace

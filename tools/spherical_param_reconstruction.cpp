@@ -203,11 +203,31 @@ Json report(const Settings& settings, const CloudReconstruction& cloud) {
   return json;
 }
 
+/// One sentence on the meshes of a cloud.
+std::string verdictOf(const std::vector<CloudReconstruction>& meshes) {
+  if (meshes.size() == 1) {
+    return meshes.front().result.verdict;
+  }
+  const auto faulty = static_cast<std::size_t>(
+      std::count_if(meshes.begin(), meshes.end(), [](const CloudReconstruction& mesh) {
+        return spherical_param::hasFault(mesh.result.findings);
+      }));
+  return counted(meshes.size(), "mesh", "meshes") +
+         (faulty == 0 ? ", all sound." : ", " + grouped(faulty) + " of them with faults.");
+}
+
+bool areUsable(const std::vector<CloudReconstruction>& parts) {
+  return std::all_of(parts.begin(), parts.end(),
+                     [](const CloudReconstruction& part) { return part.result.isUsable(); });
+}
+
 /// The report on all parts, each with what report() says of one mesh.
 Json reportOnParts(const Settings& settings, const PartsReconstruction& reconstruction) {
   const CloudReconstruction& cloud = reconstruction.cloud;
   Json json = filesToJson(settings);
   json.update(cloudToJson(settings.reconstruction, cloud));
+  json["verdict"] = verdictOf(reconstruction.parts);
+  json["usable"] = areUsable(reconstruction.parts);
   json["parts"] = Json::array();
   for (std::size_t i = 0; i < reconstruction.parts.size(); ++i) {
     Json part = toJson(cloud.parts->parts[i]);
@@ -220,27 +240,33 @@ Json reportOnParts(const Settings& settings, const PartsReconstruction& reconstr
   json["failures"] = reconstruction.failures;
   return json;
 }
+
+/// The names of the files that are written.
+std::vector<std::string> writtenFiles(const Settings& settings, std::size_t meshes) {
+  std::vector<std::string> files;
+  for (const std::string& name : outputsOf(settings)) {
+    files.push_back(isNumbered(name) && meshes > 1
+                        ? numbered(name, 0) + " to " + numbered(name, meshes - 1)
+                        : numbered(name, 0));
+  }
+  return files;
+}
+
 /// Prints the six lines of a run. \param meshes of the cloud: one, or those of its parts.
 void printSummary(const Settings& settings, const CloudReconstruction& cloud,
-                  const std::vector<const CloudReconstruction*>& meshes, Console& console) {
+                  const std::vector<CloudReconstruction>& meshes, Console& console) {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::size_t duplicates = 0;
-  std::size_t faulty = 0;
-  for (const CloudReconstruction* mesh : meshes) {
-    vertices += mesh->result.vertexCount();
-    triangles += static_cast<std::size_t>(mesh->result.triangles.cols());
-    duplicates += mesh->result.duplicates();
-    faulty += mesh->result.intersecting_triangles > 0 ? 1 : 0;
+  for (const CloudReconstruction& mesh : meshes) {
+    vertices += mesh.result.vertexCount();
+    triangles += static_cast<std::size_t>(mesh.result.triangles.cols());
+    duplicates += mesh.result.duplicates();
   }
-  std::string verdict = meshes.front()->result.verdict;
-  if (settings.reconstruction.parts == PartsMode::Each) {
-    verdict = counted(meshes.size(), "mesh", "meshes") +
-              (faulty == 0 ? ", all sound." : ", " + grouped(faulty) + " of them with faults.");
-  }
-  console.summary({settings.input + ", " + counted(cloud.data->points.size(), "point"), verdict,
+  console.summary({settings.input + ", " + counted(cloud.data->points.size(), "point"),
+                   verdictOf(meshes),
                    counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
-                   leftOut(cloud, duplicates), outputsOf(settings)});
+                   leftOut(cloud, duplicates), writtenFiles(settings, meshes.size())});
 }
 
 /// Writes the mesh, the sphere and the page of a cloud, or of a part of one.
@@ -287,23 +313,23 @@ void writeJoined(const Settings& settings, PartsReconstruction& reconstruction, 
 /// Prints what was made of each part, then of all.
 void printParts(const Settings& settings, const PartsReconstruction& reconstruction,
                 Console& console) {
-  std::vector<const CloudReconstruction*> meshes;
-  for (const CloudReconstruction& part : reconstruction.parts) {
-    meshes.push_back(&part);
-    console.heading("\npart " + std::to_string(meshes.size()) + ", " +
+  for (std::size_t i = 0; i < reconstruction.parts.size(); ++i) {
+    const CloudReconstruction& part = reconstruction.parts[i];
+    console.heading("\npart " + std::to_string(i + 1) + ", " +
                     counted(part.meshed.size(), "point"));
     printTables(part, console);
     printMeasures(part.result, console);
   }
-  printSummary(settings, reconstruction.cloud, meshes, console);
+  printSummary(settings, reconstruction.cloud, reconstruction.parts, console);
 }
 
-Findings noFindings(const Settings& settings) {
-  return {settings.report.quiet, settings.reconstruction.strict, !settings.page.empty()};
+Findings findingsFor(const Settings& settings) {
+  return {settings.report.quiet, settings.reconstruction.strict, settings.page.empty()};
 }
 
 void runOnCloud(const Settings& settings, Console& console) {
-  CloudReconstruction cloud;
+  std::vector<CloudReconstruction> clouds(1);
+  CloudReconstruction& cloud = clouds.front();
   reconstructCloud(settings.input, settings.reconstruction, console, cloud);
   std::vector<std::unique_ptr<OutputFile>> files;
   writeFiles(settings, cloud, console, files);
@@ -312,13 +338,12 @@ void runOnCloud(const Settings& settings, Console& console) {
       [&] {
         printTables(cloud, console);
         printMeasures(cloud.result, console);
-        printSummary(settings, cloud, {&cloud}, console);
+        printSummary(settings, cloud, clouds, console);
       });
-  Findings findings = noFindings(settings);
+  Findings findings = findingsFor(settings);
   findings.add("", cloud.result.findings);
   findings.print();
-  findings.requireSoundness(cloud.result.intersecting_triangles,
-                            static_cast<std::size_t>(cloud.result.triangles.cols()));
+  findings.requireSoundness(cloud.result.isUsable());
 }
 
 void runOnParts(const Settings& settings, Console& console) {
@@ -338,20 +363,15 @@ void runOnParts(const Settings& settings, Console& console) {
   publish(
       settings.report, files, console, [&] { return reportOnParts(settings, reconstruction); },
       [&] { printParts(settings, reconstruction, console); });
-  Findings findings = noFindings(settings);
+  Findings findings = findingsFor(settings);
   for (const std::string& failure : reconstruction.failures) {
     findings.add(failure);
   }
-  std::size_t intersecting = 0;
-  std::size_t triangles = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const spherical_param::Result& result = parts[i].result;
-    findings.add("part " + std::to_string(i + 1), result.findings);
-    intersecting += result.intersecting_triangles;
-    triangles += static_cast<std::size_t>(result.triangles.cols());
+    findings.add("part " + std::to_string(i + 1), parts[i].result.findings);
   }
   findings.print();
-  findings.requireSoundness(intersecting, triangles);
+  findings.requireSoundness(areUsable(parts));
 }
 
 void run(const std::vector<std::string>& words) {

@@ -284,7 +284,7 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
 
 std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
                                                  const MappedCloud& mapped) {
-  std::vector<spherical_param::Finding> findings = mapped.cloud.result.findings;
+  std::vector<spherical_param::Finding> findings = findingsOf(mapped);
   if (mapped.colors.empty() && !settings.cells) {
     findings.push_back({"the cloud has no colours: the texture is a checkerboard", "", "", false});
   }
@@ -389,11 +389,10 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console, [&] { return report(settings, mapped, output); },
       [&] { printVerdict(settings, mapped, output, console); });
-  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, true);
+  Findings findings(settings.report.quiet, settings.product.reconstruction.strict, false);
   findings.add("", findingsOf(settings, mapped));
   findings.print();
-  findings.requireSoundness(mapped.cloud.result.intersecting_triangles,
-                            static_cast<std::size_t>(mapped.triangles().cols()));
+  findings.requireSoundness(mapped.cloud.result.isUsable());
 }
 
 }  // namespace

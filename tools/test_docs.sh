@@ -19,7 +19,7 @@ fi
 clone="$PWD/build/docs/clone"
 prefix="$PWD/build/docs/root/usr/local"
 
-# as_printed <page> <n>: the n-th block of commands of a page, in a clone, into a root of its own.
+# as_printed <commands>: of a page, in a clone, into a root of its own.
 as_printed() {
   (cd "$clone" && DESTDIR="$PWD/../root" CMAKE_BUILD_PARALLEL_LEVEL="$jobs" bash -euc "$1")
 }

@@ -119,9 +119,14 @@ struct Result {
   bool isUsable() const {
     return 100 * intersecting_triangles <= static_cast<std::size_t>(triangles.cols());
   }
-  /// Whether the mesh encloses something: volume, centroid and inertia of `measures` mean nothing
-  /// else. \return true if it is usable, and not folded
-  bool hasVolume() const { return isUsable() && !diagnosis.isFolded(); }
+  /// Whether the mesh is folded. Smoothed points on which no triangles intersect unfold one that
+  /// noise folds. \return true if it leaves the graph in too many places
+  bool isFolded() const {
+    return diagnosis.isFolded() && (smoothed.cols() == 0 || intersecting_triangles > 0);
+  }
+  /// Whether the mesh encloses something: else volume, centroid and inertia of `measures` are
+  /// meaningless. \return true if it is usable, and not folded
+  bool hasVolume() const { return isUsable() && !isFolded(); }
   /// Points that were merged into an earlier one. \return n - v
   std::size_t duplicates() const { return vertex_of_input.size() - input_of_vertex.size(); }
 };

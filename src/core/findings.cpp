@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -47,6 +47,15 @@ bool isRough(const Result& result) {
          result.diagnosis.bridges.empty() && result.diagnosis.genus.value_or(0) == 0;
 }
 
+bool isRaw(const Options& options) {
+  return options.optimization.method == OptimizationMethod::None;
+}
+
+bool isFolded(const Options& options, const Result& result) {
+  return result.isFolded() ||
+         (isRaw(options) && result.diagnosis.edges_outside_graph > kMaxEdgesOutside);
+}
+
 Finding partsOf(const std::vector<PartBridge>& bridges) {
   const PartBridge& bridge = bridges.front();
   // Many parts are a scene, of which the largest is mostly the object.
@@ -65,8 +74,8 @@ std::optional<Finding> handlesOf(const SurfaceDiagnosis& diagnosis) {
   if (handles > 0)
     return Finding{counted(handles, "handle") + ", cut: the mesh is a sphere", "", "", true};
   if (!diagnosis.handles.empty())
-    return Finding{"neighbours torn apart in " + counted(diagnosis.handles.size(), "place") +
-                       ": a handle, cut, or a fold",
+    return Finding{"perhaps a handle, which is cut, or a fold, in " +
+                       counted(diagnosis.handles.size(), "place"),
                    "", "", true};
   return std::nullopt;
 }
@@ -79,11 +88,18 @@ Finding filledOf(const SurfaceDiagnosis& diagnosis, const Options& options) {
       points = std::max(points, hole.loops.front().size());
   const std::string of = points > 0 ? " of " + counted(points, "point") : std::string();
   const std::size_t count = diagnosis.openings();
-  const bool is_open = options.surface == SurfaceMode::Open;
+  const bool is_open =
+      options.surface == SurfaceMode::Open || options.graph.method != GraphMethod::LocalDelaunay;
   return {(count == 1 ? "opening" + of : grouped(count) + " openings, the largest" + of) +
               ", filled",
           is_open ? "" : "surface", is_open ? "" : "open",
           options.fill_holes == 0 && options.fill_holes_area == 0.0};
+}
+
+/// At least the default, and a number.
+int moreIterations(int iterations) {
+  return std::max(EmbeddingOptions().max_iterations,
+                  iterations < std::numeric_limits<int>::max() / 2 ? 2 * iterations : iterations);
 }
 
 void addOfEmbedding(const Options& options, const Result& result, std::vector<Finding>& findings) {
@@ -94,7 +110,7 @@ void addOfEmbedding(const Options& options, const Result& result, std::vector<Fi
                         is_iterative ? "embedding" : "", is_iterative ? "multilevel" : "", false});
   else if (embedding.stop_reason == StopReason::IterationLimit)
     findings.push_back({"the embedding has not converged", "max_iterations",
-                        std::to_string(2 * options.embedding.max_iterations), false});
+                        std::to_string(moreIterations(options.embedding.max_iterations)), false});
   else if (embedding.stop_reason == StopReason::Stagnated)
     findings.push_back(
         {"the embedding has not converged: its residual no longer falls", "", "", false});
@@ -114,16 +130,16 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
     findings.push_back(partsOf(diagnosis.bridges));
   if (diagnosis.openings() > 0)
     findings.push_back(filledOf(diagnosis, options));
-  if (isRough(result) && !diagnosis.isFolded())
+  if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "smoothing", kSteps, false});
   if (const std::optional<Finding> handles = handlesOf(diagnosis))
     findings.push_back(*handles);
   if (diagnosis.is_one_sided)
     findings.push_back(
         {"the surface has one side only, like a Moebius strip: the mesh tears it", "", "", true});
-  const bool is_raw = options.optimization.method == OptimizationMethod::None;
-  if (diagnosis.isFolded() || (is_raw && diagnosis.edges_outside_graph > kMaxEdgesOutside)) {
-    const bool may_unfold = is_raw && result.embedding.stop_reason == StopReason::Unfinished;
+  if (isFolded(options, result)) {
+    const bool may_unfold =
+        isRaw(options) && result.embedding.stop_reason == StopReason::Unfinished;
     Finding fold{"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
                      " of its edges join points that are far apart in the cloud",
                  "", "", true};
@@ -142,7 +158,7 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
   return findings;
 }
 
-std::string verdictOf(const Result& result) {
+std::string verdictOf(const Options& options, const Result& result) {
   if (result.intersecting_triangles > 0)
     return "The mesh has faults: " + grouped(result.intersecting_triangles) + " of " +
            counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";
@@ -161,7 +177,7 @@ std::string verdictOf(const Result& result) {
     doubts.emplace_back("cuts " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle"));
   else if (!diagnosis.handles.empty())
     doubts.emplace_back("may cut a handle");
-  else if (diagnosis.isFolded())
+  if (isFolded(options, result))
     doubts.emplace_back("is folded");
   for (std::size_t i = 0; i < doubts.size(); ++i)
     text += (i == 0 ? ", but it " : i + 1 < doubts.size() ? ", " : " and ") + doubts[i];

@@ -11,6 +11,6 @@ namespace spherical_param::internal {
 std::vector<Finding> findingsOf(const Options& options, const Result& result);
 
 /// A headline: whether the mesh is sound, and what is left open, filled, cut or joined.
-std::string verdictOf(const Result& result);
+std::string verdictOf(const Options& options, const Result& result);
 
 }  // namespace spherical_param::internal

@@ -189,7 +189,8 @@ std::vector<OptionRow> surfaceRows() {
       usedWith({{"graph", "delaunay"}},
                choice<SurfaceMode>(
                    "surface", "surface",
-                   "what becomes of openings: filled, left open, or that if certain", Everybody,
+                   "openings are filled, left open, or (auto) left open where they are certain",
+                   Everybody,
                    {{"closed", SurfaceMode::Closed},
                     {"open", SurfaceMode::Open},
                     {"auto", SurfaceMode::Auto}},

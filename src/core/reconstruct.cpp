@@ -138,7 +138,7 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
                        "as a defect of the library");
   result.stages = clock.take();
   result.findings = internal::findingsOf(options, result);
-  result.verdict = internal::verdictOf(result);
+  result.verdict = internal::verdictOf(options, result);
   return result;
 }
 

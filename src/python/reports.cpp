@@ -47,12 +47,16 @@ py::dict toDict(const MeshTopology& topology) {
                   "genus"_a = topology.genus ? py::cast(*topology.genus) : py::none());
 }
 
-py::dict toDict(const MeshMeasures& measures) {
-  return py::dict("volume"_a = measures.volume, "area"_a = measures.area,
+/// \param has_volume else what the mesh encloses is meaningless.
+py::dict toDict(const MeshMeasures& measures, bool has_volume) {
+  const auto known = [has_volume](const py::object& value) {
+    return has_volume ? value : py::none();
+  };
+  return py::dict("volume"_a = known(py::float_(measures.volume)), "area"_a = measures.area,
                   "mean_edge_length"_a = measures.mean_edge_length,
                   "box_min"_a = toArray(measures.box_min), "box_max"_a = toArray(measures.box_max),
-                  "centroid"_a = toArray(measures.centroid),
-                  "inertia"_a = toArray(measures.inertia));
+                  "centroid"_a = known(toArray(measures.centroid)),
+                  "inertia"_a = known(toArray(measures.inertia)));
 }
 
 py::dict toDict(const Bridge& bridge) {
@@ -178,7 +182,7 @@ py::dict toDict(const Result& result, const FinitePoints& finite) {
   dict["openings"] =
       listOf(result.openings, [](const Opening& opening) { return toDict(opening); });
   dict["topology"] = toDict(result.topology);
-  dict["measures"] = toDict(result.measures);
+  dict["measures"] = toDict(result.measures, result.hasVolume());
   dict["diagnosis"] = toDict(result.diagnosis);
   dict["graph"] = toDict(result.graph);
   dict["embedding"] = toDict(result.embedding);

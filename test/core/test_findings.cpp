@@ -88,7 +88,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
        }},
       {{"1 handle, cut: the mesh is a sphere", "", "", true},
        [](Result& r) { r.diagnosis.genus = 1; }},
-      {{"neighbours torn apart in 2 places: a handle, cut, or a fold", "", "", true},
+      {{"perhaps a handle, which is cut, or a fold, in 2 places", "", "", true},
        [](Result& r) { r.diagnosis.handles.resize(2); }},
       {{"the surface has one side only, like a Moebius strip: the mesh tears it", "", "", true},
        [](Result& r) { r.diagnosis.is_one_sided = true; }},
@@ -151,7 +151,7 @@ TEST(Findings, ThePapersStagesHaveTheirOwn) {
       {{{folded, "tolerance", "1e-8", true}, [&](Result& r) { fold(r, StopReason::Unfinished); }},
        {{folded, "", "", true}, [&](Result& r) { fold(r, StopReason::Converged); }},
        {{}, [](Result& r) { r.diagnosis.edges_outside_graph = 0.001; }},
-       {{"the embedding has not converged", "max_iterations", "80", false},
+       {{"the embedding has not converged", "max_iterations", "1600", false},
         [](Result& r) { r.embedding.stop_reason = StopReason::IterationLimit; }},
        {{"the embedding has not converged: its residual no longer falls", "", "", false},
         [](Result& r) { r.embedding.stop_reason = StopReason::Stagnated; }},
@@ -165,7 +165,7 @@ TEST(Verdict, SaysInProportionWhatIsWrong) {
   const auto expect = [](const std::string& verdict, const std::function<void(Result&)>& change) {
     Result result = soundResult();
     change(result);
-    EXPECT_EQ(internal::verdictOf(result), verdict);
+    EXPECT_EQ(internal::verdictOf({}, result), verdict);
   };
   expect("A sound mesh.", [](Result&) {});
   expect("A sound mesh with 2 openings.", [](Result& r) { r.boundary.resize(2); });

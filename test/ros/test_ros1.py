@@ -395,7 +395,7 @@ class Ros1(unittest.TestCase):
             return yaml.safe_load(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
         text = (ROOT / "src/ros/ros1/config/depth_camera.yaml").read_text()
-        self.assertIn(f"```yaml\n{text}```\n", PAGE)
+        self.assertIn(f"```yaml\n{text}```\n", (ROOT / "doc/ros.md").read_text())
         of_node = {f"/spherical_param/{name}": value for name, value in yaml.safe_load(text).items()}
         self.assertLessEqual(of_node.items(), parameters().items())
         limits = {f"{side}_{axis}": 0.125 * i for i, (side, axis) in

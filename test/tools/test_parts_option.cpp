@@ -84,6 +84,24 @@ TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
   EXPECT_EQ(mesh("open.ply").points().cols(), 560);
 }
 
+TEST_F(PartsOption, APartThatCannotBeMeshedIsNamedBesideFindingsOfOthers) {
+  ASSERT_EQ(run(SCAN_TOOL, {"bowl", "bowl.xyz", "-points", "1000"}, {}).exit_code, 0);
+  std::string scene = content("bowl.xyz");
+  for (int i = 0; i < 400; ++i)
+    scene += "9 " + std::to_string(0.05 * (i % 20)) + " " + std::to_string(0.05 * (i / 20)) + "\n";
+  write("scene.xyz", scene);
+  const RunResult result = tool({"scene.xyz", "out.ply", "-parts", "each"});
+  EXPECT_NE(result.output.find("\nverdict   A sound mesh, but it fills 1 opening.\n"),
+            std::string::npos);
+  EXPECT_NE(result.errors.find("warning: cannot mesh part 2 of 2 (400 points): all points lie in"),
+            std::string::npos);
+  EXPECT_NE(result.errors.find(": try -surface open\n"), std::string::npos);
+  const RunResult strict = tool({"scene.xyz", "out.ply", "-parts", "each", "-strict"});
+  EXPECT_EQ(strict.exit_code, 1);
+  EXPECT_NE(strict.errors.find("in one plane; part 1: opening"), std::string::npos)
+      << strict.errors;
+}
+
 TEST_F(PartsOption, LargestLeavesOutTheOthersInEveryTool) {
   const RunResult result =
       tool({"two.xyz", "out.ply", "-parts", "largest", "-json", "report.json"});

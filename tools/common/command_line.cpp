@@ -45,8 +45,10 @@ UsageError unknownOption(const std::string& word, const std::vector<OptionInfo>&
       options.begin(), options.end(), [&name](const OptionInfo& a, const OptionInfo& b) {
         return editDistance(name, a.name) < editDistance(name, b.name);
       });
+  const bool is_near = 2 * editDistance(name, nearest->name) <= name.size();
   return {"unrecognised option " + inQuotes(word),
-          "did you mean -" + nearest->name + "? -h shows the options, -h expert all of them"};
+          (is_near ? "did you mean -" + nearest->name + "? " : "") +
+              "-h shows the options, -h expert all of them"};
 }
 
 /// Whether a word is one of the options. Boost would take it for the value of the one before.
@@ -157,6 +159,7 @@ std::string describeOptions(const std::vector<OptionInfo>& options, bool with_ex
         std::size_t column = width + 6;
         for (const std::string_view word : split(option.help, " ")) {
           if (column + word.size() > help_width) {
+            text.pop_back();
             text += "\n" + std::string(width + 6, ' ');
             column = width + 6;
           }
@@ -172,7 +175,7 @@ std::string describeOptions(const std::vector<OptionInfo>& options, bool with_ex
                                        [](const OptionInfo& option) { return option.expert; });
   return list(false) + (!has_experts   ? ""
                         : with_experts ? "\nExpert options:\n" + list(true)
-                                       : "\nAll options: -h expert\n");
+                                       : "\nAll options: -h expert, version: -version\n");
 }
 
 std::string describeExamples(const std::string& tool,

@@ -9,21 +9,26 @@
 namespace spherical_param::tools {
 
 void Findings::add(const std::string& of, const std::vector<Finding>& findings) {
+  const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return !finding.option.empty();
+  });
   for (const Finding& finding : findings) {
+    const bool is_consequence = has_option && finding.is_fault && finding.option.empty();
     // What is true of several parts is said once.
     const auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-      return entry.finding.text == finding.text && entry.finding.value == finding.value;
+      return entry.finding.text == finding.text && entry.finding.value == finding.value &&
+             entry.is_consequence == is_consequence;
     });
     if (same == entries_.end()) {
-      entries_.push_back({of, finding});
+      entries_.push_back({of, finding, false, is_consequence});
     } else {
       same->of += ", " + of;
     }
   }
 }
 
-void Findings::add(const std::string& text) {
-  entries_.push_back({"", {text, "", "", true}});
+void Findings::add(const std::string& failure) {
+  entries_.push_back({"", {failure, "", "", true}, true, false});
 }
 
 std::string Findings::textOf(const Entry& entry) const {
@@ -33,7 +38,7 @@ std::string Findings::textOf(const Entry& entry) const {
     std::string flag = option;
     std::replace(flag.begin(), flag.end(), '_', '-');
     line += ": try -" + flag + " " + value;
-  } else if (is_fault && !has_page_) {
+  } else if (is_fault && suggests_page_ && !entry.is_failure) {
     line += ": try -report report.html to see where";
   }
   return oneLine(line);
@@ -44,21 +49,14 @@ void Findings::print() const {
     return;
   }
   std::fflush(stdout);
-  // What no option deals with by itself is mostly a consequence of what one does.
-  const bool has_option = std::any_of(entries_.begin(), entries_.end(), [](const Entry& entry) {
-    return !entry.finding.option.empty();
-  });
   for (const Entry& entry : entries_) {
-    const auto& [text, option, value, is_fault] = entry.finding;
-    const bool is_consequence = has_option && is_fault && option.empty();
-    if (!is_consequence && (!strict_ || !is_fault)) {
+    if (!entry.is_consequence && (!strict_ || !entry.finding.is_fault)) {
       std::fprintf(stderr, "warning: %s\n", textOf(entry).c_str());
     }
   }
 }
 
-void Findings::requireSoundness(std::size_t intersecting_triangles, std::size_t triangles) const {
-  const bool is_usable = 100 * intersecting_triangles <= triangles;
+void Findings::requireSoundness(bool is_usable) const {
   std::string faults;
   for (const Entry& entry : entries_) {
     if (entry.finding.is_fault) {

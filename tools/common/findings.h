@@ -2,7 +2,6 @@
 
 #include "spherical_param/finding.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,27 +11,30 @@ namespace spherical_param::tools {
 /// standard error.
 class Findings {
 public:
-  /// \param quiet     nothing is printed.
-  /// \param strict    faults end the tool, see requireSoundness().
-  /// \param has_page  there is a page that shows faults.
-  Findings(bool quiet, bool strict, bool has_page)
-      : quiet_(quiet), strict_(strict), has_page_(has_page) {}
+  /// \param quiet         nothing is printed.
+  /// \param strict        faults end the tool, see requireSoundness().
+  /// \param suggests_page the tool makes a page that would show faults, and is not asked to.
+  Findings(bool quiet, bool strict, bool suggests_page)
+      : quiet_(quiet), strict_(strict), suggests_page_(suggests_page) {}
 
   /// Adds those of an input, or of a part of it; `of` names it where there are several.
   void add(const std::string& of, const std::vector<Finding>& findings);
-  /// Adds a fault of the input that no option deals with.
-  void add(const std::string& text);
+  /// Adds a failure that is no finding of the library, and counts as a fault.
+  void add(const std::string& failure);
 
   /// Prints a line a finding; those that end the tool are left to that.
   void print() const;
-  /// Ends the tool with exit code 3 if more than 1 % of the triangles intersect, and with -strict
-  /// with 1 if there is a fault. To be called when all files are written. \throw ToolError
-  void requireSoundness(std::size_t intersecting_triangles, std::size_t triangles) const;
+  /// Ends the tool with exit code 3 if a mesh is not usable, and with -strict with 1 if there is a
+  /// fault. To be called when all files are written. \throw ToolError
+  void requireSoundness(bool is_usable) const;
 
 private:
   struct Entry {
     std::string of;  ///< the inputs that it is true of; empty: the only one
     Finding finding;
+    bool is_failure = false;
+    /// Of something else that was found there, and that an option deals with.
+    bool is_consequence = false;
   };
 
   std::string textOf(const Entry& entry) const;
@@ -40,7 +42,7 @@ private:
   std::vector<Entry> entries_;
   bool quiet_;
   bool strict_;
-  bool has_page_;
+  bool suggests_page_;
 };
 
 }  // namespace spherical_param::tools

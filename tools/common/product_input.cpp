@@ -114,6 +114,16 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   mapped.cloud.stages.push_back({"map", console.end("")});
 }
 
+std::vector<Finding> findingsOf(const MappedCloud& mapped) {
+  std::vector<Finding> findings = mapped.cloud.result.findings;
+  for (Finding& finding : findings) {
+    if (finding.option == "parts") {
+      finding.value = "largest";
+    }
+  }
+  return findings;
+}
+
 void addMapToJson(const MappedCloud& mapped, Json& json) {
   json["input_points"] = mapped.cloud.data->points.size();
   json["vertices"] = mapped.points.cols();

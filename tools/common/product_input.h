@@ -49,6 +49,9 @@ struct MappedCloud {
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
               MappedCloud& mapped);
 
+/// What the library found, with options that tools of one surface take.
+std::vector<Finding> findingsOf(const MappedCloud& mapped);
+
 /// Adds the size of the mesh and what is wrong with the map: `input_points`, `vertices`,
 /// `mesh_triangles`, `mesh_self_intersections`, `flipped_triangles`, `angle_distortion`,
 /// `area_distortion`, `mean_angle_difference_degrees`, `stretch_efficiency`, and the same of the

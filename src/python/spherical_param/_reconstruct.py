@@ -54,8 +54,8 @@ def reconstruct(
         An array in any unit, of any real type; the work is done in double precision. A structured
         array has x, y, z, and may have normals (nx, ny, nz or normal_x ...) and colours (red,
         green, blue or r, g, b, or rgb as PCL packs them). A file is .pcd, .ply, .obj, .xyz or
-        .txt. Of Open3D a point cloud or mesh, of trimesh a PointCloud or Trimesh. Colours and
-        normals come along. At least 4 distinct finite points that are not all in one plane.
+        .txt. Of Open3D a point cloud or mesh, of trimesh a PointCloud or Trimesh, the normals
+        of which are not used. Colours and normals come along. At least 4 distinct finite points that are not all in one plane.
         Points with a coordinate that is not finite (or masked) are ignored, and counted.
 OPTIONS
 

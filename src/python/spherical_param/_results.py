@@ -41,15 +41,19 @@ class Topology:
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """Size, place and mass properties of the mesh and the solid that it encloses."""
+    """Size, place and mass properties of the mesh and the solid that it encloses.
 
-    volume: float  #: [cubed unit of the input]
+    Volume, centroid and inertia are None where the mesh is folded, or more than 1 % of its
+    triangles intersect.
+    """
+
+    volume: Optional[float]  #: [cubed unit of the input]
     area: float  #: [squared unit of the input]
     mean_edge_length: float  #: [unit of the input]
     box_min: FloatArray  #: (3,) corner of the box along the axes [unit of the input]
     box_max: FloatArray  #: (3,) the opposite corner
-    centroid: FloatArray  #: (3,) centre of mass of the solid
-    inertia: FloatArray  #: (3, 3) of the solid at unit density about the centroid
+    centroid: Optional[FloatArray]  #: (3,) centre of mass of the solid
+    inertia: Optional[FloatArray]  #: (3, 3) of the solid at unit density about the centroid
 
 
 @dataclass(frozen=True, eq=False)
@@ -441,13 +445,11 @@ class Result(MeshExport):
         return self.vertices if self.smoothed is None else self.smoothed
 
     def __repr__(self) -> str:
-        crossings = len(self.self_intersections)
+        volume = self.measures.volume
+        enclosed = "" if volume is None else f", volume {volume:.6g}"
         return (
             f"<spherical_param.Result: {self.verdict} {len(self.vertices)} vertices, "
-            f"{len(self.triangles)} triangles, "
-            f"volume {self.measures.volume:.6g}, area {self.measures.area:.6g}, "
-            f"{crossings} self-intersection{'' if crossings == 1 else 's'}, "
-            f"{self.diagnosis.kind}>"
+            f"{len(self.triangles)} triangles, area {self.measures.area:.6g}{enclosed}>"
         )
 
 
