@@ -44,7 +44,8 @@ std::string percent(double fraction) {
 /// Whether the mesh is as rough as noise makes it, and nothing else is known that does.
 bool isRough(const Result& result) {
   return result.optimization.noise_steps > 0 && result.smoothed.cols() == 0 &&
-         result.diagnosis.bridges.empty() && result.diagnosis.genus.value_or(0) == 0;
+         result.outliers.empty() && result.diagnosis.bridges.empty() &&
+         result.diagnosis.genus.value_or(0) == 0;
 }
 
 bool isRaw(const Options& options) {

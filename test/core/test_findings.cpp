@@ -112,6 +112,8 @@ TEST(Findings, OfAFoldedMeshAreNoNoiseButSmoothingMayHelp) {
   Result result = soundResult();
   result.optimization.noise_steps = 3;
   result.diagnosis.edges_outside_graph = 0.5;
+  result.outliers = {3};
+  EXPECT_TRUE(internal::findingsOf({}, result).back().option.empty());
   addBridge(result, 400, 400);
   for (const Finding& finding : internal::findingsOf({}, result))
     EXPECT_EQ(finding.text.find("nois"), std::string::npos) << finding.text;
