@@ -125,8 +125,8 @@ struct Result {
     return diagnosis.isFolded() && (smoothed.cols() == 0 || intersecting_triangles > 0);
   }
   /// Whether the mesh encloses something: else volume, centroid and inertia of `measures` are
-  /// meaningless. \return true if it is usable, and not folded
-  bool hasVolume() const { return isUsable() && !isFolded(); }
+  /// meaningless. \return true if it is closed, usable and not folded
+  bool hasVolume() const { return isClosed() && isUsable() && !isFolded(); }
   /// Points that were merged into an earlier one. \return n - v
   std::size_t duplicates() const { return vertex_of_input.size() - input_of_vertex.size(); }
 };

@@ -195,6 +195,9 @@ TEST(Verdict, MeshIsUsableUpToOnePercentOfItsTriangles) {
   result.intersecting_triangles = 11;
   EXPECT_FALSE(result.isUsable() || result.hasVolume());
   result.intersecting_triangles = 0;
+  result.boundary.resize(1);
+  EXPECT_FALSE(result.hasVolume());  // open
+  result.boundary.clear();
   result.diagnosis.edges_outside_graph = 0.2;
   EXPECT_TRUE(result.isUsable());
   EXPECT_FALSE(result.hasVolume());

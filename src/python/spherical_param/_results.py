@@ -43,7 +43,7 @@ class Topology:
 class Measures:
     """Size, place and mass properties of the mesh and the solid that it encloses.
 
-    Volume, centroid and inertia are None where the mesh is folded, or more than 1 % of its
+    Volume, centroid and inertia are None where the mesh is open or folded, or more than 1 % of its
     triangles intersect.
     """
 
