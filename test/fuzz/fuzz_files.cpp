@@ -107,7 +107,7 @@ CloudReconstruction meshedSphere(int count) {
   points << "nan 0 0\n";
   MemoryFile file(".xyz");
   file.fill(points.str().data(), points.str().size());
-  Console console(false);
+  Console console(Detail::Nothing);
   CloudReconstruction cloud;
   reconstructCloud(file.path(), {}, console, cloud);
   return cloud;
