@@ -529,7 +529,7 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
     return;
   }
   const Settings settings = parseSettings(command_line);

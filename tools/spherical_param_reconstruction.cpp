@@ -376,7 +376,7 @@ void runOnParts(const Settings& settings, Console& console) {
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
     return;
   }
   const Settings settings = parseSettings(command_line);

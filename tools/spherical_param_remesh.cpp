@@ -690,7 +690,7 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
     return;
   }
   const Settings settings = parseSettings(command_line);

@@ -135,7 +135,7 @@ Settings parseSettings(const CommandLine& command_line) {
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText(command_line.wantsExpertHelp()))) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
     return;
   }
   if (command_line.has("list")) {

@@ -283,18 +283,15 @@ PartMesh meshPart(const Points& points, const spherical_param::Options& options)
   return part;
 }
 
-/// Adds what is to be said of a surface. \return whether it has a fault
-bool addFindings(const Result& result, Outcome& outcome) {
-  bool has_faults = false;
+/// Adds what is to be said of a surface.
+void addFindings(const Result& result, Outcome& outcome) {
   for (const spherical_param::Finding& finding : result.findings) {
     outcome.warnings.push_back(finding.option.empty() ? finding.text
                                                       : finding.text + ": try " + finding.option +
                                                             " = " + finding.value);
-    has_faults = has_faults || finding.is_fault;
   }
   outcome.duplicates += result.duplicates();
   outcome.self_intersections += result.self_intersections.size();
-  return has_faults;
 }
 
 /// Meshes each part by itself. A part that cannot be meshed is left out with a warning.
@@ -325,7 +322,9 @@ std::vector<PartMesh> meshParts(const std::vector<Points>& parts,
                                  " points is left out: " + error.what());
       continue;
     }
-    faulty += addFindings(meshes.back().result, outcome) ? 1 : 0;
+    const Result& result = meshes.back().result;
+    addFindings(result, outcome);
+    faulty += spherical_param::hasFault(result.findings) ? 1 : 0;
   }
   if (meshes.empty())
     std::rethrow_exception(failure);

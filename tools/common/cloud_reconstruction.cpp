@@ -35,6 +35,14 @@ std::vector<Index> finitePoints(const PointData& data) {
   return finite;
 }
 
+/// The points that are not among the others; both ascending.
+std::vector<Index> without(const std::vector<Index>& points, const std::vector<Index>& others) {
+  std::vector<Index> rest;
+  std::set_difference(points.begin(), points.end(), others.begin(), others.end(),
+                      std::back_inserter(rest));
+  return rest;
+}
+
 /// How the library works, with its progress as that of the console's stage. All but its last step
 /// is the search for neighbours.
 Execution executionOf(const ReconstructionSettings& settings, Console& console) {
@@ -72,10 +80,7 @@ void removeOutliers(const ReconstructionSettings& settings, Console& console,
   for (Index& i : outliers) {
     i = cloud.meshed[static_cast<std::size_t>(i)];
   }
-  std::vector<Index> rest;
-  std::set_difference(cloud.meshed.begin(), cloud.meshed.end(), outliers.begin(), outliers.end(),
-                      std::back_inserter(rest));
-  cloud.meshed = std::move(rest);
+  cloud.meshed = without(cloud.meshed, outliers);
 }
 
 }  // namespace
@@ -263,10 +268,7 @@ void reconstructParts(const std::string& path, const ReconstructionSettings& set
   found = std::move(meshed);
   std::vector<Index>& left_out = cloud.parts->left_out;
   std::sort(left_out.begin(), left_out.end());
-  std::vector<Index> rest;
-  std::set_difference(cloud.meshed.begin(), cloud.meshed.end(), left_out.begin(), left_out.end(),
-                      std::back_inserter(rest));
-  cloud.meshed = std::move(rest);
+  cloud.meshed = without(cloud.meshed, left_out);
 }
 
 Positions vertexPositions(const CloudReconstruction& cloud) {

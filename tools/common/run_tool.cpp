@@ -142,9 +142,9 @@ int runTool(const std::string& tool, int argc, char** argv,
 }
 
 bool answerHelpOrVersion(const CommandLine& command_line, const std::string& tool,
-                         const std::string& help) {
+                         const std::function<std::string(bool with_experts)>& help) {
   if (command_line.wantsHelp()) {
-    printAll(help);
+    printAll(help(command_line.wantsExpertHelp()));
     return true;
   }
   if (command_line.wantsVersion()) {

@@ -16,7 +16,9 @@ int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(const std::vector<std::string>&)>& body);
 
 /// Prints the help or the version if that is what the user wants. \return whether it was.
+///
+/// \param help makes the text, with the options of experts or without.
 bool answerHelpOrVersion(const CommandLine& command_line, const std::string& tool,
-                         const std::string& help);
+                         const std::function<std::string(bool with_experts)>& help);
 
 }  // namespace spherical_param::tools
