@@ -44,7 +44,8 @@ struct Options : Execution {
   /// the smoothed points.
   SmoothingOptions smoothing;
 
-  /// What becomes of openings, which are found by local Delaunay neighbourhoods alone.
+  /// What becomes of openings, which are found by local Delaunay neighbourhoods alone. Whatever
+  /// becomes of them, the embedding gives them room, so that the surface beside does not fold.
   SurfaceMode surface = SurfaceMode::Closed;
   /// Openings of up to this number of edges are filled, whatever `surface` says; 0 and up.
   int fill_holes = 0;
@@ -71,7 +72,7 @@ struct Result {
   /// first, with the surface on the left; the one of most vertices first, each from its lowest
   /// vertex. Empty of a closed mesh.
   std::vector<std::vector<Index>> boundary;
-  /// The openings of the surface that were found, open or filled; none with SurfaceMode::Closed.
+  /// The openings of the surface that were found, open or filled.
   std::vector<Opening> openings;
   Positions sphere;  ///< 3 x v, unit vectors: the embedding of each vertex
 

@@ -15,14 +15,14 @@ constexpr double kCertain = 1.0;
 
 /// Whether an opening is wide enough to be taken for one.
 bool isTrusted(const Opening& opening, const Options& options) {
-  return options.surface == SurfaceMode::Open || opening.certainty >= kCertain;
+  return options.surface != SurfaceMode::Auto || opening.certainty >= kCertain;
 }
 
 /// Whether the mesh has triangles over an opening.
 bool isFilled(const Opening& opening, bool is_cloud_flat, double unit, const Options& options) {
   if (is_cloud_flat)
     return false;
-  return !isTrusted(opening, options) ||
+  return options.surface == SurfaceMode::Closed || !isTrusted(opening, options) ||
          (options.surface == SurfaceMode::Auto && opening.is_flat) ||
          opening.loop.size() <= static_cast<std::size_t>(options.fill_holes) ||
          opening.area * unit * unit <= options.fill_holes_area;
@@ -68,8 +68,7 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, bool is_fl
 }
 
 bool seeksOpenings(const Options& options) {
-  return options.surface != SurfaceMode::Closed &&
-         options.graph.method == GraphMethod::LocalDelaunay;
+  return options.graph.method == GraphMethod::LocalDelaunay;
 }
 
 Embedding OpenSurface::embedded(const Positions& points, const Graph& graph,

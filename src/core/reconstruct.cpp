@@ -46,8 +46,13 @@ bool isAsPromised(const Result& result) {
              : topology.manifold() && topology.oriented && topology.faults.unused_vertices.empty();
 }
 
+/// Whether the mesh may have openings.
+bool mayBeOpen(const Options& options) {
+  return options.surface != SurfaceMode::Closed && internal::seeksOpenings(options);
+}
+
 [[noreturn]] void refuseFlat(const Options& options) {
-  if (internal::seeksOpenings(options))
+  if (mayBeOpen(options))
     throw InvalidInput(
         "reconstruct: all points lie in one plane and form no patch there; give more "
         "points, and not on a line");
@@ -121,7 +126,7 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
   OrderedPoints nodes = clock.time(
       "neighbors", [&] { return internal::orderCheckedPoints(points, options.threads); });
   const bool is_flat = areCoplanar(points);
-  if (is_flat && !internal::seeksOpenings(options))
+  if (is_flat && !mayBeOpen(options))
     refuseFlat(options);
   NeighborGraph graph = buildGraph(nodes, find_neighbors, options, clock);
   const OpenSurface surface = findOpenSurface(nodes, graph.graph, is_flat, options, clock);

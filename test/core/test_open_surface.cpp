@@ -143,6 +143,19 @@ TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
     EXPECT_EQ(reconstruct(points, leftOpen(mode)).triangles, closed.triangles);
 }
 
+TEST(OpenSurface, OpeningsHaveRoomOnTheSphereInAClosedMesh) {
+  const Positions points = sphereWithHoles(3000, 2, 0.3);
+  const Result closed = reconstruct(points);
+  const Result open = reconstruct(points, leftOpen());
+  EXPECT_EQ(closed.sphere, open.sphere);
+  EXPECT_TRUE(closed.isClosed());
+  ASSERT_EQ(closed.openings.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_TRUE(closed.openings[i].is_filled);
+    EXPECT_EQ(closed.openings[i].loop, open.openings[i].loop);
+  }
+}
+
 TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
   const Result small = reconstruct(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
   expectSound(small, 0);

@@ -19,8 +19,8 @@
 namespace spherical_param {
 namespace {
 
-const std::vector<std::string> kStages{"neighbors",    "graph",     "embedding", "triangulation",
-                                       "optimization", "smoothing", "quality"};
+const std::vector<std::string> kStages{"neighbors",     "graph",        "openings",  "embedding",
+                                       "triangulation", "optimization", "smoothing", "quality"};
 
 Positions roughSphere() {
   return test::withNoise(test::spiralSphere(60), 0.1, 3);
@@ -56,7 +56,7 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
     return true;
   };
   reconstruct(points, test::spiralNeighbors(points, 12), options);
-  ASSERT_EQ(fractions.size(), 6U);
+  ASSERT_EQ(fractions.size(), 7U);
   for (const auto& [stage, of_stage] : fractions) {
     EXPECT_TRUE(test::areFractions(of_stage)) << stage;
     EXPECT_EQ(of_stage.front(), 0.0) << stage;

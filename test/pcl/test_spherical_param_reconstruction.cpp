@@ -314,8 +314,8 @@ TEST_F(SphericalParamReconstruction, OptionsOutOfRangeFailWithEitherSearch) {
 // --- Progress and threads ------------------------------------------------------------------------
 
 TEST_F(SphericalParamReconstruction, EveryStageReportsFromTheCallingThreadAndCanBeEnded) {
-  const std::vector<std::string> stages{"neighbors",    "graph",     "embedding", "triangulation",
-                                        "optimization", "smoothing", "quality"};
+  const std::vector<std::string> stages{"neighbors",     "graph",        "openings",  "embedding",
+                                        "triangulation", "optimization", "smoothing", "quality"};
   for (const bool with_search : {false, true}) {
     Reconstruction reconstruction;
     reconstruction.setInputCloud(makeEllipsoid(200));

@@ -18,7 +18,7 @@ import numpy as np
 import shapes
 import spherical_param as sp
 
-STAGES = ["neighbors", "graph", "embedding", "triangulation", "optimization", "quality"]
+STAGES = ["neighbors", "graph", "openings", "embedding", "triangulation", "optimization", "quality"]
 MAP_STAGES = ["map", "surface", "resample", "untangle", "intersections"]
 
 INTERRUPTED = """

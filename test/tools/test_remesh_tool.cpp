@@ -193,8 +193,9 @@ TEST_F(RemeshTool, ReportHasAllKeys) {
   std::string stages;
   for (const json& stage : report["stages"])
     stages += stage["name"].get<std::string>() + " ";
-  EXPECT_EQ(stages, "read neighbors graph embedding triangulation optimization quality map surface "
-                    "resample untangle verify write ");
+  EXPECT_EQ(stages,
+            "read neighbors graph openings embedding triangulation optimization quality map "
+            "surface resample untangle verify write ");
   EXPECT_EQ(report["options"]["points"], 1000);
   EXPECT_EQ(report["options"]["fit"], "smooth");
   EXPECT_TRUE(report["options"]["degree"].is_null());

@@ -6,6 +6,7 @@
 #include "node_spacing.h"
 #include "parallel.h"
 #include "pi.h"
+#include "progress.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/point_set.h"
 
@@ -463,8 +464,12 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Executi
   internal::forEachItem(graph.size(), threads, [&](std::size_t thread, std::size_t v) {
     spacing[v] = internal::nodeSpacing(graph, v, scratch[thread]);
   });
+  const internal::FractionReport report = internal::reportOf(execution, "openings");
+  internal::reportFraction(report, 0.1);
   Rotation rotation(points, graph, spacing, threads);
+  internal::reportFraction(report, 0.6);
   Openings found = openingsOf(points, graph, spacing, rotation);
+  internal::reportFraction(report, 0.8);
   if (found.openings.empty() || !rotation.hasOpposite(graph) ||
       (found.is_one_sided && hasNoCyclesLeft(points, graph, found)))
     return found;
