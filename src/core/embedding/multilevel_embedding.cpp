@@ -100,16 +100,38 @@ public:
 
   Embedding run() {
     levels().resize(hierarchy_.levels.size() + 1);
-    for (std::size_t l = 0; l < levels().size(); ++l) {
-      levels()[l].nodes = graphOf(l).size();
-      levels()[l].edges = graphOf(l).edgeCount();
-    }
+    for (std::size_t l = 0; l < levels().size(); ++l)
+      levels()[l] = unworked(l);
     std::size_t level = 0;
     Positions u = solveCoarsest(level);
     if (u.cols() == 0) {
       result_.report.stop_reason = StopReason::Collapsed;
       return std::move(result_);
     }
+    ascend(level, u);
+    // The barrier of coarser levels held a folded rest.
+    if (collapsed_when_freed_ && !has_tried_finer_) {
+      const std::vector<LevelReport> reports = levels();
+      std::size_t finer_level = level;
+      Positions finer = solveFiner(finer_level);
+      if (finer.cols() > 0) {
+        u = std::move(finer);
+        for (std::size_t l = 0; l < finer_level; ++l)
+          levels()[l] = unworked(l);
+        result_.report.added_barrier = false;
+        showStart(finer_level);
+        ascend(finer_level, u);
+      } else {
+        levels() = reports;
+      }
+    }
+    finish(u);
+    return std::move(result_);
+  }
+
+private:
+  /// Takes an embedding from a level to the graph itself.
+  void ascend(std::size_t level, Positions& u) {
     for (std::size_t l = level; l-- > 0;) {
       u = interpolated(l, u);
       observe(l, EmbeddingStep::Start, 0, std::nullopt, u);
@@ -127,11 +149,15 @@ public:
       if (!solves)
         observe(l, EmbeddingStep::Sweeps, kSweeps, levels()[l].residual, u);
     }
-    finish(u);
-    return std::move(result_);
   }
 
-private:
+  LevelReport unworked(std::size_t l) const {
+    LevelReport report;
+    report.nodes = graphOf(l).size();
+    report.edges = graphOf(l).edgeCount();
+    return report;
+  }
+
   const Graph& graphOf(std::size_t l) const {
     return l == 0 ? graph_ : hierarchy_.levels[l - 1].graph;
   }
@@ -191,19 +217,14 @@ private:
       const LevelReport untried = levels()[level];
       result_.report.added_barrier = true;
       best = solveStarts(level);
-      if (best.cols() == 0 || pullOf(level, best) > kMaxPull) {
-        result_.report.added_barrier = false;
-        Positions finer;
-        std::size_t l = level;
-        while (finer.cols() == 0 && l > 0 && graphOf(l - 1).size() <= kMaxStartSize)
-          finer = solveStarts(--l);
-        if (finer.cols() > 0) {
-          levels()[level] = untried;
-          level = l;
+      if (best.cols() == 0 || has_slipped_) {
+        const LevelReport with_barrier = levels()[level];
+        levels()[level] = untried;
+        Positions finer = solveFiner(level);
+        if (finer.cols() > 0)
           best = std::move(finer);
-        } else {
-          result_.report.added_barrier = true;
-        }
+        else
+          levels()[level] = with_barrier;
       } else {
         hardly_pulls_ = level > 0;
       }
@@ -213,6 +234,22 @@ private:
     if (best.cols() > 0 && weights_.needsBarrier())
       solve(level, energyAt(level, best), toleranceOf(level), std::nullopt, best);
     return best;
+  }
+
+  /// A start on the coarsest of the finer levels on which one does not collapse, without a barrier;
+  /// without columns, level and barrier unchanged, if there is none.
+  Positions solveFiner(std::size_t& level) {
+    has_tried_finer_ = true;
+    const bool has_barrier = std::exchange(result_.report.added_barrier, false);
+    Positions finer;
+    std::size_t l = level;
+    while (finer.cols() == 0 && l > 0 && graphOf(l - 1).size() <= kMaxStartSize)
+      finer = solveStarts(--l);
+    if (finer.cols() > 0)
+      level = l;
+    else
+      result_.report.added_barrier = has_barrier;
+    return finer;
   }
 
   /// How hard a barrier pulls at a start that it holds: the relative residual without it.
@@ -225,7 +262,9 @@ private:
   struct Start {
     Positions u;
     LevelReport report;
-    double value = 0.0;
+    double value = 0.0;  ///< the energy
+    /// A barrier holds it, and pulls hard. Its energy is less then: it is a last resort.
+    bool has_slipped = false;
     std::exception_ptr error;
   };
 
@@ -245,6 +284,7 @@ private:
     minimize(l, energy, kStartTolerance, std::nullopt, preconditioner, progress, start.u,
              start.report);
     start.value = energy.value(start.u);
+    start.has_slipped = result_.report.added_barrier && pullOf(l, start.u) > kMaxPull;
   }
 
   /// The best of several starts on the coarsest level, or the first on a finer one that does not
@@ -260,7 +300,7 @@ private:
     std::vector<MultigridPreconditioner> preconditioners(threads, preconditionerOf(l));
     LevelReport best_report;
     Positions best;
-    double least = std::numeric_limits<double>::infinity();
+    std::pair least(true, std::numeric_limits<double>::infinity());
     for (std::size_t first = 0; first < count && (is_coarsest || best.cols() == 0);
          first += threads) {
       std::vector<Start> starts(std::min(threads, count - first));
@@ -293,9 +333,10 @@ private:
         ++result_.report.starts;
         if (isCollapsed(start.u, masses_[l]) || !std::isfinite(start.value)) {
           ++result_.report.collapsed_starts;
-        } else if (start.value < least) {
-          least = start.value;
+        } else if (std::pair(start.has_slipped, start.value) < least) {
+          least = {start.has_slipped, start.value};
           best = std::move(start.u);
+          has_slipped_ = start.has_slipped;
           best_report = start.report;
           best_center_ = centers[first + i];
         }
@@ -408,6 +449,7 @@ private:
     if (isCollapsed(solved, masses_[l]) && !result_.report.added_barrier) {
       result_.report.added_barrier = true;
       hardly_pulls_ = false;
+      collapsed_when_freed_ = is_freed;
       solved = u;
       newton = solve(l, energyAt(l, u), toleranceOf(l), tolerance, solved);
     }
@@ -452,6 +494,9 @@ private:
   Embedding result_;
   /// The barrier is on coarser levels alone, and hardly pulls there: no finding.
   bool hardly_pulls_ = false;
+  bool has_slipped_ = false;  ///< Start::has_slipped of the start that solveStarts() kept last
+  bool has_tried_finer_ = false;
+  bool collapsed_when_freed_ = false;  ///< the graph itself, of the barrier of coarser levels
   Index best_center_ = 0;  ///< of the start that solveStarts() kept last
 };
 
