@@ -252,21 +252,45 @@ std::vector<std::string> writtenFiles(const Settings& settings, std::size_t mesh
   return files;
 }
 
+/// How far consolidation moved points; empty without.
+std::string movedBy(const Settings& settings, const std::vector<CloudReconstruction>& meshes) {
+  if (settings.reconstruction.options.consolidation == spherical_param::ConsolidationMode::None) {
+    return {};
+  }
+  double points = 0.0;
+  double noise = 0.0;
+  double mean = 0.0;
+  double most = 0.0;
+  for (const CloudReconstruction& mesh : meshes) {
+    const auto count = static_cast<double>(mesh.result.vertex_of_input.size());
+    const spherical_param::ConsolidationReport& moved = mesh.result.consolidation;
+    points += count;
+    noise += count * moved.noise;
+    mean += count * moved.mean_displacement;
+    most = std::max(most, moved.max_displacement);
+  }
+  return "by " + formatted(mean / points, 3) + " in the mean, " + formatted(most, 3) +
+         " at most; the noise is " + formatted(noise / points, 3);
+}
+
 /// Prints the six lines of a run. \param meshes of the cloud: one, or those of its parts.
 void printSummary(const Settings& settings, const CloudReconstruction& cloud,
                   const std::vector<CloudReconstruction>& meshes, Console& console) {
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::size_t duplicates = 0;
+  std::size_t merged = 0;
   for (const CloudReconstruction& mesh : meshes) {
     vertices += mesh.result.vertexCount();
     triangles += static_cast<std::size_t>(mesh.result.triangles.cols());
     duplicates += mesh.result.duplicates();
+    merged += mesh.result.consolidation.merged;
   }
   console.summary({settings.input + ", " + counted(cloud.data->points.size(), "point"),
                    verdictOf(meshes),
                    counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
-                   leftOut(cloud, duplicates), writtenFiles(settings, meshes.size())});
+                   leftOut(cloud, duplicates, merged), writtenFiles(settings, meshes.size()),
+                   movedBy(settings, meshes)});
 }
 
 /// Writes the mesh, the sphere and the page of a cloud, or of a part of one.

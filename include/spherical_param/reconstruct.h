@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/consolidation.h"
 #include "spherical_param/embedding.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/finding.h"
@@ -36,12 +37,15 @@ enum class SurfaceMode {
 /// TriangulationMethod::Qhull, with OptimizationMethod::None. optionTable() lists those
 /// that tools, Python and ROS have, with their ranges.
 struct Options : Execution {
+  /// Whether the points are moved to the surface that they sample, and merged below their noise,
+  /// before all else. The mesh is then that of these points, Result::consolidated.
+  ConsolidationMode consolidation = ConsolidationMode::None;
   GraphOptions graph;                  ///< how points become neighbours
   EmbeddingOptions embedding;          ///< how the graph is embedded
   TriangulationOptions triangulation;  ///< how the sphere is triangulated
   OptimizationOptions optimization;    ///< of the mesh on the points
-  /// Smoothing moves Result::smoothed, never the points of the mesh; the mesh is then optimised on
-  /// the smoothed points.
+  /// Smoothing moves Result::smoothed, never the points that are meshed; the mesh is then optimised
+  /// on the smoothed points.
   SmoothingOptions smoothing;
 
   /// What becomes of openings, which are found by local Delaunay neighbourhoods alone. Whatever
@@ -83,6 +87,9 @@ struct Result {
   std::vector<std::array<Index, 2>> self_intersections;
   /// 3 x v, the points after smoothing; empty without [unit of the input].
   Positions smoothed;
+  /// 3 x v, the points after consolidation, before smoothing: those that all else but
+  /// `smoothed` is about; empty without [unit of the input].
+  Positions consolidated;
   /// How the embedding unfolded, to `sphere`; empty unless EmbeddingOptions::history asks for it.
   EmbeddingHistory history;
   /// v entries: length of the tangential Laplacian of `sphere` [radius]; empty unless
@@ -95,10 +102,11 @@ struct Result {
   std::vector<Index> outliers;
 
   MeshTopology topology;       ///< checked on `triangles`
-  MeshMeasures measures;       ///< of the mesh on the input's points
+  MeshMeasures measures;       ///< of the mesh on the input's points, or the consolidated ones
   SurfaceDiagnosis diagnosis;  ///< does the cloud look like a closed genus-0 surface?
 
   // Of the stages; nodes are vertices, lengths in the unit of the input.
+  ConsolidationReport consolidation;  ///< all zero without consolidation
   GraphReport graph;                  ///< how the neighbour graph came about
   EmbeddingReport embedding;          ///< how the embedding was reached
   TriangulationReport triangulation;  ///< how the sphere was triangulated
@@ -114,6 +122,9 @@ struct Result {
 
   /// Number of distinct points. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
+  /// Where the vertices were moved. \return `smoothed`, or without smoothing `consolidated`: empty
+  /// if they are the input's points
+  const Positions& moved() const { return smoothed.cols() > 0 ? smoothed : consolidated; }
   /// Whether the mesh is closed. \return true if it has no boundary
   bool isClosed() const { return boundary.empty(); }
   /// Whether the mesh can be worked with. \return true if at most 1 % of its triangles intersect
@@ -128,8 +139,10 @@ struct Result {
   /// Whether the mesh encloses something: else volume, centroid and inertia of `measures` are
   /// meaningless. \return true if it is closed, usable and not folded
   bool hasVolume() const { return isClosed() && isUsable() && !isFolded(); }
-  /// Points that were merged into an earlier one. \return n - v
-  std::size_t duplicates() const { return vertex_of_input.size() - input_of_vertex.size(); }
+  /// Points that repeat an earlier one. \return n - v, without those that consolidation merged
+  std::size_t duplicates() const {
+    return vertex_of_input.size() - input_of_vertex.size() - consolidation.merged;
+  }
 };
 
 /// Checks the ranges of all options, as reconstruct() does first: for callers who have long work to
@@ -151,8 +164,9 @@ void checkOptions(const Options& options);
 /// \throw InvalidInput for bad points or options; ComputeError; Cancelled.
 ///
 /// Guaranteed: the mesh is closed, manifold, consistently oriented, of genus 0 and in one piece,
-/// and every distinct point is a vertex. The same input and options give the same result, bit by
-/// bit, whatever the number of threads. Reentrant: no state is shared between calls.
+/// and every distinct point, or consolidated one, is a vertex. The same input and options give the
+/// same result, bit by bit, whatever the number of threads. Reentrant: no state is shared between
+/// calls.
 ///
 /// Not guaranteed: that the mesh is free of self-intersections or near the sampled surface;
 /// `verdict`, `findings` and `diagnosis` say how far to trust it.
@@ -168,6 +182,7 @@ Result reconstruct(const Positions& points, const Options& options = {});
 ///                with or without the point itself. Those of points that repeat an earlier point
 ///                may be empty.
 /// \param options as above.
+///                With consolidation they are not used: the points have moved.
 /// \param search  asked for longer lists of some points by local Delaunay neighbourhoods; never of
 ///                points that repeat an earlier one. Called from the calling thread. May be empty:
 ///                the graph is then made of the lists alone.

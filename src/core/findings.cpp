@@ -20,8 +20,6 @@ namespace {
 constexpr double kMaxEdgesOutside = 0.001;
 /// Parts of this fraction of the largest are objects of their own, smaller ones what lies beside.
 constexpr double kMinFractionOfLargest = 0.25;
-/// Steps of smoothing that take off noise of a quarter of the spacing.
-constexpr const char* kSteps = "5";
 
 /// A number as people write it: 49,996.
 std::string grouped(std::size_t number) {
@@ -43,7 +41,7 @@ std::string percent(double fraction) {
 
 /// Whether the mesh is as rough as noise makes it, and nothing else is known that does.
 bool isRough(const Result& result) {
-  return result.optimization.noise_steps > 0 && result.smoothed.cols() == 0 &&
+  return result.optimization.noise_steps > 0 && result.moved().cols() == 0 &&
          result.outliers.empty() && result.diagnosis.bridges.empty() &&
          result.diagnosis.genus.value_or(0) == 0;
 }
@@ -132,7 +130,7 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
   if (diagnosis.openings() > 0)
     findings.push_back(filledOf(diagnosis, options));
   if (isRough(result) && !result.isFolded())
-    findings.push_back({"the points are noisy", "smoothing", kSteps, false});
+    findings.push_back({"the points are noisy", "consolidation", "auto", false});
   if (const std::optional<Finding> handles = handlesOf(diagnosis))
     findings.push_back(*handles);
   if (diagnosis.is_one_sided)
@@ -147,7 +145,7 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
     if (may_unfold)
       std::tie(fold.option, fold.value) = std::pair("tolerance", "1e-8");
     else if (isRough(result))
-      std::tie(fold.option, fold.value) = std::pair("smoothing", kSteps);
+      std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
     findings.push_back(fold);
   }
   addOfEmbedding(options, result, findings);

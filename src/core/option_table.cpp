@@ -103,6 +103,16 @@ OptionRow usedWith(std::vector<std::pair<std::string, std::string>> conditions, 
   return row;
 }
 
+std::vector<OptionRow> pointRows() {
+  return {
+      choice<ConsolidationMode>(
+          "consolidation", "consolidation",
+          "auto: noisy points are moved to their surface, and merged below the noise", Everybody,
+          {{"none", ConsolidationMode::None}, {"auto", ConsolidationMode::Auto}},
+          [](Options & o) -> auto& { return o.consolidation; }),
+  };
+}
+
 std::vector<OptionRow> graphRows() {
   return {
       choice<GraphMethod>(
@@ -224,7 +234,8 @@ std::vector<OptionRow> runRows() {
 
 std::vector<OptionRow> makeTable() {
   std::vector<OptionRow> table;
-  for (const auto& rows : {graphRows(), embeddingRows(), meshRows(), surfaceRows(), runRows()})
+  for (const auto& rows :
+       {pointRows(), graphRows(), embeddingRows(), meshRows(), surfaceRows(), runRows()})
     table.insert(table.end(), rows.begin(), rows.end());
   return table;
 }

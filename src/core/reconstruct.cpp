@@ -119,10 +119,19 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
   return mesh;
 }
 
-Result run(const Positions& points, const Options& all, const FindNeighbors& find_neighbors) {
+Neighbors findNeighbors(const OrderedPoints& nodes, const Options& options) {
+  return internal::nearestNeighbors(nodes, neighborsToSearch(options.graph), options);
+}
+
+Result run(const Positions& input, const Options& all, const FindNeighbors& find_neighbors) {
   checkOptions(all);
   StageClock clock(all);
   const Options options = clock.optionsOfStages();
+  Consolidation consolidation;
+  const bool is_consolidated = options.consolidation == ConsolidationMode::Auto;
+  if (is_consolidated)
+    consolidation = clock.time("consolidation", [&] { return consolidate(input, options); });
+  const Positions& points = is_consolidated ? consolidation.points : input;
   OrderedPoints nodes = clock.time(
       "neighbors", [&] { return internal::orderCheckedPoints(points, options.threads); });
   const bool is_flat = areCoplanar(points);
@@ -138,6 +147,8 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
   if (is_flat && result.isClosed())
     refuseFlat(options);
   internal::toInput(nodes, result);
+  if (is_consolidated)
+    internal::toInput(consolidation, result);
   if (!isAsPromised(result))
     throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "
                        "as a defect of the library");
@@ -150,13 +161,13 @@ Result run(const Positions& points, const Options& all, const FindNeighbors& fin
 }  // namespace
 
 Result reconstruct(const Positions& points, const Options& options) {
-  return run(points, options, [](const OrderedPoints& nodes, const Options& of_stages) {
-    return internal::nearestNeighbors(nodes, neighborsToSearch(of_stages.graph), of_stages);
-  });
+  return run(points, options, findNeighbors);
 }
 
 Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options,
                    const NeighborSearch& search) {
+  if (options.consolidation != ConsolidationMode::None)
+    return run(points, options, findNeighbors);
   return run(points, options, [&](const OrderedPoints& nodes, const Options&) {
     return internal::callerNeighbors(nodes, lists, search);
   });

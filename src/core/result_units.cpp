@@ -129,4 +129,24 @@ void toInput(OrderedPoints& nodes, Result& result) {
     vertex = result.input_of_vertex[static_cast<std::size_t>(vertex)];
 }
 
+void toInput(Consolidation& consolidation, Result& result) {
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  // Those that came to one place are one vertex.
+  result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);
+  result.consolidation = consolidation.report;
+  result.consolidation.merged += result.vertex_of_input.size() - result.input_of_vertex.size();
+  std::vector<Index> vertex_of_input = std::move(consolidation.point_of_input);
+  std::vector<Index> first_of_point(result.vertex_of_input.size(), -1);
+  for (std::size_t i = 0; i < vertex_of_input.size(); ++i) {
+    Index& first = first_of_point[at(vertex_of_input[i])];
+    if (first < 0)
+      first = static_cast<Index>(i);
+    vertex_of_input[i] = result.vertex_of_input[at(vertex_of_input[i])];
+  }
+  const auto to_first = [&](Index& point) { point = first_of_point[at(point)]; };
+  std::for_each(result.input_of_vertex.begin(), result.input_of_vertex.end(), to_first);
+  std::for_each(result.outliers.begin(), result.outliers.end(), to_first);
+  result.vertex_of_input = std::move(vertex_of_input);
+}
+
 }  // namespace spherical_param::internal

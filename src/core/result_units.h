@@ -9,4 +9,7 @@ namespace spherical_param::internal {
 /// input, and with the numbers of the vertices.
 void toInput(OrderedPoints& nodes, Result& result);
 
+/// Turns a result of consolidated points into one of the points before.
+void toInput(Consolidation& consolidation, Result& result);
+
 }  // namespace spherical_param::internal

@@ -25,6 +25,10 @@ py::object orNone(const std::vector<Value>& values) {
   return values.empty() ? py::object(py::none()) : py::object(toArray(values));
 }
 
+py::object orNone(const Positions& points) {
+  return points.cols() == 0 ? py::object(py::none()) : py::object(toArray(points));
+}
+
 py::object toObject(const EmbeddingHistory& history) {
   if (history.frames.empty())
     return py::none();
@@ -175,8 +179,8 @@ py::dict toDict(const Result& result, const FinitePoints& finite) {
                 "input_of_vertex"_a = toArray(input_of_vertex), "outliers"_a = toArray(outliers),
                 "duplicates"_a = result.duplicates(), "ignored"_a = finite.ignored,
                 "self_intersections"_a = toArray(result.self_intersections),
-                "smoothed"_a =
-                    result.smoothed.cols() > 0 ? py::object(toArray(result.smoothed)) : py::none());
+                "smoothed"_a = orNone(result.smoothed),
+                "consolidated"_a = orNone(result.consolidated));
   dict["boundary"] =
       listOf(result.boundary, [](const std::vector<Index>& loop) { return toArray(loop); });
   dict["openings"] =
@@ -184,6 +188,12 @@ py::dict toDict(const Result& result, const FinitePoints& finite) {
   dict["topology"] = toDict(result.topology);
   dict["measures"] = toDict(result.measures, result.hasVolume());
   dict["diagnosis"] = toDict(result.diagnosis);
+  const ConsolidationReport& consolidation = result.consolidation;
+  dict["consolidation"] =
+      py::dict("noise"_a = consolidation.noise, "merged"_a = consolidation.merged,
+               "max_displacement"_a = consolidation.max_displacement,
+               "mean_displacement"_a = consolidation.mean_displacement,
+               "rms_displacement"_a = consolidation.rms_displacement);
   dict["graph"] = toDict(result.graph);
   dict["embedding"] = toDict(result.embedding);
   dict["triangulation"] = toDict(result.triangulation);

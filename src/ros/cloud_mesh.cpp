@@ -233,10 +233,10 @@ void append(const pcl::PCLPointCloud2& cloud, const PartMesh& part, Mesh& mesh) 
                 mesh.cloud.point_step);
     mesh.vertices.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (result.smoothed.cols() > 0)
+      if (result.moved().cols() > 0)
         setCoordinate(
             record, *axes[axis],
-            result.smoothed(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)));
+            result.moved()(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)));
       mesh.vertices.back()[axis] = coordinate(record, *axes[axis]);
     }
   }

@@ -79,7 +79,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
        [](Result& r) {
          r.diagnosis.filled_holes = {holeOf(40), holeOf(432)};
        }},
-      {{"the points are noisy", "smoothing", "5", false},
+      {{"the points are noisy", "consolidation", "auto", false},
        [](Result& r) { r.optimization.noise_steps = 3; }},
       {{},
        [](Result& r) {
@@ -101,10 +101,10 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   });
 }
 
-TEST(Findings, OfAFoldedMeshAreNoNoiseButSmoothingMayHelp) {
+TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
   expectFindings(
       {{{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud",
-         "smoothing", "5", true},
+         "consolidation", "auto", true},
         [](Result& r) {
           r.optimization.noise_steps = 3;
           r.diagnosis.edges_outside_graph = 0.12;

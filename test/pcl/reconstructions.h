@@ -105,7 +105,7 @@ inline void expectNothingLeft(const Reconstruction& reconstruction, const pcl::P
   EXPECT_EQ(reconstruction.getIgnoredPointCount(), 0U);
   EXPECT_TRUE(result.verdict.empty());
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
-  EXPECT_TRUE(reconstruction.getSmoothedPoints()->empty());
+  EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
 }
 
 /// Expects that all overloads fail with a message that has these words, and leave nothing stale.

@@ -212,21 +212,36 @@ TEST_F(SphericalParamReconstruction, FailureIsPrintedOnceAndSuccessPrintsNothing
   }
 }
 
-TEST_F(SphericalParamReconstruction, SphereAndSmoothedPointsFitTheCloudAndOutliveIt) {
+TEST_F(SphericalParamReconstruction, MovedPointsAreThoseOfConsolidation) {
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(makeEllipsoid(800));
+  reconstruction.setConsolidation(spherical_param::ConsolidationMode::Auto);
+  EXPECT_EQ(reconstruction.getConsolidation(), spherical_param::ConsolidationMode::Auto);
+  meshed(reconstruction);
+  const Result& result = reconstruction.getResult();
+  const auto moved = reconstruction.getMovedPoints();
+  ASSERT_EQ(moved->size(), 800U);
+  ASSERT_GT(result.consolidated.cols(), 0);
+  for (std::size_t i = 0; i < moved->size(); ++i)
+    EXPECT_EQ((*moved)[i].getVector3fMap(),
+              result.consolidated.col(result.vertex_of_input[i]).cast<float>());
+}
+
+TEST_F(SphericalParamReconstruction, SphereAndMovedPointsFitTheCloudAndOutliveIt) {
   const HardCase hard;
   Reconstruction reconstruction;
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
   reconstruction.setInputCloud(hard.cloud);
   reconstruction.setIndices(share(hard.indices));
   meshed(reconstruction);
-  EXPECT_TRUE(reconstruction.getSmoothedPoints()->empty());
+  EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
   reconstruction.setSmoothing(2);
   meshed(reconstruction);
   const Result& result = reconstruction.getResult();
   reconstruction.setInputCloud(makeEllipsoid(5));
   for (const auto& [cloud, expected] :
        {std::pair(reconstruction.getSphereCoordinates(), result.sphere),
-        {reconstruction.getSmoothedPoints(), result.smoothed}}) {
+        {reconstruction.getMovedPoints(), result.smoothed}}) {
     ASSERT_EQ(cloud->size(), 400U);
     EXPECT_FALSE(cloud->is_dense);
     for (std::size_t v = 0; v < reconstruction.getVertexIndices().size(); ++v)

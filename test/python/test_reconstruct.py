@@ -2,8 +2,10 @@
 
 import inspect
 import pickle
+import tempfile
 import unittest
 from fractions import Fraction
+from pathlib import Path
 from typing import get_args
 
 import numpy as np
@@ -67,6 +69,25 @@ class Mesh(unittest.TestCase):
                 self.assertEqual(mesh.triangles.tobytes(), expected.triangles.tobytes())
                 self.assertEqual(mesh.sphere.tobytes(), expected.sphere.tobytes())
                 self.assertEqual(mesh.vertices.tobytes(), points.tobytes())
+
+    def test_noisy_points_are_consolidated_if_asked(self):
+        points = shapes.ellipsoid(1500)
+        points += np.random.default_rng(3).normal(0.0, 0.01, points.shape)
+        self.assertIsNone(sp.reconstruct(points).consolidated)
+        mesh = sp.reconstruct(points, consolidation="auto")
+        self.assertEqual(mesh.consolidated.shape, mesh.vertices.shape)
+        self.assertEqual(len(points), len(mesh.vertices) + mesh.consolidation.merged)
+        np.testing.assert_array_equal(mesh.vertices, points[mesh.input_of_vertex])
+        steps = np.linalg.norm(mesh.consolidated[mesh.vertex_of_input] - points, axis=1)
+        self.assertAlmostEqual(steps.max(), mesh.consolidation.max_displacement, delta=1e-12)
+        self.assertAlmostEqual(steps.mean(), mesh.consolidation.mean_displacement, delta=1e-12)
+        self.assertGreater(mesh.consolidation.noise, 0.001)
+        np.testing.assert_array_equal(mesh.consolidated.min(axis=0), mesh.measures.box_min)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "mesh.ply")
+            mesh.write(path)
+            written = sp.reconstruct(path).vertices
+        np.testing.assert_allclose(written, mesh.consolidated, atol=1e-6)
 
     def test_results_own_their_memory_and_the_input_is_left_alone(self):
         points = shapes.ellipsoid(100)
@@ -207,7 +228,7 @@ class Options(unittest.TestCase):
         self.check_refused(OTHERS)
         with self.assertRaisesRegex(sp.InvalidInput, "do not fit into memory; use a smaller k"):
             sp.reconstruct(shapes.directions(60000), k=2**31 - 1)
-        with self.assertRaisesRegex(TypeError, "no option 'radius'; use one of graph, k, "):
+        with self.assertRaisesRegex(TypeError, "no option 'radius'; use one of consolidation, graph, k, "):
             sp.reconstruct(self.points, radius=1)
 
     def check_refused(self, options):

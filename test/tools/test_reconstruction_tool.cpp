@@ -219,6 +219,23 @@ TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
   EXPECT_EQ(closed["openings"][0]["filled"], true);
 }
 
+TEST_F(ReconstructionTool, ConsolidationIsReportedAndWritten) {
+  const Positions noisy = spherical_param::test::withNoise(ellipsoid(1500), 0.01, 5);
+  write("noisy.ply", plyOf(noisy));
+  EXPECT_TRUE(reportOf({"noisy.ply", "out.ply"})["consolidation"].is_null());
+  const json report = reportOf({"noisy.ply", "out.ply", "-consolidation", "auto"});
+  const json& consolidation = report["consolidation"];
+  const auto merged = consolidation["merged"].get<Eigen::Index>();
+  const MeshFile out = mesh("out.ply");
+  EXPECT_EQ(out.points().cols(), 1500 - merged);
+  EXPECT_NEAR(consolidation["noise"], 0.01, 0.005);
+  EXPECT_GT(consolidation["max_displacement"], consolidation["mean_displacement"]);
+  const RunResult text = tool({"noisy.ply", "out.ply", "-consolidation", "auto"});
+  EXPECT_NE(text.output.find("\nmoved     by 0.0"), std::string::npos);
+  EXPECT_EQ(text.errors, "");
+  EXPECT_EQ(tool({"noisy.ply", "out.ply"}).output.find("moved"), std::string::npos);
+}
+
 TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
   const json paper =
       reportOf({"in.ply", "out.ply", "-graph", "knn", "--embedding=iterative", "-max-iterations=3",

@@ -102,7 +102,7 @@ void StageProgress::finish() {
   }
 }
 
-std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates) {
+std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates, std::size_t merged) {
   std::string text;
   const auto add = [&text](std::size_t count, const std::string& one, const std::string& many) {
     if (count > 0) {
@@ -111,6 +111,7 @@ std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates) {
   };
   const std::size_t outliers = cloud.outliers ? cloud.outliers->points.size() : 0;
   add(duplicates, "duplicate", "duplicates");
+  add(merged, "point merged into another", "points merged into others");
   add(cloud.ignored, "point that is not finite", "points that are not finite");
   add(outliers, "outlier", "outliers");
   add(cloud.data->points.size() - cloud.ignored - outliers - cloud.meshed.size(),
@@ -135,7 +136,7 @@ void findPartsOf(const ReconstructionSettings& settings, Console& console,
 
 /// The same for the message of a failure; empty if nothing was left out.
 std::string leftOutNote(const CloudReconstruction& cloud) {
-  const std::string text = leftOut(cloud, 0);
+  const std::string text = leftOut(cloud, 0, 0);
   return text == "nothing" ? "" : " (left out: " + text + ")";
 }
 
@@ -272,14 +273,14 @@ void reconstructParts(const std::string& path, const ReconstructionSettings& set
 }
 
 Positions vertexPositions(const CloudReconstruction& cloud) {
-  return cloud.result.smoothed.cols() > 0 ? cloud.result.smoothed
-                                          : positionsOf(*cloud.data, cloud.point_of_vertex);
+  return cloud.result.moved().cols() > 0 ? cloud.result.moved()
+                                         : positionsOf(*cloud.data, cloud.point_of_vertex);
 }
 
 MeshView meshOf(const CloudReconstruction& cloud) {
   MeshView mesh(*cloud.data, cloud.point_of_vertex, cloud.result.triangles);
-  if (cloud.result.smoothed.cols() > 0) {
-    mesh.moveTo(cloud.result.smoothed);
+  if (cloud.result.moved().cols() > 0) {
+    mesh.moveTo(cloud.result.moved());
   }
   return mesh;
 }
@@ -289,7 +290,7 @@ JoinedMesh::JoinedMesh(const std::vector<CloudReconstruction>& parts) {
   Eigen::Index places = 0;
   for (const CloudReconstruction& part : parts) {
     triangles += part.result.triangles.cols();
-    places += part.result.smoothed.cols();
+    places += part.result.moved().cols();
   }
   data_ = parts.front().data;
   triangles_.resize(3, triangles);
@@ -302,7 +303,7 @@ JoinedMesh::JoinedMesh(const std::vector<CloudReconstruction>& parts) {
         result.triangles.array() + static_cast<Index>(first);
     triangles += result.triangles.cols();
     if (places > 0) {
-      places_.middleCols(first, result.smoothed.cols()) = result.smoothed;
+      places_.middleCols(first, result.moved().cols()) = result.moved();
     }
     point_of_vertex_.insert(point_of_vertex_.end(), part.point_of_vertex.begin(),
                             part.point_of_vertex.end());

@@ -66,7 +66,7 @@ private:
 };
 
 /// What was left out of a cloud and why, or "nothing".
-std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates);
+std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates, std::size_t merged);
 
 /// The positions of the vertices: smoothed, if that was asked for [unit of the file].
 Positions vertexPositions(const CloudReconstruction& cloud);

@@ -250,7 +250,7 @@ double addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, int th
   }
   const Eigen::AlignedBox3d box = boxOf(mesh.positions);
   Positions points = mesh.positions;
-  if (cloud.result.smoothed.cols() != 0) {
+  if (cloud.result.moved().cols() != 0) {
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       points.col(static_cast<Eigen::Index>(i)) = cloud.data->position(input(mesh.vertices[i]));
     }

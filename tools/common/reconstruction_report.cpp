@@ -160,6 +160,18 @@ Json optimizationToJson(const ReconstructionSettings& settings,
   return json;
 }
 
+Json consolidationToJson(const ReconstructionSettings& settings,
+                         const ConsolidationReport& consolidation) {
+  if (settings.options.consolidation == ConsolidationMode::None) {
+    return nullptr;
+  }
+  return {{"noise", consolidation.noise},
+          {"merged", consolidation.merged},
+          {"max_displacement", consolidation.max_displacement},
+          {"mean_displacement", consolidation.mean_displacement},
+          {"rms_displacement", consolidation.rms_displacement}};
+}
+
 Json smoothingToJson(const ReconstructionSettings& settings, const SmoothingReport& smoothing) {
   if (settings.options.smoothing.steps == 0) {
     return nullptr;
@@ -373,6 +385,7 @@ void addMesh(const ReconstructionSettings& settings, const CloudReconstruction& 
   json["fallback_start"] = result.embedding.fallback_start;
   json["residual"] = result.embedding.residual;
   json["residuals"] = result.embedding.residuals;
+  json["consolidation"] = consolidationToJson(settings, result.consolidation);
   json["graph"] = graphToJson(settings, cloud);
   json["embedding"] = embeddingToJson(settings, cloud);
   json["triangulation"] = {{"method", optionText(settings.options, "triangulation")},

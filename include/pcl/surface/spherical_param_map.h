@@ -18,7 +18,7 @@ namespace pcl {
  * triangles; reconstruction.getVertexIndices() has their indices in the cloud.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called
- * \param[out] points 3 x v, the vertices: smoothed, if setSmoothing() asks for that
+ * \param[out] points 3 x v, the vertices: consolidated and smoothed, if that was asked for
  * \param[out] map the map of these vertices
  * \param[in] options where no threads are given, those of the reconstruction are used
  * \return false after a failure, which PCL_ERROR reports; points and map are empty then. No
@@ -38,12 +38,13 @@ struct MappedMesh {
   spherical_param::SphereMap map;        ///< of the points
 };
 
-/** \brief The vertices of the last mesh, smoothed if smoothing was asked for. \return 3 x v */
+/** \brief The vertices of the last mesh, consolidated and smoothed if that was asked for. \return 3
+ * x v */
 template <typename PointInT>
 spherical_param::Positions
 verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
-  if (reconstruction.getResult().smoothed.cols() > 0)
-    return reconstruction.getResult().smoothed;
+  if (reconstruction.getResult().moved().cols() > 0)
+    return reconstruction.getResult().moved();
   const pcl::Indices& vertices = reconstruction.getVertexIndices();
   const auto& cloud = *reconstruction.getInputCloud();
   spherical_param::Positions points(3, static_cast<Eigen::Index>(vertices.size()));

@@ -80,6 +80,8 @@ public:
   using EdgeWeights = spherical_param::EdgeWeights;
   /** \brief How far the mesh is optimised on the points. */
   using OptimizationMethod = spherical_param::OptimizationMethod;
+  /** \brief Whether points are consolidated before they are meshed. */
+  using ConsolidationMode = spherical_param::ConsolidationMode;
   /** \brief What becomes of openings of the surface. */
   using SurfaceMode = spherical_param::SurfaceMode;
   /** \brief Which parts of the cloud are meshed. */
@@ -89,6 +91,17 @@ public:
 
   SphericalParamReconstruction();
   ~SphericalParamReconstruction() override = default;
+
+  /** \brief Set whether the points are moved to the surface that they sample, and merged below
+   * their noise, before they are meshed: for noisy scans, and several that were merged. \param[in]
+   * mode default ConsolidationMode::None \note The polygons then join the first input points of the
+   * merged ones; their places are those of getMovedPoints(). Neighbours are found in double
+   * precision then, not by the search object. How many points were merged, and how far they moved,
+   * is in getResult().consolidation. */
+  inline void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
+  /** \brief Get whether the points are consolidated.
+   * \return the mode */
+  inline ConsolidationMode getConsolidation() const { return options_.consolidation; }
 
   /** \brief Set what becomes of openings of the surface.
    * \param[in] mode default SurfaceMode::Closed: they are filled. Open leaves them open; Auto those
@@ -206,7 +219,7 @@ public:
    * \param[in] steps 0 (default) to 10000; 0: none. The strength is about that of as many steps of
    * the paper's section 4.2.
    * \note The mesh keeps the points of the input; the smoothed ones are those of
-   * getSmoothedPoints(), for which the same polygons hold. */
+   * getMovedPoints(), for which the same polygons hold. */
   inline void setSmoothing(int steps) { options_.smoothing.steps = steps; }
   /** \brief Get the strength of the smoothing.
    * \return the steps; 0: none */
@@ -313,13 +326,14 @@ public:
    * \return a new cloud of the size of the input */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
 
-  /** \brief Get the points after setSmoothing(), one for each point of the input
-   * cloud, so that the polygons fit them as well. Duplicates have the place of their vertex; points
-   * that were skipped or not in the indices are NaN. Empty without smoothing and after a failure.
-   * \note In double precision, by vertex, they are getResult().smoothed; how far they moved is in
-   * getResult().smoothing.
+  /** \brief Get the points after setConsolidation() and setSmoothing(), one for each point of the
+   * input cloud, so that the polygons fit them as well. Duplicates and merged points have the place
+   * of their vertex; points that were skipped or not in the indices are NaN. Empty without both and
+   * after a failure.
+   * \note In double precision, by vertex, they are getResult().moved(); how far they moved is in
+   * getResult().consolidation and getResult().smoothing.
    * \return a new cloud of the size of the input, or an empty one */
-  pcl::PointCloud<pcl::PointXYZ>::Ptr getSmoothedPoints() const;
+  pcl::PointCloud<pcl::PointXYZ>::Ptr getMovedPoints() const;
 
   /** \brief Get the pairs of triangles of the mesh that intersect, as indices of triangles of
    * getResult(), with one part those of the polygons, {lower, higher}, ascending. Measured on the
@@ -375,7 +389,7 @@ private:
 
   /** \brief Makes a cloud of the size of the input from the places of vertices. */
   pcl::PointCloud<pcl::PointXYZ>::Ptr
-  cloudOf(spherical_param::Positions spherical_param::Result::*places) const;
+  cloudOf(const spherical_param::Positions& (*places)(const spherical_param::Result&)) const;
 
   /** \brief Fills the results. */
   void meshPoints();

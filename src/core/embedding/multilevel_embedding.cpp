@@ -219,10 +219,7 @@ private:
     if (best.cols() == 0) {
       const LevelReport untried = levels()[level];
       result_.report.added_barrier = true;
-      for (int round = 0; round < kBarrierRounds && (best.cols() == 0 || has_slipped_); ++round) {
-        levels()[level] = untried;
-        best = solveStarts(level, static_cast<std::size_t>(round * options_.starts));
-      }
+      best = solveStarts(level, kBarrierRounds);
       if (best.cols() == 0 || has_slipped_) {
         const LevelReport with_barrier = levels()[level];
         levels()[level] = untried;
@@ -303,23 +300,25 @@ private:
   /// collapse; without columns if all do. Each thread has starts of its own: only the calling one
   /// reports progress.
   ///
-  /// \param left_out of the most central nodes, not to start from.
-  Positions solveStarts(std::size_t l, std::size_t left_out = 0) {
-    std::vector<Index> centers = centralNodes(graphOf(l));
-    centers.erase(centers.begin(), centers.begin() + static_cast<std::ptrdiff_t>(
-                                                         std::min(left_out, centers.size())));
-    const std::size_t count = std::min(centers.size(), static_cast<std::size_t>(options_.starts));
+  /// \param rounds as often other starts are tried until one has not slipped.
+  Positions solveStarts(std::size_t l, int rounds = 1) {
+    const std::vector<Index> centers = centralNodes(graphOf(l));
+    const auto starts_of_round = static_cast<std::size_t>(options_.starts);
+    const std::size_t count =
+        std::min(centers.size(), static_cast<std::size_t>(rounds) * starts_of_round);
     const bool is_coarsest = l == hierarchy_.levels.size();
     const auto most = static_cast<std::size_t>(threadCount(
         threads_, std::size_t{kMaxStartPasses} * graphOf(l).size(), kShortPassThreshold));
-    const std::size_t threads = is_coarsest ? std::min(most, count) : 1;
+    const std::size_t threads = is_coarsest ? std::min(most, starts_of_round) : 1;
     std::vector<MultigridPreconditioner> preconditioners(threads, preconditionerOf(l));
     LevelReport best_report;
     Positions best;
     std::pair least(true, std::numeric_limits<double>::infinity());
-    for (std::size_t first = 0; first < count && (is_coarsest || best.cols() == 0);
-         first += threads) {
-      std::vector<Start> starts(std::min(threads, count - first));
+    for (std::size_t first = 0; first < count && (is_coarsest || best.cols() == 0);) {
+      const std::size_t in_round = first % starts_of_round;
+      if (first > 0 && in_round == 0 && !least.first)
+        break;
+      std::vector<Start> starts(std::min({threads, starts_of_round - in_round, count - first}));
       for (Start& start : starts)
         start.report = levels()[l];
       reportFraction(report_, static_cast<double>(first) / static_cast<double>(count));
@@ -357,6 +356,7 @@ private:
           best_center_ = centers[first + i];
         }
       }
+      first += starts.size();
     }
     if (best.cols() > 0)
       levels()[l] = best_report;

@@ -1,6 +1,7 @@
 #include "near_outliers.h"
 
 #include "parallel.h"
+#include "quadric.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -29,13 +30,6 @@ constexpr double kMaxGap = 1.0;
 /// Of the normal equations, so that they are regular whatever the neighbours.
 constexpr double kRidge = 1e-9;
 
-using Quadric = Eigen::Matrix<double, 6, 1>;
-
-/// The monomials of a quadric over a plane.
-Quadric monomials(const Eigen::Vector3d& p) {
-  return (Quadric() << 1.0, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y()).finished();
-}
-
 using Patch = Eigen::Matrix<double, 3, kFittedNeighbors>;
 
 /// Distance of the origin from the quadric of least squares through a patch; 0 if it does not show
@@ -50,7 +44,7 @@ double distanceOff(const Patch& patch) {
   const Patch local = frame.transpose() * centered;
   Eigen::Matrix<double, 6, kFittedNeighbors> rows;
   for (Eigen::Index i = 0; i < kFittedNeighbors; ++i)
-    rows.col(i) = monomials(local.col(i));
+    rows.col(i) = monomials(local(0, i), local(1, i));
   Eigen::Matrix<double, 6, 6> normal = rows * rows.transpose();
   normal.diagonal().array() += kRidge;
   const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(normal);
@@ -61,7 +55,7 @@ double distanceOff(const Patch& patch) {
   // In a gap between the neighbours there is nothing to be off.
   if ((local.topRows<2>().colwise() - point.head<2>()).colwise().norm().minCoeff() > kMaxGap)
     return 0.0;
-  const Quadric at_point = monomials(point);
+  const Quadric at_point = monomials(point.x(), point.y());
   // The fit itself is less certain where it is not held by neighbours.
   const double leverage = at_point.dot(solver.solve(at_point));
   const double distance =

@@ -130,7 +130,7 @@ def sphere_map(
     Parameters
     ----------
     mesh : Result, SphereMap, or array-like (v, 3)
-        A mesh of ``reconstruct`` (its smoothed points, if it has them); or the points of one, with
+        A mesh of ``reconstruct`` (its smoothed or consolidated points, if it has them); or the points of one, with
         ``triangles`` and ``sphere``.
     triangles : array-like of integers, (m, 3)
         Manifold, oriented outward, of genus 0, in one piece, each point used; openings stay open on

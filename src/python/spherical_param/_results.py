@@ -267,6 +267,17 @@ class Optimization:
 
 
 @dataclass(frozen=True)
+class Consolidation:
+    """What ``consolidation`` found and did; all zero without."""
+
+    noise: float  #: median distance of the points from the surface [unit of the input]
+    merged: int  #: points that became one with others, without exact duplicates
+    max_displacement: float  #: of a point [unit of the input]
+    mean_displacement: float
+    rms_displacement: float
+
+
+@dataclass(frozen=True)
 class Smoothing:
     """The smoothed surface; all zero without ``smoothing``."""
 
@@ -333,7 +344,7 @@ class Result(MeshExport):
     Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
     ``input_of_vertex`` carry anything that points have to the vertices and back:
     ``values[mesh.input_of_vertex]``. What is written or given to other libraries has the smoothed
-    points, if there are any, with normals and colours. In a notebook a result is shown by its
+    or consolidated points, if there are any, with normals and colours. In a notebook a result is shown by its
     report.
     """
 
@@ -342,7 +353,7 @@ class Result(MeshExport):
     sphere: FloatArray  #: (v, 3) unit vectors: the embedding of each vertex
     boundary: tuple[IndexArray, ...]
     """(l,) each: closed loops of vertices, with the surface on the left; empty of a closed mesh"""
-    openings: tuple[Opening, ...]  #: of the surface, filled or not; none with ``surface="closed"``
+    openings: tuple[Opening, ...]  #: of the surface, filled or not
     vertex_of_input: IndexArray  #: (n,) vertex of each input point; -1: left out
     input_of_vertex: IndexArray  #: (v,) first input point at that position
     outliers: IndexArray  #: points that belong to no surface but are vertices; see find_outliers
@@ -350,9 +361,12 @@ class Result(MeshExport):
     ignored: int  #: points that are not finite
     self_intersections: IndexArray  #: (s, 2) pairs of triangles that intersect, exactly found
     smoothed: Optional[FloatArray]  #: (v, 3) after ``smoothing``; None without
+    consolidated: Optional[FloatArray]
+    """(v, 3) after ``consolidation``, before smoothing: what the mesh was made of; None without"""
     topology: Topology  #: counted on ``triangles``
-    measures: Measures  #: of the mesh on the input's points
+    measures: Measures  #: of the mesh on the input's points, or the consolidated ones
     diagnosis: Diagnosis  #: does the cloud look like a closed genus-0 surface?
+    consolidation: Consolidation
     graph: Graph
     embedding: Embedding
     triangulation: Triangulation
@@ -442,7 +456,8 @@ class Result(MeshExport):
         return f'<iframe srcdoc="{text}" width="100%" height="700" style="border: 0"></iframe>'
 
     def _export_points(self) -> FloatArray:
-        return self.vertices if self.smoothed is None else self.smoothed
+        moved = self.consolidated if self.smoothed is None else self.smoothed
+        return self.vertices if moved is None else moved
 
     def __repr__(self) -> str:
         volume = self.measures.volume
@@ -478,6 +493,7 @@ def make_result(fields: dict[str, Any], source: Source) -> Result:
         embedding=Embedding(**embedding),
         triangulation=Triangulation(**fields["triangulation"]),
         optimization=Optimization(**optimization),
+        consolidation=Consolidation(**fields["consolidation"]),
         smoothing=Smoothing(**fields["smoothing"]),
         findings=tuple(Finding(**finding) for finding in fields["findings"]),
     )

@@ -99,24 +99,27 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  return cloudOf(&spherical_param::Result::sphere);
+  return cloudOf([](const spherical_param::Result& result) -> const spherical_param::Positions& {
+    return result.sphere;
+  });
 }
 
 template <typename PointInT>
-pcl::PointCloud<pcl::PointXYZ>::Ptr
-SphericalParamReconstruction<PointInT>::getSmoothedPoints() const {
-  if (parts_.front().result.smoothed.cols() == 0)
+pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::getMovedPoints() const {
+  if (parts_.front().result.moved().cols() == 0)
     return detail::cloudOfNothing(0);
-  return cloudOf(&spherical_param::Result::smoothed);
+  return cloudOf([](const spherical_param::Result& result) -> const spherical_param::Positions& {
+    return result.moved();
+  });
 }
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::cloudOf(
-    spherical_param::Positions spherical_param::Result::*places) const {
+    const spherical_param::Positions& (*places)(const spherical_param::Result&)) const {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = detail::cloudOfNothing(input_size_);
   std::size_t used = 0;
   for (const MeshedPart& part : parts_) {
-    detail::placeVertices(part.result.*places, part.result.vertex_of_input, part.used_indices,
+    detail::placeVertices(places(part.result), part.result.vertex_of_input, part.used_indices,
                           *cloud);
     used += part.used_indices.size();
   }

@@ -1,0 +1,203 @@
+#include "spherical_param/consolidation.h"
+
+#include "../reconstructions.h"
+#include "helpers.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/neighbor_search.h"
+#include "spherical_param/reconstruct.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using test::randomSphere;
+using test::spiralSphere;
+using test::withNoise;
+
+/// Root mean square distance from the unit sphere.
+double roughnessOf(const Positions& points) {
+  return std::sqrt((points.colwise().norm().array() - 1.0).square().mean());
+}
+
+double shortestDistance(const Positions& points) {
+  const NeighborLists lists = findNearestNeighbors(points, 1);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    for (std::size_t e = lists.offsets[i]; e < lists.offsets[i + 1]; ++e)
+      if (lists.indices[e] != static_cast<Index>(i))
+        shortest = std::min(
+            shortest,
+            (points.col(lists.indices[e]) - points.col(static_cast<Eigen::Index>(i))).norm());
+  return shortest;
+}
+
+/// Two spheres around each other, as two scans of one surface that do not quite fit.
+Positions twoLayers(Index n, double distance) {
+  Positions points(3, 2 * n);
+  points << (1.0 - distance / 2.0) * randomSphere(n, 1),
+      (1.0 + distance / 2.0) * randomSphere(n, 2);
+  return points;
+}
+
+/// Points that came together are numbered by the first of them, all are in use, and the report is
+/// that of the places.
+void expectConsistent(const Positions& input, const Consolidation& result) {
+  ASSERT_EQ(result.point_of_input.size(), static_cast<std::size_t>(input.cols()));
+  Index next = 0;
+  double largest = 0.0;
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < input.cols(); ++i) {
+    const Index point = result.point_of_input[static_cast<std::size_t>(i)];
+    ASSERT_LE(point, next);
+    next = std::max(next, point + 1);
+    const double distance = (result.points.col(point) - input.col(i)).norm();
+    largest = std::max(largest, distance);
+    sum += distance;
+  }
+  EXPECT_EQ(next, result.points.cols());
+  EXPECT_NEAR(result.report.max_displacement, largest, 1e-12 * largest);
+  EXPECT_NEAR(result.report.mean_displacement, sum / static_cast<double>(input.cols()),
+              1e-12 * largest);
+  EXPECT_LE(result.report.mean_displacement, result.report.rms_displacement);
+  EXPECT_LE(result.report.rms_displacement, result.report.max_displacement);
+}
+
+TEST(Consolidation, NoiseIsTakenOffAndMeasured) {
+  const Positions points = withNoise(randomSphere(5000, 3), 0.01, 4);
+  const Consolidation result = consolidate(points);
+  expectConsistent(points, result);
+  EXPECT_LT(roughnessOf(result.points), 0.45 * roughnessOf(points));
+  EXPECT_NEAR(result.report.noise, 0.01, 0.002);
+  EXPECT_GT(result.report.merged, 0U);
+  EXPECT_LT(result.report.merged, 1000U);
+}
+
+TEST(Consolidation, LayersBecomeOne) {
+  const Positions points = twoLayers(4000, 0.03);
+  const Consolidation result = consolidate(points);
+  expectConsistent(points, result);
+  EXPECT_NEAR(roughnessOf(points), 0.015, 1e-9);
+  EXPECT_LT(roughnessOf(result.points), 0.6 * roughnessOf(points));
+  EXPECT_GT(shortestDistance(result.points), 0.002);
+  Options options;
+  options.consolidation = ConsolidationMode::Auto;
+  const Result mesh = reconstruct(points, options);
+  EXPECT_TRUE(mesh.self_intersections.empty());
+  EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * test::kPi);
+}
+
+TEST(Consolidation, NoiseOfSeveralSpacingsIsMergedAway) {
+  // The spacing is 0.014.
+  const Positions points = withNoise(randomSphere(60000, 5), 0.03, 6);
+  const Consolidation result = consolidate(points);
+  expectConsistent(points, result);
+  EXPECT_LT(result.points.cols(), 30000);
+  EXPECT_LT(roughnessOf(result.points), 0.5 * roughnessOf(points));
+}
+
+TEST(Consolidation, HardlyTouchesCleanPoints) {
+  const Positions points = spiralSphere(3000);
+  const Consolidation result = consolidate(points);
+  expectConsistent(points, result);
+  EXPECT_EQ(result.report.merged, 0U);
+  EXPECT_LT(result.report.max_displacement, 0.02 * shortestDistance(points));
+  EXPECT_LT(result.report.noise, 0.02 * shortestDistance(points));
+}
+
+TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
+  EXPECT_EQ(consolidate(Positions(3, 0)).points.cols(), 0);
+  Positions few(3, 12);
+  few << spiralSphere(10), spiralSphere(10).leftCols(2);
+  const Consolidation result = consolidate(few);
+  EXPECT_EQ(result.points, few.leftCols(10));
+  EXPECT_EQ(result.point_of_input[10], 0);
+  EXPECT_EQ(result.point_of_input[11], 1);
+  EXPECT_EQ(result.report.merged, 0U);
+  EXPECT_EQ(result.report.max_displacement, 0.0);
+
+  Positions with_lone_point(3, 2001);
+  with_lone_point << withNoise(spiralSphere(2000), 0.01, 7), Eigen::Vector3d(2.0, 0.0, 0.0);
+  const Consolidation lone = consolidate(with_lone_point);
+  EXPECT_EQ(lone.points.rightCols<1>(), Eigen::Vector3d(2.0, 0.0, 0.0));
+}
+
+TEST(Consolidation, SameBitsForAnyNumberOfThreadsAndAnyPowerOfTwo) {
+  const Positions points = withNoise(randomSphere(6000, 8), 0.02, 9);
+  const Consolidation one = consolidate(points, {1});
+  Execution four;
+  four.threads = 4;
+  EXPECT_EQ(consolidate(points, four).points, one.points);
+  const Consolidation scaled = consolidate(1024.0 * points, four);
+  EXPECT_EQ(scaled.points, 1024.0 * one.points);
+  EXPECT_EQ(scaled.point_of_input, one.point_of_input);
+  EXPECT_EQ(scaled.report.noise, 1024.0 * one.report.noise);
+}
+
+TEST(Consolidation, BadInputIsInvalidInputAndWorkCanBeCancelled) {
+  Positions points = spiralSphere(100);
+  points(1, 5) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(consolidate(points), InvalidInput);
+  Execution execution;
+  execution.threads = -1;
+  EXPECT_THROW(consolidate(spiralSphere(100), execution), InvalidInput);
+  execution.threads = 1;
+  execution.progress = [](const Progress&) { return false; };
+  EXPECT_THROW(consolidate(spiralSphere(100), execution), Cancelled);
+}
+
+TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
+  Positions points(3, 2050);
+  points << withNoise(randomSphere(2000, 10), 0.02, 11), Positions::Zero(3, 50);
+  points.rightCols(50) = points.leftCols(50);
+  const Result plain = reconstruct(points);
+  EXPECT_EQ(plain.consolidated.cols(), 0);
+  EXPECT_EQ(plain.moved().cols(), 0);
+  EXPECT_EQ(plain.consolidation.merged, 0U);
+
+  Options options;
+  options.consolidation = ConsolidationMode::Auto;
+  const Result mesh = reconstruct(points, options);
+  const Consolidation expected = consolidate(points);
+  EXPECT_EQ(mesh.consolidated, expected.points);
+  EXPECT_EQ(mesh.vertex_of_input, expected.point_of_input);
+  EXPECT_EQ(mesh.triangles, reconstruct(expected.points).triangles);
+  EXPECT_EQ(mesh.duplicates(), 50U);
+  EXPECT_EQ(mesh.consolidation.merged, expected.report.merged);
+  EXPECT_EQ(mesh.vertexCount() + mesh.consolidation.merged, 2000U);
+  EXPECT_TRUE(mesh.topology.isSphere());
+  ASSERT_TRUE(std::is_sorted(mesh.input_of_vertex.begin(), mesh.input_of_vertex.end()));
+  for (std::size_t v = 0; v < mesh.vertexCount(); ++v)
+    EXPECT_EQ(mesh.vertex_of_input[static_cast<std::size_t>(mesh.input_of_vertex[v])],
+              static_cast<Index>(v));
+
+  // Neighbours of the points as they were say nothing about where they are now.
+  const Result of_lists = reconstruct(points, findNearestNeighbors(points, 3), options);
+  EXPECT_EQ(of_lists.triangles, mesh.triangles);
+
+  options.smoothing.steps = 2;
+  const Result smoothed = reconstruct(points, options);
+  EXPECT_EQ(smoothed.consolidated, mesh.consolidated);
+  EXPECT_EQ(smoothed.moved(), smoothed.smoothed);
+  EXPECT_NE(smoothed.smoothed, smoothed.consolidated);
+}
+
+TEST(Consolidation, AnyPointsHaveAClosedMesh) {
+  Options options;
+  options.consolidation = ConsolidationMode::Auto;
+  for (const Index n : {4, 19, 20, 25, 100, 400}) {
+    const Positions blob = withNoise(Positions::Zero(3, n), 1.0, static_cast<std::uint64_t>(n));
+    EXPECT_TRUE(reconstruct(blob, options).topology.isSphere()) << n;
+    Positions line = 1e-3 * blob;
+    line.row(0).setLinSpaced(0.0, 1.0);
+    EXPECT_TRUE(reconstruct(line, options).topology.isSphere()) << n;
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param
