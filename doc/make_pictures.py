@@ -144,6 +144,24 @@ def smoothing():
     draw(PICTURES / "smoothing.png", "1320x340", [("smooth_0.ply", f"as scanned: {said}"), *views], SIDE)
 
 
+def consolidation():
+    """Four scans of one surface, each with noise and a little off its place."""
+    random = Random(2)
+    with open("scans.xyz", "w") as cloud:
+        for seed in range(1, 5):
+            run("scan", "head", "one.xyz", "-points", 6000, "-noise", 0.4, "-seed", seed)
+            points = [[float(x) for x in line.split()[:3]] for line in open("one.xyz")]
+            extent = max(points)[0] - min(points)[0]
+            shift = [random.gauss(0, 0.003 * extent) for _ in range(3)]
+            for point in points:
+                cloud.write(" ".join(f"{x + d:.6g}" for x, d in zip(point, shift)) + "\n")
+    views = []
+    for name, options in (("plain", []), ("smoothed", ["-smoothing", "5"]), ("auto", ["-consolidation", "auto"])):
+        said = mesh("scans.xyz", name, *options)
+        views.append((f"{name}.ply", f"{' '.join(options) or 'four scans, merged'}: {said}"))
+    draw(PICTURES / "consolidation.png", "1260x420", views, "--view=25,5")
+
+
 def symptoms():
     run("scan", "hand", "stray.xyz", "-points", 6000)
     points = [line.split()[:3] for line in pathlib.Path("stray.xyz").read_text().splitlines()]
@@ -156,7 +174,7 @@ def symptoms():
         ("parts", scan("pair", 4000), ["-parts", "each"], "--view=20,15"),
         ("opening", scan("bowl", 4000), ["-surface", "open"], "--view=30,20"),
         ("outliers", "stray.xyz", ["-outliers", "auto"], FRONT),
-        ("noise", scan("animal", 12000, "-noise", 0.6), ["-smoothing", "5"], SIDE),
+        ("noise", scan("animal", 12000, "-noise", 0.6), ["-consolidation", "auto"], SIDE),
     ):
         mesh(cloud, "before")
         run("reconstruction", cloud, "after.ply", *options)
@@ -185,7 +203,7 @@ def scans():
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
-ALL = [demo, remesh, morph, pipeline, openings, embedding, optimisation, smoothing, symptoms, depth_camera, scans]
+ALL = [demo, remesh, morph, pipeline, openings, embedding, optimisation, smoothing, consolidation, symptoms, depth_camera, scans]
 
 
 def main(names):
