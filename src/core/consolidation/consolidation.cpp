@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -40,7 +41,7 @@ constexpr int kNeighbors = 60;
 /// With one decision for all points, normals on the scans are 2 % worse.
 constexpr std::size_t kJury = 48;
 /// The radii of neighbourhoods are averaged over this number of nearest points, twice: the surface
-/// is as smooth as they are. Without, normals on the scans are 6 % worse.
+/// is as smooth as they are. Without, normals on the scans are 5 % worse.
 constexpr std::size_t kAveraged = 20;
 constexpr int kAverageRounds = 2;
 /// Standard deviation of the weights [radius of the neighbourhood], in trials without the point
@@ -59,14 +60,14 @@ constexpr double kMaxMove = 1.0;
 /// good, but have triangles far below the noise, with 2, normals on the scans are 2 % worse.
 constexpr double kMergeDistance = 1.0;
 /// Above this median roundness of neighbourhoods, 0 for a plane, noise hides the surface from them.
-/// Scans have 0.17 to 0.30, points with noise up to 0.36, dense ones 0.42 to 0.62, and 0.22 to 0.38
+/// Scans have 0.17 to 0.30, points with noise up to 0.38, dense ones 0.42 to 0.62, and 0.22 to 0.38
 /// after one round of merging. Without a bound, normals of dense clouds are off by 14 to 42 degrees
 /// instead of 5 to 8; with 0.3, the RMS distance of one scan is twice as large.
 constexpr double kMaxRoundness = 0.4;
-/// Noise shrinks where points are merged, and roundness to this fraction at most: to 0.51 to 0.62
-/// of dense clouds. On thin limbs neighbourhoods are round whatever is merged: without this bound,
-/// 3,400 points of an animal on thin legs became 22.
-constexpr double kMaxRoundnessLeft = 0.8;
+/// Neighbourhoods on thin limbs of few points are round as well, but do not become flatter, however
+/// many points are merged. Where they are still round when fewer than this number are left, nothing
+/// is merged: 3,400 points of an animal on thin legs became 22 otherwise.
+constexpr Index kMinClusters = 200;
 /// Points of a cluster at most, and the nearest neighbours that they come from.
 constexpr int kClusterSize = 4;
 constexpr std::size_t kClusterNeighbors = 6;
@@ -229,8 +230,6 @@ public:
   const Positions& points() const { return points_; }
   /// Whether the noise is above what neighbourhoods can tell from the surface.
   bool isThick() const { return roundness_ > kMaxRoundness; }
-  /// The median of the neighbourhoods: 0 if they are in planes, 1 if all directions are alike.
-  double roundness() const { return roundness_; }
 
   /// Clusters of neighbours, of some three points each.
   ///
@@ -380,18 +379,18 @@ ConsolidatedNodes consolidated(const Positions& nodes, const Execution& executio
       point = part[at(point)];
   };
   std::vector<Index> part;
-  NoisyCloud cloud(nodes, execution);
-  while (cloud.isThick()) {
-    const Index count = cloud.clusters(part);
-    if (at(count) < kMinPoints)
+  std::optional<NoisyCloud> cloud(std::in_place, nodes, execution);
+  while (cloud->isThick()) {
+    const Index count = cloud->clusters(part);
+    if (count < kMinClusters) {
+      std::iota(result.point_of_node.begin(), result.point_of_node.end(), Index{0});
+      cloud.emplace(nodes, execution);
       break;
-    NoisyCloud fewer(meansOf(cloud.points(), part, count), execution);
-    if (fewer.roundness() > kMaxRoundnessLeft * cloud.roundness())
-      break;
-    cloud = std::move(fewer);
+    }
+    cloud.emplace(meansOf(cloud->points(), part, count), execution);
     pass_on(part);
   }
-  result.points = cloud.onSurface(part, result.noise);
+  result.points = cloud->onSurface(part, result.noise);
   pass_on(part);
   return result;
 }

@@ -101,6 +101,20 @@ TEST(Consolidation, NoiseOfSeveralSpacingsIsMergedAway) {
   EXPECT_LT(roughnessOf(result.points), 0.5 * roughnessOf(points));
 }
 
+TEST(Consolidation, ThinLimbsAreNoThickNoise) {
+  // Six points around: the two sides are as near as points of one side.
+  constexpr Index n = 1800;
+  Positions tube(3, n);
+  for (Index i = 0; i < n; ++i) {
+    const double angle = 2.0 * test::kPi * (i % 6 + 0.5 * (i / 6 % 2)) / 6.0;
+    tube.col(i) << 0.1 * std::cos(angle), 0.1 * std::sin(angle), 0.09 * (i / 6);
+  }
+  const Consolidation result = consolidate(tube);
+  expectConsistent(tube, result);
+  EXPECT_LT(result.report.merged, n / 10);
+  EXPECT_LT(result.report.mean_displacement, 0.05);
+}
+
 TEST(Consolidation, HardlyTouchesCleanPoints) {
   const Positions points = spiralSphere(3000);
   const Consolidation result = consolidate(points);
