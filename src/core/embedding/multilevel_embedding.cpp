@@ -513,7 +513,7 @@ private:
   bool has_slipped_ = false;  ///< Start::has_slipped of the start that solveStarts() kept last
   bool has_tried_finer_ = false;
   bool collapsed_when_freed_ = false;  ///< the graph itself, of the barrier of coarser levels
-  Index best_center_ = 0;  ///< of the start that solveStarts() kept last
+  Index best_center_ = 0;              ///< of the start that solveStarts() kept last
 };
 
 }  // namespace
