@@ -30,7 +30,7 @@ struct ConsolidationReport {
 struct Consolidation {
   Positions points;                   ///< 3 x m, m <= n, distinct [unit of the input]
   std::vector<Index> point_of_input;  ///< n entries: the point that an input point is part of
-  ConsolidationReport report;
+  ConsolidationReport report;         ///< noise, and what was done
 };
 
 /// Moves noisy points to the surface that they sample, and merges those that are closer than their
