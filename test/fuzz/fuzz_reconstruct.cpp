@@ -47,6 +47,8 @@ Options optionsFrom(Bytes& bytes) {
   vary(embedding.history.frames, &Bytes::integer);
   vary(options.threads, &Bytes::integer);
   options.details = which % 2 != 0;
+  if (which / 2 % 2 != 0)
+    options.consolidation = ConsolidationMode::Auto;
   return options;
 }
 
@@ -109,9 +111,22 @@ private:
 };
 
 void checkResult(const Positions& points, const Options& options, const Result& result) {
-  const std::string fault = stress::faultOf(points, options, result);
-  if (!fault.empty())
-    fuzz::finding(fault);
+  if (options.consolidation == ConsolidationMode::None) {
+    const std::string fault = stress::faultOf(points, options, result);
+    if (!fault.empty())
+      fuzz::finding(fault);
+  } else {
+    require(result.topology.isSphere(), "the mesh of consolidated points is a sphere");
+    require(result.consolidated.allFinite() &&
+                result.consolidated.cols() == static_cast<Eigen::Index>(result.vertexCount()),
+            "the consolidated points are as many finite ones as there are vertices");
+    require(result.vertex_of_input.size() == static_cast<std::size_t>(points.cols()),
+            "each point has a vertex");
+    for (std::size_t v = 0; v < result.vertexCount(); ++v)
+      require(result.vertex_of_input[static_cast<std::size_t>(result.input_of_vertex[v])] ==
+                  static_cast<Index>(v),
+              "a vertex is that of its first point");
+  }
   require(!options.details || result.vertex_residuals.size() == result.vertexCount(),
           "there is a residual for each vertex");
   require(options.embedding.history.vertices > 0 || result.history.frames.empty(),
@@ -141,8 +156,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (options.embedding.max_iterations > 3000 || options.embedding.starts > 20 ||
       options.smoothing.steps > 300)
     watch.cancelAt(2000);
-  const std::array<std::string, 7> stages{"neighbors",    "graph",     "embedding", "triangulation",
-                                          "optimization", "smoothing", "quality"};
+  const std::array<std::string, 9> stages{"consolidation", "neighbors", "graph",
+                                          "openings",      "embedding", "triangulation",
+                                          "optimization",  "smoothing", "quality"};
   if (watch.listens())
     options.progress = [&](const Progress& progress) {
       const bool goes_on = watch(progress);
