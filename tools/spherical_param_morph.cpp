@@ -516,8 +516,7 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
     const std::string of = (side == 0 ? "" : "; ") + settings.inputs[side] + ": ";
     summary.read += of + counted(cloud.data->points.size(), "point");
     summary.verdict += (side == 0 ? "" : " ") + settings.inputs[side] + ": " + cloud.result.verdict;
-    summary.left_out +=
-        of + leftOut(cloud, cloud.result.duplicates(), cloud.result.consolidation.merged);
+    summary.left_out += of + leftOut(cloud);
   }
   summary.made =
       counted(static_cast<std::size_t>(morph.result.first.cols()), "vertex", "vertices") + ", " +

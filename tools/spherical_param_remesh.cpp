@@ -639,7 +639,7 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
   summary.left_out = "nothing";
   if (!settings.reads_image) {
     summary.read += ", " + counted(cloud.data->points.size(), "point");
-    summary.left_out = leftOut(cloud, cloud.result.duplicates(), cloud.result.consolidation.merged);
+    summary.left_out = leftOut(cloud);
   }
   summary.written = outputsOf(settings);
   console.summary(summary);

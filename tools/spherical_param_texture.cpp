@@ -332,8 +332,7 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
            counted(static_cast<std::size_t>(output.atlas.triangles.cols()), "triangle") + ", " +
            std::to_string(output.image.width) + " x " + std::to_string(output.image.height) +
            " pixels",
-       leftOut(cloud, cloud.result.duplicates(), cloud.result.consolidation.merged),
-       outputsOf(settings)});
+       leftOut(cloud), outputsOf(settings)});
 }
 
 /// Stores all files but the report, none of them under its name yet.

@@ -10,8 +10,8 @@ namespace spherical_param {
 
 /// How far a computation is, as reported to Execution::progress.
 struct Progress {
-  /// Of reconstruct(): "neighbors", "graph", "openings", "embedding", "triangulation",
-  /// "optimization", "smoothing" or "quality".
+  /// Of reconstruct(): "consolidation", "neighbors", "graph", "openings", "embedding",
+  /// "triangulation", "optimization", "smoothing" or "quality".
   const char* stage;
   /// Fraction of the stage's current loop, in [0, 1]. A stage may have several loops, one after the
   /// other.

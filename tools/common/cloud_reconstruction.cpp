@@ -119,6 +119,10 @@ std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates, st
   return text.empty() ? "nothing" : text;
 }
 
+std::string leftOut(const CloudReconstruction& cloud) {
+  return leftOut(cloud, cloud.result.duplicates(), cloud.result.consolidation.merged);
+}
+
 namespace {
 
 /// Takes the points apart that will be meshed.
@@ -136,7 +140,7 @@ void findPartsOf(const ReconstructionSettings& settings, Console& console,
 
 /// The same for the message of a failure; empty if nothing was left out.
 std::string leftOutNote(const CloudReconstruction& cloud) {
-  const std::string text = leftOut(cloud, 0, 0);
+  const std::string text = leftOut(cloud);
   return text == "nothing" ? "" : " (left out: " + text + ")";
 }
 

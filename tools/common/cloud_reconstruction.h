@@ -67,8 +67,11 @@ private:
 
 /// What was left out of a cloud and why, or "nothing".
 std::string leftOut(const CloudReconstruction& cloud, std::size_t duplicates, std::size_t merged);
+/// The same of a cloud with one mesh, or none yet.
+std::string leftOut(const CloudReconstruction& cloud);
 
-/// The positions of the vertices: smoothed, if that was asked for [unit of the file].
+/// The positions of the vertices: consolidated and smoothed, if that was asked for [unit of the
+/// file].
 Positions vertexPositions(const CloudReconstruction& cloud);
 
 /// The mesh that is written. Points that are no vertices are left out. The cloud must outlive it.
@@ -85,7 +88,7 @@ private:
   std::shared_ptr<const PointData> data_;
   std::vector<Index> point_of_vertex_;
   Triangles triangles_;
-  Positions places_;  ///< empty without smoothing
+  Positions places_;  ///< empty if no points were moved
 };
 
 /// The vertices on a sphere, 3 x v: that of the result, or another that outlives the view. They

@@ -37,7 +37,7 @@ Json productOptionsToJson(const ProductSettings& settings);
 /// A cloud, its mesh, and the map of that to the sphere.
 struct MappedCloud {
   CloudReconstruction cloud;  ///< with the stage "map" as the last
-  Positions points;           ///< 3 x v, the vertices; smoothed, if that was asked for
+  Positions points;           ///< 3 x v, the vertices; moved, if that was asked for
   std::vector<Color> colors;  ///< of the vertices: v, or none if the cloud has no colours
   SphereMap map;
 

@@ -387,9 +387,10 @@ private:
     pcl::Indices vertex_indices;
   };
 
-  /** \brief Makes a cloud of the size of the input from the places of vertices. */
-  pcl::PointCloud<pcl::PointXYZ>::Ptr
-  cloudOf(const spherical_param::Positions& (*places)(const spherical_param::Result&)) const;
+  /** \brief Makes a cloud of the size of the input from the places of vertices, a member of
+   * spherical_param::Result. */
+  template <typename Places>
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(Places places) const;
 
   /** \brief Fills the results. */
   void meshPoints();

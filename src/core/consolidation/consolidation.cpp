@@ -1,5 +1,6 @@
 #include "spherical_param/consolidation.h"
 
+#include "median.h"
 #include "ordered_points.h"
 #include "parallel.h"
 #include "progress.h"
@@ -13,9 +14,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -74,7 +72,7 @@ constexpr std::size_t kClusterNeighbors = 6;
 /// Fewer points have no noise to speak of.
 constexpr std::size_t kMinPoints = 20;
 /// Fewer cannot be meshed.
-constexpr std::size_t kMinLeft = 4;
+constexpr Eigen::Index kMinLeft = 4;
 /// Of the normal equations, so that they are regular whatever the neighbours.
 constexpr double kRidge = 1e-9;
 
@@ -208,13 +206,6 @@ private:
   double roundness_ = 1.0;
 };
 
-/// The middle one; of two the larger.
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// A noisy cloud, its neighbourhoods and their fits.
 class NoisyCloud {
 public:
@@ -271,8 +262,9 @@ public:
       const bool stays = !((place - point).norm() <= kMaxMove * radii_[i]);
       moved.col(static_cast<Eigen::Index>(i)) = stays ? point : place;
     });
-    noise = medianOf(deviations);
-    return merged(moved, deviations, part);
+    Positions left = merged(moved, deviations, part);
+    noise = internal::medianOf(deviations);
+    return left;
   }
 
 private:
@@ -297,7 +289,7 @@ private:
           roundness[i] = fit.roundness();
       }
     });
-    roundness_ = medianOf(std::move(roundness));
+    roundness_ = internal::medianOf(roundness);
   }
 
   /// The radius of the best scale around each point, smoothly.
@@ -370,24 +362,32 @@ struct ConsolidatedNodes {
   double noise = 0.0;
 };
 
+/// Each node is a point of its own.
+std::vector<Index> unmerged(const Positions& nodes) {
+  std::vector<Index> point_of_node(static_cast<std::size_t>(nodes.cols()));
+  std::iota(point_of_node.begin(), point_of_node.end(), Index{0});
+  return point_of_node;
+}
+
 ConsolidatedNodes consolidated(const Positions& nodes, const Execution& execution) {
   ConsolidatedNodes result;
-  result.point_of_node.resize(static_cast<std::size_t>(nodes.cols()));
-  std::iota(result.point_of_node.begin(), result.point_of_node.end(), Index{0});
+  result.point_of_node = unmerged(nodes);
   const auto pass_on = [&](const std::vector<Index>& part) {
     for (Index& point : result.point_of_node)
       point = part[at(point)];
   };
   std::vector<Index> part;
-  std::optional<NoisyCloud> cloud(std::in_place, nodes, execution);
+  NoisyCloud given(nodes, execution);
+  std::optional<NoisyCloud> clustered;
+  NoisyCloud* cloud = &given;
   while (cloud->isThick()) {
     const Index count = cloud->clusters(part);
     if (count < kMinClusters) {
-      std::iota(result.point_of_node.begin(), result.point_of_node.end(), Index{0});
-      cloud.emplace(nodes, execution);
+      result.point_of_node = unmerged(nodes);
+      cloud = &given;
       break;
     }
-    cloud.emplace(meansOf(cloud->points(), part, count), execution);
+    cloud = &clustered.emplace(meansOf(cloud->points(), part, count), execution);
     pass_on(part);
   }
   result.points = cloud->onSurface(part, result.noise);
@@ -431,16 +431,12 @@ Consolidation consolidate(const Positions& points, const Execution& execution) {
   internal::checkThreads(execution.threads);
   internal::checkFinite("consolidate", points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
-  ConsolidatedNodes result;
-  if (nodes.input_of_node.size() >= kMinPoints)
-    result = consolidated(nodes.points, execution);
-  if (static_cast<std::size_t>(result.points.cols()) < kMinLeft) {
-    result = {};
-    result.points = nodes.points;
-    result.point_of_node.resize(nodes.input_of_node.size());
-    std::iota(result.point_of_node.begin(), result.point_of_node.end(), Index{0});
+  if (nodes.input_of_node.size() >= kMinPoints) {
+    const ConsolidatedNodes result = consolidated(nodes.points, execution);
+    if (result.points.cols() >= kMinLeft)
+      return toInput(points, nodes, result);
   }
-  return toInput(points, nodes, result);
+  return toInput(points, nodes, {nodes.points, unmerged(nodes.points), 0.0});
 }
 
 }  // namespace spherical_param

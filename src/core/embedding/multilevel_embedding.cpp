@@ -114,18 +114,13 @@ public:
     ascend(level, u);
     // The barrier of coarser levels held a folded rest.
     if (collapsed_when_freed_ && !has_tried_finer_) {
-      const std::vector<LevelReport> reports = levels();
-      std::size_t finer_level = level;
-      Positions finer = solveFiner(finer_level);
+      Positions finer = solveFiner(level);
       if (finer.cols() > 0) {
         u = std::move(finer);
-        for (std::size_t l = 0; l < finer_level; ++l)
+        for (std::size_t l = 0; l < level; ++l)
           levels()[l] = unworked(l);
-        result_.report.added_barrier = false;
-        showStart(finer_level);
-        ascend(finer_level, u);
-      } else {
-        levels() = reports;
+        showStart(level);
+        ascend(level, u);
       }
     }
     finish(u);
@@ -221,13 +216,12 @@ private:
       result_.report.added_barrier = true;
       best = solveStarts(level, kBarrierRounds);
       if (best.cols() == 0 || has_slipped_) {
-        const LevelReport with_barrier = levels()[level];
-        levels()[level] = untried;
+        const std::size_t coarsest = level;
         Positions finer = solveFiner(level);
-        if (finer.cols() > 0)
+        if (finer.cols() > 0) {
+          levels()[coarsest] = untried;
           best = std::move(finer);
-        else
-          levels()[level] = with_barrier;
+        }
       } else {
         hardly_pulls_ = level > 0;
       }

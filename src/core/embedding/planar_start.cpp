@@ -1,5 +1,6 @@
 #include "planar_start.h"
 
+#include "median.h"
 #include "pi.h"
 
 #include <Eigen/Core>
@@ -113,12 +114,6 @@ std::vector<int> hopsFrom(const Graph& graph, const std::array<Index, 3>& source
   return hops;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Moves the centroid of unit vectors towards the origin by conformal maps of the sphere, which
 /// fold nothing: v = (1 - |c|^2) (u - c) / |u - c|^2 - c takes the point c of the ball to its
 /// centre.
@@ -197,12 +192,12 @@ Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& out
 /// Stereographic projection, with half of the points on each side of the equator.
 Positions projectOnSphere(Eigen::MatrixX2d plane) {
   const Eigen::Index n = plane.rows();
-  const std::vector<double> x(plane.col(0).data(), plane.col(0).data() + n);
-  const std::vector<double> y(plane.col(1).data(), plane.col(1).data() + n);
-  plane.rowwise() -= Eigen::RowVector2d(median(x), median(y));
+  std::vector<double> x(plane.col(0).data(), plane.col(0).data() + n);
+  std::vector<double> y(plane.col(1).data(), plane.col(1).data() + n);
+  plane.rowwise() -= Eigen::RowVector2d(medianOf(x), medianOf(y));
   const Eigen::VectorXd norms = plane.rowwise().norm();
-  const double scale = std::max(median(std::vector<double>(norms.data(), norms.data() + n)),
-                                std::numeric_limits<double>::min());
+  std::vector<double> distances(norms.data(), norms.data() + n);
+  const double scale = std::max(medianOf(distances), std::numeric_limits<double>::min());
   Positions directions(3, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Vector2d q = plane.row(i).transpose() / scale;

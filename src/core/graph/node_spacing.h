@@ -1,5 +1,6 @@
 #pragma once
 
+#include "median.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>
@@ -17,9 +18,7 @@ inline double nodeSpacing(const Graph& graph, std::size_t node, std::vector<doub
                  graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[node + 1]));
   if (lengths.empty())
     return 0.0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return medianOf(lengths);
 }
 
 }  // namespace spherical_param::internal

@@ -1,6 +1,7 @@
 #include "stray_points.h"
 
 #include "graph_building.h"
+#include "median.h"
 #include "surface_distance.h"
 
 #include <algorithm>
@@ -70,9 +71,7 @@ void markFinePieces(const SurfaceDistance& distance, const std::vector<Index>& p
     std::vector<double>& values = coarseness[k];
     if (values.empty())
       continue;
-    const auto median = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), median, values.end());
-    if (*median <= kMaxCoarseness)
+    if (medianOf(values) <= kMaxCoarseness)
       is_surface[k] = 1;
   }
 }

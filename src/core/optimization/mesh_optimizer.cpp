@@ -2,6 +2,7 @@
 
 #include "bit_mixing.h"
 #include "exact_predicates.h"
+#include "median.h"
 #include "optimization_constants.h"
 #include "parallel.h"
 #include "power_of_two.h"
@@ -23,13 +24,6 @@ constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
-}
-
-/// The upper one, if there are two. Changes their order.
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

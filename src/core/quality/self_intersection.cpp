@@ -1,6 +1,7 @@
 #include "spherical_param/self_intersection.h"
 
 #include "box_group.h"
+#include "median.h"
 #include "parallel.h"
 #include "power_of_two.h"
 #include "progress.h"
@@ -151,9 +152,7 @@ double usualSize(const Mesh& mesh, const std::vector<Index>& subset) {
   std::vector<double> sizes;
   for (std::size_t i = 0; i < subset.size(); i += 1 + subset.size() / sample)
     sizes.push_back(mesh.box(subset[i]).size());
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return internal::medianOf(sizes);
 }
 
 /// The triangles by size, then along a space-filling curve (G. M. Morton, 1966). Large ones have a

@@ -44,10 +44,10 @@ OTHERS = (
         None,
         "True, or callable(stage, fraction)",
         """True: a bar on the standard error. A function is called from the calling thread during the
-        work. ``stage`` is "read", "neighbors", "graph", "outliers", "openings", "embedding",
-        "triangulation", "optimization", "smoothing" or "quality"; ``fraction``, in [0, 1], is that
-        of the stage's current loop. If it returns False, the work ends with Cancelled; if it
-        raises, with that exception.""",
+        work. ``stage`` is "read", "consolidation", "neighbors", "graph", "outliers",
+        "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality";
+        ``fraction``, in [0, 1], is that of the stage's current loop. If it returns False, the work
+        ends with Cancelled; if it raises, with that exception.""",
     ),
 )
 

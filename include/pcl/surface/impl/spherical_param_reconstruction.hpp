@@ -99,28 +99,25 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  return cloudOf([](const spherical_param::Result& result) -> const spherical_param::Positions& {
-    return result.sphere;
-  });
+  return cloudOf(&spherical_param::Result::sphere);
 }
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::getMovedPoints() const {
   if (parts_.front().result.moved().cols() == 0)
     return detail::cloudOfNothing(0);
-  return cloudOf([](const spherical_param::Result& result) -> const spherical_param::Positions& {
-    return result.moved();
-  });
+  return cloudOf(&spherical_param::Result::moved);
 }
 
 template <typename PointInT>
-pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::cloudOf(
-    const spherical_param::Positions& (*places)(const spherical_param::Result&)) const {
+template <typename Places>
+pcl::PointCloud<pcl::PointXYZ>::Ptr
+SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = detail::cloudOfNothing(input_size_);
   std::size_t used = 0;
   for (const MeshedPart& part : parts_) {
-    detail::placeVertices(places(part.result), part.result.vertex_of_input, part.used_indices,
-                          *cloud);
+    detail::placeVertices(std::invoke(places, part.result), part.result.vertex_of_input,
+                          part.used_indices, *cloud);
     used += part.used_indices.size();
   }
   cloud->is_dense = used == input_size_;
