@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
 
 #include <cstdint>
 #include <functional>

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 /// Core of the library: meshing of genus-0 point clouds by spherical parameterisation.
@@ -34,20 +35,10 @@ struct NeighborLists {
   std::size_t size() const { return offsets.size() - 1; }
 };
 
-/// Undirected graph in compressed rows: every edge is stored at both of its ends.
-/// Rows are sorted by ascending neighbour, without repetition and without self-loops.
-struct Graph {
-  std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `neighbors` and `lengths`
-  std::vector<Index> neighbors;         ///< 2 x edges entries
-  /// Euclidean length of each entry's edge [unit of the input]: finite and > 0, or 0 where that is
-  /// what it is rounded to. What needs a graph throws InvalidInput for others.
-  std::vector<double> lengths;
-
-  /// Number of nodes. \return n
-  std::size_t size() const { return offsets.size() - 1; }
-  /// Number of undirected edges. \return half the number of entries
-  std::size_t edgeCount() const { return neighbors.size() / 2; }
-};
+/// Returns the `count` nearest neighbours of each of `points`, one list for each in their order.
+/// The point itself may be in its list; `count` should not include it. Lists may be shorter where
+/// there are no more.
+using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
 
 /// @}
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/parts.h"
+#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>

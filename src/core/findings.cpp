@@ -40,17 +40,16 @@ std::string percent(double fraction) {
 }
 
 /// Whether the mesh is as rough as noise makes it, and nothing else is known that does.
-bool isRough(const Result& result) {
-  return result.optimization.noise_steps > 0 && result.moved().cols() == 0 &&
-         result.outliers.empty() && result.diagnosis.bridges.empty() &&
-         result.diagnosis.genus.value_or(0) == 0;
+bool isRough(const Surface& result) {
+  return result.is_noisy && result.moved().cols() == 0 && result.outliers.empty() &&
+         result.diagnosis.bridges.empty() && result.diagnosis.genus.value_or(0) == 0;
 }
 
 bool isRaw(const Options& options) {
-  return options.optimization.method == OptimizationMethod::None;
+  return options.optimization == OptimizationMethod::None;
 }
 
-bool isFolded(const Options& options, const Result& result) {
+bool isFolded(const Options& options, const Surface& result) {
   return result.isFolded() ||
          (isRaw(options) && result.diagnosis.edges_outside_graph > kMaxEdgesOutside);
 }
@@ -88,7 +87,7 @@ Finding filledOf(const SurfaceDiagnosis& diagnosis, const Options& options) {
   const std::string of = points > 0 ? " of " + counted(points, "point") : std::string();
   const std::size_t count = diagnosis.openings();
   const bool is_open =
-      options.surface == SurfaceMode::Open || options.graph.method != GraphMethod::LocalDelaunay;
+      options.surface == SurfaceMode::Open || options.graph != GraphMethod::LocalDelaunay;
   return {(count == 1 ? "opening" + of : grouped(count) + " openings, the largest" + of) +
               ", filled",
           is_open ? "" : "surface", is_open ? "" : "open",
@@ -101,7 +100,7 @@ int moreIterations(int iterations) {
                   iterations < std::numeric_limits<int>::max() / 2 ? 2 * iterations : iterations);
 }
 
-void addOfEmbedding(const Options& options, const Result& result, std::vector<Finding>& findings) {
+void addOfEmbedding(const Options& options, const Surface& result, std::vector<Finding>& findings) {
   const EmbeddingReport& embedding = result.embedding;
   const bool is_iterative = options.embedding.method == EmbeddingMethod::Iterative;
   if (embedding.fallback_start)
@@ -117,7 +116,7 @@ void addOfEmbedding(const Options& options, const Result& result, std::vector<Fi
 
 }  // namespace
 
-std::vector<Finding> findingsOf(const Options& options, const Result& result) {
+std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::vector<Finding> findings;
   const std::size_t outliers = result.outliers.size();
@@ -149,7 +148,7 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
     findings.push_back(fold);
   }
   addOfEmbedding(options, result, findings);
-  if (result.optimization.is_out_of_time)
+  if (result.is_out_of_time)
     findings.push_back(
         {"the time limit ended the work early: this is the best mesh so far", "", "", false});
   if (result.intersecting_triangles > 0)
@@ -157,7 +156,7 @@ std::vector<Finding> findingsOf(const Options& options, const Result& result) {
   return findings;
 }
 
-std::string verdictOf(const Options& options, const Result& result) {
+std::string verdictOf(const Options& options, const Surface& result) {
   if (result.intersecting_triangles > 0)
     return "The mesh has faults: " + grouped(result.intersecting_triangles) + " of " +
            counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";

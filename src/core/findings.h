@@ -1,6 +1,7 @@
 #pragma once
 
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
+#include "spherical_param/result.h"
 
 #include <string>
 #include <vector>
@@ -8,9 +9,9 @@
 namespace spherical_param::internal {
 
 /// What a user should know of a result, the causes of other findings first.
-std::vector<Finding> findingsOf(const Options& options, const Result& result);
+std::vector<Finding> findingsOf(const Options& options, const Surface& result);
 
 /// A headline: whether the mesh is sound, and what is left open, filled, cut or joined.
-std::string verdictOf(const Options& options, const Result& result);
+std::string verdictOf(const Options& options, const Surface& result);
 
 }  // namespace spherical_param::internal

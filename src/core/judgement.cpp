@@ -4,6 +4,7 @@
 #include "open_mesh.h"
 #include "progress.h"
 #include "spherical_param/self_intersection.h"
+#include "surface_diagnosis.h"
 
 #include <algorithm>
 #include <array>
@@ -54,10 +55,7 @@ Pairs intersectionsOf(const Positions& points, const Triangles& closed, const Op
 /// Moves the triangles of a mesh that are not over openings to the result, with the pairs of them
 /// that intersect.
 void takeSurface(const Positions& points, const OpenSurface& openings, MeshedCloud& mesh,
-                 const Options& options, Result& result) {
-  // Not those of positions that the optimisation has smoothed.
-  const bool are_pairs_known = !mesh.isSmoothed() && (mesh.optimization.report.noise_steps == 0 ||
-                                                      options.optimization.finish_on_points);
+                 const Options& options, Surface& result) {
   if (!openings.isOpen()) {
     result.triangles = std::move(mesh.triangles());
     result.self_intersections = mesh.isSmoothed()
@@ -68,7 +66,7 @@ void takeSurface(const Positions& points, const OpenSurface& openings, MeshedClo
   const OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
   result.triangles = surfaceOf(open);
   result.self_intersections =
-      are_pairs_known
+      !mesh.isSmoothed()
           ? intersectionsOf(points, mesh.triangles(), open, result.triangles, *openings.places(),
                             mesh.optimization.self_intersections, options)
           : findSelfIntersections(points, result.triangles, options);
@@ -94,10 +92,10 @@ SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::s
 
 }  // namespace
 
-Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
-             const Options& options) {
+Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
+              const Options& options) {
   const FractionReport report = reportOf(options, "quality");
-  Result result;
+  Surface result;
   takeSurface(points, openings, mesh, options, result);
   result.openings = openings.found();
   if (openings.isOpen())
@@ -131,10 +129,9 @@ Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openi
   result.smoothed = std::move(mesh.smoothed.points);
   result.sphere = std::move(mesh.embedding.directions);
   result.history = std::move(mesh.embedding.history);
-  result.graph = std::move(mesh.graph.report);
   result.embedding = std::move(mesh.embedding.report);
-  result.triangulation = mesh.triangulation;
-  result.optimization = std::move(mesh.optimization.report);
+  result.is_noisy = mesh.optimization.report.noise_steps > 0;
+  result.is_out_of_time = mesh.optimization.report.is_out_of_time;
   return result;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "embedding.h"
+#include "neighbor_graph.h"
 #include "open_surface.h"
 #include "smoothed_mesh.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
+#include "spherical_param/result.h"
 
 namespace spherical_param::internal {
 
@@ -10,7 +13,6 @@ namespace spherical_param::internal {
 struct MeshedCloud {
   NeighborGraph graph;
   Embedding embedding;
-  TriangulationReport triangulation;
   MeshOptimization optimization;
   SmoothedMesh smoothed;  ///< empty without smoothing
 
@@ -20,7 +22,7 @@ struct MeshedCloud {
 
 /// Measures, checks and diagnoses a mesh, and moves it and its reports to the result, which is on
 /// nodes and in their unit; \see toInput.
-Result judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
-             const Options& options);
+Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
+              const Options& options);
 
 }  // namespace spherical_param::internal

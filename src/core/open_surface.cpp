@@ -68,7 +68,7 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, bool is_fl
 }
 
 bool seeksOpenings(const Options& options) {
-  return options.graph.method == GraphMethod::LocalDelaunay;
+  return options.graph == GraphMethod::LocalDelaunay;
 }
 
 Embedding OpenSurface::embedded(const Positions& points, const Graph& graph,
@@ -76,9 +76,8 @@ Embedding OpenSurface::embedded(const Positions& points, const Graph& graph,
   if (embedded_.openings.empty())
     return embed(graph, points, options.embedding, options.seed, options);
   const FilledGraph filled = fillOpenings(points, graph, embedded_);
-  EmbeddingOptions by_area = options.embedding;
-  by_area.centroid_by_area = true;
-  Embedding embedding = embed(filled.graph, filled.points, by_area, options.seed, options);
+  Embedding embedding = embed(filled.graph, filled.points, options.embedding, options.seed, options,
+                              NodeMass::ByArea);
   embedding.directions = Positions(embedding.directions.leftCols(points.cols()));
   dropVertices(static_cast<Index>(points.cols()), embedding.history);
   return embedding;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "embedding.h"
 #include "open_places.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
+#include "spherical_param/result.h"
 
 #include <optional>
 

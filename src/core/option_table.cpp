@@ -1,6 +1,5 @@
 #include "spherical_param/option_table.h"
 
-#include "option_checks.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
@@ -16,6 +15,9 @@ namespace spherical_param {
 namespace {
 
 constexpr double kMaxInt = std::numeric_limits<int>::max();
+/// k of the paper, and the neighbours that certify most local Delaunay cells.
+constexpr int kTypicalNearestNeighbors = 25;
+constexpr int kTypicalDelaunayNeighbors = 12;
 /// Where numbers still count.
 constexpr double kMaxArea = 1e15;
 constexpr double kMaxSeconds = 1e9;
@@ -116,12 +118,12 @@ std::vector<OptionRow> pointRows() {
 std::vector<OptionRow> graphRows() {
   return {
       choice<GraphMethod>(
-          "graph", "graph.method", "how points become neighbours, in the paper knn", Expert,
+          "graph", "graph", "how points become neighbours, in the paper knn", Expert,
           {{"delaunay", GraphMethod::LocalDelaunay}, {"knn", GraphMethod::NearestNeighbors}},
-          [](Options & o) -> auto& { return o.graph.method; }),
+          [](Options & o) -> auto& { return o.graph; }),
       number(
-          "k", "graph.k", "nearest neighbours of each point, unset: 25 for knn, 12 for delaunay",
-          Expert, 3, kMaxInt, [](Options & o) -> auto& { return o.graph.k; }),
+          "k", "k", "nearest neighbours of each point, unset: 25 for knn, 12 for delaunay", Expert,
+          3, kMaxInt, [](Options & o) -> auto& { return o.k; }),
   };
 }
 
@@ -164,33 +166,32 @@ std::vector<OptionRow> embeddingRows() {
                    "starts", "embedding.starts", "starts of the embedding on the coarsest level",
                    Expert, 1, 100, [](Options & o) -> auto& { return o.embedding.starts; })),
       number(
-          "history_vertices", "embedding.history.vertices",
+          "history_vertices", "embedding.history_vertices",
           "maximum number of vertices whose path to the sphere is kept", Expert, 0, 1 << 24,
-          [](Options & o) -> auto& { return o.embedding.history.vertices; }),
+          [](Options & o) -> auto& { return o.embedding.history_vertices; }),
       number(
-          "history_frames", "embedding.history.frames", "maximum number of states of these paths",
-          Expert, 2, 10000, [](Options & o) -> auto& { return o.embedding.history.frames; }),
+          "history_frames", "embedding.history_frames", "maximum number of states of these paths",
+          Expert, 2, 10000, [](Options & o) -> auto& { return o.embedding.history_frames; }),
   };
 }
 
 std::vector<OptionRow> meshRows() {
   return {
       choice<TriangulationMethod>(
-          "triangulation", "triangulation.method",
-          "how the sphere is triangulated, in the paper qhull", Expert,
+          "triangulation", "triangulation", "how the sphere is triangulated, in the paper qhull",
+          Expert,
           {{"incremental", TriangulationMethod::Incremental},
            {"qhull", TriangulationMethod::Qhull}},
-          [](Options & o) -> auto& { return o.triangulation.method; }),
+          [](Options & o) -> auto& { return o.triangulation; }),
       choice<OptimizationMethod>(
-          "optimization", "optimization.method", "how far the mesh is optimised on the points",
-          Expert,
+          "optimization", "optimization", "how far the mesh is optimised on the points", Expert,
           {{"full", OptimizationMethod::Full},
            {"flips", OptimizationMethod::Flips},
            {"none", OptimizationMethod::None}},
-          [](Options & o) -> auto& { return o.optimization.method; }),
+          [](Options & o) -> auto& { return o.optimization; }),
       number(
-          "smoothing", "smoothing.steps", "steps of smoothing of the points, 0: none", Everybody, 0,
-          10000, [](Options & o) -> auto& { return o.smoothing.steps; }),
+          "smoothing", "smoothing", "steps of smoothing of the points, 0: none", Everybody, 0,
+          10000, [](Options & o) -> auto& { return o.smoothing; }),
   };
 }
 
@@ -268,13 +269,6 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
     refuse(row, "= " + textOf(value) + " is out of range");
 }
 
-/// Checks the options whose field begins with the name of a stage, or all.
-void checkStage(const Options& options, const std::string& stage) {
-  for (const OptionRow& row : optionTable())
-    if (row.field.compare(0, stage.size(), stage) == 0)
-      checkValue(row, row.get(options));
-}
-
 }  // namespace
 
 const std::vector<OptionRow>& optionTable() {
@@ -329,50 +323,19 @@ std::string textOf(const OptionValue& value) {
   return text.str();
 }
 
+int neighborsToSearch(const Options& options) {
+  return options.k.value_or(options.graph == GraphMethod::NearestNeighbors
+                                ? kTypicalNearestNeighbors
+                                : kTypicalDelaunayNeighbors);
+}
+
 void checkOptions(const Options& options) {
-  checkStage(options, "");
-  internal::checkOptions(options.graph);
-  internal::checkOptions(options.embedding);
-  internal::checkOptions(options.smoothing);
-}
-
-namespace internal {
-
-void checkOptions(const GraphOptions& stage) {
-  checkEnum("graph.agreement", stage.agreement, StarAgreement::Either);
-  Options options;
-  options.graph = stage;
-  checkStage(options, "graph.");
-}
-
-void checkOptions(const EmbeddingOptions& stage) {
-  Options options;
-  options.embedding = stage;
-  checkStage(options, "embedding.");
-  if (stage.method == EmbeddingMethod::Iterative && stage.exponent != 3.0)
-    throw InvalidInput("exponent = " + textOf(stage.exponent) +
+  for (const OptionRow& row : optionTable())
+    checkValue(row, row.get(options));
+  if (options.embedding.method == EmbeddingMethod::Iterative && options.embedding.exponent != 3.0)
+    throw InvalidInput("exponent = " + textOf(options.embedding.exponent) +
                        " has no effect on the iterative embedding; use 3, or the multilevel "
                        "embedding");
 }
 
-void checkOptions(const TriangulationOptions& stage) {
-  Options options;
-  options.triangulation = stage;
-  checkStage(options, "triangulation.");
-}
-
-void checkOptions(const OptimizationOptions& stage) {
-  Options options;
-  options.optimization = stage;
-  checkStage(options, "optimization.");
-}
-
-void checkOptions(const SmoothingOptions& stage) {
-  checkEnum("smoothing.method", stage.method, SmoothingMethod::Biharmonic);
-  Options options;
-  options.smoothing = stage;
-  checkStage(options, "smoothing.");
-}
-
-}  // namespace internal
 }  // namespace spherical_param

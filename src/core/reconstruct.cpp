@@ -8,6 +8,7 @@
 #include "open_surface.h"
 #include "ordered_points.h"
 #include "result_units.h"
+#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
 
@@ -39,7 +40,7 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
 }
 
 /// Whether the mesh is closed and of genus 0, or that with openings, over all vertices.
-bool isAsPromised(const Result& result) {
+bool isAsPromised(const Surface& result) {
   const MeshTopology& topology = result.topology;
   return result.isClosed()
              ? topology.isSphere()
@@ -65,8 +66,8 @@ NeighborGraph buildGraph(const OrderedPoints& nodes, const FindNeighbors& find_n
   const Neighbors neighbors =
       clock.time("neighbors", [&] { return find_neighbors(nodes, options); });
   return clock.time("graph", [&] {
-    return buildNeighborGraph(nodes.points, neighbors.lists, options.graph, neighbors.search,
-                              options);
+    return buildNeighborGraph(nodes.points, neighbors.lists, options.graph,
+                              neighborsToSearch(options), neighbors.search, options);
   });
 }
 
@@ -89,10 +90,10 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
   SphereTriangulation triangulation = clock.time("triangulation", [&] {
     return triangulateSphere(mesh.embedding.directions, options.triangulation, options);
   });
-  mesh.triangulation = triangulation.report;
   orientOutward(points, triangulation.triangles, mesh.embedding);
-  const bool is_smoothed = options.smoothing.steps > 0;
-  OptimizationOptions of_optimization = options.optimization;
+  const bool is_smoothed = options.smoothing > 0;
+  OptimizationOptions of_optimization;
+  of_optimization.method = options.optimization;
   // The smoothed points get an optimisation of their own.
   if (is_smoothed)
     of_optimization.finish_on_points = false;
@@ -109,8 +110,9 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
     execution.time_limit = clock.remaining();
     mesh.smoothed = clock.time("smoothing", [&] {
       return internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph,
-                                  surface.places(), options.smoothing, options.optimization.method,
-                                  options.seed, execution);
+                                  surface.places(),
+                                  SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
+                                  options.optimization, options.seed, execution);
     });
   }
   bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
@@ -120,10 +122,10 @@ MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSu
 }
 
 Neighbors findNeighbors(const OrderedPoints& nodes, const Options& options) {
-  return internal::nearestNeighbors(nodes, neighborsToSearch(options.graph), options);
+  return internal::nearestNeighbors(nodes, neighborsToSearch(options), options);
 }
 
-Result run(const Positions& input, const Options& all, const FindNeighbors& find_neighbors) {
+Surface run(const Positions& input, const Options& all, const FindNeighbors& find_neighbors) {
   checkOptions(all);
   StageClock clock(all);
   const Options options = clock.optionsOfStages();
@@ -142,7 +144,7 @@ Result run(const Positions& input, const Options& all, const FindNeighbors& find
   if (is_flat && !surface.isOpen())
     refuseFlat(options);
   MeshedCloud mesh = meshGraph(nodes.points, std::move(graph), surface, options, clock);
-  Result result = clock.time(
+  Surface result = clock.time(
       "quality", [&] { return internal::judge(nodes.points, std::move(mesh), surface, options); });
   if (is_flat && result.isClosed())
     refuseFlat(options);
@@ -160,12 +162,12 @@ Result run(const Positions& input, const Options& all, const FindNeighbors& find
 
 }  // namespace
 
-Result reconstruct(const Positions& points, const Options& options) {
+Surface reconstruct(const Positions& points, const Options& options) {
   return run(points, options, findNeighbors);
 }
 
-Result reconstruct(const Positions& points, const NeighborLists& lists, const Options& options,
-                   const NeighborSearch& search) {
+Surface reconstruct(const Positions& points, const NeighborLists& lists, const Options& options,
+                    const NeighborSearch& search) {
   if (options.consolidation != ConsolidationMode::None)
     return run(points, options, findNeighbors);
   return run(points, options, [&](const OrderedPoints& nodes, const Options&) {

@@ -10,7 +10,7 @@ namespace spherical_param::internal {
 namespace {
 
 /// Gives the result, computed on scaled points, the unit of the input.
-void scaleBack(int exponent, Result& result) {
+void scaleBack(int exponent, Surface& result) {
   const auto scale = [exponent](double& value, int power = 1) {
     value = std::ldexp(value, power * exponent);
   };
@@ -24,11 +24,6 @@ void scaleBack(int exponent, Result& result) {
   scale_all(result.measures.box_max);
   scale_all(result.measures.centroid);
   scale_all(result.measures.inertia, 5);
-  scale(result.optimization.energy);
-  for (OptimizationPhase& phase : result.optimization.phases) {
-    scale(phase.energy_before);
-    scale(phase.energy);
-  }
   if (result.smoothed.cols() > 0) {
     scale_all(result.smoothed);
     scale(result.smoothing.max_displacement);
@@ -37,8 +32,6 @@ void scaleBack(int exponent, Result& result) {
     scale(result.smoothing.volume_before, 3);
     scale(result.smoothing.volume_after, 3);
   }
-  for (Bridge& bridge : result.graph.bridges)
-    scale(bridge.length);
   for (Opening& opening : result.openings) {
     scale(opening.boundary_length);
     scale(opening.area, 2);
@@ -65,7 +58,7 @@ void scaleBack(int exponent, Result& result) {
 }
 
 /// Gives the result, computed on nodes, the numbers of the vertices.
-void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
+void renumber(const std::vector<Index>& vertex_of_node, Surface& result) {
   const auto vertex = [&](Index node) { return vertex_of_node[static_cast<std::size_t>(node)]; };
   const auto renumber_all = [&](std::vector<Index>& nodes) {
     std::transform(nodes.begin(), nodes.end(), nodes.begin(), vertex);
@@ -86,11 +79,6 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
   for (std::size_t node = 0; node < of_vertices.size(); ++node)
     of_vertices[static_cast<std::size_t>(vertex_of_node[node])] = result.vertex_residuals[node];
   result.vertex_residuals = std::move(of_vertices);
-  for (Bridge& bridge : result.graph.bridges) {
-    bridge.from = vertex(bridge.from);
-    bridge.to = vertex(bridge.to);
-  }
-  renumber_all(result.graph.without_tangent_plane);
   const auto renumber_loop = [&](std::vector<Index>& loop) {
     std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
@@ -103,10 +91,6 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
     return a.size() != b.size() ? a.size() > b.size() : a < b;
   });
   renumber_all(result.outliers);
-  for (StrayPoint& stray : result.graph.stray_points)
-    stray.point = vertex(stray.point);
-  std::sort(result.graph.stray_points.begin(), result.graph.stray_points.end(),
-            [](const StrayPoint& a, const StrayPoint& b) { return a.point < b.point; });
   for (FilledHole& hole : result.diagnosis.filled_holes) {
     renumber_all(hole.vertices);
     for (std::vector<Index>& loop : hole.loops)
@@ -120,7 +104,7 @@ void renumber(const std::vector<Index>& vertex_of_node, Result& result) {
 
 }  // namespace
 
-void toInput(OrderedPoints& nodes, Result& result) {
+void toInput(OrderedPoints& nodes, Surface& result) {
   scaleBack(nodes.exponent, result);
   renumber(nodes.vertex_of_node, result);
   result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
@@ -129,7 +113,7 @@ void toInput(OrderedPoints& nodes, Result& result) {
     vertex = result.input_of_vertex[static_cast<std::size_t>(vertex)];
 }
 
-void toInput(Consolidation& consolidation, Result& result) {
+void toInput(Consolidation& consolidation, Surface& result) {
   const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   // Those that came to one place are one vertex.
   result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);

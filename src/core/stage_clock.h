@@ -1,7 +1,8 @@
 #pragma once
 
 #include "progress.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
+#include "spherical_param/result.h"
 #include "time_left.h"
 
 #include <algorithm>

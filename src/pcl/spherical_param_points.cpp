@@ -19,7 +19,7 @@ using spherical_param::InvalidInput;
 using spherical_param::NeighborLists;
 using spherical_param::Options;
 using spherical_param::Positions;
-using spherical_param::Result;
+using spherical_param::Surface;
 
 /// Appends the neighbours of some points, one point after the other: a search object of the user
 /// need not be ready for concurrent queries.
@@ -72,7 +72,7 @@ private:
 
 }  // namespace
 
-Result reconstructPoints(const Positions& points, Options options, std::size_t ignored_points,
+Surface reconstructPoints(const Positions& points, Options options, std::size_t ignored_points,
                          const UserSearch* search) {
   options.progress = guardProgress(options.progress);
   try {

@@ -162,7 +162,7 @@ py::dict toDict(const DistortionStatistics& statistics) {
 
 }  // namespace
 
-py::dict toDict(const Result& result, const FinitePoints& finite) {
+py::dict toDict(const Surface& result, const FinitePoints& finite) {
   const std::vector<Index>& input_of_kept = finite.rows;
   std::vector<Index> vertex_of_input(finite.given, -1);
   for (std::size_t i = 0; i < input_of_kept.size(); ++i)

@@ -11,7 +11,7 @@
 namespace spherical_param::python {
 
 /// Indices of points are those of the caller's array.
-pybind11::dict toDict(const Result& result, const FinitePoints& finite);
+pybind11::dict toDict(const Surface& result, const FinitePoints& finite);
 
 pybind11::dict toDict(const MapDistortion& distortion);
 pybind11::dict toDict(const SphereMap& map);

@@ -1,8 +1,8 @@
 #include "spherical_param_ros/cloud_mesh.h"
 
 #include "spherical_param/errors.h"
-#include "spherical_param/outliers.h"
-#include "spherical_param/parts.h"
+#include "outliers.h"
+#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <pcl/PCLPointField.h>
@@ -21,7 +21,7 @@ namespace {
 using spherical_param::Index;
 using spherical_param::PartsMode;
 using spherical_param::Positions;
-using spherical_param::Result;
+using spherical_param::Surface;
 
 /// A cloud that cannot be used: the message is "cause; remedy".
 class BadCloud : public std::runtime_error {
@@ -201,7 +201,7 @@ std::vector<Points> takeApart(Points points, const Settings& settings,
 
 /// A surface and the record of each of its vertices.
 struct PartMesh {
-  Result result;
+  Surface result;
   std::vector<Index> record_of_vertex;
 };
 
@@ -225,7 +225,7 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
 /// Appends a surface. \param mesh has space for its records
 void append(const pcl::PCLPointCloud2& cloud, const PartMesh& part, Mesh& mesh) {
   const Axes axes = axesOf(cloud);
-  const Result& result = part.result;
+  const Surface& result = part.result;
   const std::size_t first = mesh.vertices.size();
   for (std::size_t i = 0; i < result.vertexCount(); ++i) {
     std::uint8_t* record = mesh.cloud.data.data() + (first + i) * mesh.cloud.point_step;
@@ -284,7 +284,7 @@ PartMesh meshPart(const Points& points, const spherical_param::Options& options)
 }
 
 /// Adds what is to be said of a surface.
-void addFindings(const Result& result, Outcome& outcome) {
+void addFindings(const Surface& result, Outcome& outcome) {
   for (const spherical_param::Finding& finding : result.findings) {
     outcome.warnings.push_back(finding.option.empty() ? finding.text
                                                       : finding.text + ": try " + finding.option +
@@ -322,7 +322,7 @@ std::vector<PartMesh> meshParts(const std::vector<Points>& parts,
                                  " points is left out: " + error.what());
       continue;
     }
-    const Result& result = meshes.back().result;
+    const Surface& result = meshes.back().result;
     addFindings(result, outcome);
     faulty += spherical_param::hasFault(result.findings) ? 1 : 0;
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "spherical_param/execution.h"
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/LU>
@@ -196,12 +196,21 @@ inline NeighborLists spiralNeighbors(const Positions& points, int k) {
   return lists;
 }
 
-/// Options of the graph of the k nearest neighbours.
-inline GraphOptions nearest(int k = 25) {
-  GraphOptions options;
-  options.method = GraphMethod::NearestNeighbors;
-  options.k = k;
-  return options;
+/// How a graph is made.
+struct GraphChoice {
+  GraphMethod method = GraphMethod::LocalDelaunay;
+  int k = 12;
+};
+
+/// The graph of the k nearest neighbours.
+inline GraphChoice nearest(int k = 25) {
+  return {GraphMethod::NearestNeighbors, k};
+}
+
+inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
+                             const GraphChoice& choice = {}, const NeighborSearch& search = {},
+                             const Execution& execution = {}) {
+  return buildNeighborGraph(points, lists, choice.method, choice.k, search, execution);
 }
 
 /// Execution on so many threads.
@@ -364,7 +373,7 @@ inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triang
 
 /// The graph of the tangent Delaunay neighbours, by brute force.
 inline NeighborGraph localDelaunayGraph(const Positions& points) {
-  return buildNeighborGraph(points, bruteForceNeighbors(points, 12), {}, bruteForceSearch(points));
+  return graphOf(points, bruteForceNeighbors(points, 12), {}, bruteForceSearch(points));
 }
 
 /// A torus of rings x around quads, each split in two, over the vertices r * around + k: six

@@ -35,9 +35,9 @@ inline Positions twoSpheres(Index n, Index m, double distance) {
 /// The method as it was published.
 inline Options paper() {
   Options options;
-  options.graph.method = GraphMethod::NearestNeighbors;
+  options.graph = GraphMethod::NearestNeighbors;
   options.embedding.method = EmbeddingMethod::Iterative;
-  options.triangulation.method = TriangulationMethod::Qhull;
+  options.triangulation = TriangulationMethod::Qhull;
   return options;
 }
 
@@ -48,38 +48,39 @@ inline std::vector<Options> bothMethods() {
 
 /// For clouds that cannot be meshed well: without the search for a better mesh.
 inline Options quick(Options options = {}) {
-  options.optimization.method = OptimizationMethod::Flips;
+  options.optimization = OptimizationMethod::Flips;
   return options;
 }
 
 /// Keeps a history and the details.
 inline Options watched(Options options = {}) {
-  options.embedding.history = {300, 25};
+  options.embedding.history_vertices = 300;
+  options.embedding.history_frames = 25;
   options.details = true;
   return options;
 }
 
 /// With neighbours by brute force.
-inline Result mesh(const Positions& points, const Options& options = {}) {
-  return reconstruct(points, bruteForceNeighbors(points, neighborsToSearch(options.graph)), options,
+inline Surface mesh(const Positions& points, const Options& options = {}) {
+  return reconstruct(points, bruteForceNeighbors(points, neighborsToSearch(options)), options,
                      bruteForceSearch(points));
 }
 
-inline Positions verticesOf(const Positions& points, const Result& result) {
+inline Positions verticesOf(const Positions& points, const Surface& result) {
   Positions vertices(3, static_cast<Eigen::Index>(result.vertexCount()));
   for (Eigen::Index v = 0; v < vertices.cols(); ++v)
     vertices.col(v) = points.col(result.input_of_vertex[static_cast<std::size_t>(v)]);
   return vertices;
 }
 
-inline bool isFound(const Result& result, const std::string& text) {
+inline bool isFound(const Surface& result, const std::string& text) {
   return std::any_of(result.findings.begin(), result.findings.end(), [&](const Finding& finding) {
     return finding.text.find(text) != std::string::npos;
   });
 }
 
 /// Everything that is promised for any input.
-inline void expectGuarantees(const Positions& points, const Result& result) {
+inline void expectGuarantees(const Positions& points, const Surface& result) {
   const auto v = static_cast<Index>(result.vertexCount());
   EXPECT_TRUE(isSphereOverAll(result.triangles, v));
   EXPECT_TRUE(result.topology.isSphere());

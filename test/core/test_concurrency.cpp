@@ -6,7 +6,7 @@
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/reconstruct.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -38,17 +38,17 @@ TEST(Concurrency, ReconstructionsTriangulationsAndMapsAgreeWithSingleOnes) {
   });
   for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
     expectTheSameAlone([method](std::size_t i) {
-      return triangulateSphere(ellipsoid(i).colwise().normalized(), {method}).triangles;
+      return triangulateSphere(ellipsoid(i).colwise().normalized(), method).triangles.triangles;
     });
   expectTheSameAlone([](std::size_t i) {
     const Positions start = ellipsoid(i).colwise().normalized();
     SphereMapOptions options;
     options.threads = 1;
-    return computeSphereMap(ellipsoid(i), triangulateSphere(start).triangles, start, options)
+    return computeSphereMap(ellipsoid(i), triangulateSphere(start), start, options)
         .sphere;
   });
   const Positions sphere = ellipsoid(3).colwise().normalized();
-  const SphereSurface shared(ellipsoid(3), triangulateSphere(sphere).triangles, sphere);
+  const SphereSurface shared(ellipsoid(3), triangulateSphere(sphere), sphere);
   const Positions directions = test::randomSphere(300, 7);
   expectTheSameAlone([&](std::size_t) { return shared.evaluate(directions).positions; });
 }

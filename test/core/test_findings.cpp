@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kPoints = 1000;
 
 /// Nothing is to be said of it.
-Result soundResult() {
-  Result result;
+Surface soundResult() {
+  Surface result;
   result.vertex_of_input.resize(kPoints);
   result.input_of_vertex.resize(kPoints);
   result.triangles.resize(3, 2 * kPoints - 4);
@@ -29,7 +29,7 @@ FilledHole holeOf(std::size_t points) {
   return hole;
 }
 
-void addBridge(Result& result, std::size_t points, std::size_t other_points) {
+void addBridge(Surface& result, std::size_t points, std::size_t other_points) {
   PartBridge bridge;
   bridge.points = points;
   bridge.other_points = other_points;
@@ -38,13 +38,13 @@ void addBridge(Result& result, std::size_t points, std::size_t other_points) {
 
 struct Case {
   Finding expected;  ///< without text: there is none
-  std::function<void(Result&)> change;
+  std::function<void(Surface&)> change;
 };
 
 void expectFindings(const std::vector<Case>& cases, const Options& options = {}) {
   for (const auto& [expected, change] : cases) {
     SCOPED_TRACE(expected.text);
-    Result result = soundResult();
+    Surface result = soundResult();
     change(result);
     const std::vector<Finding> findings = internal::findingsOf(options, result);
     ASSERT_EQ(findings.size(), expected.text.empty() ? 0U : 1U);
@@ -59,45 +59,45 @@ void expectFindings(const std::vector<Case>& cases, const Options& options = {})
 
 TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   expectFindings({
-      {{}, [](Result&) {}},
+      {{}, [](Surface&) {}},
       {{"1 point looks like an outlier", "outliers", "auto", false},
-       [](Result& r) { r.outliers = {3}; }},
+       [](Surface& r) { r.outliers = {3}; }},
       {{"2,000 points look like outliers", "outliers", "auto", false},
-       [](Result& r) { r.outliers.resize(2000); }},
+       [](Surface& r) { r.outliers.resize(2000); }},
       {{"2 separate parts (395 and 5,633 points)", "parts", "largest", true},
-       [](Result& r) { addBridge(r, 395, 5633); }},
+       [](Surface& r) { addBridge(r, 395, 5633); }},
       {{"2 separate parts (2,395 and 5,633 points)", "parts", "each", true},
-       [](Result& r) { addBridge(r, 2395, 5633); }},
+       [](Surface& r) { addBridge(r, 2395, 5633); }},
       {{"3 separate parts (two of them of 1 and 4 points)", "parts", "largest", true},
-       [](Result& r) {
+       [](Surface& r) {
          addBridge(r, 1, 4);
          addBridge(r, 1, 3);
        }},
       {{"opening of 432 points, filled", "surface", "open", true},
-       [](Result& r) { r.diagnosis.filled_holes = {holeOf(432)}; }},
+       [](Surface& r) { r.diagnosis.filled_holes = {holeOf(432)}; }},
       {{"2 openings, the largest of 432 points, filled", "surface", "open", true},
-       [](Result& r) {
+       [](Surface& r) {
          r.diagnosis.filled_holes = {holeOf(40), holeOf(432)};
        }},
       {{"the points are noisy", "consolidation", "auto", false},
-       [](Result& r) { r.optimization.noise_steps = 3; }},
+       [](Surface& r) { r.optimization.noise_steps = 3; }},
       {{},
-       [](Result& r) {
+       [](Surface& r) {
          r.optimization.noise_steps = 3;
          r.smoothed.resize(3, kPoints);
        }},
       {{"1 handle, cut: the mesh is a sphere", "", "", true},
-       [](Result& r) { r.diagnosis.genus = 1; }},
+       [](Surface& r) { r.diagnosis.genus = 1; }},
       {{"perhaps a handle, which is cut, or a fold, in 2 places", "", "", true},
-       [](Result& r) { r.diagnosis.handles.resize(2); }},
+       [](Surface& r) { r.diagnosis.handles.resize(2); }},
       {{"the surface has one side only, like a Moebius strip: the mesh tears it", "", "", true},
-       [](Result& r) { r.diagnosis.is_one_sided = true; }},
+       [](Surface& r) { r.diagnosis.is_one_sided = true; }},
       {{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud", "", "",
         true},
-       [](Result& r) { r.diagnosis.edges_outside_graph = 0.12; }},
+       [](Surface& r) { r.diagnosis.edges_outside_graph = 0.12; }},
       {{"the time limit ended the work early: this is the best mesh so far", "", "", false},
-       [](Result& r) { r.optimization.is_out_of_time = true; }},
-      {{"self-intersections", "", "", true}, [](Result& r) { r.intersecting_triangles = 2; }},
+       [](Surface& r) { r.optimization.is_out_of_time = true; }},
+      {{"self-intersections", "", "", true}, [](Surface& r) { r.intersecting_triangles = 2; }},
   });
 }
 
@@ -105,11 +105,11 @@ TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
   expectFindings(
       {{{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud",
          "consolidation", "auto", true},
-        [](Result& r) {
+        [](Surface& r) {
           r.optimization.noise_steps = 3;
           r.diagnosis.edges_outside_graph = 0.12;
         }}});
-  Result result = soundResult();
+  Surface result = soundResult();
   result.optimization.noise_steps = 3;
   result.diagnosis.edges_outside_graph = 0.5;
   result.outliers = {3};
@@ -120,13 +120,13 @@ TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
 }
 
 TEST(Findings, OfWhatDoesNotHarmTheMeshAreNone) {
-  expectFindings({{{}, [](Result& r) { r.vertex_of_input.resize(kPoints + 7); }},
-                  {{}, [](Result& r) { r.graph.components = 2; }},
-                  {{}, [](Result& r) { r.graph.without_tangent_plane.resize(500); }},
-                  {{}, [](Result& r) { r.graph.uncertified = 500; }},
-                  {{}, [](Result& r) { r.embedding.added_barrier = true; }},
-                  {{}, [](Result& r) { r.triangulation.coincident = 500; }},
-                  {{}, [](Result& r) { r.diagnosis.edges_outside_graph = 0.05; }}});
+  expectFindings({{{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
+                  {{}, [](Surface& r) { r.graph.components = 2; }},
+                  {{}, [](Surface& r) { r.graph.without_tangent_plane.resize(500); }},
+                  {{}, [](Surface& r) { r.graph.uncertified = 500; }},
+                  {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
+                  {{}, [](Surface& r) { r.triangulation.coincident = 500; }},
+                  {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }}});
 }
 
 TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
@@ -134,61 +134,61 @@ TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
   filling.surface = SurfaceMode::Open;
   filling.fill_holes = 500;
   expectFindings({{{"opening of 432 points, filled", "", "", false},
-                   [](Result& r) { r.diagnosis.filled_holes = {holeOf(432)}; }}},
+                   [](Surface& r) { r.diagnosis.filled_holes = {holeOf(432)}; }}},
                  filling);
 }
 
 TEST(Findings, ThePapersStagesHaveTheirOwn) {
   Options options;
-  options.optimization.method = OptimizationMethod::None;
+  options.optimization = OptimizationMethod::None;
   options.embedding.method = EmbeddingMethod::Iterative;
   options.embedding.max_iterations = 40;
-  const auto fold = [](Result& r, StopReason reason) {
+  const auto fold = [](Surface& r, StopReason reason) {
     r.diagnosis.edges_outside_graph = 0.002;
     r.embedding.stop_reason = reason;
   };
   const std::string folded =
       "the mesh is folded: 0.2 % of its edges join points that are far apart in the cloud";
   expectFindings(
-      {{{folded, "tolerance", "1e-8", true}, [&](Result& r) { fold(r, StopReason::Unfinished); }},
-       {{folded, "", "", true}, [&](Result& r) { fold(r, StopReason::Converged); }},
-       {{}, [](Result& r) { r.diagnosis.edges_outside_graph = 0.001; }},
+      {{{folded, "tolerance", "1e-8", true}, [&](Surface& r) { fold(r, StopReason::Unfinished); }},
+       {{folded, "", "", true}, [&](Surface& r) { fold(r, StopReason::Converged); }},
+       {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.001; }},
        {{"the embedding has not converged", "max_iterations", "1600", false},
-        [](Result& r) { r.embedding.stop_reason = StopReason::IterationLimit; }},
+        [](Surface& r) { r.embedding.stop_reason = StopReason::IterationLimit; }},
        {{"the embedding has not converged: its residual no longer falls", "", "", false},
-        [](Result& r) { r.embedding.stop_reason = StopReason::Stagnated; }},
+        [](Surface& r) { r.embedding.stop_reason = StopReason::Stagnated; }},
        {{"the embedding has collapsed, and another one of lesser quality was used", "embedding",
          "multilevel", false},
-        [](Result& r) { r.embedding.fallback_start = true; }}},
+        [](Surface& r) { r.embedding.fallback_start = true; }}},
       options);
 }
 
 TEST(Verdict, SaysInProportionWhatIsWrong) {
-  const auto expect = [](const std::string& verdict, const std::function<void(Result&)>& change) {
-    Result result = soundResult();
+  const auto expect = [](const std::string& verdict, const std::function<void(Surface&)>& change) {
+    Surface result = soundResult();
     change(result);
     EXPECT_EQ(internal::verdictOf({}, result), verdict);
   };
-  expect("A sound mesh.", [](Result&) {});
-  expect("A sound mesh with 2 openings.", [](Result& r) { r.boundary.resize(2); });
+  expect("A sound mesh.", [](Surface&) {});
+  expect("A sound mesh with 2 openings.", [](Surface& r) { r.boundary.resize(2); });
   expect("A sound mesh, but it fills 1 opening.",
-         [](Result& r) { r.diagnosis.filled_holes = {holeOf(432)}; });
+         [](Surface& r) { r.diagnosis.filled_holes = {holeOf(432)}; });
   expect("A sound mesh, but it joins 2 separate parts, fills 1 opening and cuts 1 handle.",
-         [](Result& r) {
+         [](Surface& r) {
            addBridge(r, 1, 2);
            r.diagnosis.filled_holes = {holeOf(432)};
            r.diagnosis.genus = 1;
          });
-  expect("A sound mesh with 1 opening, but it is folded.", [](Result& r) {
+  expect("A sound mesh with 1 opening, but it is folded.", [](Surface& r) {
     r.boundary.resize(1);
     r.diagnosis.edges_outside_graph = 0.12;
   });
   expect("The mesh has faults: 7 of 1,996 triangles intersect.",
-         [](Result& r) { r.intersecting_triangles = 7; });
+         [](Surface& r) { r.intersecting_triangles = 7; });
 }
 
 TEST(Verdict, MeshIsUsableUpToOnePercentOfItsTriangles) {
-  Result result = soundResult();
+  Surface result = soundResult();
   result.triangles.resize(3, 1000);
   result.intersecting_triangles = 10;
   EXPECT_TRUE(result.isUsable() && result.hasVolume());

@@ -1,6 +1,6 @@
 #include "reconstructions.h"
-#include "spherical_param/embedding.h"
-#include "spherical_param/neighbor_graph.h"
+#include "embedding.h"
+#include "neighbor_graph.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using test::watched;
 TEST(Judgement, CleanCloudLooksClosedAndIsFreeOfFindings) {
   for (const Positions& points : {test::ellipsoid(500), test::cubeGrid(8)})
     for (const Options& options : test::bothMethods()) {
-      const Result result = mesh(points, options);
+      const Surface result = mesh(points, options);
       expectGuarantees(points, result);
       EXPECT_TRUE(result.self_intersections.empty());
       EXPECT_TRUE(result.diagnosis.looksClosedGenus0());
@@ -62,15 +62,15 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
   const Positions bowl = test::spiralSphere(1500).rightCols(1100);  // without its top
   const Positions parts = test::twoSpheres(200, 160, 6.0);
   for (Options options : test::bothMethods()) {
-    options.graph.k = 10;
-    const Result of_torus = mesh(torus, quick(options));
+    options.k = 10;
+    const Surface of_torus = mesh(torus, quick(options));
     EXPECT_GT(of_torus.diagnosis.edges_outside_graph, 0.01);
-    options.graph.k.reset();
-    const Result of_bowl = mesh(bowl, quick(options));
+    options.k.reset();
+    const Surface of_bowl = mesh(bowl, quick(options));
     EXPECT_EQ(of_bowl.diagnosis.kind, SurfaceKind::Open);
     EXPECT_EQ(of_bowl.diagnosis.openings(), 1U);
     EXPECT_GT(of_bowl.diagnosis.edges_outside_graph, 0.001);
-    const Result of_parts = mesh(parts, quick(options));
+    const Surface of_parts = mesh(parts, quick(options));
     EXPECT_EQ(of_parts.diagnosis.kind, SurfaceKind::SeveralParts);
     EXPECT_EQ(of_parts.graph.components, 2);
     EXPECT_TRUE(test::isFound(of_parts, "2 separate parts (160 and 200 points)"));
@@ -98,9 +98,9 @@ TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
   Options options = quick(test::paper());
   options.embedding.max_iterations = 3;
   options.embedding.weights = EdgeWeights::InverseLength;
-  const Result result = mesh(points, watched(options));
+  const Surface result = mesh(points, watched(options));
   const Graph graph =
-      buildNeighborGraph(points, test::bruteForceNeighbors(points, 25), options.graph).graph;
+      test::graphOf(points, test::bruteForceNeighbors(points, 25), options.graph).graph;
   const std::vector<double> expected =
       tangentialLaplacianLengths(graph, result.sphere, options.embedding.weights);
   ASSERT_EQ(result.vertex_residuals.size(), expected.size());
@@ -108,20 +108,20 @@ TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
     EXPECT_NEAR(result.vertex_residuals[v], expected[v], 1e-12);
   options.embedding = {};
   options.embedding.exponent = 4.0;
-  const Result other = mesh(points, watched(options));
+  const Surface other = mesh(points, watched(options));
   const double mean =
       std::accumulate(other.vertex_residuals.begin(), other.vertex_residuals.end(), 0.0) / 600.0;
   EXPECT_NEAR(mean, other.embedding.residual, 1e-9 * mean);
 }
 
 TEST(Judgement, MarksAreThoseOfTheFindings) {
-  const auto count = [](const Result& result, std::uint8_t bit) {
+  const auto count = [](const Surface& result, std::uint8_t bit) {
     const std::vector<std::uint8_t>& marks = result.diagnosis.triangle_marks;
     return static_cast<std::size_t>(std::count_if(
         marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
   };
   const Positions bowl = test::spiralSphere(1500).rightCols(1300);  // rim at z = 0.73
-  const Result open = mesh(bowl, watched(quick()));
+  const Surface open = mesh(bowl, watched(quick()));
   ASSERT_EQ(open.diagnosis.filled_holes.size(), 1U);
   EXPECT_EQ(count(open, TriangleMarks::filled_hole), open.diagnosis.filled_holes[0].triangles);
   EXPECT_GE(count(open, TriangleMarks::outside_graph), 1U);
@@ -131,7 +131,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     EXPECT_TRUE((mark & TriangleMarks::filled_hole) == 0 || lowest > 0.5);
   }
   const Positions rough = test::noisySphere(300, 1.0);
-  const Result tangled = mesh(rough, watched(quick()));
+  const Surface tangled = mesh(rough, watched(quick()));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
@@ -141,7 +141,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     EXPECT_NE(tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
                   TriangleMarks::self_intersection,
               0);
-  const Result parts = mesh(test::twoSpheres(200, 160, 5.0), watched(quick()));
+  const Surface parts = mesh(test::twoSpheres(200, 160, 5.0), watched(quick()));
   EXPECT_GT(count(parts, TriangleMarks::part_bridge), 0U);
   EXPECT_EQ(count(parts, TriangleMarks::handle), 0U);
   EXPECT_EQ(count(mesh(test::ellipsoid(300), watched()), 0xff), 0U);
@@ -150,10 +150,10 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
 TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
   const Positions base = test::noisySphere(500, 0.15);
   const Positions points = test::horizontally(base.leftCols(50), base);
-  const Result rough = mesh(points);
+  const Surface rough = mesh(points);
   Options options;
-  options.smoothing.steps = 3;
-  const Result result = mesh(points, options);
+  options.smoothing = 3;
+  const Surface result = mesh(points, options);
   expectGuarantees(points, result);
   ASSERT_EQ(result.smoothed.cols(), 500);
   // Without intersections on the smoothed points the triangles are those without smoothing.
@@ -178,13 +178,13 @@ TEST(Judgement, SmoothingMovesTheSmoothedPointsAlone) {
 
 TEST(Judgement, NoisySphereIsWarnedOfOrSmoothedWithoutSelfIntersections) {
   const Positions points = test::noisySphere(400, 0.6);
-  const Result rough = mesh(points);
+  const Surface rough = mesh(points);
   expectGuarantees(points, rough);
   EXPECT_GT(rough.optimization.noise_steps, 0);
   EXPECT_TRUE(test::isFound(rough, "nois"));
   Options options;
-  options.smoothing.steps = 5;
-  const Result result = mesh(points, options);
+  options.smoothing = 5;
+  const Surface result = mesh(points, options);
   expectGuarantees(points, result);
   EXPECT_FALSE(test::isFound(result, "nois"));
   EXPECT_EQ(result.intersecting_triangles, 0U);     // on the smoothed points

@@ -16,10 +16,10 @@ namespace {
 using test::canonical;
 
 /// The topology must be sound.
-Result meshOf(const Positions& points, OptimizationMethod method = OptimizationMethod::Full) {
+Surface meshOf(const Positions& points, OptimizationMethod method = OptimizationMethod::Full) {
   Options options;
-  options.optimization.method = method;
-  const Result result = reconstruct(points, test::bruteForceNeighbors(points, 24), options);
+  options.optimization = method;
+  const Surface result = reconstruct(points, test::bruteForceNeighbors(points, 24), options);
   EXPECT_TRUE(test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
   return result;
 }
@@ -66,13 +66,13 @@ TEST(Numbers, PointsOfEqualCoordinatesAreDuplicates) {
   // x and y are near 0, and as fine as ever; z is a multiple of 2^-29.
   EXPECT_EQ(meshOf(points).duplicates(), 0U);
   points.topRows(2).array() += 1e7;
-  const Result merged = meshOf(points);
+  const Surface merged = meshOf(points);
   EXPECT_EQ(merged.duplicates(), 29U);
 }
 
 TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
   const Positions points = sphereWithDisc(0.1);
-  const Result result = meshOf(points);
+  const Surface result = meshOf(points);
   EXPECT_TRUE(result.self_intersections.empty());
   for (Eigen::Index t = 0; t < result.triangles.cols(); ++t) {
     Eigen::Matrix3d corners = points(Eigen::all, result.triangles.col(t));
@@ -83,7 +83,7 @@ TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
 
 TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndTheRestIsSaid) {
   for (const double radius : {1e-5, 1e-20}) {
-    const Result result = meshOf(sphereWithDisc(radius), OptimizationMethod::Flips);
+    const Surface result = meshOf(sphereWithDisc(radius), OptimizationMethod::Flips);
     EXPECT_EQ(result.duplicates(), 0U) << radius;
     EXPECT_EQ(result.triangulation.coincident, 0) << radius;
     EXPECT_FALSE(result.self_intersections.empty()) << radius;
@@ -99,10 +99,10 @@ TEST(Numbers, WhereDensityGrowsStepByStepTheMeshIsTrueDownTo1em5) {
 TEST(Numbers, TheMeshIsThatOfAnyExtentDownToDenormalNumbers) {
   // 30 bits for each coordinate: they are all there at 2^-1040.
   const Positions points = (test::spiralSphere(60) * 0x1p30).array().round() * 0x1p-30;
-  const Result expected = meshOf(points);
+  const Surface expected = meshOf(points);
   for (const int power : {332, 100, -100, -1000, -1040}) {
     const Positions scaled = points.unaryExpr([&](double x) { return std::ldexp(x, power); });
-    const Result result = reconstruct(scaled, test::bruteForceNeighbors(points, 24));
+    const Surface result = reconstruct(scaled, test::bruteForceNeighbors(points, 24));
     EXPECT_EQ(canonical(result.triangles), canonical(expected.triangles)) << power;
   }
   EXPECT_THROW(meshOf(points * 1.1e100), InvalidInput);
@@ -110,7 +110,7 @@ TEST(Numbers, TheMeshIsThatOfAnyExtentDownToDenormalNumbers) {
 
 TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
   const test::Tube tube = test::bentTube(90.0, 0.0, 8);
-  const Result result = meshOf(tube.points);
+  const Surface result = meshOf(tube.points);
   EXPECT_EQ(canonical(result.triangles), canonical(tube.triangles));
   EXPECT_EQ(result.triangulation.coincident, 0);
   // Its ends are some units in the last place of 1 wide, as exp(-45 / sqrt(2)) = 1.5e-14 has it.
@@ -123,7 +123,7 @@ TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
 }
 
 TEST(Numbers, WhereATubeIsTooLongForTheSphereThatIsSaid) {
-  const Result result = meshOf(test::bentTube(130.0, 0.0, 8).points, OptimizationMethod::Flips);
+  const Surface result = meshOf(test::bentTube(130.0, 0.0, 8).points, OptimizationMethod::Flips);
   EXPECT_GT(result.triangulation.coincident, 0);
   EXPECT_FALSE(result.findings.empty());
 }

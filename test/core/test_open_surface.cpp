@@ -17,7 +17,7 @@ Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
 }
 
 /// A manifold over all vertices whose boundary is as an independent walk finds it.
-void expectSound(const Result& result, std::size_t boundaries) {
+void expectSound(const Surface& result, std::size_t boundaries) {
   EXPECT_TRUE(result.topology.manifold());
   EXPECT_TRUE(result.topology.oriented);
   EXPECT_TRUE(result.topology.faults.unused_vertices.empty());
@@ -62,7 +62,7 @@ TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
       wave(1, i) = uniform(random);
       wave(2, i) = 0.2 * std::sin(5.0 * wave(0, i));
     }
-    const Result result = reconstruct(
+    const Surface result = reconstruct(
         test::pointsWhere(wave, [](const Eigen::Vector3d& p) { return p.head<2>().norm() > 0.4; }),
         leftOpen());
     EXPECT_GE(result.boundary.size(), 2U) << seed;
@@ -78,7 +78,7 @@ TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
   for (const bool finishes : {false, true}) {
     Options options = leftOpen();
     options.optimization.finish_on_points = finishes;
-    const Result result = reconstruct(points, options);
+    const Surface result = reconstruct(points, options);
     EXPECT_FALSE(result.isClosed());
     EXPECT_GT(result.optimization.noise_steps, 0);
     EXPECT_TRUE(finishes || !result.self_intersections.empty());
@@ -92,7 +92,7 @@ TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
   for (const double radius : {0.27, 0.29, 0.31}) {
     const Eigen::Vector3d a(0.0, 0.0, 1.0);
     const Eigen::Vector3d b = Eigen::Vector3d(0.6, 0.0, 0.8).normalized();
-    const Result result =
+    const Surface result =
         reconstruct(test::pointsWhere(test::spiralSphere(3000),
                                       [&](const Eigen::Vector3d& p) {
                                         return std::min((p - a).norm(), (p - b).norm()) > radius;
@@ -110,7 +110,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   });
   EXPECT_THROW(reconstruct(patch), InvalidInput);
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
-    const Result result = reconstruct(patch, leftOpen(mode));
+    const Surface result = reconstruct(patch, leftOpen(mode));
     expectSound(result, 2);
     double rim = 0.0;  // twice the area that the boundary encloses
     for (const auto& loop : result.boundary)
@@ -137,7 +137,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
 
 TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
   const Positions points = test::randomSphere(1500, 3);
-  const Result closed = reconstruct(points);
+  const Surface closed = reconstruct(points);
   EXPECT_TRUE(closed.openings.empty());
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto})
     EXPECT_EQ(reconstruct(points, leftOpen(mode)).triangles, closed.triangles);
@@ -145,8 +145,8 @@ TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
 
 TEST(OpenSurface, OpeningsHaveRoomOnTheSphereInAClosedMesh) {
   const Positions points = sphereWithHoles(3000, 2, 0.3);
-  const Result closed = reconstruct(points);
-  const Result open = reconstruct(points, leftOpen());
+  const Surface closed = reconstruct(points);
+  const Surface open = reconstruct(points, leftOpen());
   EXPECT_EQ(closed.sphere, open.sphere);
   EXPECT_TRUE(closed.isClosed());
   ASSERT_EQ(closed.openings.size(), 2U);
@@ -157,13 +157,13 @@ TEST(OpenSurface, OpeningsHaveRoomOnTheSphereInAClosedMesh) {
 }
 
 TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
-  const Result small = reconstruct(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
+  const Surface small = reconstruct(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
   expectSound(small, 0);
   ASSERT_EQ(small.openings.size(), 1U);
   EXPECT_TRUE(small.openings[0].is_filled);
   expectSound(reconstruct(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 1);
   // A tube without ends may be one with flat ends.
-  const Result tube = reconstruct(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
+  const Surface tube = reconstruct(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
   expectSound(tube, 0);
   EXPECT_EQ(tube.openings.size(), 2U);
 }
@@ -171,7 +171,7 @@ TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
 TEST(OpenSurface, HolesAreFilledUpToASize) {
   Positions points = sphereWithHoles(4000, 2, 0.2);
   points = test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.y() > -0.8; });
-  const Result open = reconstruct(points, leftOpen());
+  const Surface open = reconstruct(points, leftOpen());
   ASSERT_EQ(open.openings.size(), 3U);
   const Opening& second = open.openings[1];
   Options by_edges = leftOpen();
@@ -188,7 +188,7 @@ TEST(OpenSurface, ThePapersGraphShowsNoOpenings) {
   Options paper = test::paper();
   paper.embedding.max_iterations = 20;
   const Positions points = test::hemisphere(300);
-  const Result closed = reconstruct(points, paper);
+  const Surface closed = reconstruct(points, paper);
   paper.surface = SurfaceMode::Auto;
   EXPECT_EQ(reconstruct(points, paper).triangles, closed.triangles);
   EXPECT_TRUE(closed.isClosed());
@@ -196,18 +196,18 @@ TEST(OpenSurface, ThePapersGraphShowsNoOpenings) {
 
 TEST(OpenSurface, DoesNotDependOnOrderPlaceAndThreads) {
   const Positions points = sphereWithHoles(2500, 3, 0.3);
-  const Result result = reconstruct(points, leftOpen());
+  const Surface result = reconstruct(points, leftOpen());
   Options two = leftOpen();
   two.threads = 2;
   EXPECT_EQ(reconstruct(points, two).triangles, result.triangles);
   EXPECT_EQ(reconstruct(points, two).boundary, result.boundary);
-  const Result scaled = reconstruct(64.0 * points, leftOpen());
+  const Surface scaled = reconstruct(64.0 * points, leftOpen());
   EXPECT_EQ(scaled.triangles, result.triangles);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(scaled.openings[i].width, 64.0 * result.openings[i].width);
     EXPECT_EQ(scaled.openings[i].area, 4096.0 * result.openings[i].area);
   }
-  const Result reversed = reconstruct(points.rowwise().reverse(), leftOpen());
+  const Surface reversed = reconstruct(points.rowwise().reverse(), leftOpen());
   std::set<std::set<Index>> triangles;
   std::set<std::set<Index>> turned;
   const auto last = static_cast<Index>(points.cols()) - 1;
@@ -224,8 +224,8 @@ TEST(OpenSurface, DoesNotDependOnOrderPlaceAndThreads) {
 
 TEST(OpenSurface, IsSmoothedWithItsOpenings) {
   Options options = leftOpen();
-  options.smoothing.steps = 3;
-  const Result result = reconstruct(sphereWithHoles(2000, 2, 0.4), options);
+  options.smoothing = 3;
+  const Surface result = reconstruct(sphereWithHoles(2000, 2, 0.4), options);
   expectSound(result, 2);
   EXPECT_EQ(result.smoothed.cols(), result.sphere.cols());
   EXPECT_EQ(result.smoothing.self_intersections, 0U);
@@ -253,7 +253,7 @@ TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
     return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
   });
   for (const Positions& points : {holed, band}) {
-    const Result result = reconstruct(points, leftOpen());
+    const Surface result = reconstruct(points, leftOpen());
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);

@@ -6,7 +6,7 @@
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/texture_atlas.h"
-#include "spherical_param/outliers.h"
+#include "outliers.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 
@@ -79,8 +79,8 @@ Positions onSphere(Index n) {
 struct Cloud {
   explicit Cloud(Index n)
       : points(onSphere(n)), lists(test::bruteForceNeighbors(points, 8)),
-        graph(buildNeighborGraph(points, lists).graph),
-        triangles(triangulateSphere(points).triangles), surface(points, triangles, points),
+        graph(test::graphOf(points, lists).graph),
+        triangles(triangulateSphere(points)), surface(points, triangles, points),
         atlas(makeTextureAtlas(triangles, points)) {}
   Positions points;
   NeighborLists lists;
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Clouds, Extremes, testing::Values(4, 150),
 
 TEST_P(Extremes, AreTakenOrRefusedByName) {
   const auto build = [this](const GraphOptions& o) {
-    buildNeighborGraph(cloud.points, cloud.lists, o);
+    test::graphOf(cloud.points, cloud.lists, o);
   };
   const auto outliers = [this](const OutlierOptions& o) {
     findOutliers(cloud.points, cloud.lists, o);
@@ -203,8 +203,8 @@ TEST(Threads, OutOfRangeAreRefusedByEveryStageWhateverItsInput) {
       [&](const Execution& e) { findNearestNeighbors(no_points, 12, e); },
       [&](const Execution& e) { makeNeighborSearch(c.points, e); },
       [&](const Execution& e) { findNearestNeighbors(c.points, 12, e); },
-      [&](const Execution& e) { buildNeighborGraph(c.points, c.lists, {}, {}, e); },
-      [&](const Execution& e) { buildNeighborGraph(c.points, c.lists, test::nearest(), {}, e); },
+      [&](const Execution& e) { test::graphOf(c.points, c.lists, {}, {}, e); },
+      [&](const Execution& e) { test::graphOf(c.points, c.lists, test::nearest(), {}, e); },
       [&](const Execution& e) { embed(c.graph, c.points, {}, 1, e); },
       [&](const Execution& e) { embed(Graph(), no_points, {}, 1, e); },
       [&](const Execution& e) { triangulateSphere(c.points, {}, e); },

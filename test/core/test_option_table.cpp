@@ -141,7 +141,7 @@ TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
     expectRefusal(options, name);
   };
   for (const int past : {-1, 3}) {
-    refuses("graph", [=](Options& o) { o.graph.method = static_cast<GraphMethod>(past); });
+    refuses("graph", [=](Options& o) { o.graph = static_cast<GraphMethod>(past); });
     refuses("agreement", [=](Options& o) { o.graph.agreement = static_cast<StarAgreement>(past); });
     refuses("embedding",
             [=](Options& o) { o.embedding.method = static_cast<EmbeddingMethod>(past); });

@@ -45,9 +45,9 @@ TEST(Reconstruct, EllipsoidIsMeshedTrulyByAllMethods) {
       for (const TriangulationMethod hull :
            {TriangulationMethod::Qhull, TriangulationMethod::Incremental}) {
         Options options;
-        options.graph.method = graph;
+        options.graph = graph;
         options.embedding.method = solver;
-        options.triangulation.method = hull;
+        options.triangulation = hull;
         all.push_back(options);
       }
   for (Options options : bothMethods())
@@ -56,14 +56,14 @@ TEST(Reconstruct, EllipsoidIsMeshedTrulyByAllMethods) {
       all.push_back(options);
     }
   for (const Options& options : all) {
-    const Result result = mesh(points, options);
+    const Surface result = mesh(points, options);
     expectGuarantees(points, result);
     // An inscribed polyhedron of 800 points: volume of the ellipsoid less about 1 %.
     EXPECT_NEAR(result.measures.volume, 4.0 / 3.0 * test::kPi * 0.35, 0.03);
     EXPECT_LT(result.diagnosis.edges_outside_graph, 1e-9);
     EXPECT_EQ(result.triangulation.hull_vertices, 800);
     // A planar graph has three edges a node, that of 25 neighbours far more.
-    EXPECT_EQ(result.graph.edges < 2500, options.graph.method == GraphMethod::LocalDelaunay);
+    EXPECT_EQ(result.graph.edges < 2500, options.graph == GraphMethod::LocalDelaunay);
     EXPECT_EQ(result.embedding.levels.empty(),
               options.embedding.method == EmbeddingMethod::Iterative);
   }
@@ -112,7 +112,7 @@ TEST(Reconstruct, NastySetsAreMeshed) {
         SCOPED_TRACE("set " + std::to_string(s));
         options.embedding.weights = weights;
         options.embedding.max_iterations = 200;
-        const Result result = mesh(sets[s], quick(options));
+        const Surface result = mesh(sets[s], quick(options));
         EXPECT_TRUE(
             test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
         EXPECT_TRUE(std::isfinite(result.embedding.residual));
@@ -124,14 +124,14 @@ TEST(Reconstruct, CollapseIsReportedAndItsSphereIsNotTheMesh) {
   const Positions points = horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0));
   Options options = quick(paper());
   options.embedding.max_iterations = 0;
-  const Result result = mesh(points, options);
+  const Surface result = mesh(points, options);
   expectGuarantees(points, result);
   EXPECT_EQ(result.embedding.stop_reason, StopReason::Collapsed);
   EXPECT_TRUE(result.embedding.fallback_start);
   EXPECT_TRUE(test::isFound(result, "collapsed"));
   // The sphere of the result is not the collapsed one, and the figures are those of the former.
   const Graph graph =
-      buildNeighborGraph(points, bruteForceNeighbors(points, 25), test::nearest()).graph;
+      test::graphOf(points, bruteForceNeighbors(points, 25), test::nearest()).graph;
   EXPECT_NEAR(result.embedding.residual,
               meanTangentialLaplacian(graph, result.sphere, options.embedding.weights), 1e-12);
   EXPECT_NEAR(result.embedding.centroid_norm, result.sphere.rowwise().mean().norm(), 1e-12);
@@ -149,7 +149,7 @@ TEST(Reconstruct, MirroredCloudIsOrientedOutwardAndSoIsItsHistory) {
   radial.embedding.max_iterations = 0;
   for (const Positions& points : {ellipsoid(600), mirrored})
     for (const Options& options : {Options(), paper(), radial, collapsing}) {
-      const Result result = mesh(points, watched(options));
+      const Surface result = mesh(points, watched(options));
       expectGuarantees(points, result);
       EXPECT_GT(result.measures.volume, 1.0);
       EXPECT_GT(test::volumeOf(result.sphere, result.triangles), 3.5);
@@ -182,7 +182,7 @@ TEST(Reconstruct, MovedAndPermutedCloudGivesTheSameMesh) {
     for (const std::optional<double> tolerance : {std::optional<double>(), {1e-9}}) {
       Options options;
       options.embedding.tolerance = tolerance;
-      const Result result = mesh(points, options);
+      const Surface result = mesh(points, options);
       expectGuarantees(points, result);
       const Triangles of_moved = mesh(moved, options).triangles.unaryExpr([&](Index i) {
         return order[static_cast<std::size_t>(i)];
@@ -207,7 +207,7 @@ Positions shuffledWithRepetitions(Index n) {
   return points(Eigen::all, order);
 }
 
-void expectTheSame(const Result& one, const Result& other) {
+void expectTheSame(const Surface& one, const Surface& other) {
   EXPECT_EQ(one.triangles, other.triangles);
   EXPECT_EQ(one.sphere, other.sphere);
   EXPECT_EQ(one.smoothed, other.smoothed);
@@ -225,15 +225,15 @@ TEST(Reconstruct, ThreadsAndAskingForDetailsChangeNoBit) {
   options.embedding.max_iterations = 40;
   for (const EmbeddingMethod solver : {EmbeddingMethod::Multilevel, EmbeddingMethod::Iterative}) {
     options.embedding.method = solver;
-    options.smoothing.steps = solver == EmbeddingMethod::Iterative ? 2 : 0;
+    options.smoothing = solver == EmbeddingMethod::Iterative ? 2 : 0;
     options.threads = 1;
-    const Result alone = reconstruct(points, options);
+    const Surface alone = reconstruct(points, options);
     EXPECT_TRUE(alone.history.frames.empty() && alone.history.vertices.empty());
     EXPECT_TRUE(alone.vertex_residuals.empty() && alone.diagnosis.triangle_marks.empty());
-    Result first;
+    Surface first;
     for (const int threads : {1, 3}) {
       options.threads = threads;
-      const Result seen = reconstruct(points, watched(options));
+      const Surface seen = reconstruct(points, watched(options));
       expectTheSame(alone, seen);
       if (threads == 1)
         first = seen;
@@ -252,7 +252,7 @@ TEST(Reconstruct, ThreadsAndAskingForDetailsChangeNoBit) {
 TEST(Reconstruct, RepeatedPointsBecomeOneVertexAndAreReported) {
   const Positions base = ellipsoid(300);
   const Positions points = horizontally(base, base.leftCols(120));
-  const Result result = mesh(points);
+  const Surface result = mesh(points);
   expectGuarantees(points, result);
   EXPECT_EQ(result.duplicates(), 120U);
   for (Index i = 0; i < 120; ++i)
@@ -265,9 +265,9 @@ TEST(Reconstruct, FindsTheNeighboursThatTheCallerWouldFind) {
   const Positions base = 5.0 * ellipsoid(400);
   const Positions points = horizontally(base, base.leftCols(50));
   for (const Options& options : bothMethods()) {
-    const NeighborLists lists = findNearestNeighbors(base, neighborsToSearch(options.graph));
-    const Result expected = reconstruct(base, lists, options, makeNeighborSearch(base));
-    const Result result = reconstruct(base, options);
+    const NeighborLists lists = findNearestNeighbors(base, neighborsToSearch(options));
+    const Surface expected = reconstruct(base, lists, options, makeNeighborSearch(base));
+    const Surface result = reconstruct(base, options);
     expectGuarantees(base, result);
     EXPECT_EQ(result.triangles, expected.triangles);
     EXPECT_EQ(result.sphere, expected.sphere);
@@ -286,7 +286,7 @@ TEST(Reconstruct, RepeatedPointsNeedNoListsAndAreNotSearchedFor) {
   };
   EXPECT_EQ(reconstruct(points, lists(25), paper()).triangles, mesh(base, paper()).triangles);
   bool asked = false;
-  const Result result =
+  const Surface result =
       reconstruct(points, lists(5), {}, [&](const std::vector<Index>& queries, int count) {
         asked = true;
         EXPECT_LT(*std::max_element(queries.begin(), queries.end()), 300);
@@ -351,13 +351,13 @@ TEST(Reconstruct, EveryOptionReachesItsStage) {
   iterative.embedding.stagnation_window = 0;
   EXPECT_EQ(mesh(ellipsoid(100), iterative).embedding.iterations, 2000);
   for (const OptimizationMethod method : {OptimizationMethod::None, OptimizationMethod::Flips}) {
-    options.optimization.method = method;
+    options.optimization = method;
     EXPECT_EQ(reconstruct(randomSphere(100, 5), options).optimization.phases.size(),
               method == OptimizationMethod::None ? 0U : 1U);
   }
   EXPECT_GT(reconstruct(randomSphere(100, 5)).optimization.phases.size(), 1U);
   options = paper();
-  options.graph.k = 1000;  // uses all others
+  options.k = 1000;  // uses all others
   EXPECT_EQ(mesh(randomSphere(12, 1), options).graph.edges, 12U * 11U / 2U);
 }
 
@@ -365,16 +365,16 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
   const Positions points = noisySphere(1500, 0.5);
   for (const int smoothing : {0, 5}) {
     Options options;
-    options.smoothing.steps = smoothing;
+    options.smoothing = smoothing;
     options.time_limit = 0.0;
-    const Result result = reconstruct(points, options);
+    const Surface result = reconstruct(points, options);
     EXPECT_TRUE(isSphereOverAll(result.triangles, 1500));
     EXPECT_TRUE(result.optimization.is_out_of_time);
     // That would take longer than the limit leaves.
     EXPECT_FALSE(result.diagnosis.genus.has_value());
     EXPECT_TRUE(test::isFound(result, "time limit"));
     options.time_limit = 1e9;
-    const Result unhurried = reconstruct(points, options);
+    const Surface unhurried = reconstruct(points, options);
     EXPECT_FALSE(unhurried.optimization.is_out_of_time);
     options.time_limit.reset();
     EXPECT_EQ(unhurried.triangles, reconstruct(points, options).triangles);

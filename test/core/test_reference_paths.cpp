@@ -6,9 +6,9 @@
 #include "reference/edge_flips.h"
 #include "reference/graph_coarsening.h"
 #include "reference/self_intersection.h"
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace spherical_param {
 namespace {
 
 Graph graphOf(const Positions& points) {
-  return buildNeighborGraph(points, test::bruteForceNeighbors(points, 12)).graph;
+  return test::graphOf(points, test::bruteForceNeighbors(points, 12)).graph;
 }
 
 TEST(ReferencePaths, CoarseningIsThatOfDijkstrasAlgorithm) {
@@ -44,7 +44,7 @@ TEST(ReferencePaths, FlipsAreThoseOfASortedSetOfGains) {
     Positions points = test::withNoise(test::randomSphere(1000, 2), noise, 3);
     points.row(0) *= 3.0;  // the triangulation of the sphere is not that of the surface
     const Graph graph = graphOf(points);
-    const Triangles triangles = triangulateSphere(points.colwise().normalized()).triangles;
+    const Triangles triangles = triangulateSphere(points.colwise().normalized());
     internal::MeshOptimizer optimizer(points, triangles, graph, 1);
     optimizer.setEnergy({});
     EXPECT_GT(optimizer.flipAll(), 100U);

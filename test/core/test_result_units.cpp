@@ -17,7 +17,7 @@ namespace {
 
 /// Calls visit(name, number, power of the unit) for every number of a result that has a unit.
 template <typename Visit>
-void visitQuantities(Result& r, const Visit& visit) {
+void visitQuantities(Surface& r, const Visit& visit) {
   const auto visit_all = [&](const char* name, auto& values, int power) {
     for (Eigen::Index i = 0; i < values.size(); ++i)
       visit(name, values.data()[i], power);
@@ -61,8 +61,8 @@ void visitQuantities(Result& r, const Visit& visit) {
 }
 
 /// A result on four nodes with one of each finding.
-Result onNodes() {
-  Result r;
+Surface onNodes() {
+  Surface r;
   r.triangles = Triangles{{0, 0, 0, 1}, {1, 2, 3, 3}, {2, 3, 1, 2}};
   r.sphere = Positions{{0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
   r.smoothed = Positions::Constant(3, 4, 1.0);
@@ -94,7 +94,7 @@ internal::OrderedPoints reorderedNodes() {
 }
 
 TEST(ResultUnits, EveryQuantityIsScaledByItsPowerOfTheUnit) {
-  Result result = onNodes();
+  Surface result = onNodes();
   visitQuantities(result, [](const char*, double& number, int) { number = 1.0; });
   internal::OrderedPoints nodes = reorderedNodes();
   internal::toInput(nodes, result);
@@ -104,7 +104,7 @@ TEST(ResultUnits, EveryQuantityIsScaledByItsPowerOfTheUnit) {
 }
 
 TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
-  Result result = onNodes();
+  Surface result = onNodes();
   internal::OrderedPoints nodes = reorderedNodes();
   internal::toInput(nodes, result);
   using Indices = std::vector<Index>;
@@ -127,7 +127,7 @@ TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.duplicates(), 1U);
 }
 
-void expectScaled(Result& result, Result& scaled, double scale) {
+void expectScaled(Surface& result, Surface& scaled, double scale) {
   std::vector<double> expected;
   visitQuantities(result, [&](const char*, double number, int power) {
     expected.push_back(number * std::pow(scale, power));
@@ -144,12 +144,12 @@ TEST(ResultUnits, ResultOfAScaledCloudIsTheScaledResult) {
   // Open at one end, so that there is a filled hole to measure.
   const Positions points = test::withNoise(test::spiralSphere(500), 0.003, 8).rightCols(400);
   Options options;
-  options.smoothing.steps = 2;
-  Result result = test::mesh(points, options);
+  options.smoothing = 2;
+  Surface result = test::mesh(points, options);
   ASSERT_EQ(result.diagnosis.filled_holes.size(), 1U);
   for (const double scale : {4.0, std::ldexp(1.0, -70), 1000.0, 1e50}) {
     SCOPED_TRACE(scale);
-    Result scaled = test::mesh(scale * points, options);
+    Surface scaled = test::mesh(scale * points, options);
     expectScaled(result, scaled, scale);
     EXPECT_EQ(scaled.verdict, result.verdict);
     // Other factors round the coordinates, but no decision is so close.

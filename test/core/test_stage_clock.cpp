@@ -3,7 +3,7 @@
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/sphere_map.h"
-#include "spherical_param/outliers.h"
+#include "outliers.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 
@@ -29,14 +29,14 @@ Positions roughSphere() {
 TEST(StageClock, StagesComeInOrderAndEachCanBeCancelled) {
   std::vector<std::string> names;
   Options options;
-  options.smoothing.steps = 1;
+  options.smoothing = 1;
   options.progress = [&](const Progress& progress) {
     if (names.empty() || names.back() != progress.stage)
       names.emplace_back(progress.stage);
     return true;
   };
   const Positions points = test::spiralSphere(200);
-  const Result result = reconstruct(points, options);
+  const Surface result = reconstruct(points, options);
   EXPECT_EQ(names, kStages);
   ASSERT_EQ(result.stages.size(), kStages.size());
   for (std::size_t i = 0; i < kStages.size(); ++i) {
@@ -114,7 +114,7 @@ void expectEndsAtEveryCall(const Work& work) {
 TEST(ProgressCallback, EndsReconstructAtEveryCall) {
   Options smoothed;
   smoothed.smoothing.steps = 2;
-  smoothed.embedding.history.vertices = 10;
+  smoothed.embedding.history_vertices = 10;
   Options paper;
   paper.graph.method = GraphMethod::NearestNeighbors;
   paper.embedding.method = EmbeddingMethod::Iterative;
@@ -124,7 +124,7 @@ TEST(ProgressCallback, EndsReconstructAtEveryCall) {
     for (Options options : {smoothed, paper})
       expectEndsAtEveryCall([&](const Callback& callback) {
         options.progress = test::reportingTo(callback).progress;
-        const Result result = reconstruct(points, options);
+        const Surface result = reconstruct(points, options);
         return Outcome(result.triangles, result.sphere);
       });
 }
@@ -132,9 +132,9 @@ TEST(ProgressCallback, EndsReconstructAtEveryCall) {
 TEST(ProgressCallback, EndsEachStageAtEveryCall) {
   const Positions points = roughSphere();
   const NeighborLists lists = test::bruteForceNeighbors(points, 12);
-  const Graph graph = buildNeighborGraph(points, lists).graph;
+  const Graph graph = test::graphOf(points, lists).graph;
   const Positions sphere = points.colwise().normalized();
-  const Triangles triangles = triangulateSphere(sphere).triangles;
+  const Triangles triangles = triangulateSphere(sphere);
   const auto number = [](std::size_t count) {
     return Outcome(Triangles(3, 0), Positions::Constant(3, 1, static_cast<double>(count)));
   };
@@ -142,7 +142,7 @@ TEST(ProgressCallback, EndsEachStageAtEveryCall) {
   using Stage = std::function<Outcome(const Execution&)>;
   std::vector<Stage> stages{
       [&](const Execution& e) {
-        return number(buildNeighborGraph(points, lists, {}, {}, e).graph.edgeCount());
+        return number(test::graphOf(points, lists, {}, {}, e).graph.edgeCount());
       },
       [&](const Execution& e) {
         return number(findSelfIntersections(points, triangles, e).size());

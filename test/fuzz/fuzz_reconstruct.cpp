@@ -22,10 +22,10 @@ using fuzz::require;
 Options optionsFrom(Bytes& bytes) {
   Options options;
   EmbeddingOptions& embedding = options.embedding;
-  options.graph.method = bytes.choice<GraphMethod>(2);
+  options.graph = bytes.choice<GraphMethod>(2);
   embedding.method = bytes.choice<EmbeddingMethod>(2);
-  options.triangulation.method = bytes.choice<TriangulationMethod>(2);
-  options.optimization.method = bytes.choice<OptimizationMethod>(3);
+  options.triangulation = bytes.choice<TriangulationMethod>(2);
+  options.optimization = bytes.choice<OptimizationMethod>(3);
   embedding.weights = bytes.choice<EdgeWeights>(3);
   // Each bit stands for an option that is not the default.
   unsigned which = bytes.raw<std::uint16_t>();
@@ -34,7 +34,7 @@ Options optionsFrom(Bytes& bytes) {
       option = (bytes.*read)();
     which /= 2;
   };
-  vary(options.graph.k, &Bytes::integer);
+  vary(options.k, &Bytes::integer);
   vary(embedding.exponent, &Bytes::real);
   vary(embedding.damping, &Bytes::real);
   vary(embedding.tolerance, &Bytes::real);
@@ -42,9 +42,9 @@ Options optionsFrom(Bytes& bytes) {
   vary(embedding.stagnation_window, &Bytes::integer);
   vary(embedding.starts, &Bytes::integer);
   vary(options.seed, &Bytes::raw<std::uint32_t>);
-  vary(options.smoothing.steps, &Bytes::integer);
-  vary(embedding.history.vertices, &Bytes::integer);
-  vary(embedding.history.frames, &Bytes::integer);
+  vary(options.smoothing, &Bytes::integer);
+  vary(embedding.history_vertices, &Bytes::integer);
+  vary(embedding.history_frames, &Bytes::integer);
   vary(options.threads, &Bytes::integer);
   options.details = which % 2 != 0;
   if (which / 2 % 2 != 0)
@@ -65,7 +65,7 @@ bool areRight(const Options& o) {
          (!e.tolerance || in(*e.tolerance, 0.0, 1.0)) && in(e.max_iterations, 0, any) &&
          in(e.stagnation_window, 0, any) && in(e.starts, 1, 100) &&
          in(e.history.vertices, 0, 1 << 24) && in(e.history.frames, 2, 10000) &&
-         in(o.graph.method, 0, 1) && (!o.graph.k || in(*o.graph.k, 3, any)) &&
+         in(o.graph, 0, 1) && (!o.k || in(*o.k, 3, any)) &&
          in(o.triangulation.method, 0, 1) && in(o.optimization.method, 0, 2) &&
          in(o.smoothing.steps, 0, 10000) && in(o.threads, 0, 1024);
 }
@@ -110,7 +110,7 @@ private:
   bool has_thrown_ = false;
 };
 
-void checkResult(const Positions& points, const Options& options, const Result& result) {
+void checkResult(const Positions& points, const Options& options, const Surface& result) {
   if (options.consolidation == ConsolidationMode::None) {
     const std::string fault = stress::faultOf(points, options, result);
     if (!fault.empty())
@@ -129,7 +129,7 @@ void checkResult(const Positions& points, const Options& options, const Result& 
   }
   require(!options.details || result.vertex_residuals.size() == result.vertexCount(),
           "there is a residual for each vertex");
-  require(options.embedding.history.vertices > 0 || result.history.frames.empty(),
+  require(options.embedding.history_vertices > 0 || result.history.frames.empty(),
           "there is no history without a request");
   for (const HistoryFrame& frame : result.history.frames)
     require(frame.sphere.cols() == static_cast<Eigen::Index>(result.history.vertices.size()) &&
@@ -154,7 +154,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   // Valid, but too long to wait for.
   if (options.embedding.max_iterations > 3000 || options.embedding.starts > 20 ||
-      options.smoothing.steps > 300)
+      options.smoothing > 300)
     watch.cancelAt(2000);
   const std::array<std::string, 9> stages{"consolidation", "neighbors", "graph",
                                           "openings",      "embedding", "triangulation",
@@ -176,7 +176,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else if (way % 8 < 4) {
     lists = fuzz::arbitraryLists(bytes, n, n, way % 8 == 2);
   }
-  Result result;
+  Surface result;
   std::string message;
   const Ending ending = fuzz::endingOf(
       watch,

@@ -2,18 +2,18 @@
 
 #include "fuzz_stages.h"
 #include "embedding_starts.h"
-#include "spherical_param/embedding.h"
+#include "embedding.h"
 #include "spherical_param/mesh_measures.h"
-#include "spherical_param/mesh_optimization.h"
+#include "mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/neighbor_graph.h"
-#include "spherical_param/neighbor_search.h"
-#include "spherical_param/outliers.h"
-#include "spherical_param/point_set.h"
+#include "neighbor_graph.h"
+#include "neighbor_search.h"
+#include "outliers.h"
+#include "point_set.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/smoothing.h"
-#include "spherical_param/sphere_triangulation.h"
-#include "spherical_param/surface_diagnosis.h"
+#include "smoothing.h"
+#include "sphere_triangulation.h"
+#include "surface_diagnosis.h"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ namespace {
 using namespace spherical_param;
 
 NeighborGraph graphOf(const Positions& points) {
-  return buildNeighborGraph(points, nearest(points, 6), test::nearest(6));
+  return test::graphOf(points, nearest(points, 6), test::nearest(6));
 }
 
 /// A graph of points, sometimes spoiled.
@@ -127,7 +127,7 @@ void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
   const bool is_raw = bytes.oneIn(8);
   const Positions sphere = is_raw ? points : normalized(points);
   const Execution execution = executionFrom(bytes, watch);
-  require(isSphere(triangulateSphere(sphere, options, execution).triangles, sphere),
+  require(isSphere(triangulateSphere(sphere, options, execution), sphere),
           "the triangulation is a sphere over all points");
 }
 
@@ -151,7 +151,7 @@ void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
       return arbitraryLists(bytes, queries.size(), n, how % 8 != 7);
     };
   const Execution execution = executionFrom(bytes, watch);
-  requireConnected(buildNeighborGraph(points, lists, options, search, execution).graph, n);
+  requireConnected(test::graphOf(points, lists, options, search, execution).graph, n);
 }
 
 void fuzzEmbedding(Bytes& bytes, const Positions& points, Watch& watch) {

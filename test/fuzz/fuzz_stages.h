@@ -4,7 +4,7 @@
 #include "fuzz_input.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>
@@ -34,7 +34,7 @@ inline Positions normalized(const Positions& points) {
 inline Triangles trianglesFrom(Bytes& bytes, const Positions& sphere) {
   Triangles triangles(3, 0);
   if (sphere.cols() >= 4 && stress::areUnitVectors(sphere))
-    triangles = spherical_param::triangulateSphere(sphere).triangles;
+    triangles = spherical_param::triangulateSphere(sphere);
   const auto n = static_cast<std::size_t>(sphere.cols());
   const std::uint8_t how = bytes.byte();
   if (how < 160)

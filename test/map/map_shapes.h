@@ -37,7 +37,7 @@ struct Mapped {
 /// The shape that place() makes of directions.
 template <typename Place>
 Mapped mappedOver(const Positions& sphere, const Place& place) {
-  Mapped mesh{sphere, triangulateSphere(sphere).triangles, sphere};
+  Mapped mesh{sphere, triangulateSphere(sphere), sphere};
   for (Eigen::Index i = 0; i < sphere.cols(); ++i)
     mesh.points.col(i) = place(Vector3d(sphere.col(i)));
   return mesh;

@@ -18,7 +18,7 @@ using pcl::Indices;
 using pcl::PointXYZ;
 using spherical_param::Options;
 using spherical_param::Positions;
-using spherical_param::Result;
+using spherical_param::Surface;
 using spherical_param::Triangles;
 using Cloud = pcl::PointCloud<PointXYZ>;
 using Reconstruction = pcl::SphericalParamReconstruction<PointXYZ>;
@@ -74,7 +74,7 @@ struct HardCase {
   }
   /// The triangles of the core on the used points, as indices of the cloud.
   Triangles expected(const Options& options = {}) const {
-    const Result result = spherical_param::reconstruct(positionsOf(*cloud, used), options);
+    const Surface result = spherical_param::reconstruct(positionsOf(*cloud, used), options);
     return result.triangles.unaryExpr([&](spherical_param::Index v) {
       return used[static_cast<std::size_t>(result.input_of_vertex[static_cast<std::size_t>(v)])];
     });
@@ -97,7 +97,7 @@ inline void expectNothingLeft(const Reconstruction& reconstruction, const pcl::P
   EXPECT_TRUE(mesh.polygons.empty() && mesh.cloud.data.empty());
   EXPECT_EQ(mesh.cloud.width + mesh.cloud.height, 0U);
   EXPECT_NE(reconstruction.getErrorMessage(), "");
-  const Result& result = reconstruction.getResult();
+  const Surface& result = reconstruction.getResult();
   EXPECT_EQ(result.triangles.cols() + result.sphere.cols(), 0);
   EXPECT_TRUE(result.vertex_of_input.empty() && result.findings.empty());
   EXPECT_TRUE(reconstruction.getUsedIndices().empty());

@@ -29,9 +29,9 @@ TEST_F(SphericalParamReconstruction, MeshIsThatOfTheCoreInIndicesOfTheCloud) {
   Options options;
   for (const int changes : {0, 1}) {
     if (changes == 1) {
-      options.graph.k = 9;
+      options.k = 9;
       options.embedding.weights = spherical_param::EdgeWeights::InverseLength;
-      options.smoothing.steps = 2;
+      options.smoothing = 2;
       options.seed = 99;
     }
     reconstruction.setOptions(options);
@@ -43,7 +43,7 @@ TEST_F(SphericalParamReconstruction, MeshIsThatOfTheCoreInIndicesOfTheCloud) {
     for (std::size_t v = 0; v < reconstruction.getVertexIndices().size(); ++v)
       EXPECT_EQ(reconstruction.getVertexIndices()[v],
                 hard.used[static_cast<std::size_t>(reconstruction.getResult().input_of_vertex[v])]);
-    const Result expected =
+    const Surface expected =
         spherical_param::reconstruct(positionsOf(*hard.cloud, hard.used), options);
     EXPECT_EQ(reconstruction.getResult().sphere, expected.sphere);
     EXPECT_EQ(reconstruction.getResult().smoothed, expected.smoothed);
@@ -218,7 +218,7 @@ TEST_F(SphericalParamReconstruction, MovedPointsAreThoseOfConsolidation) {
   reconstruction.setConsolidation(spherical_param::ConsolidationMode::Auto);
   EXPECT_EQ(reconstruction.getConsolidation(), spherical_param::ConsolidationMode::Auto);
   meshed(reconstruction);
-  const Result& result = reconstruction.getResult();
+  const Surface& result = reconstruction.getResult();
   const auto moved = reconstruction.getMovedPoints();
   ASSERT_EQ(moved->size(), 800U);
   ASSERT_GT(result.consolidated.cols(), 0);
@@ -237,7 +237,7 @@ TEST_F(SphericalParamReconstruction, SphereAndMovedPointsFitTheCloudAndOutliveIt
   EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
   reconstruction.setSmoothing(2);
   meshed(reconstruction);
-  const Result& result = reconstruction.getResult();
+  const Surface& result = reconstruction.getResult();
   reconstruction.setInputCloud(makeEllipsoid(5));
   for (const auto& [cloud, expected] :
        {std::pair(reconstruction.getSphereCoordinates(), result.sphere),

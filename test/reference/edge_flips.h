@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graph.h"
 #include "spherical_param/types.h"
 
 namespace spherical_param::reference {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "graph_hierarchy.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 
 #include <cstdint>

@@ -142,7 +142,7 @@ TEST(RosCloudMesh, DoublePrecisionKeepsItsDigits) {
   }
   for (const int smoothing : {0, 5}) {
     Settings settings;
-    settings.options.smoothing.steps = smoothing;
+    settings.options.smoothing = smoothing;
     const Outcome outcome = meshed(cloud, settings);
     EXPECT_TRUE(outcome.mesh->colors.empty());
     expectCoresMesh<double>(outcome, points, settings);
@@ -152,7 +152,7 @@ TEST(RosCloudMesh, DoublePrecisionKeepsItsDigits) {
 TEST(RosCloudMesh, OptionsReachTheReconstruction) {
   const pcl::PCLPointCloud2 cloud = ellipsoid(500);
   Settings settings;
-  settings.options.smoothing.steps = 20;
+  settings.options.smoothing = 20;
   const Outcome outcome = meshed(cloud, settings);
   expectCoresMesh<float>(outcome, positionsOf<float>(cloud), settings);
   for (std::size_t i = 0; i < 500; ++i) {
@@ -249,7 +249,7 @@ TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
   const pcl::PCLPointCloud2 cloud = severalParts();
   Settings settings;
   settings.parts = spherical_param::PartsMode::Each;
-  settings.options.smoothing.steps = 3;
+  settings.options.smoothing = 3;
   const Outcome outcome = meshed(cloud, settings);
   // The disc is a plane, which cannot be meshed; the three points are no part.
   EXPECT_EQ(outcome.parts, 2U);

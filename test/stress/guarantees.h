@@ -106,7 +106,7 @@ inline bool facesInward(const Positions& points, const Triangles& triangles) {
 
 /// What a result lacks of what is guaranteed; empty if it lacks nothing.
 inline std::string faultOf(const Positions& points, const spherical_param::Options& options,
-                           const spherical_param::Result& result) {
+                           const spherical_param::Surface& result) {
   const auto n = static_cast<std::size_t>(points.cols());
   const std::map<Place, Index> first = firstAtPlaces(points);
   const std::size_t v = first.size();
@@ -131,14 +131,14 @@ inline std::string faultOf(const Positions& points, const spherical_param::Optio
     return "the embedding is not of unit vectors";
   if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))
     return "the volume or the area is not finite";
-  if (options.smoothing.steps > 0 &&
+  if (options.smoothing > 0 &&
       (result.smoothed.cols() != count || !result.smoothed.allFinite()))
     return "the smoothed points are not as many finite ones";
   return "";
 }
 
 /// The arrays and numbers of a result bit by bit, to compare results.
-inline std::string bytesOf(const spherical_param::Result& result) {
+inline std::string bytesOf(const spherical_param::Surface& result) {
   std::string bytes;
   const auto add = [&bytes](const auto& array) {
     const auto count = static_cast<std::size_t>(array.size());

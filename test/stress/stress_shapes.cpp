@@ -62,18 +62,18 @@ Options someOptions(stress::Random& random, bool is_large) {
   Options options;
   if (one(2) == 0)
     return options;
-  options.graph.method = one(5) < 2 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
+  options.graph = one(5) < 2 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
   EmbeddingOptions& embedding = options.embedding;
   embedding.method = one(3) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
-  options.triangulation.method =
+  options.triangulation =
       one(5) < 2 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
   embedding.weights = static_cast<EdgeWeights>(one(3));
-  options.optimization.method = static_cast<OptimizationMethod>(one(3));
+  options.optimization = static_cast<OptimizationMethod>(one(3));
   if (one(5) < 2)
-    options.graph.k = 3 + one(30);
+    options.k = 3 + one(30);
   if (one(5) == 0 && embedding.method == EmbeddingMethod::Multilevel)
     embedding.exponent = 2.0 + 0.1 * (1 + one(140));
-  options.smoothing.steps = one(3) == 0 ? one(30) : 0;
+  options.smoothing = one(3) == 0 ? one(30) : 0;
   embedding.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
   embedding.starts = 1 + one(3);
   options.seed = static_cast<std::uint32_t>(one(1000000));
@@ -81,11 +81,11 @@ Options someOptions(stress::Random& random, bool is_large) {
 }
 
 /// With lists of the caller, or without.
-Result reconstructBy(bool by_lists, const Positions& points, const Options& options) {
+Surface reconstructBy(bool by_lists, const Positions& points, const Options& options) {
   if (!by_lists)
     return reconstruct(points, options);
   const NeighborLists lists =
-      points.allFinite() ? test::bruteForceNeighbors(points, neighborsToSearch(options.graph))
+      points.allFinite() ? test::bruteForceNeighbors(points, neighborsToSearch(options))
                          : NeighborLists();
   return reconstruct(points, lists, options);
 }
@@ -98,7 +98,7 @@ std::string tryOut(const Positions& points, std::uint64_t seed) {
   options.threads = 1;
   const bool can_be_meshed = stress::canBeMeshed(points);
   try {
-    const Result result = reconstructBy(by_lists, points, options);
+    const Surface result = reconstructBy(by_lists, points, options);
     if (!can_be_meshed)
       return "points that cannot be meshed are accepted";
     const std::string fault = stress::faultOf(points, options, result);

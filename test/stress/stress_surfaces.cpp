@@ -8,7 +8,7 @@
 #include "helpers.h"
 #include "scan_shapes.h"
 #include "spherical_param/reconstruct.h"
-#include "spherical_param/surface_diagnosis.h"
+#include "surface_diagnosis.h"
 #include "stress.h"
 
 #include <Eigen/Geometry>
@@ -140,8 +140,8 @@ Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, 
   const Positions points = generateScan(scan_options).points.cast<float>().cast<double>();
   Options options;
   if (quick && truth.kind != SurfaceKind::ClosedGenus0 && truth.openings.empty())
-    options.optimization.method = OptimizationMethod::Flips;  // the full one takes long in vain
-  const Result result = reconstruct(points, options);
+    options.optimization = OptimizationMethod::Flips;  // the full one takes long in vain
+  const Surface result = reconstruct(points, options);
   const SurfaceDiagnosis& found = result.diagnosis;
   Complaints complaints;
   const std::string fault = stress::faultOf(points, options, result);

@@ -57,14 +57,14 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
     job.points(1, job.points.cols() / 2) = std::numeric_limits<double>::quiet_NaN();
   }
   Options& options = job.options;
-  options.graph.method = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
+  options.graph = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
   options.embedding.method =
       below(4) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
   options.embedding.max_iterations = 60;
-  options.triangulation.method =
+  options.triangulation =
       below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
-  options.optimization.method = static_cast<OptimizationMethod>(below(3));
-  options.smoothing.steps = below(3) == 0 ? 5 : 0;
+  options.optimization = static_cast<OptimizationMethod>(below(3));
+  options.smoothing = below(3) == 0 ? 5 : 0;
   options.seed = static_cast<std::uint32_t>(below(1000));
   options.details = below(4) == 0;
   options.threads = 1 + below(2);
@@ -74,7 +74,7 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
 /// All of the answer as bytes; nothing if it is of the wrong kind.
 std::string answerTo(const Job& job) {
   try {
-    const Result result = reconstruct(job.points, job.options);
+    const Surface result = reconstruct(job.points, job.options);
     const bool is_right = job.is_valid && stress::faultOf(job.points, job.options, result).empty();
     return is_right ? stress::bytesOf(result) : std::string();
   } catch (const InvalidInput& error) {
@@ -116,11 +116,11 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
           Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() * test::spiralSphere(size);
       Options options;
       if (is_paper) {
-        options.graph.method = GraphMethod::NearestNeighbors;
+        options.graph = GraphMethod::NearestNeighbors;
         options.embedding.method = EmbeddingMethod::Iterative;
         options.embedding.max_iterations = 20;
-        options.triangulation.method = TriangulationMethod::Qhull;
-        options.optimization.method = OptimizationMethod::None;
+        options.triangulation = TriangulationMethod::Qhull;
+        options.optimization = OptimizationMethod::None;
       }
       std::array<std::string, 3> bytes;
       for (std::size_t i = 0; i < bytes.size(); ++i) {

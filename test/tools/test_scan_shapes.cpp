@@ -205,7 +205,7 @@ TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
   const Positions points = scanOf(GetParam().shape, n).points;
   const auto expect_sphere = [&](const char* name, const Options& options) {
     SCOPED_TRACE(name);
-    const Result result = reconstruct(points, options);
+    const Surface result = reconstruct(points, options);
     EXPECT_EQ(result.vertexCount(), static_cast<std::size_t>(n));
     EXPECT_TRUE(test::isSphereOverAll(result.triangles, n));
     EXPECT_GT(volumeOf(points, result.triangles), 0.0);
@@ -213,18 +213,18 @@ TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
   Options options;
   options.threads = 1;  // so few points take longer on more
   // The whole optimisation takes long where it is in vain.
-  options.optimization.method = OptimizationMethod::Flips;
+  options.optimization = OptimizationMethod::Flips;
   expect_sphere("with adaptive weights", options);
   options.embedding.tolerance = 1e-8;
   options.embedding.weights = EdgeWeights::InverseLength;
   expect_sphere("converged, with inverse lengths", options);
   options.embedding = {};
   options.embedding.weights = EdgeWeights::Uniform;
-  options.graph.method = GraphMethod::NearestNeighbors;
+  options.graph = GraphMethod::NearestNeighbors;
   options.embedding.method = EmbeddingMethod::Iterative;
   options.embedding.max_iterations = 100;
-  options.triangulation.method = TriangulationMethod::Qhull;
-  options.optimization.method = OptimizationMethod::None;
+  options.triangulation = TriangulationMethod::Qhull;
+  options.optimization = OptimizationMethod::None;
   expect_sphere("as in the paper", options);
 }
 

@@ -3,7 +3,7 @@
 #include "common/cloud_reader.h"
 #include "common/errors.h"
 #include "common/text.h"
-#include "spherical_param/outliers.h"
+#include "outliers.h"
 
 #include <algorithm>
 #include <chrono>
@@ -302,7 +302,7 @@ JoinedMesh::JoinedMesh(const std::vector<CloudReconstruction>& parts) {
   triangles = 0;
   for (const CloudReconstruction& part : parts) {
     const Eigen::Index first = static_cast<Eigen::Index>(point_of_vertex_.size());
-    const Result& result = part.result;
+    const Surface& result = part.result;
     triangles_.middleCols(triangles, result.triangles.cols()) =
         result.triangles.array() + static_cast<Index>(first);
     triangles += result.triangles.cols();

@@ -4,7 +4,7 @@
 #include "common/mesh_view.h"
 #include "common/point_data.h"
 #include "common/reconstruction_options.h"
-#include "spherical_param/parts.h"
+#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct CloudReconstruction {
   std::optional<OutlierRemoval> outliers;  ///< nothing: they were not looked for
   std::optional<Parts> parts;              ///< nothing: they were not looked for
   std::vector<Index> meshed;               ///< points that were meshed, ascending
-  Result result;                           ///< its input points are `meshed`
+  Surface result;                           ///< its input points are `meshed`
   std::vector<Index> point_of_vertex;      ///< the point of each vertex
   std::vector<StageTime> stages;           ///< that of reading first
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/finding.h"
+#include "spherical_param/result.h"
 
 #include <string>
 #include <vector>

@@ -4,8 +4,8 @@
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "common/text.h"
-#include "spherical_param/embedding.h"
-#include "spherical_param/neighbor_search.h"
+#include "embedding.h"
+#include "neighbor_search.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
 
@@ -273,7 +273,7 @@ double addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, int th
 
 /// Adds the unfolding, and returns its frames.
 Json addHistory(const CloudReconstruction& cloud, Arrays& arrays) {
-  const Result& result = cloud.result;
+  const Surface& result = cloud.result;
   const EmbeddingHistory& history = result.history;
   const std::size_t all = history.vertices.size();
   const std::size_t count =
@@ -350,8 +350,8 @@ std::string parseHtmlReport(const CommandLine& command_line) {
 }
 
 void keepForHtmlReport(ReconstructionSettings& settings) {
-  settings.options.embedding.history.vertices = max_history_vertices;
-  settings.options.embedding.history.frames = max_history_frames;
+  settings.options.embedding.history_vertices = max_history_vertices;
+  settings.options.embedding.history_frames = max_history_frames;
   settings.options.details = true;
 }
 

@@ -3,7 +3,7 @@
 #include "common/command_line.h"
 #include "common/console.h"
 #include "common/json_report.h"
-#include "spherical_param/parts.h"
+#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <optional>

@@ -173,10 +173,10 @@ Json consolidationToJson(const ReconstructionSettings& settings,
 }
 
 Json smoothingToJson(const ReconstructionSettings& settings, const SmoothingReport& smoothing) {
-  if (settings.options.smoothing.steps == 0) {
+  if (settings.options.smoothing == 0) {
     return nullptr;
   }
-  return {{"steps", settings.options.smoothing.steps},
+  return {{"steps", settings.options.smoothing},
           {"method", nameOf(settings.options.smoothing.method, smoothing_names)},
           {"max_displacement", smoothing.max_displacement},
           {"mean_displacement", smoothing.mean_displacement},
@@ -252,7 +252,7 @@ Json diagnosisToJson(const CloudReconstruction& cloud) {
   return json;
 }
 
-Json measuresToJson(const Result& result) {
+Json measuresToJson(const Surface& result) {
   const MeshMeasures& measures = result.measures;
   const auto known = [&result](const Json& value) {
     return result.hasVolume() ? value : Json(nullptr);
@@ -359,7 +359,7 @@ Json cloudToJson(const ReconstructionSettings& settings, const CloudReconstructi
 }
 
 void addMesh(const ReconstructionSettings& settings, const CloudReconstruction& cloud, Json& json) {
-  const Result& result = cloud.result;
+  const Surface& result = cloud.result;
   json["verdict"] = result.verdict;
   json["usable"] = result.isUsable();
   json["findings"] = toJson(result.findings);
@@ -404,7 +404,7 @@ void printTables(const CloudReconstruction& cloud, Console& console) {
   printPhases(cloud.result.optimization.phases, console);
 }
 
-void printMeasures(const Result& result, Console& console) {
+void printMeasures(const Surface& result, Console& console) {
   const auto listed = [](const Eigen::Vector3d& vector) {
     return formatted(vector.x(), 6) + " " + formatted(vector.y(), 6) + " " +
            formatted(vector.z(), 6);

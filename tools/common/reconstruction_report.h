@@ -22,6 +22,6 @@ Json toJson(const std::vector<Finding>& findings);
 void printTables(const CloudReconstruction& cloud, Console& console);
 
 /// Prints the size of the mesh; volume and centroid where it encloses something.
-void printMeasures(const Result& result, Console& console);
+void printMeasures(const Surface& result, Console& console);
 
 }  // namespace spherical_param::tools

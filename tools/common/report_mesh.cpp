@@ -2,7 +2,7 @@
 
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
-#include "spherical_param/surface_diagnosis.h"
+#include "surface_diagnosis.h"
 
 #include <Eigen/Geometry>
 
@@ -83,7 +83,7 @@ void measureDistortion(ReportMesh& mesh) {
 }
 
 /// log10 of the residual of each vertex. What is not finite counts as 0, which has no logarithm.
-std::vector<double> residualExponents(const Result& result) {
+std::vector<double> residualExponents(const Surface& result) {
   constexpr double least = 1e-17;
   std::vector<double> exponents(result.vertexCount(), std::log10(least));
   std::transform(result.vertex_residuals.begin(), result.vertex_residuals.end(), exponents.begin(),
@@ -94,7 +94,7 @@ std::vector<double> residualExponents(const Result& result) {
 }
 
 /// Marks of the triangles where they are shown.
-std::vector<std::uint8_t> marksOf(const Result& result, int threads) {
+std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
   std::vector<std::uint8_t> marks = result.diagnosis.triangle_marks;
   marks.resize(static_cast<std::size_t>(result.triangles.cols()), 0);
   if (result.smoothed.cols() == 0) {
@@ -222,7 +222,7 @@ std::vector<Index> orderOnSphere(const Positions& sphere) {
 }
 
 ReportMesh reportMesh(const CloudReconstruction& cloud, std::size_t max_triangles, int threads) {
-  const Result& result = cloud.result;
+  const Surface& result = cloud.result;
   ReportMesh mesh;
   mesh.vertices = orderOnSphere(result.sphere);
   mesh.positions = picked(vertexPositions(cloud), mesh.vertices);

@@ -97,7 +97,7 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
   const auto work = [&](const spherical_param::Execution& execution) {
     spherical_param::SphereMapOptions guarded = options;
     static_cast<spherical_param::Execution&>(guarded) = execution;
-    const spherical_param::Result& result = reconstruction.getResult();
+    const spherical_param::Surface& result = reconstruction.getResult();
     spherical_param::Positions vertices = detail::verticesOf(reconstruction);
     map = spherical_param::computeSphereMap(vertices, result.triangles, result.sphere, guarded);
     points = std::move(vertices);

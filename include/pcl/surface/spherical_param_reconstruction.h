@@ -5,7 +5,7 @@
 #include <pcl/point_types.h>
 #include <pcl/surface/reconstruction.h>
 
-#include "spherical_param/parts.h"
+#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <array>
@@ -142,10 +142,10 @@ public:
    * \param[in] method default GraphMethod::LocalDelaunay
    * \note Set GraphMethod::NearestNeighbors to compare with the paper, or to join parts of a cloud
    * by a large k (setKSearch()). */
-  inline void setGraphMethod(GraphMethod method) { options_.graph.method = method; }
+  inline void setGraphMethod(GraphMethod method) { options_.graph = method; }
   /** \brief Get how points become neighbours.
    * \return the method */
-  inline GraphMethod getGraphMethod() const { return options_.graph.method; }
+  inline GraphMethod getGraphMethod() const { return options_.graph; }
 
   /** \brief Set the number of nearest neighbours of each point that are searched for.
    * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Unless it is set,
@@ -154,7 +154,7 @@ public:
    * \note For nearest neighbours, raise it for clouds with noise or uneven density along scan
    * lines, and lower it where sheets of the surface come close to each other. Local Delaunay
    * neighbourhoods hardly depend on it, and use no more than 32. */
-  inline void setKSearch(int k) { options_.graph.k = k; }
+  inline void setKSearch(int k) { options_.k = k; }
   /** \brief Get the number of nearest neighbours of each point that are searched for.
    * \return that of setKSearch(), or the default of the graph method */
   inline int getKSearch() const { return spherical_param::neighborsToSearch(options_.graph); }
@@ -196,12 +196,12 @@ public:
    * \note Set TriangulationMethod::Qhull to compare with the paper; it is slower, and has to
    * reinsert points where they are dense. */
   inline void setTriangulationMethod(TriangulationMethod method) {
-    options_.triangulation.method = method;
+    options_.triangulation = method;
   }
   /** \brief Get how the points on the sphere are triangulated.
    * \return the method */
   inline TriangulationMethod getTriangulationMethod() const {
-    return options_.triangulation.method;
+    return options_.triangulation;
   }
 
   /** \brief Set how far the mesh is optimised on the points.
@@ -209,21 +209,21 @@ public:
    * \note Set OptimizationMethod::None for the mesh that the sphere gives, and
    * OptimizationMethod::Flips where time matters more than the last self-intersections. */
   inline void setOptimizationMethod(OptimizationMethod method) {
-    options_.optimization.method = method;
+    options_.optimization = method;
   }
   /** \brief Get how far the mesh is optimised on the points.
    * \return the method */
-  inline OptimizationMethod getOptimizationMethod() const { return options_.optimization.method; }
+  inline OptimizationMethod getOptimizationMethod() const { return options_.optimization; }
 
   /** \brief Set the strength of the smoothing that takes noise off the points.
    * \param[in] steps 0 (default) to 10000; 0: none. The strength is about that of as many steps of
    * the paper's section 4.2.
    * \note The mesh keeps the points of the input; the smoothed ones are those of
    * getMovedPoints(), for which the same polygons hold. */
-  inline void setSmoothing(int steps) { options_.smoothing.steps = steps; }
+  inline void setSmoothing(int steps) { options_.smoothing = steps; }
   /** \brief Get the strength of the smoothing.
    * \return the steps; 0: none */
-  inline int getSmoothing() const { return options_.smoothing.steps; }
+  inline int getSmoothing() const { return options_.smoothing; }
 
   /** \brief Set the seed of all random choices: the order in which the multilevel embedding
    * coarsens the graph, and the parts of the mesh that OptimizationMethod::Full takes out.
@@ -295,7 +295,7 @@ public:
    * getVertexIndices() lists. Volume, area, centroid and inertia of the mesh are in `measures`.
    * \param[in] part below getPartCount(), the largest first
    * \return the result, which the next reconstruct() replaces */
-  inline const spherical_param::Result& getResult(std::size_t part = 0) const {
+  inline const spherical_param::Surface& getResult(std::size_t part = 0) const {
     return parts_.at(part).result;
   }
 
@@ -382,13 +382,13 @@ protected:
 private:
   /** \brief What was made of some of the points. */
   struct MeshedPart {
-    spherical_param::Result result;
+    spherical_param::Surface result;
     pcl::Indices used_indices;
     pcl::Indices vertex_indices;
   };
 
   /** \brief Makes a cloud of the size of the input from the places of vertices, a member of
-   * spherical_param::Result. */
+   * spherical_param::Surface. */
   template <typename Places>
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(Places places) const;
 

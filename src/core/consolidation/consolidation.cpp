@@ -1,11 +1,11 @@
-#include "spherical_param/consolidation.h"
+#include "consolidation.h"
 
 #include "median.h"
+#include "neighbor_search.h"
 #include "ordered_points.h"
 #include "parallel.h"
 #include "progress.h"
 #include "quadric.h"
-#include "spherical_param/neighbor_search.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/embedding.h"
+#include "embedding.h"
 
 #include <cmath>
 

@@ -1,13 +1,11 @@
-#include "spherical_param/embedding.h"
+#include "embedding.h"
 
 #include "edge_weights.h"
 #include "embedding_history.h"
 #include "embedding_starts.h"
-#include "graph_checks.h"
 #include "graph_hierarchy.h"
 #include "iterative_embedding.h"
 #include "multilevel_embedding.h"
-#include "option_checks.h"
 #include "parallel.h"
 #include "spherical_param/errors.h"
 
@@ -18,16 +16,6 @@
 
 namespace spherical_param {
 namespace {
-
-void checkInput(const Graph& graph, const Positions& points, const EmbeddingOptions& options) {
-  internal::checkOptions(options);
-  internal::checkGraph("embed", graph);
-  if (static_cast<std::size_t>(points.cols()) != graph.size())
-    throw InvalidInput("embed: " + std::to_string(points.cols()) + " points for a graph of " +
-                       std::to_string(graph.size()) + " nodes; give one for each");
-  if (!points.allFinite())
-    throw InvalidInput("embed: a point is not finite; remove such points first");
-}
 
 /// Replaces a collapsed embedding by a start that cannot collapse.
 void fallBack(const Graph& graph, const Positions& points, const EmbeddingOptions& options,
@@ -45,9 +33,7 @@ void fallBack(const Graph& graph, const Positions& points, const EmbeddingOption
 }  // namespace
 
 Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOptions& options,
-                std::uint32_t seed, const Execution& execution) {
-  checkInput(graph, points, options);
-  internal::checkThreads(execution.threads);
+                std::uint32_t seed, const Execution& execution, NodeMass mass) {
   Embedding embedding;
   if (graph.size() == 0) {
     embedding.directions = points;
@@ -58,12 +44,12 @@ Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOpti
   if (options.method == EmbeddingMethod::Multilevel)
     hierarchy =
         internal::buildGraphHierarchy(graph, seed, internal::kTypicalCoarsestSize, execution);
-  internal::EmbeddingRecorder recorder(graph.size(), hierarchy, options.history);
+  internal::EmbeddingRecorder recorder(graph.size(), hierarchy, options);
   internal::EmbeddingObserver observer;
-  if (options.history.vertices > 0)
+  if (options.history_vertices > 0)
     observer = std::ref(recorder);
   embedding = options.method == EmbeddingMethod::Multilevel
-                  ? internal::embedByLevels(graph, hierarchy, options, observer, execution)
+                  ? internal::embedByLevels(graph, hierarchy, options, mass, observer, execution)
                   : internal::embedIteratively(graph, points, options, observer, execution);
   if (embedding.report.stop_reason == StopReason::Collapsed)
     fallBack(graph, points, options, recorder, embedding);
@@ -73,11 +59,6 @@ Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOpti
 
 std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
                                                EdgeWeights weights, double exponent) {
-  internal::checkGraph("tangentialLaplacianLengths", graph);
-  if (static_cast<std::size_t>(directions.cols()) != graph.size())
-    throw InvalidInput("tangentialLaplacianLengths: " + std::to_string(directions.cols()) +
-                       " directions for a graph of " + std::to_string(graph.size()) +
-                       " nodes; give one for each");
   const internal::EdgeWeightLaw law(weights, exponent);
   std::vector<double> lengths(graph.size());
   for (std::size_t i = 0; i < graph.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include "block_matrix.h"
 #include "edge_weights.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 #include "tangent_basis.h"
 

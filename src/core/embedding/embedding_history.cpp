@@ -27,19 +27,20 @@ bool isKept(int iteration) {
 
 }  // namespace
 
-EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const HistoryLimits& limits)
+EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const EmbeddingOptions& limits)
     : EmbeddingRecorder(nodes, GraphHierarchy(), limits) {}
 
 EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const GraphHierarchy& hierarchy,
-                                     const HistoryLimits& limits)
-    : limits_(limits) {
+                                     const EmbeddingOptions& limits)
+    : max_vertices_(at(limits.history_vertices)),
+      max_frames_(static_cast<std::size_t>(limits.history_frames)) {
   keepNodes(nodes, hierarchy);
 }
 
 void EmbeddingRecorder::keepNodes(std::size_t nodes, const GraphHierarchy& hierarchy) {
   const std::vector<HierarchyLevel>& levels = hierarchy.levels;
   const auto size_of = [&](std::size_t l) { return l == 0 ? nodes : levels[l - 1].graph.size(); };
-  const std::size_t most = std::min(nodes, at(limits_.vertices));
+  const std::size_t most = std::min(nodes, max_vertices_);
   // The finest level that is small enough, or one finer if that is far too small.
   std::size_t level = 0;
   while (level < levels.size() && size_of(level) > most)
@@ -82,7 +83,7 @@ void EmbeddingRecorder::keepNodes(std::size_t nodes, const GraphHierarchy& hiera
 
 void EmbeddingRecorder::operator()(const EmbeddingState& state) {
   const bool is_end = state.step == EmbeddingStep::End;
-  if (limits_.vertices == 0 || state.level >= wanted_.size() ||
+  if (max_vertices_ == 0 || state.level >= wanted_.size() ||
       (!is_end && state.step != EmbeddingStep::Sweeps && !isKept(state.iteration)))
     return;
   // What came from a coarser level was carried here already.
@@ -107,8 +108,8 @@ void EmbeddingRecorder::operator()(const EmbeddingState& state) {
     frames.pop_back();
   }
   frames.push_back(std::move(frame));
-  if (frames.size() > kSpare * static_cast<std::size_t>(limits_.frames))
-    thinTo(2 * static_cast<std::size_t>(limits_.frames));
+  if (frames.size() > kSpare * max_frames_)
+    thinTo(2 * max_frames_);
 }
 
 Positions EmbeddingRecorder::carried(const Positions& directions, std::size_t level) const {
@@ -145,7 +146,7 @@ void EmbeddingRecorder::thinTo(std::size_t count) {
 }
 
 EmbeddingHistory EmbeddingRecorder::take() {
-  thinTo(static_cast<std::size_t>(limits_.frames));
+  thinTo(max_frames_);
   return std::exchange(history_, {});
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "embedding.h"
 #include "graph_hierarchy.h"
-#include "spherical_param/embedding.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>
@@ -40,11 +40,11 @@ class EmbeddingRecorder {
 public:
   /// For an embedding without levels: keeps nodes in even distances.
   /// \param nodes of the graph. \param limits of the history.
-  EmbeddingRecorder(std::size_t nodes, const HistoryLimits& limits);
+  EmbeddingRecorder(std::size_t nodes, const EmbeddingOptions& limits);
   /// For an embedding by levels: keeps nodes that coarser levels are made of.
   /// \param nodes of the graph. \param hierarchy is used here only. \param limits of the history.
   EmbeddingRecorder(std::size_t nodes, const GraphHierarchy& hierarchy,
-                    const HistoryLimits& limits);
+                    const EmbeddingOptions& limits);
 
   /// Takes a state, if it is one to be kept. Cost: O(vertices) and the copy of the state.
   /// \param state as an observer is shown it.
@@ -66,7 +66,8 @@ private:
   /// Leaves out states evenly until this number is left.
   void thinTo(std::size_t count);
 
-  HistoryLimits limits_;
+  std::size_t max_vertices_;
+  std::size_t max_frames_;
   std::vector<std::vector<Index>> wanted_;  ///< nodes of each level that the others rest on
   std::vector<Carry> carries_;              ///< [l]: from level l + 1 to level l
   EmbeddingHistory history_;

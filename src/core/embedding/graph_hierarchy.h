@@ -1,6 +1,7 @@
 #pragma once
 
 #include "spherical_param/execution.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/SparseCore>
@@ -35,7 +36,7 @@ struct GraphHierarchy {
 /// shortest path from seed to seed through such an edge. The energy of an embedding is then about
 /// the same on all levels.
 ///
-/// \param graph connected, with positive edge lengths; checked by checkGraph().
+/// \param graph connected, with positive edge lengths.
 /// \param seed  of the order in which nodes are taken.
 /// \param coarsest_size levels are added until one has at most this number of nodes; >= 4.
 /// \param execution threads, progress

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "embedding.h"
 #include "embedding_history.h"
-#include "spherical_param/embedding.h"
 
 namespace spherical_param::internal {
 

@@ -92,12 +92,12 @@ std::vector<Eigen::VectorXd> areasOf(const Graph& graph, const GraphHierarchy& h
 class Solver {
 public:
   Solver(const Graph& graph, const GraphHierarchy& hierarchy, const EmbeddingOptions& options,
-         const EmbeddingObserver& observer, const Execution& execution)
+         NodeMass mass, const EmbeddingObserver& observer, const Execution& execution)
       : graph_(graph), hierarchy_(hierarchy), options_(options), observer_(observer),
         threads_(execution.threads), weights_(options.weights, options.exponent),
         adaptive_weights_(EdgeWeights::Adaptive, options.exponent),
         report_(reportOf(execution, "embedding")),
-        masses_(options.centroid_by_area
+        masses_(mass == NodeMass::ByArea
                     ? areasOf(graph, hierarchy)
                     : std::vector<Eigen::VectorXd>(hierarchy.levels.size() + 1)) {}
 
@@ -339,9 +339,9 @@ private:
           std::rethrow_exception(start.error);
       for (std::size_t i = 0; i < starts.size(); ++i) {
         Start& start = starts[i];
-        ++result_.report.starts;
+        ++result_.starts;
         if (isCollapsed(start.u, masses_[l]) || !std::isfinite(start.value)) {
-          ++result_.report.collapsed_starts;
+          ++result_.collapsed_starts;
         } else if (std::pair(start.has_slipped, start.value) < least) {
           least = {start.has_slipped, start.value};
           best = std::move(start.u);
@@ -479,7 +479,7 @@ private:
     levels()[0].residual = report.residual;
     report.iterations = report.residuals.empty() ? levels()[0].newton_iterations
                                                  : static_cast<int>(report.residuals.size()) - 1;
-    report.energy = energyWithout(0).value(u);
+    result_.energy = energyWithout(0).value(u);
     // The Laplacian alone decides: where a barrier pulls, its solution has not converged.
     if (options_.tolerance)
       report.stop_reason =
@@ -513,9 +513,9 @@ private:
 }  // namespace
 
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
-                        const EmbeddingOptions& options, const EmbeddingObserver& observer,
-                        const Execution& execution) {
-  return Solver(graph, hierarchy, options, observer, execution).run();
+                        const EmbeddingOptions& options, NodeMass mass,
+                        const EmbeddingObserver& observer, const Execution& execution) {
+  return Solver(graph, hierarchy, options, mass, observer, execution).run();
 }
 
 }  // namespace spherical_param::internal

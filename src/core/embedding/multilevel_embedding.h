@@ -1,8 +1,8 @@
 #pragma once
 
+#include "embedding.h"
 #include "embedding_history.h"
 #include "graph_hierarchy.h"
-#include "spherical_param/embedding.h"
 
 namespace spherical_param::internal {
 
@@ -16,7 +16,7 @@ namespace spherical_param::internal {
 /// \return the embedding. If all starts collapse even with a barrier: StopReason::Collapsed and no
 ///         columns.
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
-                        const EmbeddingOptions& options, const EmbeddingObserver& observer,
-                        const Execution& execution);
+                        const EmbeddingOptions& options, NodeMass mass,
+                        const EmbeddingObserver& observer, const Execution& execution);
 
 }  // namespace spherical_param::internal

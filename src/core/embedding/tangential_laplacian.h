@@ -2,6 +2,7 @@
 
 #include "edge_weights.h"
 #include "parallel.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "neighbor_search.h"
 #include "ordered_points.h"
-#include "spherical_param/neighbor_search.h"
 #include "spherical_param/types.h"
 
 namespace spherical_param::internal {

@@ -1,9 +1,9 @@
 #include "filled_graph.h"
 
 #include "graph_building.h"
+#include "neighbor_graph.h"
 #include "pi.h"
 #include "ringed_disc.h"
-#include "spherical_param/neighbor_graph.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 #include "spherical_param/types.h"
 
 #include "union_find.h"

@@ -436,17 +436,6 @@ Bridge edgeBetween(const Positions& points, Index i, Index j) {
   return {std::min(i, j), std::max(i, j), internal::edgeLength(points, i, j)};
 }
 
-/// Joins all pairs that one of the stars has.
-void joinAllOfStars(const Positions& points, const Stars& stars, Graph& graph) {
-  std::vector<Bridge> edges;
-  for (std::size_t i = 0; i < stars.size(); ++i)
-    for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e)
-      if (!stars.holds(stars.nodes[e], static_cast<Index>(i)))
-        edges.push_back(edgeBetween(points, static_cast<Index>(i), stars.nodes[e]));
-  if (!edges.empty())
-    graph = internal::withEdges(graph, edges);
-}
-
 /// Joins points without a tangent plane that only one of them finds near: their neighbourhood is
 /// the same from both ends, but for the ends of the lists.
 void joinWithoutPlane(const Positions& points, const Stars& stars,
@@ -576,8 +565,7 @@ Stars starsOf(const Positions& points, const NeighborLists& lists, const Neighbo
 namespace internal {
 
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
-                                      StarAgreement agreement, const NeighborSearch& search,
-                                      const Execution& execution) {
+                                      const NeighborSearch& search, const Execution& execution) {
   const auto n = static_cast<std::size_t>(points.cols());
   const int threads = threadCount(execution.threads, n, kParallelThreshold);
   NeighborGraph result;
@@ -590,10 +578,7 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLis
   result.report.stray_points =
       strayPoints(points, result.graph,
                   [&](const std::vector<char>& given) { return inStarsOf(given, stars); });
-  if (agreement == StarAgreement::Either)
-    joinAllOfStars(points, stars, result.graph);
-  else
-    joinWithoutPlane(points, stars, result.report.without_tangent_plane, result.graph);
+  joinWithoutPlane(points, stars, result.report.without_tangent_plane, result.graph);
   result.report.weak = repairWeak(points, stars, result.graph);
   connect(points, stars, report, result);
   return result;

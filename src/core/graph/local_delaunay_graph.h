@@ -1,14 +1,13 @@
 #pragma once
 
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 #include "stray_points.h"
 
 namespace spherical_param::internal {
 
 /// buildNeighborGraph() with GraphMethod::LocalDelaunay, on checked lists.
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const NeighborLists& lists,
-                                      StarAgreement agreement, const NeighborSearch& search,
-                                      const Execution& execution);
+                                      const NeighborSearch& search, const Execution& execution);
 
 /// The edges on which both stars agree, before anything is repaired or joined.
 struct AgreedGraph {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 
 namespace spherical_param::internal {
 

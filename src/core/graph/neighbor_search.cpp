@@ -1,4 +1,4 @@
-#include "spherical_param/neighbor_search.h"
+#include "neighbor_search.h"
 
 #include "parallel.h"
 #include "progress.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "median.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>

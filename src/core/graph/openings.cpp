@@ -1,14 +1,13 @@
-#include "spherical_param/openings.h"
+#include "openings.h"
 
 #include "filled_graph.h"
-#include "graph_checks.h"
 #include "graph_cycles.h"
 #include "node_spacing.h"
 #include "parallel.h"
 #include "pi.h"
+#include "point_set.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/point_set.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -452,11 +451,6 @@ bool hasNoCyclesLeft(const Positions& points, const Graph& graph, const Openings
 }  // namespace
 
 Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution) {
-  internal::checkGraph("findOpenings", graph);
-  if (static_cast<std::size_t>(points.cols()) != graph.size())
-    throw InvalidInput("findOpenings: " + std::to_string(points.cols()) +
-                       " points for a graph of " + std::to_string(graph.size()) +
-                       " nodes; give the graph of the points");
   const int threads =
       internal::threadCount(execution.threads, graph.size(), internal::kShortPassThreshold);
   std::vector<double> spacing(graph.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/point_set.h"
+#include "point_set.h"
 #include "spherical_param/types.h"
 
 #include <string>

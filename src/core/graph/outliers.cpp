@@ -1,15 +1,15 @@
-#include "spherical_param/outliers.h"
+#include "outliers.h"
 
 #include "caller_neighbors.h"
 #include "local_delaunay_graph.h"
 #include "near_outliers.h"
+#include "neighbor_graph.h"
 #include "neighbor_lists.h"
+#include "neighbor_search.h"
 #include "ordered_points.h"
 #include "parallel.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/neighbor_graph.h"
-#include "spherical_param/neighbor_search.h"
 #include "stray_points.h"
 
 #include <Eigen/Eigenvalues>

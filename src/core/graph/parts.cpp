@@ -1,12 +1,12 @@
-#include "spherical_param/parts.h"
+#include "parts.h"
 
 #include "caller_neighbors.h"
 #include "graph_building.h"
 #include "local_delaunay_graph.h"
+#include "neighbor_graph.h"
 #include "ordered_points.h"
 #include "parallel.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/neighbor_graph.h"
 #include "surface_distance.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "component_tree.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 
 #include <vector>

@@ -4,23 +4,7 @@
 
 #include <string>
 
-namespace spherical_param {
-
-struct EmbeddingOptions;
-struct GraphOptions;
-struct OptimizationOptions;
-struct SmoothingOptions;
-struct TriangulationOptions;
-
-namespace internal {
-
-// Throw InvalidInput for an option of a stage that is out of the range that the table of options
-// gives (optionTable()).
-void checkOptions(const GraphOptions& options);
-void checkOptions(const EmbeddingOptions& options);
-void checkOptions(const TriangulationOptions& options);
-void checkOptions(const OptimizationOptions& options);
-void checkOptions(const SmoothingOptions& options);
+namespace spherical_param::internal {
 
 /// Throws InvalidInput for a value that was cast to an enumeration and is none of its values, which
 /// count from 0.
@@ -34,5 +18,4 @@ void checkEnum(const char* what, Enum value, Enum last) {
                        " is not a value of its type; use one of its enumerators");
 }
 
-}  // namespace internal
-}  // namespace spherical_param
+}  // namespace spherical_param::internal

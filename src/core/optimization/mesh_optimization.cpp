@@ -1,15 +1,13 @@
-#include "spherical_param/mesh_optimization.h"
+#include "mesh_optimization.h"
 
-#include "graph_checks.h"
 #include "mesh_optimizer.h"
 #include "open_mesh.h"
 #include "optimization_constants.h"
-#include "option_checks.h"
 #include "parallel.h"
 #include "progress.h"
 #include "sampling_analysis.h"
+#include "smoothing.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/smoothing.h"
 
 #include <algorithm>
 #include <array>
@@ -39,24 +37,10 @@ SurfaceEnergy energyOf(Bend bend, double mu) {
   return energy;
 }
 
-void checkInput(const Positions& points, const Triangles& triangles, const Graph& graph) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  internal::checkGraph("optimizeMesh", graph);
-  if (graph.size() != n)
-    throw InvalidInput("optimizeMesh: " + std::to_string(n) + " points, but a graph of " +
-                       std::to_string(graph.size()) + " nodes; they must be the same");
-  if (!points.allFinite())
-    throw InvalidInput("optimizeMesh: a coordinate is not finite; leave such points out");
-  if (triangles.size() > 0 && (triangles.minCoeff() < 0 || triangles.maxCoeff() >= points.cols()))
-    throw InvalidInput("optimizeMesh: a triangle index is out of range: there are " +
-                       std::to_string(n) + " points, and indices start at 0");
-}
-
 /// The optimiser of a mesh, after checks of the input.
 MeshOptimizer checkedOptimizer(const Positions& points, const Triangles& triangles,
                                const Graph& graph, const internal::OpenPlaces* openings,
                                int threads, const internal::FractionReport& report) {
-  checkInput(points, triangles, graph);
   internal::reportFraction(report, 0.0);
   MeshOptimizer optimizer(points, triangles, graph, threads, report, openings);
   if (!optimizer.mesh().isSphere(threads))
@@ -72,9 +56,6 @@ constexpr double kMaxTimeLimit = 1e9;  ///< [s]
 std::optional<Clock::time_point> deadlineOf(const Execution& execution) {
   if (!execution.time_limit)
     return std::nullopt;
-  if (!(*execution.time_limit >= 0.0 && *execution.time_limit <= kMaxTimeLimit))
-    throw InvalidInput("optimizeMesh: time_limit = " + std::to_string(*execution.time_limit) +
-                       " s is out of range; use 0 to 1e9, or leave it unset for no limit");
   const std::chrono::duration<double> limit(*execution.time_limit);
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
 }
@@ -488,7 +469,6 @@ MeshOptimization internal::optimizeMesh(const Positions& points, const Triangles
                                         const Graph& graph, const OpenPlaces* openings,
                                         const OptimizationOptions& options, std::uint32_t seed,
                                         const Execution& execution) {
-  checkOptions(options);
   return Optimization(points, triangles, graph, openings, options, seed, execution).run();
 }
 

@@ -3,6 +3,7 @@
 #include "local_intersections.h"
 #include "progress.h"
 #include "sphere_mesh.h"
+#include "graph.h"
 #include "spherical_param/types.h"
 #include "surface_energy.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/openings.h"
+#include "openings.h"
 #include "spherical_param/types.h"
 
 #include <array>

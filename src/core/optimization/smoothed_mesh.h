@@ -1,8 +1,8 @@
 #pragma once
 
+#include "mesh_optimization.h"
 #include "open_places.h"
-#include "spherical_param/mesh_optimization.h"
-#include "spherical_param/smoothing.h"
+#include "smoothing.h"
 #include "spherical_param/types.h"
 
 #include <cstdint>

@@ -1,6 +1,5 @@
-#include "spherical_param/smoothing.h"
+#include "smoothing.h"
 
-#include "option_checks.h"
 #include "parallel.h"
 #include "pi.h"
 #include "spherical_param/errors.h"
@@ -68,38 +67,6 @@ Fans collectFans(const Triangles& triangles, std::size_t n) {
       fans.previous[e] = triangles((k + 2) % 3, t);
     }
   return fans;
-}
-
-/// Refuses meshes in which the triangles around some vertex are not one cycle. Where they are at
-/// all vertices, the mesh is closed, manifold and consistently oriented.
-void checkFans(const Fans& fans) {
-  // Where the list of the vertex at hand names each of its neighbours; left over elsewhere.
-  std::vector<std::size_t> entry_of(fans.size(), 0);
-  for (std::size_t v = 0; v < fans.size(); ++v) {
-    const std::size_t begin = fans.offsets[v];
-    const std::size_t end = fans.offsets[v + 1];
-    if (begin == end)
-      continue;
-    bool sound = true;
-    for (std::size_t e = begin; e < end; ++e) {
-      entry_of[static_cast<std::size_t>(fans.next[e])] = e;
-      sound = sound && static_cast<std::size_t>(fans.next[e]) != v;
-    }
-    // A cycle through all entries is as long as the list; a neighbour named twice shortens it.
-    std::size_t e = begin;
-    std::size_t length = 0;
-    do {
-      const auto previous = static_cast<std::size_t>(fans.previous[e]);
-      e = entry_of[previous];
-      sound = sound && previous != v && e >= begin && e < end &&
-              static_cast<std::size_t>(fans.next[e]) == previous;
-      ++length;
-    } while (sound && e != begin && length <= end - begin);
-    if (!sound || length != end - begin)
-      fail("the triangles around vertex " + std::to_string(v) +
-           " are not one closed fan; the mesh must be closed, manifold and consistently oriented "
-           "(checkTopology() lists where it is not)");
-  }
 }
 
 /// Filters and volume of one mesh, on several threads.
@@ -248,13 +215,7 @@ void Filter::restoreVolume(Positions& points, double volume) const {
 
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
                         const SmoothingOptions& options, int threads) {
-  internal::checkOptions(options);
-  internal::checkThreads(threads);
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (!points.col(i).allFinite())
-      fail("point " + std::to_string(i) + " is not finite; remove such points first");
   const Fans fans = collectFans(triangles, static_cast<std::size_t>(points.cols()));
-  checkFans(fans);
 
   Smoothing result;
   result.points = points;

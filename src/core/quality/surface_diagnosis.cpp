@@ -1,9 +1,8 @@
-#include "spherical_param/surface_diagnosis.h"
+#include "surface_diagnosis.h"
 
 #include "spherical_param/errors.h"
 
 #include "corner_table.h"
-#include "graph_checks.h"
 #include "graph_cycles.h"
 #include "node_spacing.h"
 #include "parallel.h"
@@ -116,9 +115,9 @@ struct Differences {
 };
 
 /// The mesh and the graph of the points, with queries on both.
-class Surface {
+class MeshAndGraph {
 public:
-  Surface(const Positions& points, const Triangles& triangles, const Graph& graph, int threads)
+  MeshAndGraph(const Positions& points, const Triangles& triangles, const Graph& graph, int threads)
       : points_(points), triangles_(triangles), graph_(graph), threads_(threads),
         corners_(triangles, graph.size(), threads) {}
 
@@ -311,7 +310,7 @@ struct Region {
 /// Finds the regions of a mesh.
 class RegionSearch {
 public:
-  RegionSearch(const Surface& surface, std::size_t triangle_count)
+  RegionSearch(const MeshAndGraph& surface, std::size_t triangle_count)
       : surface_(surface), triangle_count_(triangle_count) {}
 
   /// \param outside the edges of the mesh that leave the graph, from one of their sides.
@@ -476,7 +475,7 @@ private:
     return entry->second;
   }
 
-  const Surface& surface_;
+  const MeshAndGraph& surface_;
   std::size_t triangle_count_;
   std::vector<Index> region_;     // of each triangle; -1: none
   std::vector<char> is_outside_;  // of each side
@@ -486,7 +485,7 @@ private:
 /// Measures how far apart vertices are on the mesh.
 class MeshDistance {
 public:
-  MeshDistance(const Surface& surface, std::size_t n) : surface_(surface), mark_(n, 0) {}
+  MeshDistance(const MeshAndGraph& surface, std::size_t n) : surface_(surface), mark_(n, 0) {}
 
   /// Whether a and b are more than `steps` edges apart: the discs of half as many do not meet.
   bool exceeds(Index a, Index b, int steps) {
@@ -526,7 +525,7 @@ private:
     return false;
   }
 
-  const Surface& surface_;
+  const MeshAndGraph& surface_;
   std::vector<Mark> mark_;
   std::vector<Index> disc_;
   Mark last_mark_ = 0;
@@ -538,7 +537,7 @@ private:
 /// \param apart     those whose ends are more than two steps apart.
 /// \param regions   all that leaves the graph.
 /// \param wide_count number of wide regions, at the front.
-std::vector<Edge> tornEdges(const Surface& surface, const std::vector<Edge>& apart,
+std::vector<Edge> tornEdges(const MeshAndGraph& surface, const std::vector<Edge>& apart,
                             const std::vector<Region>& regions, std::size_t wide_count,
                             std::size_t triangle_count, const std::vector<Edge>& bridges,
                             std::size_t n) {
@@ -598,7 +597,7 @@ void sortUnique(std::vector<Index>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-Eigen::Vector3d meanOf(const Surface& surface, const std::vector<Index>& vertices) {
+Eigen::Vector3d meanOf(const MeshAndGraph& surface, const std::vector<Index>& vertices) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Index v : vertices)
     sum += surface.point(v);
@@ -607,7 +606,7 @@ Eigen::Vector3d meanOf(const Surface& surface, const std::vector<Index>& vertice
 
 /// Groups of torn edges that share an end, or whose ends are neighbours on the mesh; all ends are
 /// listed.
-std::vector<CollapsedHandle> handlesOf(const Surface& surface, const std::vector<Edge>& torn) {
+std::vector<CollapsedHandle> handlesOf(const MeshAndGraph& surface, const std::vector<Edge>& torn) {
   std::map<Index, Index> edge_at;
   internal::UnionFind groups(torn.size());
   for (std::size_t e = 0; e < torn.size(); ++e)
@@ -645,7 +644,7 @@ std::vector<CollapsedHandle> handlesOf(const Surface& surface, const std::vector
 }
 
 /// Whether the graph has the rim of an opening.
-bool hasRim(const Surface& surface, std::size_t n) {
+bool hasRim(const MeshAndGraph& surface, std::size_t n) {
   std::vector<char> one_sided(n, 0);
   for (std::size_t v = 0; v < n; ++v) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -704,7 +703,7 @@ private:
 };
 
 /// Pairs of parts with a gap that is wide against the distance of the points; all ends are listed.
-std::vector<PartBridge> partsOf(const Surface& surface, const std::vector<Edge>& bridges,
+std::vector<PartBridge> partsOf(const MeshAndGraph& surface, const std::vector<Edge>& bridges,
                                 Parts& parts) {
   std::map<Edge, std::vector<Edge>> joints;
   for (const auto& [a, b] : bridges) {
@@ -760,7 +759,7 @@ std::optional<SurfaceKind> causeOf(const Region& region, Parts* parts,
 /// Puts marks on triangles.
 class TriangleMarker {
 public:
-  TriangleMarker(const Surface& surface, std::size_t triangle_count)
+  TriangleMarker(const MeshAndGraph& surface, std::size_t triangle_count)
       : surface_(surface), marks_(triangle_count, 0) {}
 
   void mark(const std::vector<Index>& triangles, std::uint8_t bit) {
@@ -788,27 +787,9 @@ private:
     marks_[at(t)] = static_cast<std::uint8_t>(marks_[at(t)] | bit);
   }
 
-  const Surface& surface_;
+  const MeshAndGraph& surface_;
   std::vector<std::uint8_t> marks_;
 };
-
-void checkInput(const Positions& points, const Triangles& triangles, const Graph& graph,
-                const std::vector<Bridge>& bridges) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  const auto in_range = [n](Index v) { return v >= 0 && static_cast<std::size_t>(v) < n; };
-  internal::checkGraph("diagnoseSurface", graph);
-  if (graph.size() != n)
-    throw InvalidInput("diagnoseSurface: a graph of " + std::to_string(graph.size()) +
-                       " nodes for " + std::to_string(n) + " points; give the graph of the points");
-  if (triangles.cols() == 0)
-    throw InvalidInput("diagnoseSurface: no triangles; give a closed mesh");
-  internal::checkTriangles("diagnoseSurface", triangles, points.cols());
-  for (const Bridge& bridge : bridges)
-    if (!in_range(bridge.from) || !in_range(bridge.to))
-      throw InvalidInput("diagnoseSurface: a bridge from " + std::to_string(bridge.from) + " to " +
-                         std::to_string(bridge.to) + " of " + std::to_string(n) +
-                         " points; give the bridges of the graph");
-}
 
 }  // namespace
 
@@ -985,7 +966,7 @@ private:
   std::vector<Edge> bridges_;
   Graph graph_;  ///< thinned
   std::size_t triangle_count_;
-  Surface surface_;
+  MeshAndGraph surface_;
   Differences differences_;
   RegionSearch search_;
   std::vector<Region> regions_;
@@ -1000,7 +981,6 @@ private:
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,
                                  const Graph& graph, const std::vector<Bridge>& bridges,
                                  const DiagnosisOptions& options, int threads) {
-  checkInput(points, triangles, graph, bridges);
   return Diagnosis(points, triangles, graph, bridges, options, threads).run();
 }
 

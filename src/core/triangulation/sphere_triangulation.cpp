@@ -1,14 +1,13 @@
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include "incremental_delaunay.h"
-#include "option_checks.h"
 #include "parallel.h"
+#include "point_set.h"
 #include "progress.h"
 #include "space_filling_curve.h"
 #include "sphere_mesh.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/point_set.h"
 
 #include <Eigen/Geometry>
 
@@ -361,16 +360,16 @@ SphereTriangulation triangulateIncrementally(const Positions& directions,
 
 }  // namespace
 
-SphereTriangulation triangulateSphere(const Positions& directions,
-                                      const TriangulationOptions& options,
+Triangles triangulateSphere(const Positions& directions, const Execution& execution) {
+  return triangulateSphere(directions, TriangulationMethod::Incremental, execution).triangles;
+}
+
+SphereTriangulation triangulateSphere(const Positions& directions, TriangulationMethod method,
                                       const Execution& execution) {
-  internal::checkOptions(options);
-  internal::checkThreads(execution.threads);
   checkInput(directions);
   const internal::FractionReport report = internal::reportOf(execution, "triangulation");
-  return options.method == TriangulationMethod::Qhull
-             ? triangulateByQhull(directions, report)
-             : triangulateIncrementally(directions, report);
+  return method == TriangulationMethod::Qhull ? triangulateByQhull(directions, report)
+                                              : triangulateIncrementally(directions, report);
 }
 
 }  // namespace spherical_param

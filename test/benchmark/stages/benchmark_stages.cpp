@@ -5,19 +5,19 @@
 // A name has the stage, the number of points and the number of threads.
 
 #include "scan_shapes.h"
-#include "spherical_param/embedding.h"
+#include "embedding.h"
 #include "spherical_param/mesh_measures.h"
-#include "spherical_param/mesh_optimization.h"
+#include "mesh_optimization.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/neighbor_graph.h"
-#include "spherical_param/neighbor_search.h"
-#include "spherical_param/outliers.h"
-#include "spherical_param/point_set.h"
+#include "neighbor_graph.h"
+#include "neighbor_search.h"
+#include "outliers.h"
+#include "point_set.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/smoothing.h"
-#include "spherical_param/sphere_triangulation.h"
-#include "spherical_param/surface_diagnosis.h"
+#include "smoothing.h"
+#include "sphere_triangulation.h"
+#include "surface_diagnosis.h"
 
 #include <benchmark/benchmark.h>
 
@@ -77,9 +77,9 @@ public:
     std::iota(all.begin(), all.end(), Index{0});
     lists = search(all, neighborsToSearch({}));
     long_lists = search(all, neighborsToSearch(ofPaper()));
-    graph = buildNeighborGraph(points, lists, {}, search);
+    graph = test::graphOf(points, lists, {}, search);
     sphere = embed(graph.graph, points).directions;
-    sphere_triangles = triangulateSphere(sphere).triangles;
+    sphere_triangles = triangulateSphere(sphere);
     if (signedVolume(points, sphere_triangles) < 0.0)
       flipOrientation(sphere_triangles);
     triangles = optimizeMesh(points, sphere_triangles, graph.graph).triangles;
@@ -144,11 +144,11 @@ const std::vector<Entry> kEntries = {
      [](const Data& d, int n) { keep(findOutliers(d.points, d.long_lists, {}, withThreads(n))); }},
     {"tangent Delaunay graph", true,
      [](const Data& d, int n) {
-       keep(buildNeighborGraph(d.points, d.lists, {}, n == 1 ? d.search_alone : d.search,
+       keep(test::graphOf(d.points, d.lists, {}, n == 1 ? d.search_alone : d.search,
                                withThreads(n)));
      }},
     {"nearest-neighbour graph", false,
-     [](const Data& d, int) { keep(buildNeighborGraph(d.points, d.long_lists, ofPaper())); }},
+     [](const Data& d, int) { keep(test::graphOf(d.points, d.long_lists, ofPaper())); }},
     {"embedding, multilevel", true, [](const Data& d, int n) { embedBy({}, d, n); }},
     {"embedding, converged", true, [](const Data& d, int n) { embedBy(toTolerance(1e-8), d, n); }},
     {"embedding, 50 iterations", true,

@@ -1,9 +1,9 @@
-#include "spherical_param/consolidation.h"
+#include "consolidation.h"
 
 #include "../reconstructions.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/neighbor_search.h"
+#include "neighbor_search.h"
 #include "spherical_param/reconstruct.h"
 
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST(Consolidation, LayersBecomeOne) {
   EXPECT_GT(shortestDistance(result.points), 0.002);
   Options options;
   options.consolidation = ConsolidationMode::Auto;
-  const Result mesh = reconstruct(points, options);
+  const Surface mesh = reconstruct(points, options);
   EXPECT_TRUE(mesh.self_intersections.empty());
   EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * test::kPi);
 }
@@ -169,14 +169,14 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
   Positions points(3, 2050);
   points << withNoise(randomSphere(2000, 10), 0.02, 11), Positions::Zero(3, 50);
   points.rightCols(50) = points.leftCols(50);
-  const Result plain = reconstruct(points);
+  const Surface plain = reconstruct(points);
   EXPECT_EQ(plain.consolidated.cols(), 0);
   EXPECT_EQ(plain.moved().cols(), 0);
   EXPECT_EQ(plain.consolidation.merged, 0U);
 
   Options options;
   options.consolidation = ConsolidationMode::Auto;
-  const Result mesh = reconstruct(points, options);
+  const Surface mesh = reconstruct(points, options);
   const Consolidation expected = consolidate(points);
   EXPECT_EQ(mesh.consolidated, expected.points);
   EXPECT_EQ(mesh.vertex_of_input, expected.point_of_input);
@@ -191,11 +191,11 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
               static_cast<Index>(v));
 
   // Neighbours of the points as they were say nothing about where they are now.
-  const Result of_lists = reconstruct(points, findNearestNeighbors(points, 3), options);
+  const Surface of_lists = reconstruct(points, findNearestNeighbors(points, 3), options);
   EXPECT_EQ(of_lists.triangles, mesh.triangles);
 
-  options.smoothing.steps = 2;
-  const Result smoothed = reconstruct(points, options);
+  options.smoothing = 2;
+  const Surface smoothed = reconstruct(points, options);
   EXPECT_EQ(smoothed.consolidated, mesh.consolidated);
   EXPECT_EQ(smoothed.moved(), smoothed.smoothed);
   EXPECT_NE(smoothed.smoothed, smoothed.consolidated);

@@ -4,8 +4,8 @@
 #include "graph_hierarchy.h"
 #include "helpers.h"
 #include "multilevel_embedding.h"
-#include "spherical_param/embedding.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "embedding.h"
+#include "sphere_triangulation.h"
 
 #include <cmath>
 #include <random>
@@ -36,7 +36,7 @@ inline Cloud dentedCloud(Index n) {
   for (Index i = 0; i < n; ++i)
     cloud.points.col(i) *= 1.0 + 0.3 * std::sin(4.0 * sphere(0, i)) * std::cos(3.0 * sphere(1, i));
   cloud.points.row(2) *= 1.7;
-  cloud.triangles = triangulateSphere(sphere).triangles;
+  cloud.triangles = triangulateSphere(sphere);
   cloud.graph = graphOfMesh(cloud.points, cloud.triangles);
   return cloud;
 }

@@ -1,10 +1,10 @@
-#include "spherical_param/embedding.h"
+#include "embedding.h"
 
 #include "embedding_starts.h"
 #include "helpers.h"
 #include "iterative_embedding.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ Positions bumpyCloud(Index n) {
 }
 
 Graph graphOf(const Positions& points, int k) {
-  return buildNeighborGraph(points, bruteForceNeighbors(points, k), test::nearest(k)).graph;
+  return test::graphOf(points, bruteForceNeighbors(points, k), test::nearest(k)).graph;
 }
 
 Embedding iterate(const Graph& graph, const Positions& start, const EmbeddingOptions& options = {},
@@ -167,7 +167,7 @@ TEST(SphereEmbedding, SameBitsForAnyNumberOfThreads) {
         lists.indices.push_back(i + step);
     lists.offsets.push_back(lists.indices.size());
   }
-  const Graph graph = buildNeighborGraph(points, lists, test::nearest()).graph;
+  const Graph graph = test::graphOf(points, lists, test::nearest()).graph;
   for (const EdgeWeights weights : kAllWeights) {
     EmbeddingOptions options;
     options.weights = weights;

@@ -4,7 +4,7 @@
 #include "iterative_embedding.h"
 #include "multilevel_embedding.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -198,7 +198,7 @@ TEST(EmbeddingRecorder, CarriesCoarseStatesAsTheSolverDoes) {
 
 TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
   const Positions sphere = spiralSphere(6000);
-  const Graph graph = graphOfMesh(sphere, triangulateSphere(sphere).triangles);
+  const Graph graph = graphOfMesh(sphere, triangulateSphere(sphere));
   const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
   for (const Index vertices : {400, 900, 1500}) {
     EmbeddingRecorder recorder(graph.size(), hierarchy, {vertices, 10});

@@ -2,7 +2,7 @@
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using test::graphOfMesh;
 using test::randomSphere;
 
 Graph sphereGraph(const Positions& points) {
-  return graphOfMesh(points, triangulateSphere(points).triangles);
+  return graphOfMesh(points, triangulateSphere(points));
 }
 
 /// Shortest paths from one node, by relaxing all edges until nothing changes.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "helpers.h"
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@ using internal::FilledGraph;
 TEST(FilledGraph, IsThatOfAClosedSurface) {
   for (const Positions& points :
        {test::hemisphere(800), test::tube(20, 40), test::sphereWithHoles(3000, 5, 0.3)}) {
-    const Graph graph = buildNeighborGraph(points, test::bruteForceNeighbors(points, 24)).graph;
+    const Graph graph = test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
     const Openings openings = findOpenings(points, graph);
     const FilledGraph filled = internal::fillOpenings(points, graph, openings);
     EXPECT_EQ(internal::countCycles(filled.graph, 2), 0);
@@ -31,7 +31,7 @@ TEST(FilledGraph, IsThatOfAClosedSurface) {
 
 TEST(FilledGraph, HasSortedSymmetricRowsWithPositiveLengths) {
   const Positions points = test::sphereWithHoles(1500, 3, 0.4);
-  const Graph graph = buildNeighborGraph(points, test::bruteForceNeighbors(points, 24)).graph;
+  const Graph graph = test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
   const Graph filled = internal::fillOpenings(points, graph, findOpenings(points, graph)).graph;
   std::map<std::pair<Index, Index>, double> entries;
   for (std::size_t v = 0; v < filled.size(); ++v)

@@ -1,7 +1,7 @@
 #include "graph_cycles.h"
 
 #include "helpers.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ Graph graphOf(const std::vector<std::set<Index>>& rows) {
 
 TEST(GraphCycles, AHandleHasTwoAndOpeningsHaveOneLessThanThereAre) {
   const Positions sphere = test::spiralSphere(1000);
-  const Triangles hull = triangulateSphere(sphere).triangles;
+  const Triangles hull = triangulateSphere(sphere);
   for (const int reach : {1, 2, 3}) {
     SCOPED_TRACE(reach);
     // The positions do not matter.

@@ -1,8 +1,8 @@
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/neighbor_search.h"
+#include "neighbor_search.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -31,7 +31,7 @@ GraphOptions with(StarAgreement agreement) {
 /// From the k nearest, and more where they are wanted.
 NeighborGraph build(const Positions& points, int k = 12,
                     StarAgreement agreement = StarAgreement::Both) {
-  return buildNeighborGraph(points, bruteForceNeighbors(points, k), with(agreement),
+  return test::graphOf(points, bruteForceNeighbors(points, k), with(agreement),
                             bruteForceSearch(points));
 }
 
@@ -132,7 +132,7 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
     return result;
   };
   std::vector<std::pair<std::vector<Index>, int>> asked;
-  const NeighborGraph result = buildNeighborGraph(points, bruteForceNeighbors(points, 12), {},
+  const NeighborGraph result = test::graphOf(points, bruteForceNeighbors(points, 12), {},
                                                   [&](const std::vector<Index>& some, int count) {
                                                     asked.emplace_back(some, count);
                                                     return bruteForceSearch(points)(some, count);
@@ -150,16 +150,16 @@ TEST(LocalDelaunayGraph, SearchIsAskedOnceARoundForThePointsThatAreNotCertified)
 TEST(LocalDelaunayGraph, ThirtyTwoNeighboursAreUsedHoweverTheyCome) {
   const Positions points = randomSphere(300, 4);
   const NeighborLists lists = bruteForceNeighbors(points, 32);
-  const Edges expected = edgesOf(buildNeighborGraph(points, lists).graph);
+  const Edges expected = edgesOf(test::graphOf(points, lists).graph);
   for (const int k : {0, 5, 12, 40})
     EXPECT_EQ(edgesOf(build(points, k).graph), expected) << k;
-  EXPECT_EQ(edgesOf(buildNeighborGraph(points, test::untidy(lists)).graph), expected);
+  EXPECT_EQ(edgesOf(test::graphOf(points, test::untidy(lists)).graph), expected);
 }
 
 TEST(LocalDelaunayGraph, WithoutASearchTheListsAreAllThereIs) {
   const Positions points = randomSphere(300, 3);
   for (const int k : {0, 1, 2, 3, 12}) {
-    const NeighborGraph result = buildNeighborGraph(points, bruteForceNeighbors(points, k));
+    const NeighborGraph result = test::graphOf(points, bruteForceNeighbors(points, k));
     expectSound(points, result);
     EXPECT_EQ(result.report.searched_again, 0);
     EXPECT_EQ(result.report.uncertified > 0, k == 12);
@@ -188,7 +188,7 @@ TEST(LocalDelaunayGraph, WithoutTangentPlanesItIsTheGabrielGraphOfTheLists) {
     // Ties, too few points, and lists that are too short.
     const Positions points = seed == 0 ? test::cubeGrid(2) : randomSphere(seed > 30 ? 12 : 9, seed);
     const NeighborLists lists = bruteForceNeighbors(points, 8);
-    const NeighborGraph result = buildNeighborGraph(points, lists);
+    const NeighborGraph result = test::graphOf(points, lists);
     EXPECT_EQ(static_cast<Index>(result.report.without_tangent_plane.size()), points.cols());
     if (result.report.weak > 0 || !result.report.bridges.empty())
       continue;
@@ -330,10 +330,10 @@ TEST(LocalDelaunayGraph, FewerThanFourPointsAreAllJoined) {
 TEST(LocalDelaunayGraph, ScaleDoesNotMatter) {
   const Positions points = randomSphere(200, 20);
   const NeighborLists lists = bruteForceNeighbors(points, 32);
-  const Edges expected = edgesOf(buildNeighborGraph(points, lists).graph);
+  const Edges expected = edgesOf(test::graphOf(points, lists).graph);
   for (const int exponent : {-1000, -600, -400, 400}) {
     const Positions scaled = std::ldexp(1.0, exponent) * points;
-    EXPECT_EQ(edgesOf(buildNeighborGraph(scaled, lists).graph), expected) << exponent;
+    EXPECT_EQ(edgesOf(test::graphOf(scaled, lists).graph), expected) << exponent;
   }
 }
 
@@ -341,7 +341,7 @@ TEST(LocalDelaunayGraph, AnyNumberOfThreadsGivesTheSameBits) {
   const Positions points = randomSphere(6000, 24);
   const NeighborLists lists = findNearestNeighbors(points, 12);
   const auto run = [&](int threads) {
-    return buildNeighborGraph(points, lists, {}, makeNeighborSearch(points),
+    return test::graphOf(points, lists, {}, makeNeighborSearch(points),
                               test::onThreads(threads));
   };
   const NeighborGraph expected = run(1);
@@ -359,7 +359,7 @@ TEST(LocalDelaunayGraph, AnswersOfTheSearchAreChecked) {
   const Positions points = randomSphere(50, 25);
   const NeighborLists lists = bruteForceNeighbors(points, 4);
   const auto answered = [&](std::size_t more_lists, const std::vector<Index>& last) {
-    return buildNeighborGraph(points, lists, {}, [&](const std::vector<Index>& some, int) {
+    return test::graphOf(points, lists, {}, [&](const std::vector<Index>& some, int) {
       NeighborLists answer;
       answer.offsets.assign(some.size() + 1 + more_lists, 0);
       answer.offsets.back() = last.size();
@@ -370,7 +370,7 @@ TEST(LocalDelaunayGraph, AnswersOfTheSearchAreChecked) {
   EXPECT_THROW(answered(1, {}), InvalidInput);
   EXPECT_THROW(answered(0, {50}), InvalidInput);
   // Fewer than there were before: all that is known is kept.
-  EXPECT_EQ(edgesOf(answered(0, {}).graph), edgesOf(buildNeighborGraph(points, lists).graph));
+  EXPECT_EQ(edgesOf(answered(0, {}).graph), edgesOf(test::graphOf(points, lists).graph));
 }
 
 }  // namespace

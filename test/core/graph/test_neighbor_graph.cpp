@@ -1,4 +1,4 @@
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
@@ -36,7 +36,7 @@ TEST(NearestNeighborGraph, JoinsEachPointToItsKNearestInLongUntidyLists) {
       for (const Index j : test::rowOf(lists, i))
         expected.insert({std::pair(i, j), std::pair(j, i)});
     const NeighborGraph result =
-        buildNeighborGraph(points, test::untidy(bruteForceNeighbors(points, 20)), nearest(k));
+        test::graphOf(points, test::untidy(bruteForceNeighbors(points, 20)), nearest(k));
     test::expectConnectedGraphOf(points, result);
     for (const Bridge& bridge : result.report.bridges)
       expected.insert({std::pair(bridge.from, bridge.to), std::pair(bridge.to, bridge.from)});
@@ -58,7 +58,7 @@ TEST(NearestNeighborGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
       parts.unite(20 * piece, 20 * piece + i);
   }
   const NeighborGraph result =
-      buildNeighborGraph(points, bruteForceNeighbors(points, 6), nearest(6));
+      test::graphOf(points, bruteForceNeighbors(points, 6), nearest(6));
   test::expectConnectedGraphOf(points, result);
   EXPECT_EQ(result.report.components, pieces);
   ASSERT_EQ(result.report.bridges.size(), static_cast<std::size_t>(pieces) - 1);
@@ -75,7 +75,7 @@ TEST(NearestNeighborGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
 TEST(NearestNeighborGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
   const Positions points = test::cubeGrid(5);  // all ties
   const NeighborGraph result =
-      buildNeighborGraph(points, bruteForceNeighbors(points, 0), nearest());
+      test::graphOf(points, bruteForceNeighbors(points, 0), nearest());
   test::expectConnectedGraphOf(points, result);
   EXPECT_EQ(result.report.components, points.cols());
   EXPECT_EQ(result.report.edges, static_cast<std::size_t>(points.cols()) - 1);
@@ -90,9 +90,9 @@ TEST(NeighborGraph, ListsThatDoNotFitThePointsAreInvalidInput) {
     const auto expect_refused = [&](const auto& change) {
       NeighborLists bad = good;
       change(bad);
-      EXPECT_THROW(buildNeighborGraph(points, bad, options), InvalidInput);
+      EXPECT_THROW(test::graphOf(points, bad, options), InvalidInput);
     };
-    EXPECT_NO_THROW(buildNeighborGraph(points, good, options));
+    EXPECT_NO_THROW(test::graphOf(points, good, options));
     expect_refused([](NeighborLists& lists) { lists.indices[3] = 10; });
     expect_refused([](NeighborLists& lists) { lists.indices[3] = -1; });
     expect_refused([](NeighborLists& lists) { lists.offsets.front() = 1; });

@@ -1,4 +1,4 @@
-#include "spherical_param/neighbor_search.h"
+#include "neighbor_search.h"
 
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"

@@ -1,4 +1,4 @@
-#include "spherical_param/openings.h"
+#include "openings.h"
 
 #include "graph_helpers.h"
 #include "open_shapes.h"
@@ -17,7 +17,7 @@ using test::spiralSphere;
 using test::tube;
 
 Graph graphOf(const Positions& points) {
-  return buildNeighborGraph(points, test::bruteForceNeighbors(points, 24)).graph;
+  return test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
 }
 
 std::vector<Opening> openingsOf(const Positions& points) {
@@ -129,7 +129,7 @@ TEST(Openings, AreTheSameMovedTurnedAndScaled) {
 
 TEST(Openings, DoNotDependOnTheThreads) {
   const Positions points = sphereWithHoles(20000, 3, 0.3);
-  const Graph graph = buildNeighborGraph(points, findNearestNeighbors(points, 24)).graph;
+  const Graph graph = test::graphOf(points, findNearestNeighbors(points, 24)).graph;
   Execution one;
   one.threads = 1;
   Execution four;

@@ -1,8 +1,8 @@
-#include "spherical_param/outliers.h"
+#include "outliers.h"
 
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/neighbor_search.h"
+#include "neighbor_search.h"
 
 #include <Eigen/Eigenvalues>
 

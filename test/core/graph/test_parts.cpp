@@ -1,6 +1,6 @@
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/parts.h"
+#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <limits>

@@ -3,7 +3,7 @@
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 #include "triangle_lists.h"
 
 #include <Eigen/Geometry>
@@ -48,7 +48,7 @@ Mesh cornerTetrahedron() {
 /// A unit sphere of n points.
 Mesh sphere(Index n) {
   const Positions points = test::spiralSphere(n);
-  return {points, triangulateSphere(points).triangles};
+  return {points, triangulateSphere(points)};
 }
 
 /// A body without any symmetry: an ellipsoid that is pulled to one side.

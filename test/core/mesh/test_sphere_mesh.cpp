@@ -1,7 +1,7 @@
 #include "sphere_mesh.h"
 
 #include "helpers.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 #include "triangle_lists.h"
 
 #include <gtest/gtest.h>
@@ -203,7 +203,7 @@ private:
 TEST(SphereMesh, HoldsItsTrianglesInAnyOrderWhateverTheNumberOfThreads) {
   std::mt19937_64 random(1);
   for (const Index n : {4, 5, 30, 30000}) {  // the last is enough for several threads
-    Triangles triangles = triangulateSphere(test::spiralSphere(n)).triangles;
+    Triangles triangles = triangulateSphere(test::spiralSphere(n));
     for (Eigen::Index t = triangles.cols() - 1; t > 0; --t)
       triangles.col(t).swap(
           triangles.col(static_cast<Eigen::Index>(random() % static_cast<std::uint64_t>(t + 1))));
@@ -270,7 +270,7 @@ TEST(SphereMesh, ThousandsOfRandomMovesKeepItASphere) {
 
 TEST(SphereMesh, MergeUndoesSplitAndFlipUndoesFlip) {
   const Index n = 51;
-  const Triangles triangles = triangulateSphere(test::randomSphere(n - 1, 2)).triangles;
+  const Triangles triangles = triangulateSphere(test::randomSphere(n - 1, 2));
   const auto expected = test::canonical(triangles);
   SphereMesh mesh(triangles, static_cast<std::size_t>(n));
   int flips = 0;
@@ -329,7 +329,7 @@ TEST(SphereMesh, AFlipWhoseEndsAreJoinedIsRefused) {
 
 TEST(SphereMesh, RollBackRestoresEverythingToTheLastIndex) {
   const Index n = 80;
-  SphereMesh mesh(triangulateSphere(test::randomSphere(n, 4)).triangles,
+  SphereMesh mesh(triangulateSphere(test::randomSphere(n, 4)),
                   static_cast<std::size_t>(n));
   std::mt19937_64 random(5);
   Moves moves(mesh, n, 6);
@@ -360,7 +360,7 @@ TEST(SphereMesh, RollBackRestoresEverythingToTheLastIndex) {
 
 TEST(SphereMesh, MovesAfterARollBackAreThoseOfAMeshThatNeverMoved) {
   const Index n = 40;
-  const Triangles triangles = triangulateSphere(test::randomSphere(n, 7)).triangles;
+  const Triangles triangles = triangulateSphere(test::randomSphere(n, 7));
   SphereMesh mesh(triangles, static_cast<std::size_t>(n));
   SphereMesh untouched(triangles, static_cast<std::size_t>(n));
   mesh.record();

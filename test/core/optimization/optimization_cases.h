@@ -1,9 +1,10 @@
 #pragma once
 
+#include "graph.h"
 #include "embedding_starts.h"
 #include "helpers.h"
 #include "sphere_mesh.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 #include "surface_energy.h"
 
 #include <Eigen/Geometry>
@@ -41,14 +42,14 @@ inline Triangles scrambled(const Triangles& triangles, Index vertex_count, int f
 
 /// Seen from the centroid: right for a star-shaped cloud, folded for others.
 inline Case radialStart(const Positions& points) {
-  return {points, triangulateSphere(internal::projectFromCentroid(points)).triangles,
+  return {points, triangulateSphere(internal::projectFromCentroid(points)),
           localDelaunayGraph(points).graph};
 }
 
 /// An affine image of an even sphere, with its convex hull, which is the best mesh there is.
 inline Case ellipsoid(Index n, double b, double c) {
   const Positions sphere = spiralSphere(n);
-  const Triangles hull = triangulateSphere(sphere).triangles;
+  const Triangles hull = triangulateSphere(sphere);
   const Positions points = Eigen::Vector3d(1.0, b, c).asDiagonal() * sphere;
   return {points, hull, graphOfMesh(points, hull)};
 }
@@ -64,7 +65,7 @@ inline Case scrambledEllipsoid(Index n, double c, int flips, std::uint64_t seed)
 /// \param noise its standard deviation [distance of the points]
 inline Case noisySphere(Index n, double noise, std::uint64_t seed) {
   const Positions sphere = spiralSphere(n);
-  const Triangles hull = triangulateSphere(sphere).triangles;
+  const Triangles hull = triangulateSphere(sphere);
   const Positions points = withNoise(sphere, noise * sphereSpacing(n), seed);
   return {points, hull, graphOfMesh(points, hull)};
 }

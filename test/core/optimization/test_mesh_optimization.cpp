@@ -1,4 +1,4 @@
-#include "spherical_param/mesh_optimization.h"
+#include "mesh_optimization.h"
 
 #include "helpers.h"
 #include "mesh_optimizer.h"

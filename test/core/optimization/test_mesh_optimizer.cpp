@@ -3,7 +3,7 @@
 #include "helpers.h"
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -408,7 +408,7 @@ TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
   EXPECT_TRUE(clean.roughVertices(0.8).empty());
   EXPECT_TRUE(clean.edgesBelow(0.8).empty());
   // A mesh that joins points on opposite sides, and none to its neighbours in the graph.
-  const Triangles far = triangulateSphere(randomSphere(400, 8)).triangles;
+  const Triangles far = triangulateSphere(randomSphere(400, 8));
   EXPECT_GT(MeshOptimizer(of.points, far, of.graph, 1).roughVertices(-2.0).size(), 300U);
   // One point pushed in.
   of.points.col(200) *= 0.5;

@@ -1,7 +1,7 @@
 #include "open_places.h"
 
 #include "open_shapes.h"
-#include "spherical_param/neighbor_graph.h"
+#include "neighbor_graph.h"
 
 namespace spherical_param {
 namespace {
@@ -11,7 +11,7 @@ using internal::OpenPlaces;
 TEST(OpenPlaces, AreTrianglesNearALoopWithALongSide) {
   // Rings 0, 1, 2, ... of 40 points; the loops are rings 0 and 19.
   const Positions points = test::tube(20, 40);
-  const Graph graph = buildNeighborGraph(points, test::bruteForceNeighbors(points, 24)).graph;
+  const Graph graph = test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
   const OpenPlaces places(points, graph, findOpenings(points, graph));
   EXPECT_TRUE(places.areAny());
   EXPECT_TRUE(places.isOpen(0, 10, 20));

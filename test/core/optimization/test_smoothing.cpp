@@ -1,8 +1,8 @@
-#include "spherical_param/smoothing.h"
+#include "smoothing.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct Mesh {
 
 Mesh noisyMesh(Index n, double noise, std::uint64_t seed) {
   const Positions sphere = spiralSphere(n);
-  return {withNoise(sphere, noise, seed), triangulateSphere(sphere).triangles};
+  return {withNoise(sphere, noise, seed), triangulateSphere(sphere)};
 }
 
 double largestDifference(const Positions& a, const Positions& b) {

@@ -1,4 +1,4 @@
-#include "spherical_param/surface_diagnosis.h"
+#include "surface_diagnosis.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"
@@ -166,7 +166,7 @@ TEST(SurfaceDiagnosis, OfManyNeighborsTheNearestAreUsed) {
   for (const double height : {2.0, 0.8}) {
     Scene scene = openSphere(1000, height);
     scene.graph =
-        buildNeighborGraph(scene.points, bruteForceNeighbors(scene.points, 25), nearest());
+        graphOf(scene.points, bruteForceNeighbors(scene.points, 25), nearest());
     const SurfaceDiagnosis diagnosis = diagnose(scene);
     EXPECT_EQ(diagnosis.kind, height < 1.0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0);
     EXPECT_EQ(diagnosis.filled_holes.size(), height < 1.0 ? 1U : 0U);

@@ -1,4 +1,4 @@
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include "spherical_param/errors.h"
 #include "triangulations.h"

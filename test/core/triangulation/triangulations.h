@@ -1,7 +1,7 @@
 #pragma once
 
 #include "helpers.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

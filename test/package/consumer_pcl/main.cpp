@@ -27,7 +27,7 @@ int main() {
   reconstruction.setInputCloud(cloud);
   pcl::PolygonMesh mesh;
   reconstruction.reconstruct(mesh);
-  const spherical_param::Result& result = reconstruction.getResult();
+  const spherical_param::Surface& result = reconstruction.getResult();
   return mesh.polygons.size() == 796 &&
                  spherical_param::findDistinctPoints(result.sphere).input_of_vertex.size() == 400
              ? 0

@@ -38,7 +38,7 @@ Positions scanned(Shape shape, std::size_t points) {
 
 ReconstructionSettings flipsAlone() {
   ReconstructionSettings settings;
-  settings.options.optimization.method = OptimizationMethod::Flips;
+  settings.options.optimization = OptimizationMethod::Flips;
   settings.options.threads = 2;
   return settings;
 }
@@ -92,7 +92,7 @@ double shareOf(double value, double min, double max) {
 void expectShown(const Shown& shown) {
   const Page& page = shown.page;
   const ReportMesh& mesh = shown.mesh;
-  const Result& result = shown.cloud->result;
+  const Surface& result = shown.cloud->result;
   const auto n = static_cast<Index>(mesh.positions.cols());
   EXPECT_EQ(page.data["mesh"]["vertices"], result.vertexCount());
   EXPECT_EQ(page.data["mesh"]["triangles"], result.triangles.cols());
@@ -154,7 +154,7 @@ Eigen::ArrayXd areasAround(const ReportMesh& mesh) {
 TEST(HtmlReport, HoldsTheMeshItsMarksAndDistortionUpToRounding) {
   const Shown shown = show(scanned(Shape::Bowl, 2000));
   expectShown(shown);
-  const Result& result = shown.cloud->result;
+  const Surface& result = shown.cloud->result;
   // The same triangles in another order, each with its marks.
   const auto marked = [](const Triangles& triangles, const std::vector<std::uint8_t>& marks,
                          const std::vector<Index>& vertices) {
@@ -208,7 +208,7 @@ TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
 
 TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   ReconstructionSettings settings = flipsAlone();
-  settings.options.smoothing.steps = 5;
+  settings.options.smoothing = 5;
   Positions far(3, 6);
   for (Eigen::Index i = 0; i < 6; ++i)
     far.col(i) << (i == 0 ? 0.9 : 3.0), 0.1 * static_cast<double>(i), -2.0;
@@ -241,7 +241,7 @@ TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 3}) {
     ReconstructionSettings settings = flipsAlone();
     settings.options.threads = threads;
-    settings.options.smoothing.steps = 2;
+    settings.options.smoothing = 2;
     const Shown shown = show(scanned(Shape::Animal, 2000), settings, 0, 2000);
     if (threads == 1)
       first = shown.page.texts;
@@ -277,7 +277,7 @@ TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
 
 TEST(HtmlReport, HasTheSpacingOfTheShownPointsOfTheInput) {
   ReconstructionSettings smoothed = flipsAlone();
-  smoothed.options.smoothing.steps = 5;
+  smoothed.options.smoothing = 5;
   const Positions points = 1e6 * scanned(Shape::Bird, 1500);
   for (const std::size_t max_triangles : {kMaxReportTriangles, std::size_t{800}}) {
     const Shown shown = show(points, smoothed, 0, max_triangles);

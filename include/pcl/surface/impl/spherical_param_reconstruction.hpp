@@ -54,7 +54,7 @@ choosePoints(const spherical_param::Positions& points, spherical_param::PartsMod
  * \param[in] options their progress callback may throw
  * \param[in] ignored_points points of the cloud that are not finite, for messages
  * \param[in] search finds the neighbours; null: the core does */
-PCL_EXPORTS spherical_param::Result reconstructPoints(const spherical_param::Positions& points,
+PCL_EXPORTS spherical_param::Surface reconstructPoints(const spherical_param::Positions& points,
                                                       spherical_param::Options options,
                                                       std::size_t ignored_points,
                                                       const UserSearch* search);
@@ -99,14 +99,14 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
-  return cloudOf(&spherical_param::Result::sphere);
+  return cloudOf(&spherical_param::Surface::sphere);
 }
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::getMovedPoints() const {
   if (parts_.front().result.moved().cols() == 0)
     return detail::cloudOfNothing(0);
-  return cloudOf(&spherical_param::Result::moved);
+  return cloudOf(&spherical_param::Surface::moved);
 }
 
 template <typename PointInT>

@@ -7,7 +7,7 @@
 #include <pcl/types.h>
 
 #include "spherical_param/errors.h"
-#include "spherical_param/point_set.h"
+#include "point_set.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Geometry>

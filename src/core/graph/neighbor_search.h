@@ -11,11 +11,6 @@ namespace spherical_param {
 /// \addtogroup neighbor_graph
 /// @{
 
-/// Returns the `count` nearest neighbours of each of `points`, one list for each in their order.
-/// The point itself may be in its list; `count` should not include it. Lists may be shorter where
-/// there are no more.
-using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
-
 /// Builds a k-d tree of points, in double precision.
 ///
 /// \param points 3 x n, n >= 1, finite; copied. Those near in space should be near in memory:

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "spherical_param/execution.h"
-#include "spherical_param/types.h"
+#include "graph.h"
+#include "spherical_param/options.h"
 
 #include <array>
 #include <cstddef>
@@ -14,13 +14,6 @@ namespace spherical_param {
 
 /// \addtogroup optimization
 /// @{
-
-/// How far a mesh on fixed points is optimised.
-enum class OptimizationMethod {
-  None,   ///< not at all
-  Flips,  ///< edge flips alone
-  Full,   ///< flips, vertices moved to other places of the mesh, parts taken out and put back
-};
 
 /// Parameters of optimizeMesh().
 struct OptimizationOptions {
@@ -104,8 +97,7 @@ struct MeshOptimization {
 /// \param seed  of the random choice of parts that are taken out.
 /// \param execution threads, progress, time limit
 /// \return the mesh: the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for sizes that disagree, an index or option out of range, or a mesh that is
-///        not as said; Cancelled.
+/// \throw Cancelled.
 ///
 /// Not guaranteed: that no triangles intersect; that the energy is the least.
 /// Cost: O(n log n); repairs end after work that is proportional to n.

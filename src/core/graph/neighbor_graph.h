@@ -1,45 +1,15 @@
 #pragma once
 
-#include "spherical_param/execution.h"
-#include "spherical_param/neighbor_search.h"
-#include "spherical_param/types.h"
+#include "graph.h"
+#include "spherical_param/options.h"
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 namespace spherical_param {
 
 /// \addtogroup neighbor_graph
 /// @{
-
-/// How points become neighbours.
-enum class GraphMethod {
-  NearestNeighbors,  ///< k nearest neighbours (Zwicker and Gotsman 2004, section 3)
-  LocalDelaunay,     ///< local Delaunay neighbourhoods (the future work of their section 6)
-};
-
-/// Which pairs of points local Delaunay neighbourhoods join.
-enum class StarAgreement {
-  Both,    ///< those of which each is in the star of the other
-  Either,  ///< those of which one is in the star of the other: more edges, and more shortcuts
-};
-
-/// Parameters of buildNeighborGraph().
-struct GraphOptions {
-  GraphMethod method = GraphMethod::LocalDelaunay;  ///< how points become neighbours
-  /// Nearest neighbours of each point; 3 and up (k >= n: n - 1 are used). Unset: 25, the paper's,
-  /// for the graph of nearest neighbours; 12 for local Delaunay neighbourhoods, which search for
-  /// more where they need them, up to 32 in all.
-  std::optional<int> k;
-  StarAgreement agreement = StarAgreement::Both;  ///< of LocalDelaunay: of the stars of two points
-};
-
-/// The nearest neighbours to search for at first.
-///
-/// \param options of the graph.
-/// \return GraphOptions::k or its default; 3 and up.
-int neighborsToSearch(const GraphOptions& options);
 
 /// An edge that joins two parts of a graph that was in pieces.
 struct Bridge {
@@ -102,8 +72,7 @@ struct NeighborGraph {
 ///               empty: the graph is then made of the lists alone.
 /// \param execution threads, progress
 /// \return the graph; the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for sizes that disagree, an index out of range, or options out of range;
-/// Cancelled.
+/// \throw Cancelled.
 /// Cost: O(n c log c) for lists of c points, and O(p log p log n) for the bridges of p components,
 /// typically.
 ///
@@ -112,8 +81,7 @@ struct NeighborGraph {
 /// Not guaranteed: that no edge is a shortcut where sheets are closer to each other than their
 /// points, nor that a chain of parts that hang by one node each (a needle) is tied everywhere.
 NeighborGraph buildNeighborGraph(const Positions& points, const NeighborLists& lists,
-                                 const GraphOptions& options = {},
-                                 const NeighborSearch& search = {},
+                                 GraphMethod method, int k, const NeighborSearch& search = {},
                                  const Execution& execution = {});
 
 /// @}

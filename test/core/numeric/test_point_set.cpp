@@ -1,4 +1,4 @@
-#include "spherical_param/point_set.h"
+#include "point_set.h"
 
 #include "helpers.h"
 #include "spherical_param/errors.h"

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "graph.h"
 #include "spherical_param/execution.h"
-#include "spherical_param/types.h"
+#include "spherical_param/result.h"
 
 #include <array>
 #include <vector>
@@ -10,24 +11,6 @@ namespace spherical_param {
 
 /// \addtogroup neighbor_graph
 /// @{
-
-/// An opening of the sampled surface: a wide face of its neighbour graph.
-struct Opening {
-  std::vector<Index> loop;  ///< nodes around it, in order; one that the face passes twice, twice
-  double boundary_length = 0.0;  ///< of the loop [unit of the input]
-  double area = 0.0;             ///< of a surface over it: length of its vector area [unit squared]
-  double spacing = 0.0;          ///< distance of the points at the loop, mean [unit of the input]
-  /// min(4 area / boundary_length, boundary_length / pi), the diameter of a disc [unit of the
-  /// input].
-  double width = 0.0;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the loop
-  /// That it is one, in [0, 1]: 0 for a face of the least width that counts, of 3 spacings, 1 from
-  /// 9 spacings on.
-  double certainty = 0.0;
-  /// The loop lies in a plane: a flat face of the surface may have no points inside, and be none.
-  bool is_flat = false;
-  bool is_filled = false;  ///< of a Result: the mesh has triangles there
-};
 
 /// The openings of a sampled surface.
 struct Openings {
@@ -61,7 +44,6 @@ struct Openings {
 /// \param graph  n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.
 /// \param execution threads
 /// \return the openings, the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for sizes that disagree.
 /// Cost: O(n).
 ///
 /// Not guaranteed: openings of less than some 5 spacings are not seen, seams between sheets that

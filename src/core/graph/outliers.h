@@ -1,7 +1,7 @@
 #pragma once
 
+#include "neighbor_graph.h"
 #include "spherical_param/execution.h"
-#include "spherical_param/neighbor_graph.h"
 #include "spherical_param/types.h"
 
 #include <vector>
@@ -50,7 +50,7 @@ struct Outliers {
 /// \return the stray points, the same, bit by bit, for any number of threads; the score of one is
 ///         StrayPoint::distance, or its distance from the quadric in spacings, that of others 0.
 /// \throw InvalidInput for coordinates that are not finite, or options out of range; Cancelled.
-/// Cost: that of a neighbour graph and of a search and a fit for each point. Result::outliers of
+/// Cost: that of a neighbour graph and of a search and a fit for each point. Surface::outliers of
 /// reconstruct() are those without the last kind, and cost no more than a search for each point
 /// that is on no surface.
 ///

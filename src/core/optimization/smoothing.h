@@ -1,6 +1,6 @@
 #pragma once
 
-#include "spherical_param/types.h"
+#include "spherical_param/result.h"
 
 #include <cstddef>
 
@@ -31,17 +31,6 @@ struct SmoothingOptions {
   bool restore_volume = true;
 };
 
-/// How far a smoothed surface is from the one given.
-struct SmoothingReport {
-  double max_displacement = 0.0;   ///< of a point [unit of the input]
-  double mean_displacement = 0.0;  ///< over the points of triangles [unit of the input]
-  double rms_displacement = 0.0;   ///< over the points of triangles [unit of the input]
-  double volume_before = 0.0;      ///< signed volume enclosed [cubed unit of the input]
-  double volume_after = 0.0;       ///< signed volume enclosed [cubed unit of the input]
-  /// In a Result: pairs of triangles that intersect on the smoothed points.
-  std::size_t self_intersections = 0;
-};
-
 /// A smoothed surface.
 struct Smoothing {
   Positions points;        ///< 3 x n, column i = point i [unit of the input]
@@ -56,8 +45,6 @@ struct Smoothing {
 /// \param options filter, strength
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return the points, the same, bit by bit, for any number of threads.
-/// \throw InvalidInput for coordinates that are not finite, an index or option out of range, or a
-///        mesh that is not as said.
 /// Cost: O(n) per step of Umbrella; Biharmonic O(n sqrt(steps)), five steps as much as some thirty
 /// of Umbrella.
 ///

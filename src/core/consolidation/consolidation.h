@@ -1,30 +1,15 @@
 #pragma once
 
 #include "spherical_param/execution.h"
+#include "spherical_param/result.h"
 #include "spherical_param/types.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace spherical_param {
 
 /// \addtogroup consolidation
 /// @{
-
-/// Whether points are consolidated before they are meshed.
-enum class ConsolidationMode {
-  None,  ///< the mesh goes through the points as they are
-  Auto,  ///< they are moved to the surface that they sample, and merged below their noise
-};
-
-/// What consolidate() found and did.
-struct ConsolidationReport {
-  double noise = 0.0;      ///< median distance of the points from the surface [unit of the input]
-  std::size_t merged = 0;  ///< points that became one with others, without exact duplicates
-  double max_displacement = 0.0;  ///< of a point, to where it or what it is merged into ends [unit]
-  double mean_displacement = 0.0;  ///< over the points [unit of the input]
-  double rms_displacement = 0.0;   ///< over the points [unit of the input]
-};
 
 /// Points on the surface that a noisy cloud samples.
 struct Consolidation {

@@ -10,13 +10,6 @@ namespace spherical_param {
 /// \addtogroup parts
 /// @{
 
-/// Which parts of a cloud are meshed.
-enum class PartsMode {
-  All,      ///< all together, as one surface
-  Largest,  ///< that of most points
-  Each,     ///< each by itself
-};
-
 /// Points that form a surface of their own.
 struct Part {
   std::vector<Index> points;  ///< their numbers, ascending

@@ -1,4 +1,4 @@
-#include "spherical_param/point_set.h"
+#include "point_set.h"
 
 #include "bit_mixing.h"
 #include "exact_predicates.h"
