@@ -326,10 +326,11 @@ struct Result {
   /// Those of the parts that were meshed, that of most points first; one with PartsMode::All and
   /// Largest.
   std::vector<Surface> surfaces;
-  LeftOut left_out;               ///< points in none of them
-  std::vector<StageTime> stages;  ///< in the order of the work, of all surfaces together
-  std::string verdict;            ///< a headline, e.g. "3 meshes, all sound."
-  std::vector<Finding> findings;  ///< of all surfaces; those of several parts name them
+  LeftOut left_out;                   ///< points in none of them
+  std::vector<std::string> failures;  ///< why parts could not be meshed, a clause each
+  std::vector<StageTime> stages;      ///< in the order of the work, of all surfaces together
+  std::string verdict;                ///< a headline, e.g. "3 meshes, all sound."
+  std::vector<Finding> findings;      ///< of all surfaces; those of several parts name them
 
   /// The surface of most points. \return it
   const Surface& surface() const { return surfaces.front(); }

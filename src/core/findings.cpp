@@ -187,20 +187,20 @@ std::string verdictOf(const Options& options, const Surface& result) {
   return text + ".";
 }
 
-Finding failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
-                  std::string error) {
+std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
+                      std::string error) {
   const std::string function = "reconstruct: ";
   if (error.compare(0, function.size(), function) == 0)
     error.erase(0, function.size());
-  return {"part " + std::to_string(part + 1) + " of " + std::to_string(parts.size()) + " (" +
-              counted(parts[part].size(), "point") + ") cannot be meshed: " + error,
-          "", "", true};
+  return "part " + std::to_string(part + 1) + " of " + std::to_string(parts.size()) + " (" +
+         counted(parts[part].size(), "point") + ") cannot be meshed: " + error;
 }
 
-void summarize(const std::vector<Finding>& failures, Result& result) {
-  result.findings = failures;
+void summarize(Result& result) {
+  for (const std::string& failure : result.failures)
+    result.findings.push_back({failure, "", "", true});
   const std::vector<Surface>& surfaces = result.surfaces;
-  std::vector<std::string> parts(failures.size());  // that each finding is true of
+  std::vector<std::string> parts(result.failures.size());  // that each finding is true of
   std::size_t faulty = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     faulty += hasFault(surfaces[i].findings) ? 1 : 0;
@@ -238,7 +238,8 @@ std::string LeftOut::text() const {
   std::string text;
   const auto add = [&](std::size_t count, const std::string& one, const std::string& many) {
     if (count > 0)
-      text += (text.empty() ? "" : ", ") + internal::grouped(count) + " " + (count == 1 ? one : many);
+      text +=
+          (text.empty() ? "" : ", ") + internal::grouped(count) + " " + (count == 1 ? one : many);
   };
   add(not_finite.size(), "point that is not finite", "points that are not finite");
   add(outliers.size(), "outlier", "outliers");

@@ -16,12 +16,12 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result);
 ///
 /// \param part  number of it among the parts.
 /// \param error message of the exception.
-Finding failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
-                  std::string error);
+std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
+                      std::string error);
 
 /// Fills verdict and findings of a result: those of its surfaces, what is true of several said
-/// once, and those of parts that were not meshed.
-void summarize(const std::vector<Finding>& failures, Result& result);
+/// once, and Result::failures.
+void summarize(Result& result);
 
 /// A headline: whether the mesh is sound, and what is left open, filled, cut or joined.
 std::string verdictOf(const Options& options, const Surface& result);

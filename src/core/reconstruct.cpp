@@ -186,15 +186,13 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
 }
 
 /// Meshes all parts, each with its share of the time. One of several that cannot be meshed is left
-/// out. \return what is to be said of those
-std::vector<Finding> meshParts(Selection& selection, const Options& options, StageClock& clock,
-                               Result& result) {
+/// out.
+void meshParts(Selection& selection, const Options& options, StageClock& clock, Result& result) {
   const std::vector<std::vector<Index>>& parts = selection.parts();
   std::size_t left = 0;
   for (const std::vector<Index>& part : parts)
     left += part.size();
   const auto all = static_cast<double>(left);
-  std::vector<Finding> failures;
   std::exception_ptr first_error;
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto count = static_cast<double>(parts[part].size());
@@ -203,7 +201,7 @@ std::vector<Finding> meshParts(Selection& selection, const Options& options, Sta
     const auto leave_out = [&](const std::exception& error) {
       if (!first_error)
         first_error = std::current_exception();
-      failures.push_back(internal::failureOf(part, parts, error.what()));
+      result.failures.push_back(internal::failureOf(part, parts, error.what()));
       result.left_out.other_parts.insert(result.left_out.other_parts.end(), parts[part].begin(),
                                          parts[part].end());
     };
@@ -218,7 +216,6 @@ std::vector<Finding> meshParts(Selection& selection, const Options& options, Sta
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
   std::sort(result.left_out.other_parts.begin(), result.left_out.other_parts.end());
-  return failures;
 }
 
 /// Says what was left out in the message of a failure: it may be the cause.
@@ -243,12 +240,12 @@ Result reconstruct(const Positions& points, const Options& options,
   checkOptions(options);
   StageClock clock(options);
   Result result;
-  const std::vector<Finding> failures = explained(result.left_out, [&] {
+  explained(result.left_out, [&] {
     Selection selection(points, options, search_of, clock, result.left_out);
-    return meshParts(selection, options, clock, result);
+    meshParts(selection, options, clock, result);
   });
   result.stages = clock.take();
-  internal::summarize(failures, result);
+  internal::summarize(result);
   return result;
 }
 

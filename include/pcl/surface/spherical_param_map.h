@@ -43,8 +43,8 @@ struct MappedMesh {
 template <typename PointInT>
 spherical_param::Positions
 verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
-  if (reconstruction.getResult().moved().cols() > 0)
-    return reconstruction.getResult().moved();
+  if (reconstruction.getResult().surface().moved().cols() > 0)
+    return reconstruction.getResult().surface().moved();
   const pcl::Indices& vertices = reconstruction.getVertexIndices();
   const auto& cloud = *reconstruction.getInputCloud();
   spherical_param::Positions points(3, static_cast<Eigen::Index>(vertices.size()));
@@ -71,7 +71,7 @@ bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& r
       output.header = reconstruction.getInputCloud()->header;
   };
   const auto work = [&](const spherical_param::Execution& execution) {
-    mesh.triangles = reconstruction.getResult().triangles;
+    mesh.triangles = reconstruction.getResult().surface().triangles;
     Output made = make(std::as_const(mesh), execution.threads);
     made.header = output.header;
     made.cloud.header = output.header;
@@ -97,7 +97,7 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
   const auto work = [&](const spherical_param::Execution& execution) {
     spherical_param::SphereMapOptions guarded = options;
     static_cast<spherical_param::Execution&>(guarded) = execution;
-    const spherical_param::Surface& result = reconstruction.getResult();
+    const spherical_param::Surface& result = reconstruction.getResult().surface();
     spherical_param::Positions vertices = detail::verticesOf(reconstruction);
     map = spherical_param::computeSphereMap(vertices, result.triangles, result.sphere, guarded);
     points = std::move(vertices);

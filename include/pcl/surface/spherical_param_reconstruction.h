@@ -5,7 +5,6 @@
 #include <pcl/point_types.h>
 #include <pcl/surface/reconstruction.h>
 
-#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <array>
@@ -84,6 +83,8 @@ public:
   using ConsolidationMode = spherical_param::ConsolidationMode;
   /** \brief What becomes of openings of the surface. */
   using SurfaceMode = spherical_param::SurfaceMode;
+  /** \brief Which points are left out. */
+  using OutlierMode = spherical_param::OutlierMode;
   /** \brief Which parts of the cloud are meshed. */
   using PartsMode = spherical_param::PartsMode;
   /** \brief Receives the progress of the work; returning false cancels it. */
@@ -97,7 +98,7 @@ public:
    * mode default ConsolidationMode::None \note The polygons then join the first input points of the
    * merged ones; their places are those of getMovedPoints(). Neighbours are found in double
    * precision then, not by the search object. How many points were merged, and how far they moved,
-   * is in getResult().consolidation. */
+   * is in Surface::consolidation of getResult(). */
   inline void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
   /** \brief Get whether the points are consolidated.
    * \return the mode */
@@ -120,23 +121,40 @@ public:
    * \return the number of edges around them */
   inline int getFillHoles() const { return options_.fill_holes; }
 
-  /** \brief Set which parts of the cloud are meshed.
+  /** \brief Set which points are left out before all else, as they belong to no surface.
+   * \param[in] mode default OutlierMode::None. Auto: stray points, small clusters of them and
+   * single points near a surface. Deviation: points too far from the average of their neighbours.
+   * \note Which they are is in getResult().left_out. */
+  inline void setOutliers(OutlierMode mode) { options_.outliers = mode; }
+  /** \brief Get which points are left out.
+   * \return the mode */
+  inline OutlierMode getOutliers() const { return options_.outliers; }
+
+  /** \brief Set how far off outliers are with OutlierMode::Deviation.
+   * \param[in] sigma number of standard deviations, 0 to 1000; default 4 */
+  inline void setOutlierSigma(double sigma) { options_.outlier_sigma = sigma; }
+  /** \brief Get how far off outliers are with OutlierMode::Deviation.
+   * \return number of standard deviations */
+  inline double getOutlierSigma() const { return options_.outlier_sigma; }
+
+  /** \brief Set which parts of the cloud are meshed. A part is a surface of its own: points that
+   * neighbours join.
    * \param[in] mode default PartsMode::All: all together, as one surface. Largest meshes that of
    * most points; Each meshes all, each as if it were alone, to polygons of one mesh.
-   * \note \see spherical_param::findParts() for what a part is. With Each, a part that cannot be
-   * meshed, as its points are in one plane, say, is left out with a warning (PCL_WARN). */
-  inline void setParts(PartsMode mode) { parts_mode_ = mode; }
+   * \note With Each, a part that cannot be meshed, as its points are in one plane, say, is left out
+   * with a warning (PCL_WARN). */
+  inline void setParts(PartsMode mode) { options_.parts = mode; }
   /** \brief Get which parts of the cloud are meshed.
    * \return the mode */
-  inline PartsMode getParts() const { return parts_mode_; }
+  inline PartsMode getParts() const { return options_.parts; }
 
-  /** \brief Set how many distinct points a part has at least; smaller ones are left out. Nothing
-   * is with PartsMode::All.
+  /** \brief Set how many distinct points a part has at least; smaller ones are left out. With
+   * PartsMode::All it has no effect.
    * \param[in] points 4 and up; default 50 */
-  inline void setMinPartSize(int points) { min_part_size_ = points; }
+  inline void setMinPartSize(int points) { options_.min_points = points; }
   /** \brief Get how many distinct points a part has at least.
    * \return their number */
-  inline int getMinPartSize() const { return min_part_size_; }
+  inline int getMinPartSize() const { return options_.min_points; }
 
   /** \brief Set how points become neighbours.
    * \param[in] method default GraphMethod::LocalDelaunay
@@ -157,7 +175,7 @@ public:
   inline void setKSearch(int k) { options_.k = k; }
   /** \brief Get the number of nearest neighbours of each point that are searched for.
    * \return that of setKSearch(), or the default of the graph method */
-  inline int getKSearch() const { return spherical_param::neighborsToSearch(options_.graph); }
+  inline int getKSearch() const { return spherical_param::neighborsToSearch(options_); }
 
   /** \brief Set how the graph is embedded on the sphere.
    * \param[in] method default EmbeddingMethod::Multilevel
@@ -182,7 +200,7 @@ public:
    * iterative embedding aims at 1e-8; the multilevel embedding ends with its smoothing sweeps and
    * does not converge.
    * \note Set it, 1e-8 say, for a map that hardly depends on how it was reached, and where
-   * smoothing alone leaves folds (getResult().diagnosis.edges_outside_graph), as it may on long
+   * smoothing alone leaves folds (getDiagnosis().edges_outside_graph), as it may on long
    * thin limbs. The mesh hardly gains otherwise. */
   inline void setTolerance(std::optional<double> tolerance) {
     options_.embedding.tolerance = tolerance;
@@ -200,17 +218,13 @@ public:
   }
   /** \brief Get how the points on the sphere are triangulated.
    * \return the method */
-  inline TriangulationMethod getTriangulationMethod() const {
-    return options_.triangulation;
-  }
+  inline TriangulationMethod getTriangulationMethod() const { return options_.triangulation; }
 
   /** \brief Set how far the mesh is optimised on the points.
    * \param[in] method default OptimizationMethod::Full
    * \note Set OptimizationMethod::None for the mesh that the sphere gives, and
    * OptimizationMethod::Flips where time matters more than the last self-intersections. */
-  inline void setOptimizationMethod(OptimizationMethod method) {
-    options_.optimization = method;
-  }
+  inline void setOptimizationMethod(OptimizationMethod method) { options_.optimization = method; }
   /** \brief Get how far the mesh is optimised on the points.
    * \return the method */
   inline OptimizationMethod getOptimizationMethod() const { return options_.optimization; }
@@ -236,7 +250,7 @@ public:
 
   /** \brief Set the time after which the work ends with the best mesh so far.
    * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit. A first mesh is made in any case;
-   * getResult().optimization.is_out_of_time says whether the limit ended the work.
+   * Surface::is_out_of_time of getResult() says whether the limit ended the work.
    * \note Set it where a scan must not hold up what comes after it. The same limit may give another
    * mesh on another machine. */
   inline void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
@@ -290,14 +304,12 @@ public:
    * \return 1, or with PartsMode::Each their number; 1 after a failure as well */
   inline std::size_t getPartCount() const { return parts_.size(); }
 
-  /** \brief Get the result of the last reconstruct(); a default-constructed one after a failure.
-   * Its "inputs" are the points getUsedIndices() lists; its vertices are the points that
-   * getVertexIndices() lists. Volume, area, centroid and inertia of the mesh are in `measures`.
-   * \param[in] part below getPartCount(), the largest first
+  /** \brief Get the result of the last reconstruct(): the surface of each part, what was left out,
+   * verdict and findings. Empty after a failure. Its input points are those of setIndices() without
+   * repetitions, in their order, or all points; getUsedIndices() and getVertexIndices() list their
+   * indices in the cloud.
    * \return the result, which the next reconstruct() replaces */
-  inline const spherical_param::Surface& getResult(std::size_t part = 0) const {
-    return parts_.at(part).result;
-  }
+  inline const spherical_param::Result& getResult() const { return result_; }
 
   /** \brief Get the indices into the input cloud of the points that were meshed: those of
    * setIndices() (or all), without repetitions and without points that are not finite, of the part.
@@ -307,7 +319,7 @@ public:
     return parts_.at(part).used_indices;
   }
 
-  /** \brief Get the index into the input cloud of each vertex of getResult().
+  /** \brief Get the index into the input cloud of each vertex of a surface.
    * \param[in] part below getPartCount()
    * \return one index for each vertex */
   inline const pcl::Indices& getVertexIndices(std::size_t part = 0) const {
@@ -316,7 +328,7 @@ public:
 
   /** \brief Get the number of points that were skipped because they are not finite.
    * \return their number */
-  inline std::size_t getIgnoredPointCount() const { return ignored_points_; }
+  inline std::size_t getIgnoredPointCount() const { return result_.left_out.not_finite.size(); }
 
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
    * that the polygons fit it as well. Duplicates have the place of their vertex; points that were
@@ -330,9 +342,9 @@ public:
    * input cloud, so that the polygons fit them as well. Duplicates and merged points have the place
    * of their vertex; points that were skipped or not in the indices are NaN. Empty without both and
    * after a failure.
-   * \note In double precision, by vertex, they are getResult().moved(); how far they moved is in
-   * getResult().consolidation and getResult().smoothing.
-   * \return a new cloud of the size of the input, or an empty one */
+   * \note In double precision, by vertex, they are Surface::moved() of getResult(); how far they
+   * moved is in Surface::consolidation and Surface::smoothing. \return a new cloud of the size of
+   * the input, or an empty one */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getMovedPoints() const;
 
   /** \brief Get the pairs of triangles of the mesh that intersect, as indices of triangles of
@@ -343,7 +355,7 @@ public:
    * \return the pairs; none is what a clean scan should give */
   inline const std::vector<std::array<spherical_param::Index, 2>>&
   getSelfIntersections(std::size_t part = 0) const {
-    return getResult(part).self_intersections;
+    return getSurfaceOf(part).self_intersections;
   }
 
   /** \brief Get what speaks against a closed surface without handles, in one piece, and where. Its
@@ -352,7 +364,7 @@ public:
    * \note The mesh is a sphere whatever the cloud shows; the diagnosis says whether it should be.
    * \return what was found; getResult().verdict and getResult().findings say it in words */
   inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
-    return getResult(part).diagnosis;
+    return getSurfaceOf(part).diagnosis;
   }
 
   /** \brief Get the cause and the remedy of the last failure; empty after a success.
@@ -380,12 +392,17 @@ protected:
   void performReconstruction(std::vector<pcl::Vertices>& polygons) override;
 
 private:
-  /** \brief What was made of some of the points. */
-  struct MeshedPart {
-    spherical_param::Surface result;
+  /** \brief The indices in the cloud of the points and vertices of a part. */
+  struct PartIndices {
     pcl::Indices used_indices;
     pcl::Indices vertex_indices;
   };
+
+  /** \brief The surface of a part; an empty one after a failure. */
+  inline const spherical_param::Surface& getSurfaceOf(std::size_t part) const {
+    static const spherical_param::Surface none;
+    return part == 0 && result_.surfaces.empty() ? none : result_.surfaces.at(part);
+  }
 
   /** \brief Makes a cloud of the size of the input from the places of vertices, a member of
    * spherical_param::Surface. */
@@ -394,11 +411,6 @@ private:
 
   /** \brief Fills the results. */
   void meshPoints();
-
-  /** \brief Meshes some points.
-   * \param[in] used_indices of the points
-   * \param[in] points 3 x used_indices.size() */
-  MeshedPart meshPart(pcl::Indices used_indices, const spherical_param::Positions& points);
 
   /** \brief Clears the results, does the work and, if that fails, clears results and output and
    * says why. */
@@ -409,17 +421,15 @@ private:
   /** \brief Throws InvalidInput for a cloud or indices that initCompute() must not see. */
   void checkInput() const;
 
-  /** \brief Finds the points that can be used, and counts ignored_points_.
+  /** \brief Collects the points, finite or not, without repeated indices.
    * \param[out] used_indices of these points
    * \return the points, 3 x used_indices.size() */
   spherical_param::Positions collectPoints(pcl::Indices& used_indices);
 
   spherical_param::Options options_;
-  PartsMode parts_mode_ = PartsMode::All;
-  int min_part_size_ = 50;
-  std::vector<MeshedPart> parts_{1};
+  spherical_param::Result result_;
+  std::vector<PartIndices> parts_{1};
   std::size_t input_size_ = 0;
-  std::size_t ignored_points_ = 0;
   std::string error_message_;
 };
 

@@ -1,6 +1,7 @@
 #include "neighborhoods.h"
 
 #include "neighbor_search.h"
+#include "progress.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
@@ -17,9 +18,12 @@ OrderedPoints orderInputs(const Positions& cloud, const std::vector<Index>& inpu
              : orderCheckedPoints(cloud(Eigen::all, inputs), threads);
 }
 
+/// Points that a caller's search is asked for at once: between two questions progress is reported.
+constexpr std::size_t kQuestion = 4096;
+
 /// The caller's search, in the numbers of nodes.
 NeighborSearch searchOfCaller(const OrderedPoints& nodes, const std::vector<Index>& inputs,
-                              const NeighborSearchFactory& search_of) {
+                              const NeighborSearchFactory& search_of, const Execution& execution) {
   std::vector<Index> points;  // the first at each position, ascending
   points.reserve(nodes.input_of_node.size());
   for (const Index input : nodes.distinct.input_of_vertex)
@@ -32,20 +36,29 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const std::vector<Inde
   for (std::size_t node = 0; node < input_of_node.size(); ++node)
     node_of_input[slotOf(input_of_node[node])] = static_cast<Index>(node);
   return [search = search_of(points), input_of_node = std::move(input_of_node),
-          node_of_input = std::move(node_of_input)](const std::vector<Index>& queries, int count) {
-    std::vector<Index> inputs_asked(queries.size());
-    std::transform(queries.begin(), queries.end(), inputs_asked.begin(),
-                   [&](Index query) { return input_of_node[slotOf(query)]; });
-    NeighborLists found = search(inputs_asked, count);
-    checkLists(found, queries.size(), node_of_input.size());
-    for (Index& neighbor : found.indices) {
-      const Index node = node_of_input[slotOf(neighbor)];
-      if (node < 0)
-        throw InvalidInput("reconstruct: the search answers with point " +
-                           std::to_string(neighbor) + ", which is none of those it was made of");
-      neighbor = node;
+          node_of_input = std::move(node_of_input),
+          report = reportOf(execution, "neighbors")](const std::vector<Index>& queries, int count) {
+    NeighborLists lists;
+    for (std::size_t begin = 0; begin < queries.size(); begin += kQuestion) {
+      reportFraction(report, static_cast<double>(begin) / static_cast<double>(queries.size()));
+      std::vector<Index> asked;
+      for (std::size_t q = begin; q < std::min(begin + kQuestion, queries.size()); ++q)
+        asked.push_back(input_of_node[slotOf(queries[q])]);
+      const NeighborLists found = search(asked, count);
+      checkLists(found, asked.size(), node_of_input.size());
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        for (std::size_t e = found.offsets[i]; e < found.offsets[i + 1]; ++e) {
+          const Index node = node_of_input[slotOf(found.indices[e])];
+          if (node < 0)
+            throw InvalidInput("reconstruct: the search answers with point " +
+                               std::to_string(found.indices[e]) +
+                               ", which is none of those it was made of");
+          lists.indices.push_back(node);
+        }
+        lists.offsets.push_back(lists.indices.size());
+      }
     }
-    return found;
+    return lists;
   };
 }
 
@@ -72,7 +85,7 @@ Neighborhoods::Neighborhoods(const Positions& cloud, std::vector<Index> inputs,
                              const Options& options, const NeighborSearchFactory& search_of,
                              const Execution& execution)
     : inputs_(std::move(inputs)), nodes_(orderInputs(cloud, inputs_, execution.threads)) {
-  neighbors_ = findNeighbors(search_of ? searchOfCaller(nodes_, inputs_, search_of)
+  neighbors_ = findNeighbors(search_of ? searchOfCaller(nodes_, inputs_, search_of, execution)
                                        : makeNeighborSearch(nodes_.points, execution),
                              nodes_.input_of_node.size(), neighborsToSearch(options));
 }

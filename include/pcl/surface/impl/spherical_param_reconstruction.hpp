@@ -8,12 +8,10 @@
 
 #include "spherical_param/errors.h"
 
-#include <cmath>
 #include <cstddef>
 #include <exception>
 #include <functional>
 #include <new>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,21 +41,6 @@ PCL_EXPORTS void placeVertices(const spherical_param::Positions& vertices,
 PCL_EXPORTS void appendPolygons(const spherical_param::Triangles& triangles,
                                 const pcl::Indices& point_of_vertex,
                                 std::vector<pcl::Vertices>& polygons);
-
-/** \brief The parts of a cloud that are meshed; numbers of the points.
- * \param[in] options their progress callback may throw */
-PCL_EXPORTS std::vector<spherical_param::Part>
-choosePoints(const spherical_param::Positions& points, spherical_param::PartsMode mode,
-             int min_points, const spherical_param::Options& options);
-
-/** \brief Meshes points with the core.
- * \param[in] options their progress callback may throw
- * \param[in] ignored_points points of the cloud that are not finite, for messages
- * \param[in] search finds the neighbours; null: the core does */
-PCL_EXPORTS spherical_param::Surface reconstructPoints(const spherical_param::Positions& points,
-                                                      spherical_param::Options options,
-                                                      std::size_t ignored_points,
-                                                      const UserSearch* search);
 
 }  // namespace detail
 
@@ -104,7 +87,7 @@ SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
 
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr SphericalParamReconstruction<PointInT>::getMovedPoints() const {
-  if (parts_.front().result.moved().cols() == 0)
+  if (getSurfaceOf(0).moved().cols() == 0)
     return detail::cloudOfNothing(0);
   return cloudOf(&spherical_param::Surface::moved);
 }
@@ -115,10 +98,11 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud = detail::cloudOfNothing(input_size_);
   std::size_t used = 0;
-  for (const MeshedPart& part : parts_) {
-    detail::placeVertices(std::invoke(places, part.result), part.result.vertex_of_input,
-                          part.used_indices, *cloud);
-    used += part.used_indices.size();
+  for (std::size_t part = 0; part < result_.surfaces.size(); ++part) {
+    const spherical_param::Surface& surface = result_.surfaces[part];
+    detail::placeVertices(std::invoke(places, surface), surface.vertex_of_input,
+                          parts_[part].used_indices, *cloud);
+    used += surface.inputs.size();
   }
   cloud->is_dense = used == input_size_;
   return cloud;
@@ -135,8 +119,8 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(
     std::vector<pcl::Vertices>& polygons) {
   meshPoints();
   polygons.clear();
-  for (const MeshedPart& part : parts_)
-    detail::appendPolygons(part.result.triangles, part.vertex_indices, polygons);
+  for (std::size_t part = 0; part < result_.surfaces.size(); ++part)
+    detail::appendPolygons(result_.surfaces[part].triangles, parts_[part].vertex_indices, polygons);
 }
 
 template <typename PointInT>
@@ -144,47 +128,26 @@ void SphericalParamReconstruction<PointInT>::meshPoints() {
   pcl::Indices used_indices;
   const spherical_param::Positions points = collectPoints(used_indices);
   input_size_ = input_->size();
-  if (parts_mode_ == PartsMode::All) {
-    parts_.front() = meshPart(std::move(used_indices), points);
-    return;
-  }
-  std::vector<MeshedPart> meshed;
-  std::exception_ptr failure;
-  for (const spherical_param::Part& part :
-       detail::choosePoints(points, parts_mode_, min_part_size_, options_)) {
-    pcl::Indices of_part;
-    of_part.reserve(part.points.size());
-    for (const spherical_param::Index point : part.points)
-      of_part.push_back(used_indices[static_cast<std::size_t>(point)]);
-    try {
-      meshed.push_back(meshPart(std::move(of_part), points(Eigen::all, part.points)));
-    } catch (const spherical_param::InvalidInput& error) {
-      failure = failure ? failure : std::current_exception();
-      PCL_WARN("[pcl::SphericalParamReconstruction::reconstruct] a part of %zu points is left out: "
-               "%s\n",
-               part.points.size(), error.what());
-    }
-  }
-  if (meshed.empty())
-    std::rethrow_exception(failure);
-  parts_ = std::move(meshed);
-}
-
-template <typename PointInT>
-typename SphericalParamReconstruction<PointInT>::MeshedPart
-SphericalParamReconstruction<PointInT>::meshPart(pcl::Indices used_indices,
-                                                 const spherical_param::Positions& points) {
-  MeshedPart part;
-  part.used_indices = std::move(used_indices);
-  std::optional<detail::UserSearch> search;
-  if (tree_ && points.cols() > 0)
-    search = detail::useSearch<PointInT>(*tree_, input_, part.used_indices, points);
-  part.result =
-      detail::reconstructPoints(points, options_, ignored_points_, search ? &*search : nullptr);
-  part.vertex_indices.reserve(part.result.input_of_vertex.size());
-  for (const spherical_param::Index point : part.result.input_of_vertex)
-    part.vertex_indices.push_back(part.used_indices[static_cast<std::size_t>(point)]);
-  return part;
+  spherical_param::NeighborSearchFactory search_of;
+  if (tree_)
+    search_of = [&](const std::vector<spherical_param::Index>& searched) {
+      return detail::useSearch<PointInT>(*tree_, input_, used_indices, searched);
+    };
+  spherical_param::Options options = options_;
+  options.progress = detail::guardProgress(options_.progress);
+  result_ = spherical_param::reconstruct(points, options, search_of);
+  for (const std::string& failure : result_.failures)
+    PCL_WARN("[pcl::SphericalParamReconstruction::reconstruct] %s\n", failure.c_str());
+  const auto indices_of = [&](const std::vector<spherical_param::Index>& inputs) {
+    pcl::Indices indices;
+    indices.reserve(inputs.size());
+    for (const spherical_param::Index input : inputs)
+      indices.push_back(used_indices[static_cast<std::size_t>(input)]);
+    return indices;
+  };
+  parts_.clear();
+  for (const spherical_param::Surface& surface : result_.surfaces)
+    parts_.push_back({indices_of(surface.inputs), indices_of(surface.input_of_vertex)});
 }
 
 template <typename PointInT>
@@ -224,9 +187,9 @@ void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& wo
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::clearResults() {
-  parts_ = std::vector<MeshedPart>(1);
+  result_ = spherical_param::Result();
+  parts_ = std::vector<PartIndices>(1);
   input_size_ = 0;
-  ignored_points_ = 0;
   error_message_.clear();
 }
 
@@ -253,11 +216,7 @@ SphericalParamReconstruction<PointInT>::collectPoints(pcl::Indices& used_indices
     if (seen[position])
       continue;
     seen[position] = true;
-    const PointInT& point = (*input_)[position];
-    if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z))
-      used_indices.push_back(index);
-    else
-      ++ignored_points_;
+    used_indices.push_back(index);
   }
   used_indices.shrink_to_fit();
 

@@ -7,7 +7,6 @@
 #include <pcl/types.h>
 
 #include "spherical_param/errors.h"
-#include "point_set.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Geometry>
@@ -22,16 +21,6 @@
 
 namespace pcl {
 namespace detail {
-
-/** \brief The user's search object, in the numbers of the points that are meshed. */
-struct UserSearch {
-  /** \brief The points that the search object was given: the first at each position, ascending. */
-  std::vector<spherical_param::Index> points;
-  /** \brief Appends the nearest neighbours of a point, `count` at most, to a list. */
-  std::function<void(spherical_param::Index point, int count,
-                     std::vector<spherical_param::Index>& neighbors)>
-      query;
-};
 
 /** \brief Which numbers a search object returns that was filled with a subset of a cloud: PCL 1.13
  * has both, e.g. KdTree the one and FlannSearch the other. */
@@ -133,36 +122,43 @@ fillUserSearch(pcl::search::Search<PointInT>& search,
   return point_of_index;
 }
 
-/** \brief Gives the distinct ones of the points to the search object of the user.
+/** \brief Gives some points to the search object of the user. It is asked for one point after the
+ * other: it need not be ready for concurrent queries.
  * \param[in] search must outlive the result
- * \param[in] used_indices the index of each of the points in the cloud; they must outlive the
- * result \param[in] points 3 x used_indices.size() */
+ * \param[in] used_indices the index in the cloud of each of the points that are meshed; they must
+ * outlive the result
+ * \param[in] points that are searched for, among those that are meshed
+ * \return a search in the numbers of the points that are meshed */
 template <typename PointInT>
-UserSearch useSearch(pcl::search::Search<PointInT>& search,
-                     const typename pcl::PointCloud<PointInT>::ConstPtr& cloud,
-                     const pcl::Indices& used_indices, const spherical_param::Positions& points) {
-  UserSearch result;
-  result.points = spherical_param::findDistinctPoints(points).input_of_vertex;
-  result.query = [&search, cloud, &used_indices,
-                  point_of_answer = fillUserSearch(search, cloud, used_indices, result.points),
-                  indices = pcl::Indices(), distances = std::vector<float>()](
-                     spherical_param::Index point, int count,
-                     std::vector<spherical_param::Index>& neighbors) mutable {
-    const pcl::index_t query = used_indices[static_cast<std::size_t>(point)];
-    const int answers =
-        search.nearestKSearch((*cloud)[static_cast<std::size_t>(query)], count, indices, distances);
-    const std::size_t found = std::min({static_cast<std::size_t>(std::max(answers, 0)),
-                                        indices.size(), static_cast<std::size_t>(count)});
-    for (std::size_t i = 0; i < found; ++i) {
-      const auto answer = static_cast<std::size_t>(indices[i]);
-      if (answer >= point_of_answer.size() || point_of_answer[answer] < 0)
-        throw spherical_param::ComputeError(
-            "the search object returned index " + std::to_string(indices[i]) +
-            ", which is not among the points it was given; use a pcl::search::KdTree");
-      neighbors.push_back(point_of_answer[answer]);
+spherical_param::NeighborSearch useSearch(pcl::search::Search<PointInT>& search,
+                                          const typename pcl::PointCloud<PointInT>::ConstPtr& cloud,
+                                          const pcl::Indices& used_indices,
+                                          const std::vector<spherical_param::Index>& points) {
+  return [&search, cloud, &used_indices, size = points.size(),
+          point_of_answer = fillUserSearch(search, cloud, used_indices, points)](
+             const std::vector<spherical_param::Index>& queries, int count) {
+    const auto wanted = std::min(static_cast<std::size_t>(std::max(count, 0)) + 1, size);
+    spherical_param::NeighborLists lists;
+    pcl::Indices indices;
+    std::vector<float> distances;
+    for (const spherical_param::Index query : queries) {
+      const auto index = static_cast<std::size_t>(used_indices[static_cast<std::size_t>(query)]);
+      const int answers =
+          search.nearestKSearch((*cloud)[index], static_cast<int>(wanted), indices, distances);
+      const std::size_t found =
+          std::min({static_cast<std::size_t>(std::max(answers, 0)), indices.size(), wanted});
+      for (std::size_t i = 0; i < found; ++i) {
+        const auto answer = static_cast<std::size_t>(indices[i]);
+        if (answer >= point_of_answer.size() || point_of_answer[answer] < 0)
+          throw spherical_param::ComputeError(
+              "the search object returned index " + std::to_string(indices[i]) +
+              ", which is not among the points it was given; use a pcl::search::KdTree");
+        lists.indices.push_back(point_of_answer[answer]);
+      }
+      lists.offsets.push_back(lists.indices.size());
     }
+    return lists;
   };
-  return result;
 }
 
 }  // namespace detail
