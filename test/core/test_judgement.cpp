@@ -113,16 +113,6 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     return static_cast<std::size_t>(std::count_if(
         marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
   };
-  const Positions bowl = test::spiralSphere(1500).rightCols(1300);  // rim at z = 0.73
-  const Surface open = mesh(bowl, watched(quick()));
-  ASSERT_EQ(open.diagnosis.filled_holes.size(), 1U);
-  EXPECT_EQ(count(open, TriangleMarks::filled_hole), open.diagnosis.filled_holes[0].triangles);
-  EXPECT_GE(count(open, TriangleMarks::outside_graph), 1U);
-  for (Index t = 0; t < open.triangles.cols(); ++t) {
-    const auto mark = open.diagnosis.triangle_marks[static_cast<std::size_t>(t)];
-    const double lowest = bowl(2, open.triangles.col(t)).minCoeff();
-    EXPECT_TRUE((mark & TriangleMarks::filled_hole) == 0 || lowest > 0.5);
-  }
   const Positions rough = test::noisySphere(300, 1.0);
   const Surface tangled = mesh(rough, watched(quick()));
   std::set<Index> intersecting;

@@ -1,12 +1,7 @@
-// Progress and cancellation: what Execution::progress promises, in reconstruct() and in each stage.
+// Progress and cancellation of reconstruct(). Each stage: see test_threads.cpp.
 
-#include "consolidation.h"
-#include "mesh_optimization.h"
-#include "outliers.h"
 #include "reconstructions.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/map/sphere_map.h"
 
 #include <gtest/gtest.h>
 
@@ -125,55 +120,6 @@ TEST(ProgressCallback, EndsReconstructAtEveryCall) {
         const Surface result = test::surfaceOf(points, options);
         return Outcome(result.triangles, result.sphere);
       });
-}
-
-TEST(ProgressCallback, EndsEachStageAtEveryCall) {
-  const Positions points = roughSphere();
-  const NeighborLists lists = test::bruteForceNeighbors(points, 12);
-  const Graph graph = test::graphOf(points, lists).graph;
-  const Positions sphere = points.colwise().normalized();
-  const Triangles triangles = triangulateSphere(sphere);
-  const auto number = [](std::size_t count) {
-    return Outcome(Triangles(3, 0), Positions::Constant(3, 1, static_cast<double>(count)));
-  };
-  const auto mesh = [](const Triangles& made) { return Outcome(made, Positions(3, 0)); };
-  using Stage = std::function<Outcome(const Execution&)>;
-  std::vector<Stage> stages{
-      [&](const Execution& e) {
-        return number(test::graphOf(points, lists, {}, {}, e).graph.edgeCount());
-      },
-      [&](const Execution& e) {
-        return number(findSelfIntersections(points, triangles, e).size());
-      },
-      [&](const Execution& e) { return number(findOutliers(points, {}, e).indices.size()); },
-      [&](const Execution& e) {
-        SphereMapOptions options;
-        options.sweeps = 3;
-        options.progress = e.progress;
-        return Outcome(triangles, computeSphereMap(points, triangles, sphere, options).sphere);
-      }};
-  for (const auto method : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel})
-    stages.emplace_back([&, method](const Execution& e) {
-      EmbeddingOptions options;
-      options.method = method;
-      options.max_iterations = 10;
-      options.tolerance = 1e-6;
-      return Outcome(triangles, embed(graph, points, options, 1, e).directions);
-    });
-  for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
-    stages.emplace_back([&, method](const Execution& e) {
-      return mesh(triangulateSphere(sphere, method, e).triangles);
-    });
-  for (const auto method :
-       {OptimizationMethod::None, OptimizationMethod::Flips, OptimizationMethod::Full})
-    stages.emplace_back([&, method](const Execution& e) {
-      return mesh(optimizeMesh(points, triangles, graph, {method, true}, 1, e).triangles);
-    });
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    SCOPED_TRACE(i);
-    expectEndsAtEveryCall(
-        [&](const Callback& callback) { return stages[i](test::reportingTo(callback)); });
-  }
 }
 
 }  // namespace

@@ -202,24 +202,5 @@ TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
   }
 }
 
-TEST(EmbeddingRecorder, TakesFewOfManyIterationsMostOfThemEarly) {
-  EmbeddingRecorder recorder(10, limits(10, 1000));
-  Positions u = spiralSphere(10);
-  int copies = 0;
-  for (int i = 0; i <= 1600; ++i)
-    recorder({0, 10, EmbeddingStep::Iteration, i, 1.0, [&] {
-                ++copies;
-                u.col(0) = -u.col(0);
-                return u;
-              }});
-  const EmbeddingHistory history = recorder.take();
-  EXPECT_EQ(static_cast<int>(history.frames.size()), copies);
-  EXPECT_LT(copies, 45);
-  std::vector<int> first;
-  for (std::size_t f = 0; f < 13; ++f)
-    first.push_back(history.frames[f].iteration);
-  EXPECT_EQ(first, (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16}));
-}
-
 }  // namespace
 }  // namespace spherical_param

@@ -200,49 +200,6 @@ TEST(GraphHierarchy, LevelsAreSeveralTimesSmallerConnectedAndSymmetric) {
   EXPECT_LE(finer, 100.0);
 }
 
-TEST(GraphHierarchy, EnergyIsAboutTheSameOnAllLevels) {
-  const Positions points = randomSphere(20000, 9);
-  const Graph graph = sphereGraph(points);
-  const auto energy = [](const Graph& g, const Positions& u) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < g.size(); ++i)
-      for (std::size_t e = g.offsets[i]; e < g.offsets[i + 1]; ++e)
-        sum += std::pow((u.col(static_cast<Index>(i)) - u.col(g.neighbors[e])).norm(), 3) /
-               (6.0 * g.lengths[e]);
-    return sum;
-  };
-  Positions u = points;
-  const double finest = energy(graph, u);
-  for (const HierarchyLevel& level : buildGraphHierarchy(graph, 1, 100).levels) {
-    Positions coarse(3, static_cast<Eigen::Index>(level.seeds.size()));
-    for (std::size_t s = 0; s < level.seeds.size(); ++s)
-      coarse.col(static_cast<Eigen::Index>(s)) = u.col(level.seeds[s]);
-    u = coarse;
-    EXPECT_NEAR(energy(level.graph, u), finest, 0.5 * finest);
-  }
-}
-
-TEST(GraphHierarchy, PathsBeyondTheRangeOfDoubleStayLengths) {
-  Graph graph = sphereGraph(randomSphere(2000, 1));
-  std::fill(graph.lengths.begin(), graph.lengths.end(), std::numeric_limits<double>::max());
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 20);
-  EXPECT_GT(hierarchy.levels.size(), 2U);
-  for (const HierarchyLevel& level : hierarchy.levels) {
-    for (std::size_t i = 0; i < level.graph.size(); ++i) {
-      const auto begin =
-          level.graph.neighbors.begin() + static_cast<std::ptrdiff_t>(level.graph.offsets[i]);
-      const auto end =
-          level.graph.neighbors.begin() + static_cast<std::ptrdiff_t>(level.graph.offsets[i + 1]);
-      EXPECT_NE(begin, end);
-      EXPECT_TRUE(std::is_sorted(begin, end));
-      EXPECT_EQ(std::adjacent_find(begin, end), end);
-    }
-    for (const double length : level.graph.lengths)
-      EXPECT_TRUE(std::isfinite(length));
-    EXPECT_TRUE(level.prolongation.coeffs().isFinite().all());
-  }
-}
-
 TEST(GraphHierarchy, NeverFewerThanFourNodes) {
   EXPECT_TRUE(buildGraphHierarchy(Graph(), 1).levels.empty());
   // A complete graph: any seed covers all others.

@@ -313,16 +313,6 @@ TEST(LocalDelaunayGraph, FewerThanFourPointsAreAllJoined) {
     EXPECT_EQ(static_cast<Index>(edgesOf(build(randomSphere(n, 17)).graph).size()), n * (n - 1));
 }
 
-TEST(LocalDelaunayGraph, ScaleDoesNotMatter) {
-  const Positions points = randomSphere(200, 20);
-  const NeighborLists lists = bruteForceNeighbors(points, 32);
-  const Edges expected = edgesOf(test::graphOf(points, lists).graph);
-  for (const int exponent : {-1000, -600, -400, 400}) {
-    const Positions scaled = std::ldexp(1.0, exponent) * points;
-    EXPECT_EQ(edgesOf(test::graphOf(scaled, lists).graph), expected) << exponent;
-  }
-}
-
 TEST(LocalDelaunayGraph, ShorterAnswersOfTheSearchChangeNothing) {
   const Positions points = randomSphere(50, 25);
   const NeighborLists lists = bruteForceNeighbors(points, 4);

@@ -355,25 +355,5 @@ TEST(SphereMesh, RollBackRestoresEverythingToTheLastIndex) {
   EXPECT_LE(mesh.size(), 2 * n - 4);
 }
 
-TEST(SphereMesh, MovesAfterARollBackAreThoseOfAMeshThatNeverMoved) {
-  const Index n = 40;
-  const Triangles triangles = triangulateSphere(test::randomSphere(n, 7));
-  SphereMesh mesh(triangles, static_cast<std::size_t>(n));
-  SphereMesh untouched(triangles, static_cast<std::size_t>(n));
-  mesh.record();
-  Moves moves(mesh, n, 8);
-  for (int i = 0; i < 500; ++i)
-    moves.any();
-  mesh.rollBack();
-  // The list of free places is restored as well: the same moves use the same places.
-  Moves one(mesh, n, 9);
-  Moves other(untouched, n, 9);
-  for (int i = 0; i < 500; ++i) {
-    one.any();
-    other.any();
-  }
-  EXPECT_EQ(stateOf(mesh, n), stateOf(untouched, n));
-}
-
 }  // namespace
 }  // namespace spherical_param

@@ -196,21 +196,6 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
 
 // --- What changes nothing, and what does ---------------------------------------------------------
 
-TEST(MeshOptimization, ScaleByAPowerOfTwoChangesNothing) {
-  const Case of = scrambledEllipsoid(300, 0.5, 400, 17);
-  const MeshOptimization result = optimize(of);
-  for (const int exponent : {-20, 30}) {
-    Case scaled = of;
-    scaled.points *= std::ldexp(1.0, exponent);
-    for (double& length : scaled.graph.lengths)
-      length = std::ldexp(length, exponent);
-    const MeshOptimization other = optimize(scaled);
-    EXPECT_EQ(result.triangles, other.triangles);
-    EXPECT_EQ(std::ldexp(result.report.energy, exponent), other.report.energy);
-    EXPECT_EQ(result.report.alignment, other.report.alignment);
-  }
-}
-
 /// The mesh of a sphere on other points, in a cube: nearly all of its triangles intersect others.
 Case tangle(Index n) {
   std::mt19937_64 random(31);
