@@ -4,12 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace spherical_param {

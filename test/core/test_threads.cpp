@@ -26,7 +26,6 @@
 #include <functional>
 #include <random>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace spherical_param {

@@ -28,7 +28,6 @@
 #include <set>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::benchmark {

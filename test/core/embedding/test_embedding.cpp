@@ -26,10 +26,6 @@ Embedding iterate(const Graph& graph, const Positions& start,
   return internal::embedIteratively(graph, start, options, {}, {});
 }
 
-Positions bumpyCloud(Index n) {
-  return test::dentedCloud(n).points;
-}
-
 /// Figure 3 of the paper, word by word, without regard for speed: returns the state and the mean
 /// tangential Laplacian after each number of steps.
 std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Positions& p,
@@ -67,7 +63,7 @@ std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Posi
 }
 
 TEST(SphereEmbedding, IsTheIterationOfFigure3) {
-  const Positions points = bumpyCloud(300);
+  const Positions points = test::dentedCloud(300).points;
   const Graph graph = graphOf(points, 8);
   for (const EdgeWeights weights : kAllWeights)
     for (const double lambda : {0.5, 0.2}) {
@@ -119,7 +115,7 @@ TEST(SphereEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
 }
 
 TEST(SphereEmbedding, StagnationIsReported) {
-  const Positions points = bumpyCloud(200);
+  const Positions points = test::dentedCloud(200).points;
   EmbeddingOptions options;
   options.tolerance = 0.0;
   options.max_iterations = 1000000;
@@ -160,8 +156,9 @@ TEST(SphereEmbedding, CentringUndoesAPassingCollapse) {
 }
 
 TEST(SphereEmbedding, RankStartIsNeverCollapsed) {
-  for (const Positions& points : {sphereWithOutlier(400), Positions(randomSphere(100, 1) * 1e-300),
-                                  Positions(Positions::Constant(3, 50, 2.0)), bumpyCloud(1000)}) {
+  for (const Positions& points :
+       {sphereWithOutlier(400), Positions(randomSphere(100, 1) * 1e-300),
+        Positions(Positions::Constant(3, 50, 2.0)), test::dentedCloud(1000).points}) {
     const Positions directions = internal::projectByRank(points);
     EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
     // All on one meridian: the mean radius is pi / 4.

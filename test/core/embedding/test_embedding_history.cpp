@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string>
 #include <thread>
 #include <utility>
 #include <vector>

@@ -7,13 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <initializer_list>
-#include <map>
-#include <numeric>
 #include <random>
-#include <set>
 #include <vector>
 
 namespace spherical_param {

@@ -10,10 +10,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <random>
-#include <set>
 #include <stdexcept>
 #include <vector>
 

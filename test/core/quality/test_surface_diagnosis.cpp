@@ -12,7 +12,6 @@
 #include <limits>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
