@@ -1,7 +1,7 @@
 #pragma once
 
-#include "spherical_param/execution.h"
 #include "neighbor_graph.h"
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/LU>
@@ -173,27 +173,6 @@ inline std::vector<std::array<Index, 3>> canonical(const Triangles& triangles) {
   }
   std::sort(result.begin(), result.end());
   return result;
-}
-
-/// The nearest other points of each point of spiralSphere(), without a search: they are a Fibonacci
-/// number of points away.
-inline NeighborLists spiralNeighbors(const Positions& points, int k) {
-  NeighborLists lists;
-  const auto n = static_cast<Index>(points.cols());
-  std::vector<std::pair<double, Index>> others;
-  for (Index i = 0; i < n; ++i) {
-    others.clear();
-    for (Index step = 1, next = 2; step < n && step < 100000; next += std::exchange(step, next))
-      for (const Index j : {i - step, i + step})
-        if (j >= 0 && j < n)
-          others.emplace_back((points.col(i) - points.col(j)).squaredNorm(), j);
-    const auto count = std::min<std::ptrdiff_t>(k, static_cast<std::ptrdiff_t>(others.size()));
-    std::partial_sort(others.begin(), others.begin() + count, others.end());
-    for (std::ptrdiff_t c = 0; c < count; ++c)
-      lists.indices.push_back(others[static_cast<std::size_t>(c)].second);
-    lists.offsets.push_back(lists.indices.size());
-  }
-  return lists;
 }
 
 /// How a graph is made.

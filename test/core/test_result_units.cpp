@@ -4,12 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace spherical_param {
@@ -29,19 +24,12 @@ void visitQuantities(Surface& r, const Visit& visit) {
   visit_all("box", r.measures.box_max, 1);
   visit_all("centroid", r.measures.centroid, 1);
   visit_all("inertia", r.measures.inertia, 5);
-  visit("energy", r.optimization.energy, 1);
-  for (OptimizationPhase& phase : r.optimization.phases) {
-    visit("energy before phase", phase.energy_before, 1);
-    visit("energy of phase", phase.energy, 1);
-  }
   visit_all("smoothed", r.smoothed, 1);
   visit("max displacement", r.smoothing.max_displacement, 1);
   visit("mean displacement", r.smoothing.mean_displacement, 1);
   visit("rms displacement", r.smoothing.rms_displacement, 1);
   visit("volume before", r.smoothing.volume_before, 3);
   visit("volume after", r.smoothing.volume_after, 3);
-  for (Bridge& bridge : r.graph.bridges)
-    visit("bridge", bridge.length, 1);
   for (FilledHole& hole : r.diagnosis.filled_holes) {
     visit("hole area", hole.area, 2);
     visit("hole boundary", hole.boundary_length, 1);
@@ -68,10 +56,6 @@ Surface onNodes() {
   r.smoothed = Positions::Constant(3, 4, 1.0);
   r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
   r.history.vertices = {3, 0};
-  r.optimization.phases.resize(1);
-  r.graph.bridges = {{0, 3, 1.0}};
-  r.graph.without_tangent_plane = {0, 3};
-  r.graph.stray_points = {{0, 5.0}, {1, 6.0}};
   r.outliers = {0, 1};
   r.diagnosis.filled_holes.resize(1);
   r.diagnosis.filled_holes[0].vertices = {0, 1, 2};
@@ -112,12 +96,6 @@ TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));
   EXPECT_EQ(result.vertex_residuals, (std::vector<double>{1, 3, 0, 2}));
   EXPECT_EQ(result.history.vertices, (Indices{1, 2}));
-  EXPECT_EQ(result.graph.bridges[0].from, 2);
-  EXPECT_EQ(result.graph.bridges[0].to, 1);
-  EXPECT_EQ(result.graph.without_tangent_plane, (Indices{1, 2}));
-  EXPECT_EQ(result.graph.stray_points[0].point, 0);
-  EXPECT_EQ(result.graph.stray_points[0].distance, 6.0);
-  EXPECT_EQ(result.graph.stray_points[1].point, 2);
   EXPECT_EQ(result.outliers, (Indices{0, 2}));
   EXPECT_EQ(result.diagnosis.filled_holes[0].vertices, (Indices{0, 2, 3}));
   EXPECT_EQ(result.diagnosis.filled_holes[0].loops[0], (Indices{0, 3, 2}));  // turned, not sorted

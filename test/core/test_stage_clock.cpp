@@ -1,11 +1,7 @@
-// Progress and cancellation: what Execution::progress promises, in reconstruct() and in each stage.
+// Progress and cancellation of reconstruct(). Each stage: see test_threads.cpp.
 
-#include "helpers.h"
+#include "reconstructions.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/map/sphere_map.h"
-#include "outliers.h"
-#include "spherical_param/reconstruct.h"
-#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +51,7 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
     fractions[progress.stage].push_back(progress.fraction);
     return true;
   };
-  reconstruct(points, test::spiralNeighbors(points, 12), options);
+  test::surfaceOf(points, options);
   ASSERT_EQ(fractions.size(), 7U);
   for (const auto& [stage, of_stage] : fractions) {
     EXPECT_TRUE(test::areFractions(of_stage)) << stage;
@@ -113,69 +109,17 @@ void expectEndsAtEveryCall(const Work& work) {
 
 TEST(ProgressCallback, EndsReconstructAtEveryCall) {
   Options smoothed;
-  smoothed.smoothing.steps = 2;
+  smoothed.smoothing = 2;
   smoothed.embedding.history_vertices = 10;
-  Options paper;
-  paper.graph.method = GraphMethod::NearestNeighbors;
-  paper.embedding.method = EmbeddingMethod::Iterative;
-  paper.triangulation.method = TriangulationMethod::Qhull;
+  Options paper = test::paper();
   paper.embedding.max_iterations = 20;
   for (const Positions& points : {test::randomSphere(4, 1), roughSphere()})
     for (Options options : {smoothed, paper})
       expectEndsAtEveryCall([&](const Callback& callback) {
         options.progress = test::reportingTo(callback).progress;
-        const Surface result = reconstruct(points, options);
+        const Surface result = test::surfaceOf(points, options);
         return Outcome(result.triangles, result.sphere);
       });
-}
-
-TEST(ProgressCallback, EndsEachStageAtEveryCall) {
-  const Positions points = roughSphere();
-  const NeighborLists lists = test::bruteForceNeighbors(points, 12);
-  const Graph graph = test::graphOf(points, lists).graph;
-  const Positions sphere = points.colwise().normalized();
-  const Triangles triangles = triangulateSphere(sphere);
-  const auto number = [](std::size_t count) {
-    return Outcome(Triangles(3, 0), Positions::Constant(3, 1, static_cast<double>(count)));
-  };
-  const auto mesh = [](const Triangles& made) { return Outcome(made, Positions(3, 0)); };
-  using Stage = std::function<Outcome(const Execution&)>;
-  std::vector<Stage> stages{
-      [&](const Execution& e) {
-        return number(test::graphOf(points, lists, {}, {}, e).graph.edgeCount());
-      },
-      [&](const Execution& e) {
-        return number(findSelfIntersections(points, triangles, e).size());
-      },
-      [&](const Execution& e) { return number(findOutliers(points, {}, e).indices.size()); },
-      [&](const Execution& e) {
-        SphereMapOptions options;
-        options.sweeps = 3;
-        options.progress = e.progress;
-        return Outcome(triangles, computeSphereMap(points, triangles, sphere, options).sphere);
-      }};
-  for (const auto method : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel})
-    stages.emplace_back([&, method](const Execution& e) {
-      EmbeddingOptions options;
-      options.method = method;
-      options.max_iterations = 10;
-      options.tolerance = 1e-6;
-      return Outcome(triangles, embed(graph, points, options, 1, e).directions);
-    });
-  for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
-    stages.emplace_back([&, method](const Execution& e) {
-      return mesh(triangulateSphere(sphere, {method}, e).triangles);
-    });
-  for (const auto method :
-       {OptimizationMethod::None, OptimizationMethod::Flips, OptimizationMethod::Full})
-    stages.emplace_back([&, method](const Execution& e) {
-      return mesh(optimizeMesh(points, triangles, graph, {method, true}, 1, e).triangles);
-    });
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    SCOPED_TRACE(i);
-    expectEndsAtEveryCall(
-        [&](const Callback& callback) { return stages[i](test::reportingTo(callback)); });
-  }
 }
 
 }  // namespace

@@ -10,34 +10,6 @@ namespace {
 
 using namespace test;
 
-TEST(MultigridPreconditioner, IsSymmetricAndSolvesDirectlyWithoutLevels) {
-  const Cloud cloud = dentedCloud(1500);
-  const GraphHierarchy hierarchy = buildGraphHierarchy(cloud.graph, 1, 100);
-  const Positions u = solve(cloud.graph).directions;
-  const std::vector<TangentBasis> bases = internal::tangentBases(u);
-  EmbeddingEnergy::Hessian hessian;
-  EmbeddingEnergy(cloud.graph, kAdaptive, 1).hessian(u, bases, hessian);
-  internal::MultigridPreconditioner cycle(hierarchy, 0, 1);
-  cycle.compute(hessian.matrix, bases);
-  const TangentVector x = randomTangent(1500, 1);
-  const TangentVector y = randomTangent(1500, 2);
-  TangentVector cycled_x;
-  TangentVector cycled_y;
-  cycle.apply(x, cycled_x);
-  cycle.apply(y, cycled_y);
-  EXPECT_NEAR(x.dot(cycled_y), y.dot(cycled_x), 1e-9 * std::abs(x.dot(cycled_x)));
-  EXPECT_GT(x.dot(cycled_x), 0.0);
-
-  const GraphHierarchy none;
-  internal::MultigridPreconditioner direct(none, 0, 1);
-  direct.compute(hessian.matrix, bases);
-  TangentVector solution;
-  TangentVector product;
-  direct.apply(x, solution);
-  internal::multiply(hessian.matrix, solution, product, 1);
-  EXPECT_LT((product - x).norm(), 1e-6 * x.norm());
-}
-
 Eigen::MatrixXd dense(const internal::BlockMatrix& matrix) {
   const auto n = static_cast<Eigen::Index>(matrix.size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(2 * n, 2 * n);

@@ -65,7 +65,7 @@ TEST(GraphCycles, ARingOfThreeTimesTheReachDoesNotCount) {
     }
 }
 
-TEST(GraphCycles, OfNoSurfaceAndOfOneDirectionAreNotCounted) {
+TEST(GraphCycles, OfNoSurfaceAreNotCounted) {
   // Random edges: hundreds of cycles, and within three steps of a node half of all nodes.
   std::mt19937 random(5);
   std::vector<std::set<Index>> chaos(400);
@@ -77,14 +77,8 @@ TEST(GraphCycles, OfNoSurfaceAndOfOneDirectionAreNotCounted) {
         chaos[w].insert(static_cast<Index>(v));
       }
     }
-  // Each names the next three: no row has an entry for the way back.
-  std::vector<std::set<Index>> one_way(40);
-  for (Index v = 0; v < 40; ++v)
-    one_way[static_cast<std::size_t>(v)] = {(v + 1) % 40, (v + 2) % 40, (v + 3) % 40};
   EXPECT_FALSE(countCycles(graphOf(chaos), 1));
   EXPECT_FALSE(countCycles(graphOf(chaos), 3));
-  for (const int reach : {1, 2, 3})
-    EXPECT_FALSE(countCycles(graphOf(one_way), reach)) << reach;
 }
 
 }  // namespace

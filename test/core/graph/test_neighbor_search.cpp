@@ -43,27 +43,9 @@ TEST(NeighborSearch, FindsTheNearestPointsOfEachQuery) {
   EXPECT_EQ(findNearestNeighbors(Positions::Zero(3, 1), 5).indices, std::vector<Index>{0});
 }
 
-TEST(NeighborSearch, GivesTheSameListsForAnyNumberOfThreads) {
-  const Positions points = test::randomSphere(6000, 2);
-  const NeighborLists expected = findNearestNeighbors(points, 6, test::onThreads(1));
-  for (const int threads : {2, 0})
-    EXPECT_EQ(findNearestNeighbors(points, 6, test::onThreads(threads)).indices, expected.indices);
-}
-
-TEST(NeighborSearch, RefusesNoPointsStrangeQueriesAndAnswersBeyondMemory) {
-  EXPECT_THROW(makeNeighborSearch(Positions(3, 0)), InvalidInput);
-  const NeighborSearch search = makeNeighborSearch(test::randomSphere(10, 3));
-  EXPECT_EQ(search({0, 9}, 3).size(), 2U);
-  EXPECT_THROW(search({-1}, 3), InvalidInput);
-  EXPECT_THROW(search({10}, 3), InvalidInput);
+TEST(NeighborSearch, RefusesAnswersBeyondMemory) {
   // 50,000 lists of as many entries are more than 2^31.
   EXPECT_THROW(findNearestNeighbors(test::spiralSphere(50000), 50000), InvalidInput);
-}
-
-TEST(NeighborSearch, CanBeCancelled) {
-  EXPECT_THROW(findNearestNeighbors(test::randomSphere(10, 3), 3,
-                                    test::reportingTo([](double) { return false; })),
-               Cancelled);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "point_set.h"
 
 #include "helpers.h"
-#include "spherical_param/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -33,16 +32,6 @@ TEST(PointSet, EachPlaceIsItsFirstPoint) {
   EXPECT_EQ(distinct.input_of_vertex, first);
   EXPECT_LT(first.size(), 200U);
   EXPECT_TRUE(findDistinctPoints(Positions(3, 0)).input_of_vertex.empty());
-}
-
-TEST(PointSet, NonFinitePointsAreInvalidInput) {
-  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    Positions points = randomSphere(5, 1);
-    points(1, 3) = bad;
-    EXPECT_THROW(findDistinctPoints(points), InvalidInput);
-    EXPECT_THROW(areCoplanar(points), InvalidInput);
-    EXPECT_THROW(spatialOrder(points), InvalidInput);
-  }
 }
 
 TEST(PointSet, OneBitOffAPlaneIsNotCoplanar) {

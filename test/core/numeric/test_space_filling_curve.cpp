@@ -89,17 +89,5 @@ TEST(SpaceFillingCurve, LastRoundGoesFromPointToNearPoint) {
   }
 }
 
-TEST(SpaceFillingCurve, InsertionOrderIsAPermutation) {
-  for (const Positions& points :
-       {test::randomSphere(0, 1), test::randomSphere(1, 1), test::randomSphere(5000, 1),
-        Positions(test::randomSphere(1, 1).replicate(1, 3000))}) {
-    std::vector<Index> order = insertionOrder(points);
-    ASSERT_EQ(static_cast<Eigen::Index>(order.size()), points.cols());
-    std::sort(order.begin(), order.end());
-    for (std::size_t i = 0; i < order.size(); ++i)
-      ASSERT_EQ(order[i], static_cast<Index>(i));
-  }
-}
-
 }  // namespace
 }  // namespace spherical_param::internal

@@ -85,32 +85,5 @@ TEST(LocalIntersections, NumbersAreKeptUpToDate) {
   }
 }
 
-TEST(LocalIntersections, ATriangleThatChangesTakesTheOldOnesPlace) {
-  // A triangle across a square of two, and the same beside it.
-  Positions points(3, 7);
-  points << 0, 1, 1, 0, 0.4, 0.6, 0.5,  //
-      0, 0, 1, 1, 0.4, 0.4, 0.6,        //
-      0, 0, 0, 0, -1, -1, 1;
-  Triangles triangles(3, 3);
-  triangles << 0, 0, 4,  //
-      1, 2, 5,           //
-      2, 3, 6;
-  LocalIntersections local;
-  local.begin(3);
-  for (Index t = 0; t < 3; ++t)
-    local.set(faceOf(points, triangles, t));
-  const Face across = faceOf(points, triangles, 2);
-  EXPECT_EQ(local.count(across, 2, 9), 2);
-  EXPECT_EQ(local.count(across, 0, 9), 1);
-  points.row(0).tail(3).array() += 5.0;
-  local.set(faceOf(points, triangles, 2));
-  EXPECT_EQ(local.faces().size(), 3U);
-  for (Index t = 0; t < 3; ++t)
-    EXPECT_FALSE(local.intersects(faceOf(points, triangles, t)));
-  local.begin(3);
-  EXPECT_TRUE(local.faces().empty() && !local.contains(2));
-  EXPECT_FALSE(local.intersects(across));
-}
-
 }  // namespace
 }  // namespace spherical_param::test

@@ -2,18 +2,16 @@
 
 #include "helpers.h"
 #include "optimization_cases.h"
-#include "spherical_param/self_intersection.h"
 #include "sphere_triangulation.h"
+#include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <random>
-#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -233,26 +231,6 @@ TEST(MeshOptimizer, ASecondPassGivesTheResultOfAFirstOne) {
   }
 }
 
-TEST(MeshOptimizer, SpreadStaysTogetherAndHasTheSeedsFirst) {
-  const Case of = ellipsoid(300, 0.8, 0.6);
-  MeshOptimizer optimizer = optimizerOf(of);
-  std::uint64_t random = 7;
-  for (const std::size_t count : {2U, 96U, 300U, 1000U}) {
-    const std::vector<Index> part = optimizer.spread({17, 17, 4}, count, random);
-    EXPECT_EQ(part.size(), std::min<std::size_t>(count, 300));
-    EXPECT_EQ(part[0], 17);
-    EXPECT_EQ(part[1], 4);
-    EXPECT_EQ(std::set<Index>(part.begin(), part.end()).size(), part.size());
-    std::set<Index> reached{17, 4};
-    for (const Index v : part) {
-      EXPECT_EQ(reached.count(v), 1U);
-      for (std::size_t e = of.graph.offsets[static_cast<std::size_t>(v)];
-           e < of.graph.offsets[static_cast<std::size_t>(v) + 1]; ++e)
-        reached.insert(of.graph.neighbors[e]);
-    }
-  }
-}
-
 TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
   std::vector<Case> cases = roughCases();
   cases.push_back(ellipsoid(1000, 0.9, 0.8));
@@ -321,103 +299,6 @@ TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
     EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
   }
   EXPECT_GT(all, 0U);
-}
-
-TEST(MeshOptimizer, FlipsApartAreRolledBackWithThePartTheyFollow) {
-  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
-  MeshOptimizer optimizer = optimizerOf(of);
-  optimizer.setEnergy(energyWith(Bend::Angle));
-  const Triangles triangles = optimizer.mesh().triangles();
-  const double energy = optimizer.energy();
-  std::uint64_t random = 5;
-  std::size_t fewer = 0;
-  for (Index v = 0; v < 300; v += 7) {
-    const std::vector<Index> part = optimizer.spread({v}, 12, random);
-    EXPECT_FALSE(optimizer.recreate(
-        part,
-        [&](double) {
-          optimizer.watch(allVertices(of));
-          fewer += optimizer.flipApart();
-          return false;
-        },
-        random));
-    EXPECT_EQ(optimizer.mesh().triangles(), triangles);
-    EXPECT_EQ(optimizer.energy(), energy);
-  }
-  EXPECT_GT(fewer, 0U);
-}
-
-TEST(MeshOptimizer, IntersectionsThatAPartBringsAreThoseOfTheWholeMesh) {
-  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
-  MeshOptimizer optimizer = optimizerOf(of);
-  optimizer.setEnergy(energyWith(Bend::Angle));
-  std::uint64_t random = 5;
-  auto count = static_cast<int>(optimizer.intersections().size());
-  std::set<int> changes;
-  for (Index v = 0; v < 300; v += 3) {
-    optimizer.watch(allVertices(of));
-    int more = 0;
-    if (optimizer.recreate(
-            optimizer.spread({v}, 8, random),
-            [&](double) {
-              more = optimizer.flipChangedApart();
-              return v % 2 == 0;
-            },
-            random))
-      count += more;
-    changes.insert(more);
-    EXPECT_EQ(optimizer.intersections().size(), static_cast<std::size_t>(count));
-    EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
-  }
-  EXPECT_GT(changes.size(), 5U);
-}
-
-TEST(MeshOptimizer, WorkIsWhatPartsAndFlipsApartTake) {
-  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
-  MeshOptimizer optimizer = optimizerOf(of);
-  optimizer.setEnergy(energyWith(Bend::Angle));
-  std::uint64_t random = 5;
-  EXPECT_EQ(optimizer.work(), 0U);
-  const std::vector<Index> part = optimizer.spread({17}, 12, random);
-  optimizer.recreate(part, MeshOptimizer::isGain, random);
-  EXPECT_EQ(optimizer.work(), part.size());
-  optimizer.watch(allVertices(of));
-  optimizer.flipApart();
-  EXPECT_GT(optimizer.work(), part.size());
-}
-
-TEST(MeshOptimizer, NearlyAllThatFlipsMadeIntersectIsFlippedApart) {
-  std::size_t pairs = 0;
-  std::size_t left = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const Case of = scrambledEllipsoid(300, 0.5, 450, seed);
-    MeshOptimizer optimizer = optimizerOf(of);
-    optimizer.setEnergy(energyWith(Bend::Angle));
-    const std::size_t before = optimizer.intersections().size();
-    pairs += before;
-    optimizer.watch(allVertices(of));
-    left += before - optimizer.flipApart();
-  }
-  EXPECT_GT(pairs, 100U);
-  EXPECT_LE(left, pairs / 20);
-}
-
-TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
-  Case of = ellipsoid(400, 0.9, 0.8);
-  const MeshOptimizer clean = optimizerOf(of);
-  EXPECT_TRUE(clean.roughVertices(0.8).empty());
-  EXPECT_TRUE(clean.edgesBelow(0.8).empty());
-  // A mesh that joins points on opposite sides, and none to its neighbours in the graph.
-  const Triangles far = triangulateSphere(randomSphere(400, 8));
-  EXPECT_GT(MeshOptimizer(of.points, far, of.graph, 1).roughVertices(-2.0).size(), 300U);
-  // One point pushed in.
-  of.points.col(200) *= 0.5;
-  const MeshOptimizer dented = optimizerOf(of);
-  const std::vector<Index> rough = dented.roughVertices(0.8);
-  EXPECT_TRUE(std::is_sorted(rough.begin(), rough.end()));
-  EXPECT_TRUE(std::binary_search(rough.begin(), rough.end(), 200));
-  EXPECT_LT(rough.size(), 10U);
-  EXPECT_FALSE(dented.edgesBelow(0.8).empty());
 }
 
 }  // namespace
