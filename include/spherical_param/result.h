@@ -123,7 +123,6 @@ struct SurfaceDiagnosis {
   std::vector<CollapsedHandle> handles;          ///< by falling number of edges
   std::vector<PartBridge> bridges;               ///< by falling number of points
   bool is_one_sided = false;                     ///< found with openings alone: the mesh tears it
-  std::size_t boundaries = 0;  ///< loops around openings that the mesh leaves open
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph, in [0,
   /// 1].
   double edges_outside_graph = 0.0;

@@ -74,19 +74,16 @@ void takeSurface(const Positions& points, const OpenSurface& openings, MeshedClo
 
 /// Diagnoses the cloud by a mesh and a graph.
 ///
-/// \param boundaries loops around openings that the mesh leaves open.
-SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
+/// \param is_open the mesh has a boundary.
+SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, bool is_open,
                           const NeighborGraph& graph, bool is_out_of_time, const Options& options) {
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
   of_diagnosis.count_cycles = !is_out_of_time;
   SurfaceDiagnosis diagnosis = diagnoseSurface(points, mesh, graph.graph, graph.report.bridges,
                                                of_diagnosis, options.threads);
-  if (boundaries > 0) {
-    diagnosis.boundaries = boundaries;
-    if (diagnosis.kind == SurfaceKind::ClosedGenus0)
-      diagnosis.kind = SurfaceKind::Open;
-  }
+  if (is_open && diagnosis.kind == SurfaceKind::ClosedGenus0)
+    diagnosis.kind = SurfaceKind::Open;
   return diagnosis;
 }
 
@@ -100,7 +97,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   result.openings = openings.found();
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
-  result.diagnosis = diagnose(points, result.triangles, result.boundary.size(), mesh.graph,
+  result.diagnosis = diagnose(points, result.triangles, !result.isClosed(), mesh.graph,
                               mesh.optimization.report.is_out_of_time, options);
   if (openings.isOneSided()) {
     result.diagnosis.is_one_sided = true;

@@ -136,7 +136,6 @@ class Mesh(unittest.TestCase):
         opening = mesh.openings[0]
         self.assertFalse(opening.is_filled)
         np.testing.assert_allclose(opening.center, [0, 0, 0.3], atol=0.1)
-        self.assertEqual(mesh.diagnosis.boundaries, len(mesh.boundary))
         self.assertEqual(sp.reconstruct(points).boundary, ())
 
     def test_surfaces_that_are_no_spheres_are_diagnosed(self):
