@@ -26,8 +26,8 @@ enum class FieldKind {
   Loops,         ///< vertices around something, in order, from the lowest on; or several such lists
   TriangleList,  ///< triangles of the mesh, or pairs of them
   Inputs,        ///< input points
-  PerVertex,     ///< an entry for each vertex, empty if not asked for
-  PerTriangle,   ///< an entry for each triangle, empty if not asked for
+  PerVertex,     ///< an entry for each vertex
+  PerTriangle,   ///< an entry for each triangle
   PerInput,      ///< an entry for each of Surface::inputs
   CppOnly,       ///< for callers in C++ alone
 };
@@ -60,6 +60,15 @@ constexpr std::array<const char*, 5> namesOf(EmbeddingStep) {
 template <typename Enum>
 constexpr const char* nameOf(Enum value) {
   return namesOf(value).at(static_cast<std::size_t>(value));
+}
+
+/// Access to a field that is empty if it was not asked for.
+///
+/// \param member pointer to an array or list of a struct.
+/// \return what gives a pointer to it, null if it is empty.
+template <typename Member>
+constexpr auto unlessEmpty(Member member) {
+  return [member](auto& self) { return (self.*member).size() == 0 ? nullptr : &(self.*member); };
 }
 
 /// Name and help of a struct, by a pointer that is not followed. \return both
@@ -226,7 +235,7 @@ void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   visit({"handles", "by falling number of edges"}, &Of::handles);
   visit({"bridges", "by falling number of points"}, &Of::bridges);
   visit({"triangle_marks", "sum of the TriangleMark of all findings", 0, FieldKind::PerTriangle},
-        &Of::triangle_marks);
+        unlessEmpty(&Of::triangle_marks));
 }
 
 /// \copydoc describe(const TopologyFaults*)
@@ -341,7 +350,7 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"is_out_of_time", "the time limit ended the optimisation early"}, &Of::is_out_of_time);
   visit({"duplicates", "points that repeat an earlier one"}, &Of::duplicates);
   visit({"topology", "checked on the triangles"}, &Of::topology);
-  visit({"intersecting_triangles", "that intersect another, on the smoothed points if there are"},
+  visit({"intersecting_triangles", "that intersect another, after smoothing if there is any"},
         &Of::intersecting_triangles);
   visit({"self_intersections", "pairs of triangles that intersect, exactly found, ascending", 0,
          FieldKind::TriangleList},
@@ -349,29 +358,29 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"measures", "of the mesh on the input's points, or the consolidated ones"}, &Of::measures);
   visit({"diagnosis", "does the cloud look like a closed surface without handles?"},
         &Of::diagnosis);
-  visit(
-      {"outliers", "that look like it, ascending; they are vertices even so", 0, FieldKind::Inputs},
-      &Of::outliers);
+  visit({"outliers", "that look like outliers, ascending; vertices even so", 0, FieldKind::Inputs},
+        &Of::outliers);
   visit({"openings", "of the surface, open or filled"}, &Of::openings);
   visit({"boundary", "closed loops of edges, the surface on the left; empty of a closed mesh", 0,
          FieldKind::Loops},
         &Of::boundary);
   visit({"embedding", "how it was reached"}, &Of::embedding);
-  visit({"consolidation", "what it did; none without"},
+  visit({"consolidation", "what it did; none without it"},
         [](auto& s) { return s.consolidated.cols() > 0 ? &s.consolidation : nullptr; });
-  visit({"smoothing", "what it did; none without"},
+  visit({"smoothing", "what it did; none without it"},
         [](auto& s) { return s.smoothed.cols() > 0 ? &s.smoothing : nullptr; });
   visit({"triangles", "vertices of each, counter-clockwise seen from outside", 0,
          FieldKind::PerTriangle},
         &Of::triangles);
   visit({"sphere", "unit vectors: the embedding", 0, FieldKind::PerVertex}, &Of::sphere);
-  visit({"smoothed", "the points after smoothing", 1, FieldKind::PerVertex}, &Of::smoothed);
+  visit({"smoothed", "the points after smoothing", 1, FieldKind::PerVertex},
+        unlessEmpty(&Of::smoothed));
   visit(
       {"consolidated", "the points after consolidation, before smoothing", 1, FieldKind::PerVertex},
-      &Of::consolidated);
+      unlessEmpty(&Of::consolidated));
   visit({"vertex_residuals", "length of the tangential Laplacian of the sphere [radius]", 0,
          FieldKind::PerVertex},
-        &Of::vertex_residuals);
+        unlessEmpty(&Of::vertex_residuals));
   visit({"history", "how the embedding unfolded", 0, FieldKind::PerVertex},
         [](auto& s) { return s.history.frames.empty() ? nullptr : &s.history; });
   visit({"inputs", "the input points of the surface, ascending", 0, FieldKind::PerInput},
