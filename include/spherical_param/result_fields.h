@@ -176,6 +176,7 @@ void visitFields(const Opening*, const Visit& visit) {
   using Of = Opening;
   visit({"is_filled", "the mesh has triangles there"}, &Of::is_filled);
   visit({"certainty", "from 0 at 3 spacings of width to 1 at 9"}, &Of::certainty);
+  visit({"is_certain", "certainty is 1, and it is not flat"}, &Of::isCertain);
   visit({"is_flat", "the loop lies in a plane: perhaps a flat face without points"}, &Of::is_flat);
   visit({"center", "mean of the loop", 1}, &Of::center);
   visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
@@ -185,6 +186,8 @@ void visitFields(const Opening*, const Visit& visit) {
   visit({"loop", "vertices around it, in order; one that it passes twice, twice", 0,
          FieldKind::Loops},
         &Of::loop);
+  visit({"triangles", "of the mesh over it, if it is filled", 0, FieldKind::TriangleList},
+        &Of::triangles);
 }
 
 /// \copydoc describe(const TopologyFaults*)
