@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -60,10 +61,22 @@ inline Options watched(Options options = {}) {
   return options;
 }
 
-/// With neighbours by brute force.
+/// The surface of a cloud.
+inline Surface surfaceOf(const Positions& points, const Options& options = {}) {
+  return reconstruct(points, options);
+}
+
+/// The same with a search of the caller.
+inline Surface surfaceOf(const Positions& points, const Options& options,
+                         const NeighborSearch& search) {
+  std::vector<Index> all(static_cast<std::size_t>(points.cols()));
+  std::iota(all.begin(), all.end(), Index{0});
+  return reconstruct(points, search(all, neighborsToSearch(options)), options, search);
+}
+
+/// The same with neighbours by brute force.
 inline Surface mesh(const Positions& points, const Options& options = {}) {
-  return reconstruct(points, bruteForceNeighbors(points, neighborsToSearch(options)), options,
-                     bruteForceSearch(points));
+  return surfaceOf(points, options, bruteForceSearch(points));
 }
 
 inline Positions verticesOf(const Positions& points, const Surface& result) {

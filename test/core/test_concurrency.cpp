@@ -1,12 +1,11 @@
 // Calls from several threads share nothing. A program of its own, so that the thread sanitizer has
 // no more to build than this.
 
-#include "helpers.h"
+#include "reconstructions.h"
+#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
-#include "spherical_param/reconstruct.h"
-#include "sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -34,18 +33,17 @@ TEST(Concurrency, ReconstructionsTriangulationsAndMapsAgreeWithSingleOnes) {
   expectTheSameAlone([](std::size_t i) {
     Options options;
     options.threads = 1;
-    return reconstruct(ellipsoid(i), options).sphere;
+    return test::surfaceOf(ellipsoid(i), options).sphere;
   });
   for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
     expectTheSameAlone([method](std::size_t i) {
-      return triangulateSphere(ellipsoid(i).colwise().normalized(), method).triangles.triangles;
+      return triangulateSphere(ellipsoid(i).colwise().normalized(), method).triangles;
     });
   expectTheSameAlone([](std::size_t i) {
     const Positions start = ellipsoid(i).colwise().normalized();
     SphereMapOptions options;
     options.threads = 1;
-    return computeSphereMap(ellipsoid(i), triangulateSphere(start), start, options)
-        .sphere;
+    return computeSphereMap(ellipsoid(i), triangulateSphere(start), start, options).sphere;
   });
   const Positions sphere = ellipsoid(3).colwise().normalized();
   const SphereSurface shared(ellipsoid(3), triangulateSphere(sphere), sphere);
@@ -68,7 +66,7 @@ TEST(Concurrency, EndingOneCallLeavesTheOthersAlone) {
       return i % 3 != 2 || ++calls <= 9;
     };
     try {
-      reconstruct(ellipsoid(0), options);
+      test::surfaceOf(ellipsoid(0), options);
       return 0;
     } catch (const Fault&) {
       return sign;

@@ -19,7 +19,6 @@ Surface soundResult() {
   result.vertex_of_input.resize(kPoints);
   result.input_of_vertex.resize(kPoints);
   result.triangles.resize(3, 2 * kPoints - 4);
-  result.graph.components = 1;
   return result;
 }
 
@@ -80,10 +79,10 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
          r.diagnosis.filled_holes = {holeOf(40), holeOf(432)};
        }},
       {{"the points are noisy", "consolidation", "auto", false},
-       [](Surface& r) { r.optimization.noise_steps = 3; }},
+       [](Surface& r) { r.is_noisy = true; }},
       {{},
        [](Surface& r) {
-         r.optimization.noise_steps = 3;
+         r.is_noisy = true;
          r.smoothed.resize(3, kPoints);
        }},
       {{"1 handle, cut: the mesh is a sphere", "", "", true},
@@ -96,7 +95,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
         true},
        [](Surface& r) { r.diagnosis.edges_outside_graph = 0.12; }},
       {{"the time limit ended the work early: this is the best mesh so far", "", "", false},
-       [](Surface& r) { r.optimization.is_out_of_time = true; }},
+       [](Surface& r) { r.is_out_of_time = true; }},
       {{"self-intersections", "", "", true}, [](Surface& r) { r.intersecting_triangles = 2; }},
   });
 }
@@ -106,11 +105,11 @@ TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
       {{{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud",
          "consolidation", "auto", true},
         [](Surface& r) {
-          r.optimization.noise_steps = 3;
+          r.is_noisy = true;
           r.diagnosis.edges_outside_graph = 0.12;
         }}});
   Surface result = soundResult();
-  result.optimization.noise_steps = 3;
+  result.is_noisy = true;
   result.diagnosis.edges_outside_graph = 0.5;
   result.outliers = {3};
   EXPECT_TRUE(internal::findingsOf({}, result).back().option.empty());
@@ -121,11 +120,7 @@ TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
 
 TEST(Findings, OfWhatDoesNotHarmTheMeshAreNone) {
   expectFindings({{{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
-                  {{}, [](Surface& r) { r.graph.components = 2; }},
-                  {{}, [](Surface& r) { r.graph.without_tangent_plane.resize(500); }},
-                  {{}, [](Surface& r) { r.graph.uncertified = 500; }},
                   {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
-                  {{}, [](Surface& r) { r.triangulation.coincident = 500; }},
                   {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }}});
 }
 

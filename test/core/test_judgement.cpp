@@ -1,6 +1,6 @@
-#include "reconstructions.h"
 #include "embedding.h"
 #include "neighbor_graph.h"
+#include "reconstructions.h"
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,7 @@ TEST(Judgement, CleanCloudLooksClosedAndIsFreeOfFindings) {
       expectGuarantees(points, result);
       EXPECT_TRUE(result.self_intersections.empty());
       EXPECT_TRUE(result.diagnosis.looksClosedGenus0());
-      EXPECT_LT(result.optimization.rough, 0.3);
-      EXPECT_EQ(result.optimization.noise_steps, 0);
+      EXPECT_FALSE(result.is_noisy);
       EXPECT_EQ(result.smoothed.cols(), 0);
       EXPECT_EQ(result.smoothing.volume_before, 0.0);
       EXPECT_EQ(result.verdict, "A sound mesh.");
@@ -72,13 +71,7 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
     EXPECT_GT(of_bowl.diagnosis.edges_outside_graph, 0.001);
     const Surface of_parts = mesh(parts, quick(options));
     EXPECT_EQ(of_parts.diagnosis.kind, SurfaceKind::SeveralParts);
-    EXPECT_EQ(of_parts.graph.components, 2);
     EXPECT_TRUE(test::isFound(of_parts, "2 separate parts (160 and 200 points)"));
-    ASSERT_FALSE(of_parts.graph.bridges.empty());
-    for (const Bridge& bridge : of_parts.graph.bridges) {
-      EXPECT_DOUBLE_EQ(bridge.length, (parts.col(bridge.from) - parts.col(bridge.to)).norm());
-      EXPECT_NE(bridge.from < 200, bridge.to < 200);
-    }
     ASSERT_EQ(of_parts.diagnosis.bridges.size(), 1U);
     EXPECT_EQ(of_parts.diagnosis.bridges[0].points, 160U);
     for (const Index v : of_parts.diagnosis.bridges[0].vertices)
@@ -100,7 +93,7 @@ TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {
   options.embedding.weights = EdgeWeights::InverseLength;
   const Surface result = mesh(points, watched(options));
   const Graph graph =
-      test::graphOf(points, test::bruteForceNeighbors(points, 25), options.graph).graph;
+      test::graphOf(points, test::bruteForceNeighbors(points, 25), test::nearest()).graph;
   const std::vector<double> expected =
       tangentialLaplacianLengths(graph, result.sphere, options.embedding.weights);
   ASSERT_EQ(result.vertex_residuals.size(), expected.size());
@@ -180,7 +173,7 @@ TEST(Judgement, NoisySphereIsWarnedOfOrSmoothedWithoutSelfIntersections) {
   const Positions points = test::noisySphere(400, 0.6);
   const Surface rough = mesh(points);
   expectGuarantees(points, rough);
-  EXPECT_GT(rough.optimization.noise_steps, 0);
+  EXPECT_TRUE(rough.is_noisy);
   EXPECT_TRUE(test::isFound(rough, "nois"));
   Options options;
   options.smoothing = 5;

@@ -37,17 +37,18 @@ void expectSound(const Surface& result, std::size_t boundaries) {
 }
 
 TEST(OpenSurface, HasTheOpeningsOfTheCloud) {
-  expectSound(reconstruct(test::hemisphere(700), leftOpen()), 1);
-  expectSound(reconstruct(test::tube(20, 40), leftOpen()), 2);
+  expectSound(test::surfaceOf(test::hemisphere(700), leftOpen()), 1);
+  expectSound(test::surfaceOf(test::tube(20, 40), leftOpen()), 2);
   for (const Index holes : {1, 2, 20})
-    expectSound(reconstruct(sphereWithHoles(4000, holes, 0.2), leftOpen()),
+    expectSound(test::surfaceOf(sphereWithHoles(4000, holes, 0.2), leftOpen()),
                 static_cast<std::size_t>(holes));
   // An opening of more than half of the sphere.
-  expectSound(reconstruct(test::pointsWhere(test::spiralSphere(3000),
-                                            [](const Eigen::Vector3d& p) { return p.z() < -0.4; }),
-                          leftOpen()),
-              1);
-  expectSound(reconstruct(test::spiralSphere(600), leftOpen()), 0);
+  expectSound(
+      test::surfaceOf(test::pointsWhere(test::spiralSphere(3000),
+                                        [](const Eigen::Vector3d& p) { return p.z() < -0.4; }),
+                      leftOpen()),
+      1);
+  expectSound(test::surfaceOf(test::spiralSphere(600), leftOpen()), 0);
 }
 
 TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
@@ -61,7 +62,7 @@ TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
       wave(1, i) = uniform(random);
       wave(2, i) = 0.2 * std::sin(5.0 * wave(0, i));
     }
-    const Surface result = reconstruct(
+    const Surface result = test::surfaceOf(
         test::pointsWhere(wave, [](const Eigen::Vector3d& p) { return p.head<2>().norm() > 0.4; }),
         leftOpen());
     EXPECT_GE(result.boundary.size(), 2U) << seed;
@@ -70,17 +71,17 @@ TEST(OpenSurface, OfRandomSamplesDoesNotIntersectItself) {
 }
 
 TEST(OpenSurface, ItsIntersectionsAreCountedExactly) {
-  // Noise of half the points' distance: the optimisation smooths the positions, and on the given
-  // ones some triangles intersect, unless it finishes there.
+  // Noise of half the points' distance: the optimisation smooths the positions. It finishes on the
+  // given ones unless they are smoothed after it.
   const Positions points =
       test::withNoise(test::hemisphere(1500), 0.5 * std::sqrt(2.0 * test::kPi / 1500), 3);
-  for (const bool finishes : {false, true}) {
+  for (const int smoothing : {0, 3}) {
     Options options = leftOpen();
-    options.optimization.finish_on_points = finishes;
-    const Surface result = reconstruct(points, options);
+    options.smoothing = smoothing;
+    const Surface result = test::surfaceOf(points, options);
     EXPECT_FALSE(result.isClosed());
-    EXPECT_GT(result.optimization.noise_steps, 0);
-    EXPECT_TRUE(finishes || !result.self_intersections.empty());
+    EXPECT_TRUE(result.is_noisy);
+    EXPECT_TRUE(smoothing == 0 || !result.self_intersections.empty());
     EXPECT_EQ(result.self_intersections,
               findSelfIntersections(points(Eigen::all, result.input_of_vertex), result.triangles));
   }
@@ -91,12 +92,12 @@ TEST(OpenSurface, IsManifoldWhereOpeningsTouch) {
   for (const double radius : {0.27, 0.29, 0.31}) {
     const Eigen::Vector3d a(0.0, 0.0, 1.0);
     const Eigen::Vector3d b = Eigen::Vector3d(0.6, 0.0, 0.8).normalized();
-    const Surface result =
-        reconstruct(test::pointsWhere(test::spiralSphere(3000),
-                                      [&](const Eigen::Vector3d& p) {
-                                        return std::min((p - a).norm(), (p - b).norm()) > radius;
-                                      }),
-                    leftOpen());
+    const Surface result = test::surfaceOf(
+        test::pointsWhere(test::spiralSphere(3000),
+                          [&](const Eigen::Vector3d& p) {
+                            return std::min((p - a).norm(), (p - b).norm()) > radius;
+                          }),
+        leftOpen());
     expectSound(result, result.boundary.size());
     EXPECT_GE(result.boundary.size(), 1U);
     EXPECT_LE(result.boundary.size(), 2U);
@@ -109,7 +110,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   });
   EXPECT_THROW(reconstruct(patch), InvalidInput);
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
-    const Surface result = reconstruct(patch, leftOpen(mode));
+    const Surface result = test::surfaceOf(patch, leftOpen(mode));
     expectSound(result, 2);
     double rim = 0.0;  // twice the area that the boundary encloses
     for (const auto& loop : result.boundary)
@@ -126,7 +127,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
     Positions narrow(3, 9 * rows);
     for (int i = 0; i < 9 * rows; ++i)
       narrow.col(i) << i / rows + 0.01 * (i * i % 7), i % rows + 0.01 * (i * i % 5), 0.0;
-    expectSound(reconstruct(narrow, leftOpen()), 1);
+    expectSound(test::surfaceOf(narrow, leftOpen()), 1);
   }
   // Of a line there is no surface.
   Positions line = Positions::Zero(3, 50);
@@ -136,16 +137,16 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
 
 TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
   const Positions points = test::randomSphere(1500, 3);
-  const Surface closed = reconstruct(points);
+  const Surface closed = test::surfaceOf(points);
   EXPECT_TRUE(closed.openings.empty());
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto})
-    EXPECT_EQ(reconstruct(points, leftOpen(mode)).triangles, closed.triangles);
+    EXPECT_EQ(test::surfaceOf(points, leftOpen(mode)).triangles, closed.triangles);
 }
 
 TEST(OpenSurface, OpeningsHaveRoomOnTheSphereInAClosedMesh) {
   const Positions points = sphereWithHoles(3000, 2, 0.3);
-  const Surface closed = reconstruct(points);
-  const Surface open = reconstruct(points, leftOpen());
+  const Surface closed = test::surfaceOf(points);
+  const Surface open = test::surfaceOf(points, leftOpen());
   EXPECT_EQ(closed.sphere, open.sphere);
   EXPECT_TRUE(closed.isClosed());
   ASSERT_EQ(closed.openings.size(), 2U);
@@ -156,13 +157,14 @@ TEST(OpenSurface, OpeningsHaveRoomOnTheSphereInAClosedMesh) {
 }
 
 TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
-  const Surface small = reconstruct(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
+  const Surface small =
+      test::surfaceOf(sphereWithHoles(3000, 1, 0.15), leftOpen(SurfaceMode::Auto));
   expectSound(small, 0);
   ASSERT_EQ(small.openings.size(), 1U);
   EXPECT_TRUE(small.openings[0].is_filled);
-  expectSound(reconstruct(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 1);
+  expectSound(test::surfaceOf(sphereWithHoles(3000, 1, 0.4), leftOpen(SurfaceMode::Auto)), 1);
   // A tube without ends may be one with flat ends.
-  const Surface tube = reconstruct(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
+  const Surface tube = test::surfaceOf(test::tube(20, 40), leftOpen(SurfaceMode::Auto));
   expectSound(tube, 0);
   EXPECT_EQ(tube.openings.size(), 2U);
 }
@@ -170,43 +172,39 @@ TEST(OpenSurface, AutoFillsWhatIsSmallOrFlat) {
 TEST(OpenSurface, HolesAreFilledUpToASize) {
   Positions points = sphereWithHoles(4000, 2, 0.2);
   points = test::pointsWhere(points, [](const Eigen::Vector3d& p) { return p.y() > -0.8; });
-  const Surface open = reconstruct(points, leftOpen());
+  const Surface open = test::surfaceOf(points, leftOpen());
   ASSERT_EQ(open.openings.size(), 3U);
   const Opening& second = open.openings[1];
   Options by_edges = leftOpen();
   by_edges.fill_holes = static_cast<int>(second.loop.size());
-  expectSound(reconstruct(points, by_edges), 1);
+  expectSound(test::surfaceOf(points, by_edges), 1);
   Options by_area = leftOpen();
   by_area.fill_holes_area = 1.01 * second.area;
-  expectSound(reconstruct(points, by_area), 1);
+  expectSound(test::surfaceOf(points, by_area), 1);
   by_area.fill_holes_area = 10.0;
-  expectSound(reconstruct(points, by_area), 0);
+  expectSound(test::surfaceOf(points, by_area), 0);
 }
 
 TEST(OpenSurface, ThePapersGraphShowsNoOpenings) {
   Options paper = test::paper();
   paper.embedding.max_iterations = 20;
   const Positions points = test::hemisphere(300);
-  const Surface closed = reconstruct(points, paper);
+  const Surface closed = test::surfaceOf(points, paper);
   paper.surface = SurfaceMode::Auto;
-  EXPECT_EQ(reconstruct(points, paper).triangles, closed.triangles);
+  EXPECT_EQ(test::surfaceOf(points, paper).triangles, closed.triangles);
   EXPECT_TRUE(closed.isClosed());
 }
 
-TEST(OpenSurface, DoesNotDependOnOrderPlaceAndThreads) {
+TEST(OpenSurface, DoesNotDependOnOrderAndScale) {
   const Positions points = sphereWithHoles(2500, 3, 0.3);
-  const Surface result = reconstruct(points, leftOpen());
-  Options two = leftOpen();
-  two.threads = 2;
-  EXPECT_EQ(reconstruct(points, two).triangles, result.triangles);
-  EXPECT_EQ(reconstruct(points, two).boundary, result.boundary);
-  const Surface scaled = reconstruct(64.0 * points, leftOpen());
+  const Surface result = test::surfaceOf(points, leftOpen());
+  const Surface scaled = test::surfaceOf(64.0 * points, leftOpen());
   EXPECT_EQ(scaled.triangles, result.triangles);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(scaled.openings[i].width, 64.0 * result.openings[i].width);
     EXPECT_EQ(scaled.openings[i].area, 4096.0 * result.openings[i].area);
   }
-  const Surface reversed = reconstruct(points.rowwise().reverse(), leftOpen());
+  const Surface reversed = test::surfaceOf(points.rowwise().reverse(), leftOpen());
   std::set<std::set<Index>> triangles;
   std::set<std::set<Index>> turned;
   const auto last = static_cast<Index>(points.cols()) - 1;
@@ -224,7 +222,7 @@ TEST(OpenSurface, DoesNotDependOnOrderPlaceAndThreads) {
 TEST(OpenSurface, IsSmoothedWithItsOpenings) {
   Options options = leftOpen();
   options.smoothing = 3;
-  const Surface result = reconstruct(sphereWithHoles(2000, 2, 0.4), options);
+  const Surface result = test::surfaceOf(sphereWithHoles(2000, 2, 0.4), options);
   expectSound(result, 2);
   EXPECT_EQ(result.smoothed.cols(), result.sphere.cols());
   EXPECT_EQ(result.smoothing.self_intersections, 0U);
@@ -252,7 +250,7 @@ TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
     return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
   });
   for (const Positions& points : {holed, band}) {
-    const Surface result = reconstruct(points, leftOpen());
+    const Surface result = test::surfaceOf(points, leftOpen());
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);

@@ -1,11 +1,12 @@
 // Progress and cancellation: what Execution::progress promises, in reconstruct() and in each stage.
 
-#include "helpers.h"
+#include "consolidation.h"
+#include "mesh_optimization.h"
+#include "outliers.h"
+#include "reconstructions.h"
+#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/sphere_map.h"
-#include "outliers.h"
-#include "spherical_param/reconstruct.h"
-#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +56,7 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
     fractions[progress.stage].push_back(progress.fraction);
     return true;
   };
-  reconstruct(points, test::spiralNeighbors(points, 12), options);
+  test::surfaceOf(points, options);
   ASSERT_EQ(fractions.size(), 7U);
   for (const auto& [stage, of_stage] : fractions) {
     EXPECT_TRUE(test::areFractions(of_stage)) << stage;
@@ -113,18 +114,15 @@ void expectEndsAtEveryCall(const Work& work) {
 
 TEST(ProgressCallback, EndsReconstructAtEveryCall) {
   Options smoothed;
-  smoothed.smoothing.steps = 2;
+  smoothed.smoothing = 2;
   smoothed.embedding.history_vertices = 10;
-  Options paper;
-  paper.graph.method = GraphMethod::NearestNeighbors;
-  paper.embedding.method = EmbeddingMethod::Iterative;
-  paper.triangulation.method = TriangulationMethod::Qhull;
+  Options paper = test::paper();
   paper.embedding.max_iterations = 20;
   for (const Positions& points : {test::randomSphere(4, 1), roughSphere()})
     for (Options options : {smoothed, paper})
       expectEndsAtEveryCall([&](const Callback& callback) {
         options.progress = test::reportingTo(callback).progress;
-        const Surface result = reconstruct(points, options);
+        const Surface result = test::surfaceOf(points, options);
         return Outcome(result.triangles, result.sphere);
       });
 }
@@ -164,7 +162,7 @@ TEST(ProgressCallback, EndsEachStageAtEveryCall) {
     });
   for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
     stages.emplace_back([&, method](const Execution& e) {
-      return mesh(triangulateSphere(sphere, {method}, e).triangles);
+      return mesh(triangulateSphere(sphere, method, e).triangles);
     });
   for (const auto method :
        {OptimizationMethod::None, OptimizationMethod::Flips, OptimizationMethod::Full})

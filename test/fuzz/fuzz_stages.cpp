@@ -1,18 +1,19 @@
-// Every public function but reconstruct(): the first byte picks it.
+// Every public function but reconstruct(), and every stage: the first byte picks one. Stages are
+// given what their callers give them, as they do not check it; what is public is given anything.
 
 #include "fuzz_stages.h"
-#include "embedding_starts.h"
 #include "embedding.h"
-#include "spherical_param/mesh_measures.h"
+#include "embedding_starts.h"
 #include "mesh_optimization.h"
-#include "spherical_param/mesh_topology.h"
 #include "neighbor_graph.h"
 #include "neighbor_search.h"
 #include "outliers.h"
 #include "point_set.h"
-#include "spherical_param/self_intersection.h"
 #include "smoothing.h"
 #include "sphere_triangulation.h"
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/mesh_topology.h"
+#include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
 
 #include <algorithm>
@@ -33,29 +34,35 @@ namespace {
 using namespace spherical_param;
 
 NeighborGraph graphOf(const Positions& points) {
-  return test::graphOf(points, nearest(points, 6), test::nearest(6));
+  return buildNeighborGraph(points, nearest(points, 6), GraphMethod::NearestNeighbors, 6);
 }
 
-/// A graph of points, sometimes spoiled.
+/// Whether a stage may be given the points: finite, distinct, and scaled to an extent of about 1.
+bool areNodes(const Positions& points) {
+  return points.allFinite() && points.cols() >= 4 &&
+         stress::firstAtPlaces(points).size() == static_cast<std::size_t>(points.cols());
+}
+
+/// Moved and scaled as reconstruct() does it before all stages.
+Positions scaledToOne(const Positions& points) {
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const Positions moved = points.colwise() - low;
+  return moved / std::max(moved.maxCoeff(), std::numeric_limits<double>::min());
+}
+
+/// A connected graph of distinct points: of their neighbours, or of any.
 Graph graphFrom(Bytes& bytes, const Positions& points) {
-  Graph graph;
-  if (points.allFinite() && points.cols() > 0)
-    graph = graphOf(points).graph;
-  const std::uint8_t how = bytes.byte();
-  if (how < 200)
-    return graph;
   const auto n = static_cast<std::size_t>(points.cols());
-  if (how < 230) {
-    NeighborLists lists = arbitraryLists(bytes, n, n, how % 2 == 0);
-    graph.offsets = lists.offsets;
-    graph.neighbors = lists.indices;
-    graph.lengths.assign(graph.neighbors.size(), 1.0);
-  }
-  for (std::size_t i = bytes.below(6); i > 0 && !graph.lengths.empty(); --i)
-    graph.lengths[bytes.byte() % graph.lengths.size()] = bytes.real();
-  if (how % 4 == 1 && !graph.lengths.empty())
-    graph.lengths.pop_back();
-  return graph;
+  if (bytes.oneIn(4))
+    return buildNeighborGraph(points, arbitraryLists(bytes, n, n, true),
+                              GraphMethod::NearestNeighbors, 6)
+        .graph;
+  return graphOf(points).graph;
+}
+
+/// A number that an option may have.
+double within(double low, double high, double value) {
+  return value >= low && value <= high ? value : low;
 }
 
 void requireConnected(const Graph& graph, std::size_t n) {
@@ -122,28 +129,25 @@ void fuzzPointSet(Bytes& bytes, const Positions& points, Watch& watch) {
 }
 
 void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
-  TriangulationOptions options;
-  options.method = bytes.choice<TriangulationMethod>(2);
+  const bool is_by_qhull = bytes.oneIn(2);
   const bool is_raw = bytes.oneIn(8);
   const Positions sphere = is_raw ? points : normalized(points);
   const Execution execution = executionFrom(bytes, watch);
-  require(isSphere(triangulateSphere(sphere, options, execution), sphere),
-          "the triangulation is a sphere over all points");
+  const Triangles triangles =
+      is_by_qhull ? triangulateSphere(sphere, TriangulationMethod::Qhull, execution).triangles
+                  : triangulateSphere(sphere, execution);
+  require(isSphere(triangles, sphere), "the triangulation is a sphere over all points");
 }
 
 void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
   const auto n = static_cast<std::size_t>(points.cols());
-  const bool is_wrong = bytes.oneIn(4);
   const NeighborLists lists =
-      bytes.oneIn(2) ? nearest(points, 12) : arbitraryLists(bytes, n, n, !is_wrong);
-  // Distinct and finite is a precondition that is not checked.
-  if (!points.allFinite() || stress::firstAtPlaces(points).size() != n)
+      bytes.oneIn(2) ? nearest(points, 12) : arbitraryLists(bytes, n, n, true);
+  if (!areNodes(points))
     return;
-  GraphOptions options;
-  options.method = bytes.choice<GraphMethod>(2);
-  if (bytes.oneIn(2))
-    options.k = bytes.integerOr(25);
-  options.agreement = bytes.choice<StarAgreement>(2);
+  const GraphMethod method =
+      bytes.oneIn(2) ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
+  const int k = std::max(3, bytes.integerOr(25));
   const std::uint8_t how = bytes.byte();
   NeighborSearch search;
   if (how % 2 == 1)
@@ -151,26 +155,32 @@ void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
       return arbitraryLists(bytes, queries.size(), n, how % 8 != 7);
     };
   const Execution execution = executionFrom(bytes, watch);
-  requireConnected(test::graphOf(points, lists, options, search, execution).graph, n);
+  requireConnected(buildNeighborGraph(points, lists, method, k, search, execution).graph, n);
 }
 
-void fuzzEmbedding(Bytes& bytes, const Positions& points, Watch& watch) {
+void fuzzEmbedding(Bytes& bytes, const Positions& given, Watch& watch) {
+  if (!areNodes(given))
+    return;
+  const Positions points = scaledToOne(given);
+  if (!areNodes(points))
+    return;
   const Graph graph = graphFrom(bytes, points);
   EmbeddingOptions options;
-  options.method = bytes.choice<EmbeddingMethod>(2);
-  options.weights = bytes.choice<EdgeWeights>(3);
+  options.method = bytes.oneIn(2) ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
+  options.weights = static_cast<EdgeWeights>(bytes.below(3));
   if (options.method == EmbeddingMethod::Multilevel)
-    options.exponent = bytes.realOr(3.0);
-  options.damping = bytes.realOr(0.5);
-  options.max_iterations = atMost(300, bytes.integerOr(100), std::numeric_limits<int>::max());
+    options.exponent = within(2.1, 16.0, bytes.realOr(3.0));
+  options.damping = within(0.01, 1.0, bytes.realOr(0.5));
+  options.max_iterations = std::clamp(bytes.integerOr(100), 0, 300);
   if (bytes.oneIn(2))
-    options.tolerance = bytes.real();
-  options.stagnation_window = bytes.integerOr(100);
-  options.starts = atMost(10, bytes.integerOr(2), 100);
-  options.history.vertices = bytes.integerOr(0);
-  options.history.frames = bytes.integerOr(20);
+    options.tolerance = within(0.0, 1.0, bytes.real());
+  options.stagnation_window = std::max(0, bytes.integerOr(100));
+  options.starts = std::clamp(bytes.integerOr(2), 1, 10);
+  options.history_vertices = std::clamp(bytes.integerOr(0), 0, 1 << 24);
+  options.history_frames = std::clamp(bytes.integerOr(20), 2, 10000);
+  const NodeMass mass = bytes.oneIn(2) ? NodeMass::ByArea : NodeMass::Equal;
   const std::uint32_t seed = bytes.byte();
-  const Embedding result = embed(graph, points, options, seed, executionFrom(bytes, watch));
+  const Embedding result = embed(graph, points, options, seed, executionFrom(bytes, watch), mass);
   require(result.directions.cols() == points.cols() && stress::areUnitVectors(result.directions),
           "the embedding is of unit vectors");
   for (const HistoryFrame& frame : result.history.frames)
@@ -234,11 +244,16 @@ void fuzzChecks(Bytes& bytes, const Positions& points, Watch& watch) {
           "the pairs of some triangles are those among all");
 }
 
-void fuzzOptimization(Bytes& bytes, const Positions& points, Watch& watch) {
-  const Triangles triangles = trianglesFrom(bytes, normalized(points));
+void fuzzOptimization(Bytes& bytes, const Positions& given, Watch& watch) {
+  if (!areNodes(given))
+    return;
+  const Positions points = scaledToOne(given);
+  if (!areNodes(points))
+    return;
+  const Triangles triangles = triangulateSphere(normalized(points));
   const Graph graph = graphFrom(bytes, points);
   OptimizationOptions options;
-  options.method = bytes.choice<OptimizationMethod>(3);
+  options.method = static_cast<OptimizationMethod>(bytes.below(3));
   const std::uint32_t seed = bytes.byte();
   const Execution execution = executionFrom(bytes, watch);
   options.finish_on_points = bytes.byte() % 2 == 0;
@@ -247,30 +262,34 @@ void fuzzOptimization(Bytes& bytes, const Positions& points, Watch& watch) {
       "the optimised mesh is a sphere over all points");
 }
 
-void fuzzSmoothing(Bytes& bytes, const Positions& points, Watch&) {
-  const Triangles triangles = trianglesFrom(bytes, normalized(points));
+void fuzzSmoothing(Bytes& bytes, const Positions& given, Watch&) {
+  if (!areNodes(given))
+    return;
+  const Positions points = scaledToOne(given);
+  const Triangles triangles = triangulateSphere(normalized(points));
   SmoothingOptions options;
-  options.method = bytes.choice<SmoothingMethod>(2);
-  options.steps = atMost(200, bytes.integerOr(5), 10000);
+  options.method = bytes.oneIn(2) ? SmoothingMethod::Umbrella : SmoothingMethod::Biharmonic;
+  options.steps = std::clamp(bytes.integerOr(5), 0, 200);
   options.restore_volume = bytes.oneIn(2);
   const Smoothing result = smoothSurface(points, triangles, options, bytes.integerOr(0));
-  require(result.points.cols() == points.cols(), "there are as many smoothed points");
+  require(result.points.cols() == points.cols() && result.points.allFinite(),
+          "there are as many smoothed points");
 }
 
-void fuzzDiagnosis(Bytes& bytes, const Positions& points, Watch&) {
-  if (!points.allFinite() || points.cols() == 0)
+void fuzzDiagnosis(Bytes& bytes, const Positions& given, Watch&) {
+  if (!areNodes(given))
     return;
-  const auto n = static_cast<std::size_t>(points.cols());
-  const Triangles triangles = trianglesFrom(bytes, normalized(points));
+  const Positions points = scaledToOne(given);
+  if (!areNodes(points))
+    return;
+  const Triangles triangles = triangulateSphere(normalized(points));
   const NeighborGraph graph = graphOf(points);
-  std::vector<Bridge> bridges = graph.report.bridges;
-  if (bytes.oneIn(4))
-    bridges.push_back({bytes.index(n), bytes.index(n), bytes.real()});
   DiagnosisOptions options;
   options.max_vertices = bytes.byte();
   options.mark_triangles = bytes.oneIn(2);
-  const SurfaceDiagnosis result =
-      diagnoseSurface(points, triangles, graph.graph, bridges, options, bytes.integerOr(0));
+  options.count_cycles = bytes.oneIn(2);
+  const SurfaceDiagnosis result = diagnoseSurface(
+      points, triangles, graph.graph, graph.report.bridges, options, bytes.integerOr(0));
   require(!options.mark_triangles ||
               result.triangle_marks.size() == static_cast<std::size_t>(triangles.cols()),
           "each triangle has a mark");

@@ -4,19 +4,19 @@
 //
 // A name has the stage, the number of points and the number of threads.
 
-#include "scan_shapes.h"
 #include "embedding.h"
-#include "spherical_param/mesh_measures.h"
 #include "mesh_optimization.h"
-#include "spherical_param/mesh_topology.h"
 #include "neighbor_graph.h"
 #include "neighbor_search.h"
 #include "outliers.h"
 #include "point_set.h"
-#include "spherical_param/reconstruct.h"
-#include "spherical_param/self_intersection.h"
+#include "scan_shapes.h"
 #include "smoothing.h"
 #include "sphere_triangulation.h"
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/mesh_topology.h"
+#include "spherical_param/reconstruct.h"
+#include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
 
 #include <benchmark/benchmark.h>
@@ -36,12 +36,9 @@ namespace {
 
 using State = ::benchmark::State;
 
-/// The graph of the paper.
-GraphOptions ofPaper() {
-  GraphOptions options;
-  options.method = GraphMethod::NearestNeighbors;
-  return options;
-}
+/// Neighbours of each point in the default graph, and in the graph of the paper.
+constexpr int kNeighbors = 12;
+constexpr int kPaperNeighbors = 25;
 
 Execution withThreads(int threads) {
   Execution execution;
@@ -75,9 +72,9 @@ public:
         search_alone(makeNeighborSearch(points, withThreads(1))),
         all(static_cast<std::size_t>(count)) {
     std::iota(all.begin(), all.end(), Index{0});
-    lists = search(all, neighborsToSearch({}));
-    long_lists = search(all, neighborsToSearch(ofPaper()));
-    graph = test::graphOf(points, lists, {}, search);
+    lists = search(all, kNeighbors);
+    long_lists = search(all, kPaperNeighbors);
+    graph = buildNeighborGraph(points, lists, GraphMethod::LocalDelaunay, kNeighbors, search);
     sphere = embed(graph.graph, points).directions;
     sphere_triangles = triangulateSphere(sphere);
     if (signedVolume(points, sphere_triangles) < 0.0)
@@ -138,17 +135,20 @@ const std::vector<Entry> kEntries = {
     {"k-d tree", false, [](const Data& d, int) { keep(makeNeighborSearch(d.points)); }},
     {"tree and neighbours", true,
      [](const Data& d, int n) {
-       keep(findNearestNeighbors(d.points, neighborsToSearch({}), withThreads(n)));
+       keep(findNearestNeighbors(d.points, kNeighbors, withThreads(n)));
      }},
     {"outliers", true,
      [](const Data& d, int n) { keep(findOutliers(d.points, d.long_lists, {}, withThreads(n))); }},
     {"tangent Delaunay graph", true,
      [](const Data& d, int n) {
-       keep(test::graphOf(d.points, d.lists, {}, n == 1 ? d.search_alone : d.search,
-                               withThreads(n)));
+       keep(buildNeighborGraph(d.points, d.lists, GraphMethod::LocalDelaunay, kNeighbors,
+                               n == 1 ? d.search_alone : d.search, withThreads(n)));
      }},
     {"nearest-neighbour graph", false,
-     [](const Data& d, int) { keep(test::graphOf(d.points, d.long_lists, ofPaper())); }},
+     [](const Data& d, int) {
+       keep(buildNeighborGraph(d.points, d.long_lists, GraphMethod::NearestNeighbors,
+                               kPaperNeighbors));
+     }},
     {"embedding, multilevel", true, [](const Data& d, int n) { embedBy({}, d, n); }},
     {"embedding, converged", true, [](const Data& d, int n) { embedBy(toTolerance(1e-8), d, n); }},
     {"embedding, 50 iterations", true,
@@ -156,7 +156,7 @@ const std::vector<Entry> kEntries = {
     {"triangulation, incremental", false,
      [](const Data& d, int) { keep(triangulateSphere(d.sphere)); }},
     {"triangulation, qhull", false,
-     [](const Data& d, int) { keep(triangulateSphere(d.sphere, {TriangulationMethod::Qhull})); }},
+     [](const Data& d, int) { keep(triangulateSphere(d.sphere, TriangulationMethod::Qhull)); }},
     {"optimisation", true,
      [](const Data& d, int n) {
        keep(optimizeMesh(d.points, d.sphere_triangles, d.graph.graph, {}, 1, withThreads(n)));

@@ -1,10 +1,7 @@
 #include "consolidation.h"
 
 #include "../reconstructions.h"
-#include "helpers.h"
-#include "spherical_param/errors.h"
 #include "neighbor_search.h"
-#include "spherical_param/reconstruct.h"
 
 #include <gtest/gtest.h>
 
@@ -87,7 +84,7 @@ TEST(Consolidation, LayersBecomeOne) {
   EXPECT_GT(shortestDistance(result.points), 0.002);
   Options options;
   options.consolidation = ConsolidationMode::Auto;
-  const Surface mesh = reconstruct(points, options);
+  const Surface mesh = test::surfaceOf(points, options);
   EXPECT_TRUE(mesh.self_intersections.empty());
   EXPECT_LT(mesh.measures.area, 1.03 * 4.0 * test::kPi);
 }
@@ -141,46 +138,31 @@ TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
   EXPECT_EQ(lone.points.rightCols<1>(), Eigen::Vector3d(2.0, 0.0, 0.0));
 }
 
-TEST(Consolidation, SameBitsForAnyNumberOfThreadsAndAnyPowerOfTwo) {
-  const Positions points = withNoise(randomSphere(6000, 8), 0.02, 9);
-  const Consolidation one = consolidate(points, {1});
-  Execution four;
-  four.threads = 4;
-  EXPECT_EQ(consolidate(points, four).points, one.points);
-  const Consolidation scaled = consolidate(1024.0 * points, four);
+TEST(Consolidation, APowerOfTwoScalesTheResult) {
+  const Positions points = withNoise(randomSphere(2000, 8), 0.02, 9);
+  const Consolidation one = consolidate(points);
+  const Consolidation scaled = consolidate(1024.0 * points);
   EXPECT_EQ(scaled.points, 1024.0 * one.points);
   EXPECT_EQ(scaled.point_of_input, one.point_of_input);
   EXPECT_EQ(scaled.report.noise, 1024.0 * one.report.noise);
-}
-
-TEST(Consolidation, BadInputIsInvalidInputAndWorkCanBeCancelled) {
-  Positions points = spiralSphere(100);
-  points(1, 5) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(consolidate(points), InvalidInput);
-  Execution execution;
-  execution.threads = -1;
-  EXPECT_THROW(consolidate(spiralSphere(100), execution), InvalidInput);
-  execution.threads = 1;
-  execution.progress = [](const Progress&) { return false; };
-  EXPECT_THROW(consolidate(spiralSphere(100), execution), Cancelled);
 }
 
 TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
   Positions points(3, 2050);
   points << withNoise(randomSphere(2000, 10), 0.02, 11), Positions::Zero(3, 50);
   points.rightCols(50) = points.leftCols(50);
-  const Surface plain = reconstruct(points);
+  const Surface plain = test::surfaceOf(points);
   EXPECT_EQ(plain.consolidated.cols(), 0);
   EXPECT_EQ(plain.moved().cols(), 0);
   EXPECT_EQ(plain.consolidation.merged, 0U);
 
   Options options;
   options.consolidation = ConsolidationMode::Auto;
-  const Surface mesh = reconstruct(points, options);
+  const Surface mesh = test::surfaceOf(points, options);
   const Consolidation expected = consolidate(points);
   EXPECT_EQ(mesh.consolidated, expected.points);
   EXPECT_EQ(mesh.vertex_of_input, expected.point_of_input);
-  EXPECT_EQ(mesh.triangles, reconstruct(expected.points).triangles);
+  EXPECT_EQ(mesh.triangles, test::surfaceOf(expected.points).triangles);
   EXPECT_EQ(mesh.duplicates(), 50U);
   EXPECT_EQ(mesh.consolidation.merged, expected.report.merged);
   EXPECT_EQ(mesh.vertexCount() + mesh.consolidation.merged, 2000U);
@@ -191,11 +173,11 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
               static_cast<Index>(v));
 
   // Neighbours of the points as they were say nothing about where they are now.
-  const Surface of_lists = reconstruct(points, findNearestNeighbors(points, 3), options);
+  const Surface of_lists = test::surfaceOf(points, options, makeNeighborSearch(points));
   EXPECT_EQ(of_lists.triangles, mesh.triangles);
 
   options.smoothing = 2;
-  const Surface smoothed = reconstruct(points, options);
+  const Surface smoothed = test::surfaceOf(points, options);
   EXPECT_EQ(smoothed.consolidated, mesh.consolidated);
   EXPECT_EQ(smoothed.moved(), smoothed.smoothed);
   EXPECT_NE(smoothed.smoothed, smoothed.consolidated);
@@ -206,10 +188,10 @@ TEST(Consolidation, AnyPointsHaveAClosedMesh) {
   options.consolidation = ConsolidationMode::Auto;
   for (const Index n : {4, 19, 20, 25, 100, 400}) {
     const Positions blob = withNoise(Positions::Zero(3, n), 1.0, static_cast<std::uint64_t>(n));
-    EXPECT_TRUE(reconstruct(blob, options).topology.isSphere()) << n;
+    EXPECT_TRUE(test::surfaceOf(blob, options).topology.isSphere()) << n;
     Positions line = 1e-3 * blob;
     line.row(0).setLinSpaced(0.0, 1.0);
-    EXPECT_TRUE(reconstruct(line, options).topology.isSphere()) << n;
+    EXPECT_TRUE(test::surfaceOf(line, options).topology.isSphere()) << n;
   }
 }
 

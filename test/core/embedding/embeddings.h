@@ -1,10 +1,10 @@
 #pragma once
 
+#include "embedding.h"
 #include "embedding_energy.h"
 #include "graph_hierarchy.h"
 #include "helpers.h"
 #include "multilevel_embedding.h"
-#include "embedding.h"
 #include "sphere_triangulation.h"
 
 #include <cmath>
@@ -45,7 +45,7 @@ struct Setting : EmbeddingOptions, Execution {};
 
 inline Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
                                const Setting& setting = {}) {
-  return internal::embedByLevels(graph, hierarchy, setting, {}, setting);
+  return internal::embedByLevels(graph, hierarchy, setting, {}, {}, setting);
 }
 
 inline Embedding solve(const Graph& graph, const Setting& setting = {}, Index coarsest_size = 200,

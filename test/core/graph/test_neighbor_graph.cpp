@@ -1,7 +1,6 @@
 #include "neighbor_graph.h"
 
 #include "graph_helpers.h"
-#include "spherical_param/errors.h"
 #include "union_find.h"
 
 #include <tuple>
@@ -57,8 +56,7 @@ TEST(NearestNeighborGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
     for (Index i = 1; i < 20; ++i)
       parts.unite(20 * piece, 20 * piece + i);
   }
-  const NeighborGraph result =
-      test::graphOf(points, bruteForceNeighbors(points, 6), nearest(6));
+  const NeighborGraph result = test::graphOf(points, bruteForceNeighbors(points, 6), nearest(6));
   test::expectConnectedGraphOf(points, result);
   EXPECT_EQ(result.report.components, pieces);
   ASSERT_EQ(result.report.bridges.size(), static_cast<std::size_t>(pieces) - 1);
@@ -74,8 +72,7 @@ TEST(NearestNeighborGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
 
 TEST(NearestNeighborGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
   const Positions points = test::cubeGrid(5);  // all ties
-  const NeighborGraph result =
-      test::graphOf(points, bruteForceNeighbors(points, 0), nearest());
+  const NeighborGraph result = test::graphOf(points, bruteForceNeighbors(points, 0), nearest());
   test::expectConnectedGraphOf(points, result);
   EXPECT_EQ(result.report.components, points.cols());
   EXPECT_EQ(result.report.edges, static_cast<std::size_t>(points.cols()) - 1);
@@ -83,34 +80,13 @@ TEST(NearestNeighborGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
     EXPECT_DOUBLE_EQ(length, 0.25);
 }
 
-TEST(NeighborGraph, ListsThatDoNotFitThePointsAreInvalidInput) {
-  const Positions points = randomSphere(10, 5);
-  const NeighborLists good = bruteForceNeighbors(points, 4);
-  for (const GraphOptions& options : {GraphOptions(), nearest()}) {
-    const auto expect_refused = [&](const auto& change) {
-      NeighborLists bad = good;
-      change(bad);
-      EXPECT_THROW(test::graphOf(points, bad, options), InvalidInput);
-    };
-    EXPECT_NO_THROW(test::graphOf(points, good, options));
-    expect_refused([](NeighborLists& lists) { lists.indices[3] = 10; });
-    expect_refused([](NeighborLists& lists) { lists.indices[3] = -1; });
-    expect_refused([](NeighborLists& lists) { lists.offsets.front() = 1; });
-    expect_refused([](NeighborLists& lists) { lists.offsets.back() -= 1; });
-    expect_refused([](NeighborLists& lists) { std::swap(lists.offsets[2], lists.offsets[3]); });
-    expect_refused([](NeighborLists& lists) {
-      lists.indices.resize(36);
-      lists.offsets.pop_back();
-    });
-  }
-}
-
 TEST(NeighborGraph, TwentyFiveOrTwelveNeighboursAreToBeSearchedUnlessKIsSet) {
-  EXPECT_EQ(neighborsToSearch({}), 12);
-  GraphOptions options;
-  options.method = GraphMethod::NearestNeighbors;
+  Options options;
+  EXPECT_EQ(neighborsToSearch(options), 12);
+  options.graph = GraphMethod::NearestNeighbors;
   EXPECT_EQ(neighborsToSearch(options), 25);
-  EXPECT_EQ(neighborsToSearch(nearest(7)), 7);
+  options.k = 7;
+  EXPECT_EQ(neighborsToSearch(options), 7);
 }
 
 }  // namespace

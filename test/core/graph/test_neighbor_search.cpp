@@ -43,13 +43,6 @@ TEST(NeighborSearch, FindsTheNearestPointsOfEachQuery) {
   EXPECT_EQ(findNearestNeighbors(Positions::Zero(3, 1), 5).indices, std::vector<Index>{0});
 }
 
-TEST(NeighborSearch, GivesTheSameListsForAnyNumberOfThreads) {
-  const Positions points = test::randomSphere(6000, 2);
-  const NeighborLists expected = findNearestNeighbors(points, 6, test::onThreads(1));
-  for (const int threads : {2, 0})
-    EXPECT_EQ(findNearestNeighbors(points, 6, test::onThreads(threads)).indices, expected.indices);
-}
-
 TEST(NeighborSearch, RefusesNoPointsStrangeQueriesAndAnswersBeyondMemory) {
   EXPECT_THROW(makeNeighborSearch(Positions(3, 0)), InvalidInput);
   const NeighborSearch search = makeNeighborSearch(test::randomSphere(10, 3));
@@ -58,12 +51,6 @@ TEST(NeighborSearch, RefusesNoPointsStrangeQueriesAndAnswersBeyondMemory) {
   EXPECT_THROW(search({10}, 3), InvalidInput);
   // 50,000 lists of as many entries are more than 2^31.
   EXPECT_THROW(findNearestNeighbors(test::spiralSphere(50000), 50000), InvalidInput);
-}
-
-TEST(NeighborSearch, CanBeCancelled) {
-  EXPECT_THROW(findNearestNeighbors(test::randomSphere(10, 3), 3,
-                                    test::reportingTo([](double) { return false; })),
-               Cancelled);
 }
 
 }  // namespace

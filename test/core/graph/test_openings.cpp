@@ -2,7 +2,6 @@
 
 #include "graph_helpers.h"
 #include "open_shapes.h"
-#include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
@@ -125,26 +124,6 @@ TEST(Openings, AreTheSameMovedTurnedAndScaled) {
   };
   EXPECT_EQ(sizes(openingsOf(points)).size(), 4U);
   EXPECT_EQ(sizes(openingsOf(points)), sizes(openingsOf(moved)));
-}
-
-TEST(Openings, DoNotDependOnTheThreads) {
-  const Positions points = sphereWithHoles(20000, 3, 0.3);
-  const Graph graph = test::graphOf(points, findNearestNeighbors(points, 24)).graph;
-  Execution one;
-  one.threads = 1;
-  Execution four;
-  four.threads = 4;
-  const Openings a = findOpenings(points, graph, one);
-  const Openings b = findOpenings(points, graph, four);
-  ASSERT_EQ(a.openings.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_EQ(a.openings[i].loop, b.openings[i].loop);
-  EXPECT_EQ(a.false_edges, b.false_edges);
-}
-
-TEST(Openings, NeedTheGraphOfThePoints) {
-  const Positions points = spiralSphere(100);
-  EXPECT_THROW(findOpenings(points.leftCols(99), graphOf(points)), InvalidInput);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace spherical_param::internal {
 namespace {
 
-void expectTheSameAsTwoSteps(const Positions& points, int threads) {
-  const OrderedPoints ordered = orderPoints(points, threads);
+void expectTheSameAsTwoSteps(const Positions& points) {
+  const OrderedPoints ordered = orderPoints(points, 1);
   const reference::OrderedPoints expected = reference::orderPoints(points, ordered.exponent);
   const DistinctPoints& distinct = expected.distinct;
   EXPECT_EQ(ordered.distinct.vertex_of_input, distinct.vertex_of_input);
@@ -38,20 +38,14 @@ Positions crowd() {
 
 TEST(OrderedPoints, AreTheDistinctPointsAlongTheCurve) {
   for (const Index n : {1, 2, 100, 3000})
-    expectTheSameAsTwoSteps(7.0 * test::randomSphere(n, 1), 1);
+    expectTheSameAsTwoSteps(7.0 * test::randomSphere(n, 1));
   const Positions lattice =
       (3.0 * test::randomSphere(2000, 3)).array().round();  // zeros of both signs
-  expectTheSameAsTwoSteps(lattice, 1);
-  expectTheSameAsTwoSteps(test::randomSphere(4, 1).replicate(1, 500), 1);
-  expectTheSameAsTwoSteps(crowd(), 1);
+  expectTheSameAsTwoSteps(lattice);
+  expectTheSameAsTwoSteps(test::randomSphere(4, 1).replicate(1, 500));
+  expectTheSameAsTwoSteps(crowd());
   EXPECT_EQ(orderPoints(crowd(), 1).input_of_node.size(), 902U);
   EXPECT_TRUE(orderPoints(Positions(3, 0), 1).input_of_node.empty());
-}
-
-TEST(OrderedPoints, AreTheSameForAnyNumberOfThreads) {
-  const Positions points = test::randomSphere(60000, 2);
-  for (const int threads : {1, 3})
-    expectTheSameAsTwoSteps(points, threads);
 }
 
 TEST(OrderedPoints, AreOfExtentOneAtAnyScaleAndPlace) {

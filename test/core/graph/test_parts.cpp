@@ -1,7 +1,7 @@
+#include "../reconstructions.h"
 #include "graph_helpers.h"
-#include "spherical_param/errors.h"
 #include "parts.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/errors.h"
 
 #include <limits>
 #include <numeric>
@@ -54,10 +54,10 @@ TEST(Parts, AreMeshedAsIfEachWereAlone) {
   const Positions points = horizontally(first, movedTo(2.5, second));
   const Parts found = findParts(points);
   ASSERT_EQ(found.parts.size(), 2U);
-  EXPECT_EQ(reconstruct(points(Eigen::all, found.parts[0].points)).triangles,
-            reconstruct(first).triangles);
-  EXPECT_EQ(reconstruct(points(Eigen::all, found.parts[1].points)).triangles,
-            reconstruct(movedTo(2.5, second)).triangles);
+  EXPECT_EQ(test::surfaceOf(points(Eigen::all, found.parts[0].points)).triangles,
+            test::surfaceOf(first).triangles);
+  EXPECT_EQ(test::surfaceOf(points(Eigen::all, found.parts[1].points)).triangles,
+            test::surfaceOf(movedTo(2.5, second)).triangles);
 }
 
 TEST(Parts, HoldAsManyPointsAsWanted) {

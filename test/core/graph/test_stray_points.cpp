@@ -1,7 +1,7 @@
+#include "../reconstructions.h"
 #include "graph_helpers.h"
-#include "spherical_param/errors.h"
 #include "outliers.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
@@ -126,13 +126,13 @@ TEST(StrayPoints, HaveTheirDistanceInSpacingsForAnyNumberOfThreads) {
 TEST(StrayPoints, AreReportedByReconstructThatMakesVerticesOfThem) {
   const Positions stray = 1.6 * spiralSphere(5);
   const Positions points = horizontally(stray, spiralSphere(800));
-  const Surface result = reconstruct(horizontally(points, stray.leftCols(2)));
+  const Surface result = test::surfaceOf(horizontally(points, stray.leftCols(2)));
   EXPECT_EQ(result.outliers, range(0, 5));
   EXPECT_EQ(result.vertexCount(), 805U);
   ASSERT_FALSE(result.findings.empty());
   EXPECT_EQ(result.findings[0].text, "5 points look like outliers");
 
-  const Surface clean = reconstruct(points.rightCols(800));
+  const Surface clean = test::surfaceOf(points.rightCols(800));
   EXPECT_TRUE(clean.outliers.empty());
   EXPECT_TRUE(clean.findings.empty());
 }

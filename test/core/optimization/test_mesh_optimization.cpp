@@ -1,19 +1,15 @@
 #include "mesh_optimization.h"
 
 #include "helpers.h"
-#include "mesh_optimizer.h"
 #include "optimization_cases.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -200,35 +196,6 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
 
 // --- What changes nothing, and what does ---------------------------------------------------------
 
-TEST(MeshOptimization, SameBitsForAnyNumberOfThreads) {
-  // More triangles than a single thread is left with.
-  for (const bool is_noisy : {false, true}) {
-    const Case of = is_noisy ? noisySphere(2100, 0.3, 15) : scrambledEllipsoid(2100, 0.6, 2500, 15);
-    const MeshOptimization one = optimize(of, {}, 1, onThreads(1));
-    const MeshOptimization several = optimize(of, {}, 1, onThreads(3));
-    EXPECT_EQ(one.triangles, several.triangles);
-    EXPECT_EQ(one.self_intersections, several.self_intersections);
-    const auto numbers = [](const OptimizationReport& report) {
-      return std::tuple(report.energy, report.rough, report.alignment, report.unevenness,
-                        report.noise_steps, report.smoothed_self_intersections);
-    };
-    EXPECT_EQ(numbers(one.report), numbers(several.report));
-    ASSERT_EQ(one.report.phases.size(), several.report.phases.size());
-    const auto phase = [](const OptimizationPhase& p) {
-      return std::tuple(p.name, p.tried, p.moves, p.energy_before, p.energy, p.self_intersections);
-    };
-    for (std::size_t i = 0; i < one.report.phases.size(); ++i)
-      EXPECT_EQ(phase(one.report.phases[i]), phase(several.report.phases[i]));
-  }
-}
-
-TEST(MeshOptimization, SeedDecidesWhatIsRandom) {
-  const Case of = noisySphere(100, 0.7, 16);
-  const MeshOptimization first = optimize(of);
-  EXPECT_TRUE(first.triangles == optimize(of).triangles);
-  EXPECT_TRUE(first.triangles != optimize(of, {}, 2).triangles);
-}
-
 TEST(MeshOptimization, ScaleByAPowerOfTwoChangesNothing) {
   const Case of = scrambledEllipsoid(300, 0.5, 400, 17);
   const MeshOptimization result = optimize(of);
@@ -278,14 +245,6 @@ TEST(MeshOptimization, ATimeLimitEndsItWithASphereAndSaysSo) {
   }
 }
 
-TEST(MeshOptimization, ATimeLimitOutOfRangeIsInvalidInput) {
-  for (const double limit : {std::numeric_limits<double>::quiet_NaN(), -1.0, 1e300}) {
-    Execution execution;
-    execution.time_limit = limit;
-    EXPECT_THROW(optimize(ellipsoid(50, 0.8, 0.6), {}, 1, execution), InvalidInput);
-  }
-}
-
 TEST(MeshOptimization, ATimeLimitThatIsNotReachedChangesNothing) {
   const Case of = noisySphere(200, 0.5, 26);
   Execution execution;
@@ -293,89 +252,6 @@ TEST(MeshOptimization, ATimeLimitThatIsNotReachedChangesNothing) {
   const MeshOptimization limited = optimize(of, {}, 1, execution);
   EXPECT_FALSE(limited.report.is_out_of_time);
   EXPECT_EQ(limited.triangles, optimize(of).triangles);
-}
-
-// --- The caller's part ---------------------------------------------------------------------------
-
-TEST(MeshOptimization, BadInputIsInvalidInput) {
-  const Case good = ellipsoid(50, 0.8, 0.6);
-  EXPECT_NO_THROW(optimize(good));
-  for (const int threads : {-1, 1025})
-    EXPECT_THROW(optimize(good, {}, 1, onThreads(threads)), InvalidInput);
-  const auto expect_refused = [&](const auto& spoil) {
-    for (const OptimizationMethod method : {OptimizationMethod::None, OptimizationMethod::Full}) {
-      Case of = good;
-      spoil(of);
-      EXPECT_THROW(optimize(of, withMethod(method)), InvalidInput);
-    }
-  };
-  expect_refused([](Case& of) { of.points = Positions(of.points.leftCols(49)); });
-  expect_refused([](Case& of) { of.graph = Graph(); });
-  expect_refused([](Case& of) { of.triangles(0, 0) = 50; });
-  expect_refused([](Case& of) { of.triangles(0, 0) = -1; });
-  expect_refused([](Case& of) { of.triangles = Triangles(of.triangles.leftCols(95)); });
-  expect_refused([](Case& of) { std::swap(of.triangles(0, 7), of.triangles(1, 7)); });
-  for (const double value :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
-    expect_refused([&](Case& of) { of.points(1, 7) = value; });
-  expect_refused([](Case& of) {  // a point that no triangle has
-    of.points.conservativeResize(Eigen::NoChange, 51);
-    of.points.col(50).setConstant(2.0);
-    of.graph.offsets.push_back(of.graph.offsets.back());
-  });
-  expect_refused([](Case& of) {  // two pieces
-    of.points = horizontally(of.points, 3.0 * of.points);
-    Triangles both(3, 2 * of.triangles.cols());
-    both << of.triangles, (of.triangles.array() + 50).matrix();
-    of.triangles = both;
-    of.graph = graphOfMesh(of.points, both);
-  });
-}
-
-TEST(MeshOptimization, ProgressMayEndTheWorkAndChangesNothing) {
-  // In a plane, triangles overlap whatever is done: all rounds of untangling are made.
-  Case flat = ellipsoid(6, 0.8, 1.0);
-  flat.points = randomSphere(6, 22);
-  flat.points.row(2).setZero();
-  for (const Case& of : {noisySphere(60, 1.0, 22), flat}) {
-    MeshOptimization watched;
-    const std::vector<double> fractions = fractionsOf(
-        [&](const auto& report) { watched = optimize(of, {}, 1, reportingTo(report)); });
-    EXPECT_TRUE(areFractions(fractions));
-    EXPECT_GT(fractions.size(), 5U);
-    EXPECT_EQ(watched.triangles, optimize(of).triangles);
-    for (const int last : {1, 2, 5}) {
-      int calls = 0;
-      EXPECT_THROW(optimize(of, {}, 1, reportingTo([&](double) { return ++calls < last; })),
-                   Cancelled);
-      EXPECT_EQ(calls, last);
-    }
-  }
-}
-
-TEST(MeshOptimization, LongWorkReportsOnItsWay) {
-  // More triangles than there are between reports: two from each pass over them.
-  const Tube tube = bentTube(12.0, 0.0, 174);
-  ASSERT_GT(tube.triangles.cols(), 131072);
-  Case of{tube.points, tube.triangles, graphOfMesh(tube.points, tube.triangles)};
-  const auto n = static_cast<Index>(of.points.cols());
-  of.triangles = scrambled(tube.triangles, n, 2000, 5);
-  for (const auto& [method, least] :
-       {std::pair(OptimizationMethod::None, 8U), std::pair(OptimizationMethod::Flips, 12U),
-        std::pair(OptimizationMethod::Full, 20U)}) {
-    const std::vector<double> fractions = fractionsOf([&, of_method = method](const auto& report) {
-      optimize(of, withMethod(of_method), 1, reportingTo(report));
-    });
-    EXPECT_TRUE(areFractions(fractions));
-    EXPECT_GE(fractions.size(), least);
-  }
-  of.triangles = scrambled(tube.triangles, n, 100000, 5);
-  internal::MeshOptimizer optimizer(of.points, of.triangles, of.graph, 1);
-  optimizer.setEnergy(internal::SurfaceEnergy());
-  const std::vector<double> fractions =
-      fractionsOf([&](const auto& report) { optimizer.flipAll(report); });
-  EXPECT_TRUE(areFractions(fractions));
-  EXPECT_GE(fractions.size(), 4U);  // two of the first candidates, then of the queue
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 
 #include "helpers.h"
 #include "optimization_cases.h"
-#include "spherical_param/self_intersection.h"
+#include "reference/edge_flips.h"
 #include "sphere_triangulation.h"
+#include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -323,30 +324,6 @@ TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
   EXPECT_GT(all, 0U);
 }
 
-TEST(MeshOptimizer, FlipsApartAreRolledBackWithThePartTheyFollow) {
-  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
-  MeshOptimizer optimizer = optimizerOf(of);
-  optimizer.setEnergy(energyWith(Bend::Angle));
-  const Triangles triangles = optimizer.mesh().triangles();
-  const double energy = optimizer.energy();
-  std::uint64_t random = 5;
-  std::size_t fewer = 0;
-  for (Index v = 0; v < 300; v += 7) {
-    const std::vector<Index> part = optimizer.spread({v}, 12, random);
-    EXPECT_FALSE(optimizer.recreate(
-        part,
-        [&](double) {
-          optimizer.watch(allVertices(of));
-          fewer += optimizer.flipApart();
-          return false;
-        },
-        random));
-    EXPECT_EQ(optimizer.mesh().triangles(), triangles);
-    EXPECT_EQ(optimizer.energy(), energy);
-  }
-  EXPECT_GT(fewer, 0U);
-}
-
 TEST(MeshOptimizer, IntersectionsThatAPartBringsAreThoseOfTheWholeMesh) {
   const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
   MeshOptimizer optimizer = optimizerOf(of);
@@ -370,20 +347,6 @@ TEST(MeshOptimizer, IntersectionsThatAPartBringsAreThoseOfTheWholeMesh) {
     EXPECT_NEAR(optimizer.energy(), optimizer.recomputedEnergy(), 1e-9 * optimizer.energy());
   }
   EXPECT_GT(changes.size(), 5U);
-}
-
-TEST(MeshOptimizer, WorkIsWhatPartsAndFlipsApartTake) {
-  const Case of = scrambledEllipsoid(300, 0.5, 450, 1);
-  MeshOptimizer optimizer = optimizerOf(of);
-  optimizer.setEnergy(energyWith(Bend::Angle));
-  std::uint64_t random = 5;
-  EXPECT_EQ(optimizer.work(), 0U);
-  const std::vector<Index> part = optimizer.spread({17}, 12, random);
-  optimizer.recreate(part, MeshOptimizer::isGain, random);
-  EXPECT_EQ(optimizer.work(), part.size());
-  optimizer.watch(allVertices(of));
-  optimizer.flipApart();
-  EXPECT_GT(optimizer.work(), part.size());
 }
 
 TEST(MeshOptimizer, NearlyAllThatFlipsMadeIntersectIsFlippedApart) {
@@ -418,6 +381,19 @@ TEST(MeshOptimizer, VerticesAreRoughAtSharpEdgesAndFarFromTheirNeighbors) {
   EXPECT_TRUE(std::binary_search(rough.begin(), rough.end(), 200));
   EXPECT_LT(rough.size(), 10U);
   EXPECT_FALSE(dented.edgesBelow(0.8).empty());
+}
+
+TEST(MeshOptimizer, FlipsAreThoseOfASortedSetOfGains) {
+  for (const double noise : {0.0, 0.02}) {
+    Positions points = withNoise(randomSphere(1000, 2), noise, 3);
+    points.row(0) *= 3.0;  // the triangulation of the sphere is not that of the surface
+    const Graph graph = graphOf(points, bruteForceNeighbors(points, 12)).graph;
+    const Triangles triangles = triangulateSphere(points.colwise().normalized());
+    MeshOptimizer optimizer(points, triangles, graph, 1);
+    optimizer.setEnergy({});
+    EXPECT_GT(optimizer.flipAll(), 100U);
+    EXPECT_EQ(optimizer.mesh().triangles(), reference::flipAll(points, triangles, graph));
+  }
 }
 
 }  // namespace

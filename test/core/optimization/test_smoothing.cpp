@@ -1,15 +1,12 @@
 #include "smoothing.h"
 
 #include "helpers.h"
-#include "spherical_param/errors.h"
 #include "sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <tuple>
 #include <utility>
 
 namespace spherical_param::test {
@@ -164,20 +161,6 @@ TEST(Smoothing, MovesWithRotationTranslationScaleAndReversal) {
   }
 }
 
-TEST(Smoothing, SameBitsForAnyNumberOfThreads) {
-  // Enough points for several threads, and not a multiple of the blocks.
-  const Triangles triangles = torusTriangles(229, 220);
-  const Positions points = spiralSphere(229 * 220);
-  for (const SmoothingMethod method : kSmoothingMethods) {
-    const Smoothing one = smoothSurface(points, triangles, optionsOf(method, 2), 1);
-    const Smoothing several = smoothSurface(points, triangles, optionsOf(method, 2), 3);
-    EXPECT_EQ(one.points, several.points);
-    EXPECT_EQ(one.report.volume_before, several.report.volume_before);
-    EXPECT_EQ(one.report.volume_after, several.report.volume_after);
-    EXPECT_EQ(one.report.mean_displacement, several.report.mean_displacement);
-  }
-}
-
 TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesOrVolume) {
   Mesh mesh = noisyMesh(80, 0.1, 8);
   mesh.points.array() += 0.1;
@@ -205,50 +188,6 @@ TEST(Smoothing, ZeroStepsAndMeshesWithoutTrianglesOrVolume) {
     EXPECT_TRUE(
         smoothSurface(mesh.points.leftCols(3), two_sides, optionsOf(method)).points.allFinite());
   }
-}
-
-TEST(Smoothing, BadInputIsInvalidInput) {
-  const Mesh good = noisyMesh(50, 0.1, 14);
-  const Eigen::Index m = good.triangles.cols();
-  EXPECT_NO_THROW(smoothSurface(good.points, good.triangles, {}));
-  for (const int steps : {-1, 10001})
-    EXPECT_THROW(
-        smoothSurface(good.points, good.triangles, optionsOf(SmoothingMethod::Umbrella, steps)),
-        InvalidInput);
-  for (const int threads : {-1, 1025})
-    EXPECT_THROW(smoothSurface(good.points, good.triangles, {}, threads), InvalidInput);
-  const auto expect_refused = [&](const auto& spoil) {
-    Mesh mesh = good;
-    spoil(mesh.points, mesh.triangles);
-    EXPECT_THROW(smoothSurface(mesh.points, mesh.triangles, {}), InvalidInput);
-  };
-  for (const double value :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
-    expect_refused([&](Positions& points, Triangles&) { points(1, 4) = value; });
-  for (const Index index : {-1, 50})
-    expect_refused([&](Positions&, Triangles& triangles) { triangles(2, 3) = index; });
-  expect_refused([&](Positions&, Triangles& triangles) {  // open
-    triangles.conservativeResize(3, m - 1);
-  });
-  expect_refused(
-      [](Positions&, Triangles& triangles) { std::swap(triangles(0, 5), triangles(1, 5)); });
-  // One more that is there already, or names a vertex twice or three times.
-  const Index first[] = {good.triangles(0, 0), good.triangles(1, 0), good.triangles(2, 0)};
-  for (const auto& [i, j, k] : {std::tuple(0, 1, 2), std::tuple(0, 0, 1), std::tuple(0, 0, 0)})
-    expect_refused([&, a = first[i], b = first[j], c = first[k]](Positions&, Triangles& triangles) {
-      triangles.conservativeResize(3, m + 1);
-      triangles.col(m) << a, b, c;
-    });
-  expect_refused([&](Positions&, Triangles& triangles) {  // all twice: two fans at each vertex
-    triangles.conservativeResize(3, 2 * m);
-    triangles.rightCols(m) = good.triangles;
-  });
-  expect_refused([](Positions&, Triangles& triangles) {  // two tetrahedra at one vertex
-    triangles.resize(3, 8);
-    triangles << 0, 0, 1, 2, 3, 3, 4, 5,  //
-        2, 1, 2, 0, 5, 4, 5, 3,           //
-        1, 3, 3, 3, 4, 6, 6, 6;
-  });
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct Scene {
 };
 
 inline Triangles hullOf(const Positions& directions) {
-  return triangulateSphere(directions, {TriangulationMethod::Incremental}).triangles;
+  return triangulateSphere(directions);
 }
 
 /// A star-shaped cloud and its mesh: the convex hull of the directions.

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <random>
 #include <set>
@@ -292,13 +291,11 @@ TEST(SelfIntersection, PairsOfLargeMeshesAreThoseOfIntegerArithmetic) {
   }
 }
 
-TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMeshOnAnyNumberOfThreads) {
-  // The tube has more triangles than a single thread is left with.
+TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMesh) {
   std::mt19937_64 random(7);
-  for (const Mesh& mesh : {unevenSoup(6, 300, 300, 5), knottedTube(86)}) {
+  for (const Mesh& mesh : {unevenSoup(6, 300, 300, 5), knottedTube(40)}) {
     const Pairs pairs = pairsOf(mesh);
     EXPECT_GT(pairs.size(), 50U);
-    EXPECT_EQ(pairsOf(mesh, 3), pairs);
     const auto m = static_cast<Index>(mesh.triangles.cols());
     for (const Index size : {0, 1, 60, 400, m}) {
       std::vector<Index> of(static_cast<std::size_t>(size));
@@ -309,9 +306,7 @@ TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMeshOnAnyNumberOfThreads) {
       for (const auto& [s, t] : pairs)
         if (set.count(s) + set.count(t) > 0)
           expected.push_back({s, t});
-      for (const int threads : {1, 3})
-        EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of, onThreads(threads)),
-                  expected);
+      EXPECT_EQ(findSelfIntersectionsOf(mesh.points, mesh.triangles, of), expected);
     }
   }
 }
@@ -338,32 +333,6 @@ TEST(SelfIntersection, BadInputIsInvalidInputAndNothingHasNone) {
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     mesh.points(2, 1) = value;
     EXPECT_THROW(pairsOf(mesh), InvalidInput);
-  }
-}
-
-TEST(SelfIntersection, ProgressIsReportedAndCancels) {
-  // More triangles than there are between reports.
-  const Mesh mesh = knottedTube(136);
-  ASSERT_GT(mesh.triangles.cols(), 131072);
-  for (const bool of_some : {false, true}) {
-    const auto run = [&](const std::function<bool(double)>& progress) {
-      const Execution options = reportingTo(progress);
-      return of_some ? findSelfIntersectionsOf(mesh.points, mesh.triangles, {0, 5, 100}, options)
-                     : findSelfIntersections(mesh.points, mesh.triangles, options);
-    };
-    Pairs watched;
-    const std::vector<double> fractions =
-        fractionsOf([&](const auto& progress) { watched = run(progress); });
-    EXPECT_EQ(watched, run({}));
-    EXPECT_TRUE(areFractions(fractions));
-    EXPECT_EQ(fractions.back(), 1.0);
-    // Two of each pass over all triangles.
-    EXPECT_GE(fractions.size(), of_some ? 5U : 6U);
-    for (const int last : {1, 3, static_cast<int>(fractions.size())}) {
-      int count = 0;
-      EXPECT_THROW(run([&](double) { return ++count < last; }), Cancelled);
-      EXPECT_EQ(count, last);
-    }
   }
 }
 

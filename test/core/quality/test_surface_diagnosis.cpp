@@ -1,7 +1,6 @@
 #include "surface_diagnosis.h"
 
 #include "helpers.h"
-#include "spherical_param/errors.h"
 #include "surface_scenes.h"
 
 #include <Eigen/Geometry>
@@ -20,10 +19,9 @@
 namespace spherical_param::test {
 namespace {
 
-SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {},
-                          int threads = 1) {
+SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {}) {
   return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph,
-                         scene.graph.report.bridges, options, threads);
+                         scene.graph.report.bridges, options, 1);
 }
 
 // --- Closed surfaces -----------------------------------------------------------------------------
@@ -165,8 +163,7 @@ TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
 TEST(SurfaceDiagnosis, OfManyNeighborsTheNearestAreUsed) {
   for (const double height : {2.0, 0.8}) {
     Scene scene = openSphere(1000, height);
-    scene.graph =
-        graphOf(scene.points, bruteForceNeighbors(scene.points, 25), nearest());
+    scene.graph = graphOf(scene.points, bruteForceNeighbors(scene.points, 25), nearest());
     const SurfaceDiagnosis diagnosis = diagnose(scene);
     EXPECT_EQ(diagnosis.kind, height < 1.0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0);
     EXPECT_EQ(diagnosis.filled_holes.size(), height < 1.0 ? 1U : 0U);
@@ -369,38 +366,6 @@ TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
   EXPECT_NEAR(b.area, scale * scale * a.area, 1e-16);
   EXPECT_NEAR(b.diameter, scale * a.diameter, 1e-13);
   EXPECT_LT((b.center - (scale * turn * a.center + shift)).norm(), 1e-13);
-}
-
-TEST(SurfaceDiagnosis, SameForAnyNumberOfThreads) {
-  // Enough points for several threads, with holes and torn neighbours.
-  const Scene torus = cutTorus(2100, 24, 0.05);
-  const SurfaceDiagnosis one = diagnose(torus, {}, 1);
-  const SurfaceDiagnosis several = diagnose(torus, {}, 3);
-  EXPECT_EQ(several.edges_outside_graph, one.edges_outside_graph);
-  EXPECT_EQ(several.handles.at(0).edges, one.handles.at(0).edges);
-  EXPECT_EQ(several.handles[0].vertices, one.handles[0].vertices);
-  for (const std::size_t i : {0U, 1U}) {
-    EXPECT_EQ(several.filled_holes.at(i).area, one.filled_holes.at(i).area);
-    EXPECT_EQ(several.filled_holes[i].loops, one.filled_holes[i].loops);
-  }
-}
-
-TEST(SurfaceDiagnosis, BadInputIsInvalidInput) {
-  const Scene good = openSphere(50, 2.0);
-  for (const int threads : {-1, 1025})
-    EXPECT_THROW(diagnose(good, {}, threads), InvalidInput);
-  const auto expect_refused = [&](const auto& spoil) {
-    Scene scene = good;
-    spoil(scene);
-    EXPECT_THROW(diagnose(scene), InvalidInput);
-  };
-  expect_refused([](Scene& scene) { scene.points = spiralSphere(49); });
-  expect_refused([](Scene& scene) { scene.triangles.resize(3, 0); });
-  expect_refused([](Scene& scene) { scene.triangles(1, 3) = 50; });
-  expect_refused([](Scene& scene) { scene.triangles(1, 3) = -1; });
-  expect_refused([](Scene& scene) { scene.graph.report.bridges.push_back({0, 50, 1.0}); });
-  expect_refused([](Scene& scene) { scene.graph.graph.neighbors[3] = 50; });
-  expect_refused([](Scene& scene) { scene.graph.graph.lengths.pop_back(); });
 }
 
 }  // namespace

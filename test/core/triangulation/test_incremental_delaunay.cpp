@@ -17,7 +17,7 @@ using test::randomSphere;
 using Method = TriangulationMethod;
 
 SphereTriangulation triangulate(const Positions& directions) {
-  return triangulateSphere(directions);  // the incremental method is the default
+  return triangulateSphere(directions, Method::Incremental);
 }
 
 /// Most triangles around one of the vertices [0, n).
@@ -70,7 +70,7 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
         const SphereTriangulation result = triangulate(points);
         expectSound(points, result);
         EXPECT_EQ(result.report.coincident, 0);
-        const SphereTriangulation reference = triangulateSphere(points, {Method::Qhull});
+        const SphereTriangulation reference = triangulateSphere(points, Method::Qhull);
         if (reference.report.reinserted > 0)
           continue;
         ++compared;

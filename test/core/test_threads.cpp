@@ -1,0 +1,285 @@
+// What holds of every stage and of reconstruct(), by one table: the result is the same, bit by bit,
+// for any number of threads; progress comes from the calling thread and can end the work.
+
+#include "consolidation.h"
+#include "embedding.h"
+#include "graph_hierarchy.h"
+#include "mesh_optimization.h"
+#include "neighbor_search.h"
+#include "open_shapes.h"
+#include "openings.h"
+#include "optimization/optimization_cases.h"
+#include "ordered_points.h"
+#include "quality/surface_scenes.h"
+#include "reconstructions.h"
+#include "sampling_analysis.h"
+#include "smoothing.h"
+#include "sphere_mesh.h"
+#include "sphere_triangulation.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/mesh_measures.h"
+#include "spherical_param/mesh_topology.h"
+#include "surface_diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// All numbers of some values, one after the other.
+class Numbers {
+public:
+  template <typename... Values>
+  explicit Numbers(const Values&... values) {
+    (add(values), ...);
+  }
+
+  template <typename Value>
+  void add(const Value& value) {
+    if constexpr (std::is_arithmetic_v<Value>)
+      numbers_.push_back(static_cast<double>(value));
+    else if constexpr (std::is_base_of_v<Eigen::DenseBase<Value>, Value>)
+      for (const auto number : value.reshaped())
+        add(number);
+    else
+      for (const auto& part : value)
+        add(part);
+  }
+  std::size_t size() const { return numbers_.size(); }
+  auto begin() const { return numbers_.begin(); }
+  auto end() const { return numbers_.end(); }
+  bool operator==(const Numbers& other) const { return numbers_ == other.numbers_; }
+
+private:
+  std::vector<double> numbers_;
+};
+
+struct Stage {
+  const char* name;
+  std::function<Numbers(const Execution&)> run;
+  bool reports = true;
+};
+
+/// More points than short passes leave to a single thread, and what stages need of them.
+struct Inputs {
+  Positions points = test::withNoise(test::ellipsoid(40000), 0.001, 1);
+  NeighborLists lists = findNearestNeighbors(points, 8);  // so few that more are searched for
+  Graph graph = test::graphOf(points, lists, {}, makeNeighborSearch(points)).graph;
+  Triangles triangles = triangulateSphere(test::spiralSphere(40000));
+  Triangles damaged = triangles;
+  Positions holed = test::sphereWithHoles(40000, 3, 0.3);
+  Graph holed_graph = test::graphOf(holed, findNearestNeighbors(holed, 24)).graph;
+  test::Scene torus = test::cutTorus(2100, 24, 0.05);
+  test::Tube knot = test::bentTube(20.0, 2.2 * test::kPi, 86);  // into itself
+  Positions rough = test::withNoise(test::randomSphere(6000, 8), 0.02, 9);
+
+  Inputs() {
+    std::mt19937 random(7);
+    for (int change = 0; change < 2000; ++change)
+      damaged.data()[random() % static_cast<unsigned>(damaged.size())] =
+          static_cast<Index>(random() % 40000);
+  }
+};
+
+Numbers numbersOf(const Surface& surface) {
+  Numbers numbers(surface.triangles, surface.sphere, surface.smoothed, surface.boundary,
+                  surface.self_intersections, surface.measures.inertia, surface.embedding.residual,
+                  surface.vertex_residuals, surface.diagnosis.triangle_marks,
+                  surface.history.vertices, surface.smoothing.volume_after, surface.outliers);
+  for (const HistoryFrame& frame : surface.history.frames)
+    numbers.add(frame.sphere);
+  return numbers;
+}
+
+Numbers numbersOf(const MeshTopology& topology) {
+  return Numbers(topology.vertices, topology.edges, topology.components,
+                 topology.euler_characteristic, topology.faults.boundary_edges,
+                 topology.faults.nonmanifold_edges, topology.faults.misoriented_edges,
+                 topology.faults.nonmanifold_vertices, topology.faults.unused_vertices,
+                 topology.faults.degenerate_triangles);
+}
+
+Numbers numbersOf(const MeshOptimization& optimization) {
+  const OptimizationReport& report = optimization.report;
+  Numbers numbers(optimization.triangles, optimization.self_intersections, report.energy,
+                  report.rough, report.alignment, report.unevenness, report.noise_steps,
+                  report.smoothed_self_intersections);
+  for (const OptimizationPhase& phase : report.phases)
+    numbers.add(Numbers(phase.name, phase.tried, phase.moves, phase.energy_before, phase.energy));
+  return numbers;
+}
+
+Numbers numbersOf(const internal::GraphHierarchy& hierarchy) {
+  Numbers numbers;
+  for (const internal::HierarchyLevel& level : hierarchy.levels)
+    numbers.add(Numbers(level.seeds, level.aggregate_of, level.graph.offsets, level.graph.neighbors,
+                        level.graph.lengths, level.prolongation.coeffs()));
+  return numbers;
+}
+
+void addEmbeddings(std::vector<Stage>& stages, const Inputs& in) {
+  for (const EmbeddingMethod method : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel})
+    for (const EdgeWeights weights :
+         {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive})
+      stages.push_back({"embedding", [&in, method, weights](const Execution& e) {
+                          EmbeddingOptions options;
+                          options.method = method;
+                          options.weights = weights;
+                          options.max_iterations = 5;
+                          options.starts = 3;
+                          options.history_vertices = 100;
+                          if (weights == EdgeWeights::Adaptive)
+                            options.tolerance = 1e-7;
+                          const Embedding result = embed(in.graph, in.points, options, 1, e);
+                          Numbers numbers(result.directions, result.report.residuals, result.energy,
+                                          result.starts);
+                          for (const HistoryFrame& frame : result.history.frames)
+                            numbers.add(frame.sphere);
+                          return numbers;
+                        }});
+}
+
+void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
+  for (const TriangulationMethod method :
+       {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
+    stages.push_back({"triangulation", [method](const Execution& e) {
+                        return Numbers(
+                            triangulateSphere(test::spiralSphere(3000), method, e).triangles);
+                      }});
+  for (const test::Case& of :
+       {test::noisySphere(2100, 0.3, 15), test::scrambledEllipsoid(2100, 0.6, 2500, 15)})
+    stages.push_back({"optimization", [of](const Execution& e) {
+                        return numbersOf(optimizeMesh(of.points, of.triangles, of.graph, {}, 1, e));
+                      }});
+  stages.push_back({"self-intersections", [&in](const Execution& e) {
+                      return Numbers(
+                          findSelfIntersections(in.knot.points, in.knot.triangles, e),
+                          findSelfIntersectionsOf(in.knot.points, in.knot.triangles, {0, 5}, e));
+                    }});
+  const auto add_silent = [&](const char* name, const std::function<Numbers(int)>& run) {
+    stages.push_back({name, [run](const Execution& e) { return run(e.threads); }, false});
+  };
+  add_silent("mesh", [&in](int threads) {
+    const internal::SphereMesh mesh(in.triangles, 40000, threads);
+    return Numbers(mesh.triangles(), mesh.isSphere(threads));
+  });
+  add_silent("topology",
+             [&in](int threads) { return numbersOf(checkTopology(in.damaged, 40000, threads)); });
+  add_silent("measures", [&in](int threads) {
+    const MeshMeasures of = measureMesh(in.points, in.triangles, threads);
+    return Numbers(of.volume, of.area, of.mean_edge_length, of.centroid, of.inertia);
+  });
+  for (const SmoothingMethod method : {SmoothingMethod::Umbrella, SmoothingMethod::Biharmonic})
+    add_silent("smoothing", [&in, method](int threads) {
+      const Smoothing result = smoothSurface(in.points, in.triangles, {method, 2}, threads);
+      return Numbers(result.points, result.report.volume_after, result.report.mean_displacement);
+    });
+  add_silent("sampling", [&in](int threads) {
+    const internal::Sampling result = internal::analyzeSampling(in.points, in.graph, threads);
+    return Numbers(result.alignment, result.unevenness);
+  });
+  add_silent("diagnosis", [&in](int threads) {
+    const SurfaceDiagnosis result =
+        diagnoseSurface(in.torus.points, in.torus.triangles, in.torus.graph.graph, {}, {}, threads);
+    Numbers numbers(result.edges_outside_graph);
+    for (const CollapsedHandle& handle : result.handles)
+      numbers.add(handle.vertices);
+    for (const FilledHole& hole : result.filled_holes)
+      numbers.add(Numbers(hole.area, hole.loops));
+    return numbers;
+  });
+}
+
+void addReconstructions(std::vector<Stage>& stages, const Inputs& in) {
+  Options smoothed = test::watched();
+  smoothed.smoothing = 2;
+  Options paper = test::watched(test::quick(test::paper()));
+  paper.embedding.max_iterations = 40;
+  Options open = test::quick();
+  open.surface = SurfaceMode::Open;
+  for (const Options& options : {smoothed, paper, open})
+    stages.push_back({"reconstruction", [&in, options](const Execution& e) {
+                        Options with = options;
+                        static_cast<Execution&>(with) = e;
+                        const bool is_open = options.surface == SurfaceMode::Open;
+                        return numbersOf(test::surfaceOf(is_open ? in.holed : in.rough, with));
+                      }});
+}
+
+std::vector<Stage> stagesOf(const Inputs& in) {
+  std::vector<Stage> stages{
+      {"distinct points",
+       [&](const Execution& e) {
+         const auto ordered = internal::orderPoints(in.points, e.threads);
+         return Numbers(ordered.points, ordered.input_of_node, ordered.distinct.vertex_of_input);
+       },
+       false},
+      {"neighbors",
+       [&](const Execution& e) { return Numbers(findNearestNeighbors(in.points, 6, e).indices); }},
+      {"graph",
+       [&](const Execution& e) {
+         const NeighborGraph result =
+             test::graphOf(in.points, in.lists, {}, makeNeighborSearch(in.points), e);
+         return Numbers(result.graph.offsets, result.graph.neighbors, result.graph.lengths,
+                        result.report.uncertified, result.report.weak);
+       }},
+      {"openings",
+       [&](const Execution& e) {
+         const Openings result = findOpenings(in.holed, in.holed_graph, e);
+         Numbers numbers(result.spacing, result.false_edges);
+         for (const Opening& opening : result.openings)
+           numbers.add(opening.loop);
+         return numbers;
+       }},
+      {"consolidation",
+       [&](const Execution& e) {
+         const Consolidation result = consolidate(in.rough, e);
+         return Numbers(result.points, result.point_of_input, result.report.noise);
+       }},
+      {"hierarchy", [&](const Execution& e) {
+         return numbersOf(internal::buildGraphHierarchy(in.graph, 1, 1000, e));
+       }}};
+  addEmbeddings(stages, in);
+  addMeshStages(stages, in);
+  addReconstructions(stages, in);
+  return stages;
+}
+
+TEST(Threads, ChangeNoBitOfAnyStage) {
+  const Inputs inputs;
+  for (const Stage& stage : stagesOf(inputs)) {
+    const Numbers alone = stage.run(test::onThreads(1));
+    EXPECT_GT(alone.size(), 0U) << stage.name;
+    EXPECT_TRUE(alone == stage.run(test::onThreads(3))) << stage.name;
+  }
+}
+
+TEST(Threads, ThatCallReceiveTheProgressAndCanEndEveryStage) {
+  const Inputs inputs;
+  for (const Stage& stage : stagesOf(inputs)) {
+    if (!stage.reports)
+      continue;
+    SCOPED_TRACE(stage.name);
+    const auto run = [&](const std::function<bool(double)>& callback) {
+      Execution execution = test::reportingTo(callback);
+      execution.threads = 3;
+      return stage.run(execution);
+    };
+    const std::vector<double> fractions = test::fractionsOf(run);
+    EXPECT_TRUE(test::areFractions(fractions));
+    for (const std::size_t last : {std::size_t{1}, (fractions.size() + 1) / 2, fractions.size()}) {
+      std::size_t calls = 0;
+      EXPECT_THROW(run([&](double) { return ++calls < last; }), Cancelled);
+      EXPECT_EQ(calls, last);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param
