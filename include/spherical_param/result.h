@@ -86,7 +86,7 @@ struct TriangleMarks {
 };
 
 /// Neighbours in the graph, along the surface, that the mesh tears apart.
-struct CollapsedHandle {
+struct Handle {
   std::size_t edges = 0;  ///< of the graph that are torn
   double size = 0.0;      ///< diagonal of the box around them [unit of the input]
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of their ends
@@ -106,7 +106,7 @@ struct PartBridge {
 /// What speaks against a closed genus-0 surface, and where.
 struct SurfaceDiagnosis {
   SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest of what was found
-  std::vector<CollapsedHandle> handles;          ///< by falling number of edges
+  std::vector<Handle> handles;                   ///< by falling number of edges
   std::vector<PartBridge> bridges;               ///< by falling number of points
   bool is_one_sided = false;                     ///< found with openings alone: the mesh tears it
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph, in [0,

@@ -191,13 +191,13 @@ void visitFields(const Opening*, const Visit& visit) {
 }
 
 /// \copydoc describe(const TopologyFaults*)
-constexpr ResultField describe(const CollapsedHandle*) {
+constexpr ResultField describe(const Handle*) {
   return {"Handle", "Neighbours along the surface that the mesh tears apart: probably a handle."};
 }
 /// \copydoc visitFields(const TopologyFaults*, const Visit&)
 template <typename Visit>
-void visitFields(const CollapsedHandle*, const Visit& visit) {
-  using Of = CollapsedHandle;
+void visitFields(const Handle*, const Visit& visit) {
+  using Of = Handle;
   visit({"edges", "of the neighbour graph that are torn"}, &Of::edges);
   visit({"size", "diagonal of the box around them", 1}, &Of::size);
   visit({"center", "mean of their ends", 1}, &Of::center);

@@ -70,7 +70,7 @@ TEST(ResultFields, EveryFieldOfEveryStructIsVisited) {
   expectAllFieldsAreVisited<StageTime>();
   expectAllFieldsAreVisited<Finding>();
   expectAllFieldsAreVisited<Opening>();
-  expectAllFieldsAreVisited<CollapsedHandle>();
+  expectAllFieldsAreVisited<Handle>();
   expectAllFieldsAreVisited<PartBridge>();
   expectAllFieldsAreVisited<SurfaceDiagnosis>();
   expectAllFieldsAreVisited<ConsolidationReport>();

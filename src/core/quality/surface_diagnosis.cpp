@@ -283,7 +283,7 @@ void sortUnique(std::vector<Index>& values) {
 
 /// Groups of torn edges that share an end, or whose ends are neighbours on the mesh; all ends are
 /// listed.
-std::vector<CollapsedHandle> handlesOf(const MeshAndGraph& surface, const std::vector<Edge>& torn) {
+std::vector<Handle> handlesOf(const MeshAndGraph& surface, const std::vector<Edge>& torn) {
   std::map<Index, Index> edge_at;
   internal::UnionFind groups(torn.size());
   for (std::size_t e = 0; e < torn.size(); ++e)
@@ -296,13 +296,13 @@ std::vector<CollapsedHandle> handlesOf(const MeshAndGraph& surface, const std::v
       if (other != edge_at.end())
         groups.unite(entry.second, other->second);
     });
-  std::map<Index, CollapsedHandle> handles;
+  std::map<Index, Handle> handles;
   for (std::size_t e = 0; e < torn.size(); ++e) {
-    CollapsedHandle& handle = handles[groups.find(static_cast<Index>(e))];
+    Handle& handle = handles[groups.find(static_cast<Index>(e))];
     ++handle.edges;
     handle.vertices.insert(handle.vertices.end(), torn[e].begin(), torn[e].end());
   }
-  std::vector<CollapsedHandle> result;
+  std::vector<Handle> result;
   for (auto& [group, handle] : handles) {
     if (handle.edges < kMinTornEdges)
       continue;
@@ -314,9 +314,8 @@ std::vector<CollapsedHandle> handlesOf(const MeshAndGraph& surface, const std::v
     handle.size = box.diagonal().norm();
     result.push_back(std::move(handle));
   }
-  std::stable_sort(
-      result.begin(), result.end(),
-      [](const CollapsedHandle& a, const CollapsedHandle& b) { return a.edges > b.edges; });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Handle& a, const Handle& b) { return a.edges > b.edges; });
   return result;
 }
 
@@ -467,7 +466,7 @@ std::vector<std::uint8_t> marksOf(const MeshAndGraph& surface, const SurfaceDiag
     if (opening.isCertain())
       for (const Index t : opening.triangles)
         mark(t, TriangleMarks::filled_hole);
-  for (const CollapsedHandle& handle : diagnosis.handles)
+  for (const Handle& handle : diagnosis.handles)
     mark_around(handle.vertices, TriangleMarks::handle);
   for (const PartBridge& bridge : diagnosis.bridges)
     mark_around(bridge.vertices, TriangleMarks::part_bridge);
@@ -529,7 +528,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   if (options.mark_triangles)
     result.triangle_marks = marksOf(surface, result, openings, differences.triangles);
   result.kind = kindOf(result, openings, options.count_cycles);
-  for (CollapsedHandle& handle : result.handles)
+  for (Handle& handle : result.handles)
     shorten(handle.vertices, options.max_vertices);
   for (PartBridge& bridge : result.bridges)
     shorten(bridge.vertices, options.max_vertices);
