@@ -490,7 +490,7 @@ Json report(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
     Json& of_side = json[side == 0 ? "first" : "second"];
     addMapToJson(clouds[side], of_side);
     of_side["stages"] = toJson(clouds[side].cloud.stages);
-    of_side["findings"] = toJson(clouds[side].cloud.result.findings);
+    of_side["findings"] = toJson(clouds[side].cloud.surface().findings);
   }
   json["stages"] = toJson(morph.stages);
   json["peak_memory"] = peakMemoryToJson();
@@ -515,7 +515,8 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
     const CloudReconstruction& cloud = clouds[side].cloud;
     const std::string of = (side == 0 ? "" : "; ") + settings.inputs[side] + ": ";
     summary.read += of + counted(cloud.data->points.size(), "point");
-    summary.verdict += (side == 0 ? "" : " ") + settings.inputs[side] + ": " + cloud.result.verdict;
+    summary.verdict +=
+        (side == 0 ? "" : " ") + settings.inputs[side] + ": " + cloud.surface().verdict;
     summary.left_out += of + leftOut(cloud);
   }
   summary.made =
@@ -561,11 +562,12 @@ void run(const std::vector<std::string>& words) {
   bool is_usable = true;
   for (std::size_t side = 0; side < 2; ++side) {
     findings.add(settings.inputs[side], findingsOf(clouds[side]));
-    is_usable = is_usable && clouds[side].cloud.result.isUsable();
+    is_usable = is_usable && clouds[side].cloud.surface().isUsable();
   }
   for (const LostPair& lost : morph.lost) {
-    findings.add("the pair of line " + std::to_string(lost.pair.line) +
-                 " is impossible: " + lost.reason);
+    findings.add("", {{"the pair of line " + std::to_string(lost.pair.line) +
+                           " is impossible: " + lost.reason,
+                       "", "", true}});
   }
   findings.print();
   findings.requireSoundness(is_usable);

@@ -22,7 +22,6 @@
 #include <array>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -32,6 +31,7 @@ namespace {
 
 using namespace spherical_param::tools;
 using spherical_param::PartsMode;
+using spherical_param::Surface;
 
 const std::string tool_name = "pcl_spherical_param_reconstruction";
 
@@ -97,6 +97,10 @@ std::string numbered(const std::string& name, std::size_t part) {
   return name.substr(0, mark) + number.data() + name.substr(mark + number_mark.size());
 }
 
+bool makesParts(const Settings& settings) {
+  return settings.reconstruction.options.parts == PartsMode::Each;
+}
+
 /// The settings of a part, with the names of its files.
 Settings settingsOf(Settings settings, std::size_t part) {
   for (std::string* name : {&settings.output, &settings.sphere, &settings.page}) {
@@ -107,14 +111,13 @@ Settings settingsOf(Settings settings, std::size_t part) {
 
 /// \throw UsageError for names without the numbers that they need, or with some that they do not.
 void checkNumbers(const Settings& settings) {
-  const bool makes_parts = settings.reconstruction.parts == PartsMode::Each;
-  if (isNumbered(settings.output) && !makes_parts) {
+  if (isNumbered(settings.output) && !makesParts(settings)) {
     throw UsageError(inQuotes(settings.output) + " is for several parts, but one mesh is made",
                      "give -parts each, or a name without " + number_mark);
   }
   const bool has_numbers = isNumbered(settings.output);
   for (const std::string& name : {settings.sphere, settings.page}) {
-    if (makes_parts && !name.empty() && !(isNumbered(name) && has_numbers)) {
+    if (makesParts(settings) && !name.empty() && !(isNumbered(name) && has_numbers)) {
       throw UsageError(inQuotes(name) + " can show one part alone",
                        "give names with " + number_mark + " to it and to the output");
     }
@@ -189,71 +192,53 @@ Json filesToJson(const Settings& settings) {
   return json;
 }
 
-Json report(const Settings& settings, const CloudReconstruction& cloud) {
+/// The members that are the same for the whole cloud and for each of its parts.
+Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
   Json json = filesToJson(settings);
-  json.update(cloudToJson(settings.reconstruction, cloud));
-  json["parts"] = nullptr;
-  if (cloud.parts) {
-    json["parts"] = Json::array();
-    for (const spherical_param::Part& part : cloud.parts->parts) {
-      json["parts"].push_back(toJson(part));
-    }
-  }
-  addMesh(settings.reconstruction, cloud, json);
+  json["points"] = cloud.data->points.size();
+  json["left_out"] = toJson(cloud.result.left_out);
+  json["stages"] = toJson(cloud.stages);
+  json["peak_memory_bytes"] = peakMemoryToJson();
   return json;
 }
 
-/// One sentence on the meshes of a cloud.
-std::string verdictOf(const std::vector<CloudReconstruction>& meshes) {
-  if (meshes.size() == 1) {
-    return meshes.front().result.verdict;
-  }
-  const auto faulty = static_cast<std::size_t>(
-      std::count_if(meshes.begin(), meshes.end(), [](const CloudReconstruction& mesh) {
-        return spherical_param::hasFault(mesh.result.findings);
-      }));
-  return counted(meshes.size(), "mesh", "meshes") +
-         (faulty == 0 ? ", all sound." : ", " + grouped(faulty) + " of them with faults.");
+/// The report on one surface.
+Json report(const Settings& settings, const CloudReconstruction& cloud, const Surface& surface) {
+  Json json = cloudReport(settings, cloud);
+  json.update(toJson(surface));
+  return json;
 }
 
-bool areUsable(const std::vector<CloudReconstruction>& parts) {
-  return std::all_of(parts.begin(), parts.end(),
-                     [](const CloudReconstruction& part) { return part.result.isUsable(); });
-}
-
-/// The report on all parts, each with what report() says of one mesh.
-Json reportOnParts(const Settings& settings, const PartsReconstruction& reconstruction) {
-  const CloudReconstruction& cloud = reconstruction.cloud;
-  Json json = filesToJson(settings);
-  json.update(cloudToJson(settings.reconstruction, cloud));
-  json["verdict"] = verdictOf(reconstruction.parts);
-  json["usable"] = areUsable(reconstruction.parts);
+/// The report on all parts, each with what is said of one surface.
+Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
+  Json json = cloudReport(settings, cloud);
+  json["verdict"] = cloud.result.verdict;
+  json["usable"] = cloud.result.isUsable();
+  json["findings"] = toJson(cloud.result.findings);
   json["parts"] = Json::array();
-  for (std::size_t i = 0; i < reconstruction.parts.size(); ++i) {
-    Json part = toJson(cloud.parts->parts[i]);
-    part["output"] = numbered(settings.output, i);
-    addMesh(settings.reconstruction, reconstruction.parts[i], part);
+  for (const Surface& surface : cloud.result.surfaces) {
+    Json part;
+    part["points"] = surface.inputs.size();
+    part["output"] = numbered(settings.output, json["parts"].size());
+    part.update(toJson(surface));
     json["parts"].push_back(std::move(part));
   }
-  json["stages"] = toJson(cloud.stages);
-  json["peak_memory_bytes"] = peakMemoryToJson();
-  json["failures"] = reconstruction.failures;
   return json;
 }
 
 /// The names of the files that are written.
-std::vector<std::string> writtenFiles(const Settings& settings, std::size_t meshes) {
+std::vector<std::string> writtenFiles(const Settings& settings, std::size_t surfaces) {
   std::vector<std::string> files;
   for (const std::string& name : outputsOf(settings)) {
-    files.push_back(isNumbered(name) && meshes > 1
-                        ? numbered(name, 0) + " to " + numbered(name, meshes - 1)
+    files.push_back(isNumbered(name) && surfaces > 1
+                        ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
                         : numbered(name, 0));
   }
   return files;
 }
 
 /// How far consolidation moved points; empty without.
-std::string movedBy(const Settings& settings, const std::vector<CloudReconstruction>& meshes) {
+std::string movedBy(const Settings& settings, const std::vector<Surface>& surfaces) {
   if (settings.reconstruction.options.consolidation == spherical_param::ConsolidationMode::None) {
     return {};
   }
@@ -261,9 +246,9 @@ std::string movedBy(const Settings& settings, const std::vector<CloudReconstruct
   double noise = 0.0;
   double mean = 0.0;
   double most = 0.0;
-  for (const CloudReconstruction& mesh : meshes) {
-    const auto count = static_cast<double>(mesh.result.vertex_of_input.size());
-    const spherical_param::ConsolidationReport& moved = mesh.result.consolidation;
+  for (const Surface& surface : surfaces) {
+    const auto count = static_cast<double>(surface.inputs.size());
+    const spherical_param::ConsolidationReport& moved = surface.consolidation;
     points += count;
     noise += count * moved.noise;
     mean += count * moved.mean_displacement;
@@ -273,39 +258,40 @@ std::string movedBy(const Settings& settings, const std::vector<CloudReconstruct
          " at most; the noise is " + formatted(noise / points, 3);
 }
 
-/// Prints the six lines of a run. \param meshes of the cloud: one, or those of its parts.
-void printSummary(const Settings& settings, const CloudReconstruction& cloud,
-                  const std::vector<CloudReconstruction>& meshes, Console& console) {
+/// Prints what was made of each surface, then the six lines of a run.
+void printSummary(const Settings& settings, const CloudReconstruction& cloud, Console& console) {
+  const std::vector<Surface>& surfaces = cloud.result.surfaces;
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  std::size_t duplicates = 0;
-  std::size_t merged = 0;
-  for (const CloudReconstruction& mesh : meshes) {
-    vertices += mesh.result.vertexCount();
-    triangles += static_cast<std::size_t>(mesh.result.triangles.cols());
-    duplicates += mesh.result.duplicates();
-    merged += mesh.result.consolidation.merged;
+  for (const Surface& surface : surfaces) {
+    if (surfaces.size() > 1) {
+      console.heading("\nsurface of " + counted(surface.inputs.size(), "point"));
+    }
+    printTables(surface, console);
+    vertices += surface.vertexCount();
+    triangles += static_cast<std::size_t>(surface.triangles.cols());
   }
-  console.summary({settings.input + ", " + counted(cloud.data->points.size(), "point"),
-                   verdictOf(meshes),
-                   counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
-                   leftOut(cloud, duplicates, merged), writtenFiles(settings, meshes.size()),
-                   movedBy(settings, meshes)});
+  console.summary(
+      {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.result.verdict,
+       counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
+       leftOut(cloud), writtenFiles(settings, surfaces.size()), movedBy(settings, surfaces)});
 }
 
-/// Writes the mesh, the sphere and the page of a cloud, or of a part of one.
-void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& console,
-                std::vector<std::unique_ptr<OutputFile>>& files) {
+using Files = std::vector<std::unique_ptr<OutputFile>>;
+
+/// Writes the mesh, the sphere and the page of a surface.
+void writeSurface(const Settings& settings, CloudReconstruction& cloud, const Surface& surface,
+                  Console& console, Files& files) {
   console.begin("write");
   // The mesh, and the sphere if it is wanted, are halves of one stage.
   const double fraction_of_file = settings.sphere.empty() ? 1.0 : 0.5;
   files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), meshOf(cloud), settings.output_format, settings.report.encoding,
+  writeMesh(*files.back(), meshOf(cloud, surface), settings.output_format, settings.report.encoding,
             [&](double fraction) { console.update(fraction_of_file * fraction); });
   files.back()->finish();
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
-    writeMesh(*files.back(), sphereOf(cloud, cloud.result.sphere), settings.sphere_format,
+    writeMesh(*files.back(), sphereOf(cloud, surface, surface.sphere), settings.sphere_format,
               settings.report.encoding,
               [&](double fraction) { console.update(0.5 + 0.5 * fraction); });
     files.back()->finish();
@@ -315,87 +301,37 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& c
     console.begin("report");
     files.push_back(std::make_unique<OutputFile>(settings.page));
     writeHtmlReport(*files.back(), reportPage(),
-                    {tool_name, settings.command, report(settings, cloud), &cloud,
-                     settings.reconstruction.options.threads});
+                    {tool_name, settings.command, report(settings, cloud, surface), &cloud,
+                     &surface, settings.reconstruction.options.threads});
     files.back()->finish();
     cloud.stages.push_back({"report", console.end("")});
   }
 }
 
-/// Writes the surfaces of all parts to one file.
-void writeJoined(const Settings& settings, PartsReconstruction& reconstruction, Console& console,
-                 std::vector<std::unique_ptr<OutputFile>>& files) {
-  const JoinedMesh joined(reconstruction.parts);
+/// Writes all surfaces to one file.
+void writeJoined(const Settings& settings, CloudReconstruction& cloud, Console& console,
+                 Files& files) {
+  const JoinedMesh joined(cloud);
   console.begin("write");
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), joined.view(), settings.output_format, settings.report.encoding,
             [&](double fraction) { console.update(fraction); });
   files.back()->finish();
-  reconstruction.cloud.stages.push_back({"write", console.end("")});
+  cloud.stages.push_back({"write", console.end("")});
 }
 
-/// Prints what was made of each part, then of all.
-void printParts(const Settings& settings, const PartsReconstruction& reconstruction,
-                Console& console) {
-  for (std::size_t i = 0; i < reconstruction.parts.size(); ++i) {
-    const CloudReconstruction& part = reconstruction.parts[i];
-    console.heading("\npart " + std::to_string(i + 1) + ", " +
-                    counted(part.meshed.size(), "point"));
-    printTables(part, console);
-    printMeasures(part.result, console);
+void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& console,
+                Files& files) {
+  const std::vector<Surface>& surfaces = cloud.result.surfaces;
+  if (surfaces.size() > 1 && !isNumbered(settings.output)) {
+    writeJoined(settings, cloud, console, files);
+    return;
   }
-  printSummary(settings, reconstruction.cloud, reconstruction.parts, console);
-}
-
-Findings findingsFor(const Settings& settings) {
-  return {settings.report.quiet, settings.reconstruction.strict, settings.page.empty()};
-}
-
-void runOnCloud(const Settings& settings, Console& console) {
-  std::vector<CloudReconstruction> clouds(1);
-  CloudReconstruction& cloud = clouds.front();
-  reconstructCloud(settings.input, settings.reconstruction, console, cloud);
-  std::vector<std::unique_ptr<OutputFile>> files;
-  writeFiles(settings, cloud, console, files);
-  publish(
-      settings.report, files, console, [&] { return report(settings, cloud); },
-      [&] {
-        printTables(cloud, console);
-        printMeasures(cloud.result, console);
-        printSummary(settings, cloud, clouds, console);
-      });
-  Findings findings = findingsFor(settings);
-  findings.add("", cloud.result.findings);
-  findings.print();
-  findings.requireSoundness(cloud.result.isUsable());
-}
-
-void runOnParts(const Settings& settings, Console& console) {
-  PartsReconstruction reconstruction;
-  reconstructParts(settings.input, settings.reconstruction, console, reconstruction);
-  std::vector<CloudReconstruction>& parts = reconstruction.parts;
-  std::vector<std::unique_ptr<OutputFile>> files;
-  if (isNumbered(settings.output)) {
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const Settings of_part = settingsOf(settings, i);
-      checkOutputs({settings.input}, outputsOf(of_part));
-      writeFiles(of_part, parts[i], console, files);
-    }
-  } else {
-    writeJoined(settings, reconstruction, console, files);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Settings of_part = settingsOf(settings, i);
+    checkOutputs({settings.input}, outputsOf(of_part));
+    writeSurface(of_part, cloud, surfaces[i], console, files);
   }
-  publish(
-      settings.report, files, console, [&] { return reportOnParts(settings, reconstruction); },
-      [&] { printParts(settings, reconstruction, console); });
-  Findings findings = findingsFor(settings);
-  for (const std::string& failure : reconstruction.failures) {
-    findings.add(failure);
-  }
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    findings.add("part " + std::to_string(i + 1), parts[i].result.findings);
-  }
-  findings.print();
-  findings.requireSoundness(areUsable(parts));
 }
 
 void run(const std::vector<std::string>& words) {
@@ -404,16 +340,25 @@ void run(const std::vector<std::string>& words) {
     return;
   }
   const Settings settings = parseSettings(command_line);
-  const bool makes_parts = settings.reconstruction.parts == PartsMode::Each;
-  checkOutputs({settings.input}, outputsOf(makes_parts ? settingsOf(settings, 0) : settings));
+  checkOutputs({settings.input}, outputsOf(settingsOf(settings, 0)));
 
   Console console(settings.report.detail());
   printParameters(settings, console);
-  if (makes_parts) {
-    runOnParts(settings, console);
-  } else {
-    runOnCloud(settings, console);
-  }
+  CloudReconstruction cloud;
+  reconstructCloud(settings.input, settings.reconstruction, console, cloud);
+  Files files;
+  writeFiles(settings, cloud, console, files);
+  publish(
+      settings.report, files, console,
+      [&] {
+        return makesParts(settings) ? reportOnParts(settings, cloud)
+                                    : report(settings, cloud, cloud.surface());
+      },
+      [&] { printSummary(settings, cloud, console); });
+  Findings findings(settings.report.quiet, settings.reconstruction.strict, settings.page.empty());
+  findings.add("", cloud.result.findings);
+  findings.print();
+  findings.requireSoundness(cloud.result.isUsable());
 }
 
 }  // namespace

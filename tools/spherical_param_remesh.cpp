@@ -498,7 +498,7 @@ std::string verdictOf(const Output& output, const MappedCloud& mapped) {
     return "Points spread evenly over the surface.";
   }
   if (output.self_intersections.empty()) {
-    const spherical_param::Surface& result = mapped.cloud.result;
+    const spherical_param::Surface& result = mapped.cloud.surface();
     return result.verdict.empty() || result.intersecting_triangles > 0 ? "A sound mesh."
                                                                        : result.verdict;
   }

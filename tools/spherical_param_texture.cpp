@@ -327,7 +327,7 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
   console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
   const CloudReconstruction& cloud = mapped.cloud;
   console.summary(
-      {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.result.verdict,
+      {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.surface().verdict,
        counted(output.atlas.vertices.size(), "vertex", "vertices") + ", " +
            counted(static_cast<std::size_t>(output.atlas.triangles.cols()), "triangle") + ", " +
            std::to_string(output.image.width) + " x " + std::to_string(output.image.height) +
@@ -392,7 +392,7 @@ void run(const std::vector<std::string>& words) {
   Findings findings(settings.report.quiet, settings.product.reconstruction.strict, false);
   findings.add("", findingsOf(settings, mapped));
   findings.print();
-  findings.requireSoundness(mapped.cloud.result.isUsable());
+  findings.requireSoundness(mapped.cloud.surface().isUsable());
 }
 
 }  // namespace

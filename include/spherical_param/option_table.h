@@ -19,19 +19,19 @@ using OptionValue = std::variant<std::monostate, std::int64_t, double, std::stri
 
 /// One row of the table of options.
 struct OptionRow {
-  std::string name;   ///< the same in tools, Python and ROS
-  std::string field;  ///< of Options, such as "graph.k"
-  std::string help;   ///< one line
-  bool expert;        ///< most users need not know it
-  bool optional;      ///< may be unset
-  /// Names of the values of an enumeration; empty for numbers.
-  std::vector<std::string> choices;
-  bool is_integer;    ///< of numbers
-  double min;         ///< of numbers
-  double max;         ///< of numbers
-  bool min_excluded;  ///< of numbers: `min` itself is out of range
-  /// Options and the values that they must have for this one to have an effect.
-  std::vector<std::pair<std::string, std::string>> used_with;
+  std::string name;                  ///< the same in tools, Python and ROS
+  std::string field;                 ///< of Options, such as "graph.k"
+  std::string help;                  ///< one line
+  bool expert;                       ///< most users need not know it
+  bool optional;                     ///< may be unset
+  std::vector<std::string> choices;  ///< names of values; empty for plain numbers
+  bool is_number;                    ///< takes numbers, whether there are choices or not
+  bool is_integer;                   ///< of numbers
+  double min;                        ///< of numbers
+  double max;                        ///< of numbers
+  bool min_excluded;                 ///< of numbers: `min` itself is out of range
+  /// Options and the values of which they must have one for this option to have an effect.
+  std::vector<std::pair<std::string, std::vector<std::string>>> used_with;
 
   std::function<OptionValue(const Options&)> get;  ///< the value
   /// Sets a value that is in range; an integer is a number, too.

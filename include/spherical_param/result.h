@@ -262,6 +262,13 @@ struct Surface {
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< what to know, and what to do; empty if all is well
 
+  /// The vertex of an input point. \return -1 for a point that is in another surface, or in none
+  Index vertexOf(Index input) const {
+    const auto found = std::lower_bound(inputs.begin(), inputs.end(), input);
+    return found == inputs.end() || *found != input
+               ? -1
+               : vertex_of_input[static_cast<std::size_t>(found - inputs.begin())];
+  }
   /// Number of distinct points. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
   /// Where the vertices were moved. \return `smoothed`, or without smoothing `consolidated`: empty
@@ -299,6 +306,9 @@ struct LeftOut {
   std::vector<Index> not_finite;   ///< with a coordinate that is not finite
   std::vector<Index> outliers;     ///< found by Options::outliers
   std::vector<Index> other_parts;  ///< of parts that were not meshed, and of none
+
+  /// In words. \return e.g. "2 points that are not finite, 3 outliers"; empty if nothing was
+  std::string text() const;
 };
 
 /// What reconstruct() makes of a cloud.

@@ -40,6 +40,9 @@ struct NeighborLists {
 /// there are no more.
 using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
 
+/// Makes a search among some points of a cloud, given by their numbers, ascending.
+using NeighborSearchFactory = std::function<NeighborSearch(const std::vector<Index>& points)>;
+
 /// @}
 
 }  // namespace spherical_param

@@ -153,6 +153,11 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
         {"the time limit ended the work early: this is the best mesh so far", "", "", false});
   if (result.intersecting_triangles > 0)
     findings.push_back({"self-intersections", "", "", true});
+  const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return !finding.option.empty();
+  });
+  for (Finding& finding : findings)
+    finding.is_consequence = has_option && finding.is_fault && finding.option.empty();
   return findings;
 }
 
@@ -182,4 +187,63 @@ std::string verdictOf(const Options& options, const Surface& result) {
   return text + ".";
 }
 
+Finding failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
+                  std::string error) {
+  const std::string function = "reconstruct: ";
+  if (error.compare(0, function.size(), function) == 0)
+    error.erase(0, function.size());
+  return {"part " + std::to_string(part + 1) + " of " + std::to_string(parts.size()) + " (" +
+              counted(parts[part].size(), "point") + ") cannot be meshed: " + error,
+          "", "", true};
+}
+
+void summarize(const std::vector<Finding>& failures, Result& result) {
+  result.findings = failures;
+  const std::vector<Surface>& surfaces = result.surfaces;
+  std::vector<std::string> parts(failures.size());  // that each finding is true of
+  std::size_t faulty = 0;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    faulty += hasFault(surfaces[i].findings) ? 1 : 0;
+    for (const Finding& finding : surfaces[i].findings) {
+      const auto same =
+          std::find_if(result.findings.begin(), result.findings.end(), [&](const Finding& other) {
+            return other.text == finding.text && other.value == finding.value &&
+                   other.is_consequence == finding.is_consequence;
+          });
+      const std::string part = "part " + std::to_string(i + 1);
+      if (same == result.findings.end()) {
+        result.findings.push_back(finding);
+        parts.push_back(part);
+      } else {
+        parts[static_cast<std::size_t>(same - result.findings.begin())] += ", " + part;
+      }
+    }
+  }
+  if (surfaces.size() == 1) {
+    result.verdict = surfaces.front().verdict;
+    return;
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (!parts[i].empty())
+      result.findings[i].text.insert(0, parts[i] + ": ");
+  result.verdict = grouped(surfaces.size()) + " meshes, " +
+                   (faulty == 0 ? "all sound." : grouped(faulty) + " of them with faults.");
+}
+
 }  // namespace spherical_param::internal
+
+namespace spherical_param {
+
+std::string LeftOut::text() const {
+  std::string text;
+  const auto add = [&](std::size_t count, const std::string& one, const std::string& many) {
+    if (count > 0)
+      text += (text.empty() ? "" : ", ") + internal::grouped(count) + " " + (count == 1 ? one : many);
+  };
+  add(not_finite.size(), "point that is not finite", "points that are not finite");
+  add(outliers.size(), "outlier", "outliers");
+  add(other_parts.size(), "point in other parts", "points in other parts");
+  return text;
+}
+
+}  // namespace spherical_param

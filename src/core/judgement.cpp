@@ -26,7 +26,7 @@ using Pairs = std::vector<std::array<Index, 2>>;
 ///              more triangles for surface than `places`, never fewer.
 Pairs intersectionsOf(const Positions& points, const Triangles& closed, const OpenMesh& open,
                       const Triangles& surface, const OpenPlaces& places, const Pairs& pairs,
-                      const Options& options) {
+                      const Execution& execution) {
   std::vector<Index> in_surface(open.is_open.size(), -1);  // those as they were
   std::vector<Index> changed;
   Index next = 0;
@@ -41,7 +41,7 @@ Pairs intersectionsOf(const Positions& points, const Triangles& closed, const Op
       changed.push_back(next);
     ++next;
   }
-  Pairs found = findSelfIntersectionsOf(points, surface, changed, options);
+  Pairs found = findSelfIntersectionsOf(points, surface, changed, execution);
   for (const auto& [t, u] : pairs) {
     const Index a = in_surface[static_cast<std::size_t>(t)];
     const Index b = in_surface[static_cast<std::size_t>(u)];
@@ -55,11 +55,11 @@ Pairs intersectionsOf(const Positions& points, const Triangles& closed, const Op
 /// Moves the triangles of a mesh that are not over openings to the result, with the pairs of them
 /// that intersect.
 void takeSurface(const Positions& points, const OpenSurface& openings, MeshedCloud& mesh,
-                 const Options& options, Surface& result) {
+                 const Execution& execution, Surface& result) {
   if (!openings.isOpen()) {
     result.triangles = std::move(mesh.triangles());
     result.self_intersections = mesh.isSmoothed()
-                                    ? findSelfIntersections(points, result.triangles, options)
+                                    ? findSelfIntersections(points, result.triangles, execution)
                                     : std::move(mesh.optimization.self_intersections);
     return;
   }
@@ -68,8 +68,8 @@ void takeSurface(const Positions& points, const OpenSurface& openings, MeshedClo
   result.self_intersections =
       !mesh.isSmoothed()
           ? intersectionsOf(points, mesh.triangles(), open, result.triangles, *openings.places(),
-                            mesh.optimization.self_intersections, options)
-          : findSelfIntersections(points, result.triangles, options);
+                            mesh.optimization.self_intersections, execution)
+          : findSelfIntersections(points, result.triangles, execution);
 }
 
 /// Diagnoses the cloud by its mesh, its graph and their openings.
@@ -85,10 +85,10 @@ SurfaceDiagnosis diagnose(const Positions& points, const Surface& result, const 
 }  // namespace
 
 Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
-              const Options& options) {
-  const FractionReport report = reportOf(options, "quality");
+              const Options& options, const Execution& execution) {
+  const FractionReport report = reportOf(execution, "quality");
   Surface result;
-  takeSurface(points, openings, mesh, options, result);
+  takeSurface(points, openings, mesh, execution, result);
   result.openings = openings.found(points, mesh.graph.graph, result.triangles);
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));

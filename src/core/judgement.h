@@ -23,6 +23,6 @@ struct MeshedCloud {
 /// Measures, checks and diagnoses a mesh, and moves it and its reports to the result, which is on
 /// nodes and in their unit; \see toInput.
 Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
-              const Options& options);
+              const Options& options, const Execution& execution);
 
 }  // namespace spherical_param::internal

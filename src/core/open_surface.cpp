@@ -43,10 +43,8 @@ void dropVertices(Index count, EmbeddingHistory& history) {
 }  // namespace
 
 OpenSurface::OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
-                         const Options& options) {
-  if (!seeksOpenings(options))
-    return;
-  Openings found = findOpenings(points, graph, options);
+                         const Options& options, const Execution& execution) {
+  Openings found = findOpenings(points, graph, execution);
   Openings open;
   open.spacing = found.spacing;
   for (Opening& opening : found.openings) {
@@ -89,13 +87,13 @@ bool seeksOpenings(const Options& options) {
   return options.graph == GraphMethod::LocalDelaunay;
 }
 
-Embedding OpenSurface::embedded(const Positions& points, const Graph& graph,
-                                const Options& options) const {
+Embedding OpenSurface::embedded(const Positions& points, const Graph& graph, const Options& options,
+                                const Execution& execution) const {
   if (embedded_.openings.empty())
-    return embed(graph, points, options.embedding, options.seed, options);
+    return embed(graph, points, options.embedding, options.seed, execution);
   const FilledGraph filled = fillOpenings(points, graph, embedded_);
-  Embedding embedding = embed(filled.graph, filled.points, options.embedding, options.seed, options,
-                              NodeMass::ByArea);
+  Embedding embedding = embed(filled.graph, filled.points, options.embedding, options.seed,
+                              execution, NodeMass::ByArea);
   embedding.directions = Positions(embedding.directions.leftCols(points.cols()));
   dropVertices(static_cast<Index>(points.cols()), embedding.history);
   return embedding;

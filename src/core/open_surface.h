@@ -21,7 +21,7 @@ public:
   /// \param is_flat all points are in one plane: none of the openings can be filled.
   /// \param unit    of the nodes' coordinates [unit of the input].
   OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
-              const Options& options);
+              const Options& options, const Execution& execution);
 
   OpenSurface() = default;  // of a closed surface
 
@@ -37,7 +37,8 @@ public:
                              const Triangles& triangles) const;
 
   /// embed() of a graph of the nodes, with virtual nodes in the openings.
-  Embedding embedded(const Positions& points, const Graph& graph, const Options& options) const;
+  Embedding embedded(const Positions& points, const Graph& graph, const Options& options,
+                     const Execution& execution) const;
 
 private:
   std::vector<Opening> found_;

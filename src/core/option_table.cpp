@@ -61,9 +61,20 @@ template <typename Field>
 OptionRow number(const char* name, const char* path, const char* help, Audience audience,
                  double min, double max, Field field) {
   using Value = std::decay_t<decltype(field(std::declval<Options&>()))>;
-  OptionRow row{
-      name, path, help, audience == Expert, IsOptional<Value>::value, {}, true, min, max, false,
-      {},   {},   {}};
+  OptionRow row{name,
+                path,
+                help,
+                audience == Expert,
+                IsOptional<Value>::value,
+                {},
+                true,
+                true,
+                min,
+                max,
+                false,
+                {},
+                {},
+                {}};
   row.is_integer = !std::is_same_v<Value, double> && !std::is_same_v<Value, std::optional<double>>;
   row.get = [field](const Options& options) {
     Options copy = options;
@@ -77,7 +88,7 @@ OptionRow number(const char* name, const char* path, const char* help, Audience 
 template <typename Enum, typename Field>
 OptionRow choice(const char* name, const char* path, const char* help, Audience audience,
                  const std::vector<std::pair<const char*, Enum>>& names, Field field) {
-  OptionRow row{name, path, help, audience == Expert, false, {}, false, 0.0, 0.0, false,
+  OptionRow row{name, path, help, audience == Expert, false, {}, false, false, 0.0, 0.0, false,
                 {},   {},   {}};
   for (const auto& entry : names)
     row.choices.emplace_back(entry.first);
@@ -100,13 +111,56 @@ OptionRow aboveMin(OptionRow row) {
   return row;
 }
 
-OptionRow usedWith(std::vector<std::pair<std::string, std::string>> conditions, OptionRow row) {
+OptionRow usedWith(std::vector<std::pair<std::string, std::vector<std::string>>> conditions,
+                   OptionRow row) {
   row.used_with = std::move(conditions);
+  return row;
+}
+
+/// The row of outliers: a number is the sigma of OutlierMode::Deviation.
+OptionRow outlierRow() {
+  OptionRow row = number(
+      "outliers", "outliers",
+      "points that are left out: stray ones (auto), or those that deviate by this number of "
+      "standard deviations",
+      Everybody, 0, 1000, [](Options & o) -> auto& { return o.outlier_sigma; });
+  row.choices = {"none", "auto"};
+  row.get = [](const Options& options) -> OptionValue {
+    switch (options.outliers) {
+    case OutlierMode::None:
+      return std::string("none");
+    case OutlierMode::Auto:
+      return std::string("auto");
+    case OutlierMode::Deviation:
+      return options.outlier_sigma;
+    }
+    return {};
+  };
+  row.set = [](Options& options, const OptionValue& value) {
+    if (const auto* name = std::get_if<std::string>(&value)) {
+      options.outliers = *name == "auto" ? OutlierMode::Auto : OutlierMode::None;
+      return;
+    }
+    options.outliers = OutlierMode::Deviation;
+    assign(options.outlier_sigma, value);
+  };
   return row;
 }
 
 std::vector<OptionRow> pointRows() {
   return {
+      outlierRow(),
+      choice<PartsMode>(
+          "parts", "parts",
+          "parts of the cloud that are meshed: all as one surface, that of most points, or each by "
+          "itself",
+          Everybody,
+          {{"all", PartsMode::All}, {"largest", PartsMode::Largest}, {"each", PartsMode::Each}},
+          [](Options & o) -> auto& { return o.parts; }),
+      usedWith({{"parts", {"largest", "each"}}},
+               number(
+                   "min_points", "min_points", "parts of fewer points are left out", Expert, 4,
+                   kMaxInt, [](Options & o) -> auto& { return o.min_points; })),
       choice<ConsolidationMode>(
           "consolidation", "consolidation",
           "auto: noisy points are moved to their surface, and merged below the noise", Everybody,
@@ -140,7 +194,7 @@ std::vector<OptionRow> embeddingRows() {
            {"inverse", EdgeWeights::InverseLength},
            {"uniform", EdgeWeights::Uniform}},
           [](Options & o) -> auto& { return o.embedding.weights; }),
-      usedWith({{"embedding", "multilevel"}, {"weights", "adaptive"}},
+      usedWith({{"embedding", {"multilevel"}}, {"weights", {"adaptive"}}},
                aboveMin(number(
                    "exponent", "embedding.exponent", "exponent p of adaptive weights", Expert, 2,
                    16, [](Options & o) -> auto& { return o.embedding.exponent; }))),
@@ -151,17 +205,17 @@ std::vector<OptionRow> embeddingRows() {
           "tolerance", "embedding.tolerance",
           "mean tangential Laplacian at convergence, unset: 1e-8 for iterative, else none", Expert,
           0, 1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
-      usedWith({{"embedding", "iterative"}},
+      usedWith({{"embedding", {"iterative"}}},
                number(
                    "max_iterations", "embedding.max_iterations", "maximum number of iterations",
                    Expert, 0, kMaxInt,
                    [](Options & o) -> auto& { return o.embedding.max_iterations; })),
-      usedWith({{"embedding", "iterative"}},
+      usedWith({{"embedding", {"iterative"}}},
                number(
                    "stagnation_window", "embedding.stagnation_window",
                    "iterations over which stagnation is judged, 0 or 1: never", Expert, 0, kMaxInt,
                    [](Options & o) -> auto& { return o.embedding.stagnation_window; })),
-      usedWith({{"embedding", "multilevel"}},
+      usedWith({{"embedding", {"multilevel"}}},
                number(
                    "starts", "embedding.starts", "starts of the embedding on the coarsest level",
                    Expert, 1, 100, [](Options & o) -> auto& { return o.embedding.starts; })),
@@ -197,7 +251,7 @@ std::vector<OptionRow> meshRows() {
 
 std::vector<OptionRow> surfaceRows() {
   return {
-      usedWith({{"graph", "delaunay"}},
+      usedWith({{"graph", {"delaunay"}}},
                choice<SurfaceMode>(
                    "surface", "surface",
                    "openings are filled, left open, or (auto) left open where they are certain",
@@ -206,11 +260,11 @@ std::vector<OptionRow> surfaceRows() {
                     {"open", SurfaceMode::Open},
                     {"auto", SurfaceMode::Auto}},
                    [](Options & o) -> auto& { return o.surface; })),
-      usedWith({{"graph", "delaunay"}},
+      usedWith({{"graph", {"delaunay"}}},
                number(
                    "fill_holes", "fill_holes", "openings of up to this number of edges are filled",
                    Expert, 0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
-      usedWith({{"graph", "delaunay"}},
+      usedWith({{"graph", {"delaunay"}}},
                number(
                    "fill_holes_area", "fill_holes_area", "openings of up to this area are filled",
                    Expert, 0, kMaxArea, [](Options & o) -> auto& { return o.fill_holes_area; })),
@@ -222,7 +276,7 @@ std::vector<OptionRow> runRows() {
       number(
           "seed", "seed", "seed of all random choices", Expert, 0, kMaxSeed,
           [](Options & o) -> auto& { return o.seed; }),
-      usedWith({{"optimization", "full"}},
+      usedWith({{"optimization", {"full"}}},
                number(
                    "time_limit", "time_limit",
                    "seconds until the work ends with the best mesh so far, unset: no limit",
@@ -251,11 +305,11 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
       refuse(row, "has no value");
     return;
   }
-  if (!row.choices.empty()) {
-    const auto* name = std::get_if<std::string>(&value);
+  const auto* name = std::get_if<std::string>(&value);
+  if (name != nullptr || !row.is_number) {
     if (name == nullptr ||
         std::find(row.choices.begin(), row.choices.end(), *name) == row.choices.end())
-      refuse(row, "= " + textOf(value) + " is not known");
+      refuse(row, "= " + textOf(value) + (row.choices.empty() ? " is no number" : " is not known"));
     return;
   }
   double number = 0.0;
@@ -293,7 +347,8 @@ void setOption(Options& options, const std::string& name, const OptionValue& val
 }
 
 std::string rangeOf(const OptionRow& row) {
-  if (row.choices.empty()) {
+  std::vector<std::string> ranges = row.choices;
+  if (row.is_number) {
     std::ostringstream text;
     text.precision(10);
     text << (row.is_integer ? "an integer " : "a number ")
@@ -302,11 +357,11 @@ std::string rangeOf(const OptionRow& row) {
       text << (row.min_excluded ? " and up to " : " to ") << row.max;
     else if (!row.min_excluded)
       text << " up";
-    return text.str();
+    ranges.push_back(text.str());
   }
   std::string text;
-  for (std::size_t i = 0; i < row.choices.size(); ++i)
-    text += (i == 0 ? "" : i + 1 < row.choices.size() ? ", " : " or ") + row.choices[i];
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < ranges.size() ? ", " : " or ") + ranges[i];
   return text;
 }
 

@@ -1,32 +1,36 @@
 #include "spherical_param/reconstruct.h"
 
-#include "caller_neighbors.h"
+#include "consolidation.h"
 #include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
+#include "local_delaunay_graph.h"
+#include "nearest_neighbor_graph.h"
 #include "open_mesh.h"
 #include "open_surface.h"
-#include "ordered_points.h"
+#include "point_set.h"
 #include "result_units.h"
+#include "selection.h"
 #include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstddef>
+#include <exception>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace spherical_param {
 namespace {
 
 using internal::MeshedCloud;
-using internal::Neighbors;
+using internal::Neighborhoods;
 using internal::OpenSurface;
-using internal::OrderedPoints;
+using internal::Selection;
 using internal::StageClock;
-
-/// The neighbours of the nodes, for a graph with these options.
-using FindNeighbors = std::function<Neighbors(const OrderedPoints&, const Options&)>;
 
 /// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
 /// face outward on both. Exactly: the volume of a cloud that is nearly flat may be all rounding.
@@ -40,9 +44,9 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
 }
 
 /// Whether the mesh is closed and of genus 0, or that with openings, over all vertices.
-bool isAsPromised(const Surface& result) {
-  const MeshTopology& topology = result.topology;
-  return result.isClosed()
+bool isAsPromised(const Surface& surface) {
+  const MeshTopology& topology = surface.topology;
+  return surface.isClosed()
              ? topology.isSphere()
              : topology.manifold() && topology.oriented && topology.faults.unused_vertices.empty();
 }
@@ -61,118 +65,214 @@ bool mayBeOpen(const Options& options) {
                      "outside of it, and an open one the surface mode 'open'");
 }
 
-NeighborGraph buildGraph(const OrderedPoints& nodes, const FindNeighbors& find_neighbors,
-                         const Options& options, StageClock& clock) {
-  const Neighbors neighbors =
-      clock.time("neighbors", [&] { return find_neighbors(nodes, options); });
-  return clock.time("graph", [&] {
-    return buildNeighborGraph(nodes.points, neighbors.lists, options.graph,
-                              neighborsToSearch(options), neighbors.search, options);
-  });
+NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& options,
+                         const Execution& execution) {
+  if (options.graph == GraphMethod::NearestNeighbors)
+    return internal::buildNearestNeighborGraph(
+        neighborhoods.points(), neighborhoods.neighbors().lists, neighborsToSearch(options));
+  // Outliers that are left out are not looked for again.
+  const auto strays = options.outliers == OutlierMode::None ? internal::StraySearch::Yes
+                                                            : internal::StraySearch::No;
+  return internal::buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(), strays,
+                                           execution);
 }
 
-OpenSurface findOpenSurface(const OrderedPoints& nodes, const Graph& graph, bool is_flat,
-                            const Options& options, StageClock& clock) {
-  if (!internal::seeksOpenings(options))
-    return {};
-  return clock.time("openings", [&] {
-    return OpenSurface(nodes.points, graph, is_flat, std::ldexp(1.0, nodes.exponent), options);
-  });
-}
-
-/// The method: embed the graph, triangulate the sphere, optimise the mesh on the points.
-MeshedCloud meshGraph(const Positions& points, NeighborGraph graph, const OpenSurface& surface,
-                      const Options& options, StageClock& clock) {
-  MeshedCloud mesh;
-  mesh.graph = std::move(graph);
-  mesh.embedding =
-      clock.time("embedding", [&] { return surface.embedded(points, mesh.graph.graph, options); });
-  SphereTriangulation triangulation = clock.time("triangulation", [&] {
-    return triangulateSphere(mesh.embedding.directions, options.triangulation, options);
-  });
-  orientOutward(points, triangulation.triangles, mesh.embedding);
+/// Optimises the mesh on the points, and on smoothed ones if they are asked for.
+void optimize(const Positions& points, const Triangles& triangles, const OpenSurface& openings,
+              const Options& options, StageClock& clock, MeshedCloud& mesh) {
   const bool is_smoothed = options.smoothing > 0;
-  OptimizationOptions of_optimization;
-  of_optimization.method = options.optimization;
-  // The smoothed points get an optimisation of their own.
-  if (is_smoothed)
-    of_optimization.finish_on_points = false;
-  Execution execution = options;
+  Execution execution = clock.execution();
   execution.time_limit = clock.remaining();
-  // The other half is for the smoothed points.
+  // The other half is for the smoothed points, which get an optimisation of their own.
   if (is_smoothed && execution.time_limit)
     *execution.time_limit /= 2.0;
-  mesh.optimization = clock.time("optimization", [&] {
-    return internal::optimizeMesh(points, triangulation.triangles, mesh.graph.graph,
-                                  surface.places(), of_optimization, options.seed, execution);
-  });
-  if (is_smoothed) {
-    execution.time_limit = clock.remaining();
-    mesh.smoothed = clock.time("smoothing", [&] {
-      return internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph,
-                                  surface.places(),
-                                  SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
-                                  options.optimization, options.seed, execution);
-    });
-  }
+  clock.begin("optimization");
+  mesh.optimization = internal::optimizeMesh(
+      points, triangles, mesh.graph.graph, openings.places(),
+      OptimizationOptions{options.optimization, !is_smoothed}, options.seed, execution);
+  if (!is_smoothed)
+    return;
+  execution.time_limit = clock.remaining();
+  clock.begin("smoothing");
+  mesh.smoothed =
+      internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph, openings.places(),
+                           SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
+                           options.optimization, options.seed, execution);
   bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
   is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
+}
+
+OpenSurface findOpenings(const Positions& points, const Graph& graph, int exponent, bool is_flat,
+                         const Options& options, StageClock& clock) {
+  if (!internal::seeksOpenings(options))
+    return {};
+  clock.begin("openings");
+  return {points, graph, is_flat, std::ldexp(1.0, exponent), options, clock.execution()};
+}
+
+/// The method: find openings in the graph, embed it, triangulate the sphere, optimise the mesh on
+/// the points, and judge it.
+///
+/// \param is_flat all points are in one plane.
+Surface meshGraph(const Positions& points, NeighborGraph graph, int exponent, bool is_flat,
+                  const Options& options, StageClock& clock) {
+  const Execution& execution = clock.execution();
+  const OpenSurface openings = findOpenings(points, graph.graph, exponent, is_flat, options, clock);
+  if (is_flat && !openings.isOpen())
+    refuseFlat(options);
+  MeshedCloud mesh;
+  mesh.graph = std::move(graph);
+  clock.begin("embedding");
+  mesh.embedding = openings.embedded(points, mesh.graph.graph, options, execution);
+  clock.begin("triangulation");
+  Triangles triangles =
+      triangulateSphere(mesh.embedding.directions, options.triangulation, execution).triangles;
+  orientOutward(points, triangles, mesh.embedding);
+  optimize(points, triangles, openings, options, clock, mesh);
   orientOutward(points, mesh.triangles(), mesh.embedding);
-  return mesh;
+  clock.begin("quality");
+  return internal::judge(points, std::move(mesh), openings, options, execution);
 }
 
-Neighbors findNeighbors(const OrderedPoints& nodes, const Options& options) {
-  return internal::nearestNeighbors(nodes, neighborsToSearch(options), options);
+/// Meshes some nodes. \param is_flat all points are in one plane.
+Surface meshNodes(internal::OrderedPoints& nodes, NeighborGraph graph, bool is_flat,
+                  const Options& options, StageClock& clock) {
+  Surface surface =
+      meshGraph(nodes.points, std::move(graph), nodes.exponent, is_flat, options, clock);
+  if (is_flat && surface.isClosed())
+    refuseFlat(options);
+  internal::toInput(nodes, surface);
+  return surface;
 }
 
-Surface run(const Positions& input, const Options& all, const FindNeighbors& find_neighbors) {
-  checkOptions(all);
-  StageClock clock(all);
-  const Options options = clock.optionsOfStages();
-  Consolidation consolidation;
-  const bool is_consolidated = options.consolidation == ConsolidationMode::Auto;
-  if (is_consolidated)
-    consolidation = clock.time("consolidation", [&] { return consolidate(input, options); });
-  const Positions& points = is_consolidated ? consolidation.points : input;
-  OrderedPoints nodes = clock.time(
-      "neighbors", [&] { return internal::orderCheckedPoints(points, options.threads); });
-  const bool is_flat = areCoplanar(points);
+/// Meshes the points of a part as they are.
+Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
+                 StageClock& clock) {
+  Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
+  const bool is_flat = areCoplanar(selection.pointsOf(part));
   if (is_flat && !mayBeOpen(options))
     refuseFlat(options);
-  NeighborGraph graph = buildGraph(nodes, find_neighbors, options, clock);
-  const OpenSurface surface = findOpenSurface(nodes, graph.graph, is_flat, options, clock);
-  if (is_flat && !surface.isOpen())
-    refuseFlat(options);
-  MeshedCloud mesh = meshGraph(nodes.points, std::move(graph), surface, options, clock);
-  Surface result = clock.time(
-      "quality", [&] { return internal::judge(nodes.points, std::move(mesh), surface, options); });
-  if (is_flat && result.isClosed())
-    refuseFlat(options);
-  internal::toInput(nodes, result);
-  if (is_consolidated)
-    internal::toInput(consolidation, result);
-  if (!isAsPromised(result))
+  NeighborGraph graph = buildGraph(neighborhoods, options, clock.execution());
+  selection.release(part);
+  return meshNodes(neighborhoods.nodes(), std::move(graph), is_flat, options, clock);
+}
+
+/// Moves the points of a part to the surface that they sample, and meshes them.
+Surface meshConsolidated(const Positions& points, const Options& options, StageClock& clock) {
+  clock.begin("consolidation");
+  Consolidation consolidation = consolidate(points, clock.execution());
+  Options as_is = options;
+  as_is.outliers = OutlierMode::None;
+  as_is.parts = PartsMode::All;
+  LeftOut none;
+  Selection selection(consolidation.points, as_is, {}, clock, none);
+  Surface surface = meshAsIs(selection, 0, options, clock);
+  internal::toInput(consolidation, surface);
+  return surface;
+}
+
+Surface meshPart(Selection& selection, std::size_t part, const Options& options,
+                 StageClock& clock) {
+  Surface surface = options.consolidation == ConsolidationMode::Auto
+                        ? meshConsolidated(selection.pointsOf(part), options, clock)
+                        : meshAsIs(selection, part, options, clock);
+  if (!isAsPromised(surface))
     throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "
                        "as a defect of the library");
-  result.stages = clock.take();
-  result.findings = internal::findingsOf(options, result);
-  result.verdict = internal::verdictOf(options, result);
-  return result;
+  internal::toCloud(selection.parts()[part], surface);
+  surface.findings = internal::findingsOf(options, surface);
+  surface.verdict = internal::verdictOf(options, surface);
+  return surface;
+}
+
+/// Meshes all parts, each with its share of the time. One of several that cannot be meshed is left
+/// out. \return what is to be said of those
+std::vector<Finding> meshParts(Selection& selection, const Options& options, StageClock& clock,
+                               Result& result) {
+  const std::vector<std::vector<Index>>& parts = selection.parts();
+  std::size_t left = 0;
+  for (const std::vector<Index>& part : parts)
+    left += part.size();
+  const auto all = static_cast<double>(left);
+  std::vector<Finding> failures;
+  std::exception_ptr first_error;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const auto count = static_cast<double>(parts[part].size());
+    clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
+    left -= parts[part].size();
+    const auto leave_out = [&](const std::exception& error) {
+      if (!first_error)
+        first_error = std::current_exception();
+      failures.push_back(internal::failureOf(part, parts, error.what()));
+      result.left_out.other_parts.insert(result.left_out.other_parts.end(), parts[part].begin(),
+                                         parts[part].end());
+    };
+    try {
+      result.surfaces.push_back(meshPart(selection, part, options, clock));
+    } catch (const InvalidInput& error) {
+      leave_out(error);
+    } catch (const ComputeError& error) {
+      leave_out(error);
+    }
+  }
+  if (result.surfaces.empty())
+    std::rethrow_exception(first_error);
+  std::sort(result.left_out.other_parts.begin(), result.left_out.other_parts.end());
+  return failures;
+}
+
+/// Says what was left out in the message of a failure: it may be the cause.
+template <typename Work>
+auto explained(const LeftOut& left_out, const Work& work) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    const std::string what = left_out.text();
+    if (what.empty())
+      throw;
+    std::string message = error.what();
+    message.insert(std::min(message.find("; "), message.size()), " (left out: " + what + ")");
+    throw InvalidInput(message);
+  }
 }
 
 }  // namespace
 
-Surface reconstruct(const Positions& points, const Options& options) {
-  return run(points, options, findNeighbors);
+Result reconstruct(const Positions& points, const Options& options,
+                   const NeighborSearchFactory& search_of) {
+  checkOptions(options);
+  StageClock clock(options);
+  Result result;
+  const std::vector<Finding> failures = explained(result.left_out, [&] {
+    Selection selection(points, options, search_of, clock, result.left_out);
+    return meshParts(selection, options, clock, result);
+  });
+  result.stages = clock.take();
+  internal::summarize(failures, result);
+  return result;
 }
 
-Surface reconstruct(const Positions& points, const NeighborLists& lists, const Options& options,
-                    const NeighborSearch& search) {
-  if (options.consolidation != ConsolidationMode::None)
-    return run(points, options, findNeighbors);
-  return run(points, options, [&](const OrderedPoints& nodes, const Options&) {
-    return internal::callerNeighbors(nodes, lists, search);
-  });
+std::vector<Index> findOutliers(const Positions& points, const Options& options) {
+  Options all = options;
+  all.parts = PartsMode::All;
+  checkOptions(all);
+  StageClock clock(all);
+  LeftOut left_out;
+  explained(left_out, [&] { return Selection(points, all, {}, clock, left_out).parts(); });
+  clock.take();
+  return left_out.outliers;
+}
+
+std::vector<std::vector<Index>> findParts(const Positions& points, const Options& options) {
+  Options each = options;
+  each.parts = PartsMode::Each;
+  checkOptions(each);
+  StageClock clock(each);
+  LeftOut left_out;
+  std::vector<std::vector<Index>> parts =
+      explained(left_out, [&] { return Selection(points, each, {}, clock, left_out).parts(); });
+  clock.take();
+  return parts;
 }
 
 }  // namespace spherical_param

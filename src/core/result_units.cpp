@@ -128,4 +128,14 @@ void toInput(Consolidation& consolidation, Surface& result) {
   result.vertex_of_input = std::move(vertex_of_input);
 }
 
+void toCloud(const std::vector<Index>& inputs, Surface& surface) {
+  const auto renumber = [&](std::vector<Index>& points) {
+    for (Index& point : points)
+      point = inputs[static_cast<std::size_t>(point)];
+  };
+  renumber(surface.input_of_vertex);
+  renumber(surface.outliers);
+  surface.inputs = inputs;
+}
+
 }  // namespace spherical_param::internal

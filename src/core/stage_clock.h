@@ -1,75 +1,101 @@
 #pragma once
 
 #include "progress.h"
-#include "spherical_param/options.h"
 #include "spherical_param/result.h"
 #include "time_left.h"
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// Times the stages and reports their beginning and end.
+/// Times the stages, reports their beginning and end, and shares the time limit between parts.
 class StageClock {
 public:
-  /// \param options must outlive the clock.
-  explicit StageClock(const Options& options) : options_(options) {}
-  StageClock(const StageClock& other) = delete;  // optionsOfStages() points here
+  /// \param user how the caller wants the work done; must outlive the clock.
+  explicit StageClock(const Execution& user) : user_(user), left_(user.time_limit) {
+    execution_.threads = user.threads;
+    if (user.progress)
+      execution_.progress = [this](const Progress& progress) {
+        return user_.progress({stage_, progress.fraction, part_, parts_});
+      };
+  }
+  StageClock(const StageClock& other) = delete;  // execution() points here
   StageClock& operator=(const StageClock& other) = delete;
 
-  /// The options for the stages. Progress is reported as that of the stage that runs, whichever
-  /// functions it calls.
-  Options optionsOfStages() const {
-    Options options = options_;
-    if (options_.progress)
-      options.progress = [this](const Progress& progress) {
-        return options_.progress({stage_, progress.fraction});
-      };
-    return options;
-  }
+  /// How stages work: without a time limit, and with their progress as that of the stage that was
+  /// begun last, whichever functions it calls.
+  const Execution& execution() const { return execution_; }
 
-  /// Runs a stage and returns its outcome.
-  template <typename Work>
-  auto time(const char* stage, const Work& work) {
+  /// Begins a stage; the one before ends.
+  void begin(const char* stage) {
+    end();
     stage_ = stage;
-    reportFraction(reportOf(options_, stage), 0.0);
-    const auto begin = std::chrono::steady_clock::now();
-    auto outcome = work();
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    add(stage, seconds.count());
-    reportFraction(reportOf(options_, stage), 1.0);
-    return outcome;
+    begin_ = Clock::now();
+    report(0.0);
   }
 
-  /// What is left of the time limit, without what is kept for the check of the mesh: half of the
-  /// time until the embedding, which is more than it takes [s].
+  /// Begins a part. \param fraction of the points that are left, by which it has its share of the
+  /// time. \param points_fraction of all points.
+  void beginPart(std::size_t part, std::size_t parts, double fraction, double points_fraction) {
+    part_ = part;
+    parts_ = parts;
+    fraction_ = points_fraction;
+    std::optional<double> limit = left_();
+    if (limit)
+      *limit *= fraction;
+    part_left_ = TimeLeft(limit);
+  }
+
+  /// What is left of the time limit for the part, without what is kept for the check of the mesh:
+  /// half of the time until the embedding, which is more than it takes [s].
   std::optional<double> remaining() const {
     double kept = 0.0;
     for (const StageTime& time : times_)
       if (time.name == "neighbors" || time.name == "graph")
-        kept += time.seconds / 2.0;
-    return time_left_(kept);
+        kept += fraction_ * time.seconds / 2.0;
+    return part_left_ ? (*part_left_)(kept) : left_(kept);
   }
 
-  std::vector<StageTime> take() { return std::move(times_); }
+  /// Ends the last stage. \return the time of each stage
+  std::vector<StageTime> take() {
+    end();
+    return std::move(times_);
+  }
 
 private:
-  void add(const char* stage, double seconds) {
+  using Clock = std::chrono::steady_clock;
+
+  void end() {
+    if (stage_ == nullptr)
+      return;
+    const std::chrono::duration<double> seconds = Clock::now() - begin_;
     const auto known = std::find_if(times_.begin(), times_.end(),
-                                    [&](const StageTime& other) { return other.name == stage; });
+                                    [&](const StageTime& other) { return other.name == stage_; });
     if (known == times_.end())
-      times_.push_back({stage, seconds});
+      times_.push_back({stage_, seconds.count()});
     else
-      known->seconds += seconds;
+      known->seconds += seconds.count();
+    report(1.0);
+    stage_ = nullptr;
   }
 
-  const Options& options_;
-  TimeLeft time_left_{options_.time_limit};
-  const char* stage_ = "";
+  void report(double fraction) const { reportFraction(reportOf(execution_, stage_), fraction); }
+
+  const Execution& user_;
+  Execution execution_;
+  TimeLeft left_;
+  std::optional<TimeLeft> part_left_;
+  double fraction_ = 1.0;
+  const char* stage_ = nullptr;
+  Clock::time_point begin_;
+  std::size_t part_ = 0;
+  std::size_t parts_ = 1;
   std::vector<StageTime> times_;
 };
 

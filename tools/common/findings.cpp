@@ -9,36 +9,28 @@
 namespace spherical_param::tools {
 
 void Findings::add(const std::string& of, const std::vector<Finding>& findings) {
-  const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
-    return !finding.option.empty();
-  });
   for (const Finding& finding : findings) {
-    const bool is_consequence = has_option && finding.is_fault && finding.option.empty();
     // What is true of several parts is said once.
     const auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
       return entry.finding.text == finding.text && entry.finding.value == finding.value &&
-             entry.is_consequence == is_consequence;
+             entry.finding.is_consequence == finding.is_consequence;
     });
     if (same == entries_.end()) {
-      entries_.push_back({of, finding, false, is_consequence});
+      entries_.push_back({of, finding});
     } else {
       same->of += ", " + of;
     }
   }
 }
 
-void Findings::add(const std::string& failure) {
-  entries_.push_back({"", {failure, "", "", true}, true, false});
-}
-
 std::string Findings::textOf(const Entry& entry) const {
-  const auto& [text, option, value, is_fault] = entry.finding;
+  const auto& [text, option, value, is_fault, is_consequence] = entry.finding;
   std::string line = (entry.of.empty() ? "" : entry.of + ": ") + text;
   if (!option.empty()) {
     std::string flag = option;
     std::replace(flag.begin(), flag.end(), '_', '-');
     line += ": try -" + flag + " " + value;
-  } else if (is_fault && suggests_page_ && !entry.is_failure) {
+  } else if (is_fault && suggests_page_) {
     line += ": try -report report.html to see where";
   }
   return oneLine(line);
@@ -50,7 +42,7 @@ void Findings::print() const {
   }
   std::fflush(stdout);
   for (const Entry& entry : entries_) {
-    if (!entry.is_consequence && (!strict_ || !entry.finding.is_fault)) {
+    if (!entry.finding.is_consequence && (!strict_ || !entry.finding.is_fault)) {
       std::fprintf(stderr, "warning: %s\n", textOf(entry).c_str());
     }
   }

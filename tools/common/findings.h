@@ -19,8 +19,6 @@ public:
 
   /// Adds those of an input, or of a part of it; `of` names it where there are several.
   void add(const std::string& of, const std::vector<Finding>& findings);
-  /// Adds a failure that is no finding of the library, and counts as a fault.
-  void add(const std::string& failure);
 
   /// Prints a line a finding; those that end the tool are left to that.
   void print() const;
@@ -32,9 +30,6 @@ private:
   struct Entry {
     std::string of;  ///< the inputs that it is true of; empty: the only one
     Finding finding;
-    bool is_failure = false;
-    /// Of something else that was found there, and that an option deals with.
-    bool is_consequence = false;
   };
 
   std::string textOf(const Entry& entry) const;

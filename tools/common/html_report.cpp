@@ -4,8 +4,6 @@
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "common/text.h"
-#include "embedding.h"
-#include "neighbor_search.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
 
@@ -209,36 +207,11 @@ void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   arrays.add("suspicious", 1, mesh.marks);
 }
 
-/// The median distance of points to their nearest [their unit].
-double spacingOf(const Positions& points, int threads) {
-  const Eigen::AlignedBox3d box = boxOf(points);
-  const double size = box.sizes().maxCoeff();
-  // The search wants an extent of about 1.
-  const Positions scaled = (points.colwise() - box.center()) / size;
-  Execution execution;
-  execution.threads = threads;
-  const NeighborLists lists = findNearestNeighbors(scaled, 1, execution);
-  std::vector<double> distances;
-  distances.reserve(lists.size());
-  for (std::size_t i = 0; i < lists.size(); ++i) {
-    for (std::size_t k = lists.offsets[i]; k < lists.offsets[i + 1]; ++k) {
-      const Index other = lists.indices[k];
-      if (other != static_cast<Index>(i)) {
-        distances.push_back((scaled.col(other) - scaled.col(static_cast<Index>(i))).norm());
-      }
-    }
-  }
-  const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), median, distances.end());
-  return *median * size;
-}
-
-/// What the cloud has beside the mesh: colours, the points before smoothing, outliers. Returns the
-/// spacing of its points.
-double addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, int threads,
-                Arrays& arrays) {
+/// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
+void addCloud(const CloudReconstruction& cloud, const Surface& surface, const ReportMesh& mesh,
+              Arrays& arrays) {
   const auto input = [&](Index vertex) {
-    return static_cast<std::size_t>(cloud.point_of_vertex[static_cast<std::size_t>(vertex)]);
+    return static_cast<std::size_t>(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
   };
   if (!cloud.data->colors.empty()) {
     std::vector<std::uint8_t> colors;
@@ -249,31 +222,30 @@ double addCloud(const CloudReconstruction& cloud, const ReportMesh& mesh, int th
     arrays.add("colors", 3, colors);
   }
   const Eigen::AlignedBox3d box = boxOf(mesh.positions);
-  Positions points = mesh.positions;
-  if (cloud.result.moved().cols() != 0) {
+  if (surface.moved().cols() != 0) {
+    Positions points = mesh.positions;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
       points.col(static_cast<Eigen::Index>(i)) = cloud.data->position(input(mesh.vertices[i]));
     }
     arrays.addPoints("cloud", points, boxOf(points));
   }
-  if (cloud.outliers && !cloud.outliers->points.empty()) {
-    const std::size_t all = cloud.outliers->points.size();
+  const std::vector<Index>& left_out = cloud.result.left_out.outliers;
+  if (!left_out.empty()) {
+    const std::size_t all = left_out.size();
     const std::size_t count = std::min(all, max_outliers);
     Positions outliers(3, static_cast<Eigen::Index>(count));
     for (std::size_t i = 0; i < count; ++i) {
       outliers.col(static_cast<Eigen::Index>(i)) =
-          cloud.data->position(static_cast<std::size_t>(cloud.outliers->points[i * all / count]));
+          cloud.data->position(static_cast<std::size_t>(left_out[i * all / count]));
     }
     // One far off comes to the side of a box around the mesh, where it can be seen.
     const Eigen::Vector3d margin = Eigen::Vector3d::Constant(box.diagonal().norm() / 2.0);
     arrays.addPoints("outliers", outliers, {box.min() - margin, box.max() + margin});
   }
-  return spacingOf(points, threads);
 }
 
 /// Adds the unfolding, and returns its frames.
-Json addHistory(const CloudReconstruction& cloud, Arrays& arrays) {
-  const Surface& result = cloud.result;
+Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays& arrays) {
   const EmbeddingHistory& history = result.history;
   const std::size_t all = history.vertices.size();
   const std::size_t count =
@@ -291,10 +263,10 @@ Json addHistory(const CloudReconstruction& cloud, Arrays& arrays) {
     ordered.push_back(places[static_cast<std::size_t>(i)]);
     vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
   }
-  const Positions positions = picked(vertexPositions(cloud), vertices);
+  const Positions positions = picked(vertexPositions(cloud, result), vertices);
   arrays.addPoints("history_positions", positions, boxOf(positions));
   arrays.addTriangles("history_triangles",
-                      triangulateSphere(picked(history.frames.back().sphere, ordered)).triangles);
+                      triangulateSphere(picked(history.frames.back().sphere, ordered)));
   std::vector<double> directions;
   directions.reserve(3 * count * history.frames.size());
   Json frames = Json::array();
@@ -396,27 +368,28 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
                   "this should not happen: please report it");
   }
   const CloudReconstruction& cloud = *input.cloud;
-  const ReportMesh mesh = reportMesh(cloud, max_triangles, input.threads);
+  const Surface& surface = *input.surface;
+  const ReportMesh mesh = reportMesh(cloud, surface, max_triangles, input.threads);
   Arrays arrays;
   addMesh(mesh, arrays);
-  const double spacing = addCloud(cloud, mesh, input.threads, arrays);
+  addCloud(cloud, surface, mesh, arrays);
   // The sphere is shown turned so that its points are about where those of the object are.
   const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false);
   Json json;
   json["tool"] = {{"name", input.tool}, {"version", SPHERICAL_PARAM_VERSION}};
   json["command"] = input.command;
   json["report"] = input.report;
-  json["mesh"] = {{"vertices", cloud.result.vertexCount()},
-                  {"triangles", cloud.result.triangles.cols()},
+  json["mesh"] = {{"vertices", surface.vertexCount()},
+                  {"triangles", surface.triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
                   {"shown_triangles", mesh.triangles.cols()}};
-  json["spacing"] = spacing;
-  json["outliers"] = cloud.outliers ? cloud.outliers->points.size() : 0;
+  json["spacing"] = surface.measures.mean_edge_length;
+  json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = Json::array();
   for (Eigen::Index i = 0; i < 9; ++i) {
     json["sphere_turn"].push_back(turn(i / 3, i % 3));
   }
-  json["frames"] = addHistory(cloud, arrays);
+  json["frames"] = addHistory(cloud, surface, arrays);
   json["arrays"] = arrays.about();
 
   file.write(page.substr(0, place));

@@ -42,6 +42,7 @@ struct HtmlReportInput {
   std::string command;                         ///< \see repeatedCommand
   Json report;                                 ///< that of -json
   const CloudReconstruction* cloud = nullptr;  ///< made after keepForHtmlReport()
+  const Surface* surface = nullptr;            ///< of the cloud, that is shown
   int threads = 0;
 };
 

@@ -32,7 +32,7 @@ public:
     for (std::size_t side = 0; side < 2; ++side) {
       pair.points[side] = words.size() == 2 ? numberOf(line, words[side], *clouds_[side])
                                             : nearestTo(line, &words[3 * side], *clouds_[side]);
-      pair.vertices[side] = vertexOf(pair.points[side], *clouds_[side]);
+      pair.vertices[side] = clouds_[side]->surface().vertexOf(pair.points[side]);
     }
     return pair;
   }
@@ -71,7 +71,7 @@ private:
     }
     int nearest = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (const Index index : cloud.point_of_vertex) {
+    for (const Index index : cloud.surface().input_of_vertex) {
       const double distance =
           (cloud.data->position(static_cast<std::size_t>(index)) - place).squaredNorm();
       if (distance < least) {
@@ -80,16 +80,6 @@ private:
       }
     }
     return nearest;
-  }
-
-  /// Through the points that were meshed: duplicates have one vertex.
-  static Index vertexOf(int point, const CloudReconstruction& cloud) {
-    const std::vector<Index>& meshed = cloud.meshed;
-    const auto found = std::lower_bound(meshed.begin(), meshed.end(), point);
-    if (found == meshed.end() || *found != point) {
-      return -1;
-    }
-    return cloud.result.vertex_of_input[static_cast<std::size_t>(found - meshed.begin())];
   }
 
   const std::string& path_;

@@ -35,8 +35,8 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
   if (cloud.data->colors.empty()) {
     return colors;
   }
-  colors.reserve(cloud.point_of_vertex.size());
-  for (const Index point : cloud.point_of_vertex) {
+  colors.reserve(cloud.surface().input_of_vertex.size());
+  for (const Index point : cloud.surface().input_of_vertex) {
     colors.push_back(cloud.data->colors[static_cast<std::size_t>(point)]);
   }
   return colors;
@@ -60,7 +60,7 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
   ProductSettings settings;
   settings.map = defaults;
   settings.reconstruction = parseReconstructionOptions(command_line);
-  if (settings.reconstruction.parts == PartsMode::Each) {
+  if (settings.reconstruction.options.parts == PartsMode::Each) {
     throw UsageError("option -parts: this tool makes one surface",
                      "give -parts largest, or mesh each part to a file of its own before");
   }
@@ -99,7 +99,7 @@ Json productOptionsToJson(const ProductSettings& settings) {
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
               MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
-  mapped.points = vertexPositions(mapped.cloud);
+  mapped.points = vertexPositions(mapped.cloud, mapped.cloud.surface());
   mapped.colors = vertexColors(mapped.cloud);
   console.begin("map");
   SphereMapOptions options = settings.map;
@@ -109,13 +109,13 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   };
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
     mapped.map =
-        computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.result.sphere, options);
+        computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.surface().sphere, options);
   });
   mapped.cloud.stages.push_back({"map", console.end("")});
 }
 
 std::vector<Finding> findingsOf(const MappedCloud& mapped) {
-  std::vector<Finding> findings = mapped.cloud.result.findings;
+  std::vector<Finding> findings = mapped.cloud.surface().findings;
   for (Finding& finding : findings) {
     if (finding.option == "parts") {
       finding.value = "largest";
@@ -128,7 +128,7 @@ void addMapToJson(const MappedCloud& mapped, Json& json) {
   json["input_points"] = mapped.cloud.data->points.size();
   json["vertices"] = mapped.points.cols();
   json["mesh_triangles"] = mapped.triangles().cols();
-  json["mesh_self_intersections"] = mapped.cloud.result.self_intersections.size();
+  json["mesh_self_intersections"] = mapped.cloud.surface().self_intersections.size();
   addToJson(mapped.map.distortion, json);
   json["embedding_distortion"] = Json::object();
   addToJson(mapped.map.before, json["embedding_distortion"]);
@@ -140,7 +140,7 @@ void printMap(const MappedCloud& mapped, Console& console) {
   console.entry("vertices", std::to_string(mapped.points.cols()));
   console.entry("mesh",
                 std::to_string(mapped.triangles().cols()) + " triangles, " +
-                    counted(mapped.cloud.result.self_intersections.size(), "self-intersection"));
+                    counted(mapped.cloud.surface().self_intersections.size(), "self-intersection"));
   console.entry("flipped on sphere",
                 std::to_string(map.distortion.flipped_triangles) +
                     " (embedding: " + std::to_string(map.before.flipped_triangles) + ")");

@@ -41,7 +41,7 @@ struct MappedCloud {
   std::vector<Color> colors;  ///< of the vertices: v, or none if the cloud has no colours
   SphereMap map;
 
-  const Triangles& triangles() const { return cloud.result.triangles; }
+  const Triangles& triangles() const { return cloud.surface().triangles; }
 };
 
 /// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.

@@ -1,7 +1,6 @@
 #include "common/reconstruction_options.h"
 
 #include "common/errors.h"
-#include "common/names.h"
 #include "common/numbers.h"
 #include "common/text.h"
 #include "spherical_param/option_table.h"
@@ -18,20 +17,18 @@
 namespace spherical_param::tools {
 namespace {
 
-const Names<PartsMode> parts_names = {
-    {"all", PartsMode::All},
-    {"largest", PartsMode::Largest},
-    {"each", PartsMode::Each},
-};
-
 /// The condition of an option that does not hold, if any: the other option and the value it needs.
 std::optional<std::pair<std::string, std::string>> failedCondition(const OptionRow& row,
                                                                    const Options& options) {
   const auto failed =
       std::find_if(row.used_with.begin(), row.used_with.end(), [&](const auto& condition) {
-        return optionText(options, condition.first) != condition.second;
+        const auto& [other, values] = condition;
+        return std::find(values.begin(), values.end(), optionText(options, other)) == values.end();
       });
-  return failed == row.used_with.end() ? std::nullopt : std::optional(*failed);
+  if (failed == row.used_with.end()) {
+    return std::nullopt;
+  }
+  return std::pair(failed->first, failed->second.front());
 }
 
 /// The name of an option on the command line, where words are joined by dashes.
@@ -45,9 +42,11 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
   const auto value_of = [](const auto& parsed) {
     return parsed ? OptionValue(*parsed) : OptionValue();
   };
-  OptionValue value = !row.choices.empty() ? OptionValue(text)
-                      : row.is_integer     ? value_of(toInteger(text))
-                                           : value_of(toReal(text));
+  const bool is_choice =
+      std::find(row.choices.begin(), row.choices.end(), text) != row.choices.end();
+  const OptionValue value = is_choice || !row.is_number ? OptionValue(text)
+                            : row.is_integer            ? value_of(toInteger(text))
+                                                        : value_of(toReal(text));
   if (value.index() != 0) {
     try {
       Options scratch;
@@ -67,7 +66,7 @@ std::vector<OptionRow> toolRows() {
   std::vector<OptionRow> rows = optionTable();
   rows.erase(std::remove_if(rows.begin(), rows.end(),
                             [](const OptionRow& row) {
-                              return row.field.rfind("embedding.history.", 0) == 0;
+                              return row.field.rfind("embedding.history_", 0) == 0;
                             }),
              rows.end());
   return rows;
@@ -119,29 +118,18 @@ std::vector<OptionInfo> reconstructionOptions() {
   std::vector<OptionInfo> lines;
   const Options defaults;
   for (const OptionRow& row : toolRows()) {
-    const bool is_number = row.choices.empty();
-    std::string argument = row.is_integer ? "N" : "X";
+    std::string argument;
     for (const std::string& choice : row.choices) {
-      argument = (choice == row.choices.front() ? "" : argument + "|") + choice;
+      argument += (argument.empty() ? "" : "|") + choice;
+    }
+    if (row.is_number) {
+      argument += (argument.empty() ? "" : "|") + std::string(row.is_integer ? "N" : "X");
     }
     lines.push_back({flagOf(row), argument,
-                     row.help + (is_number ? "; " + rangeOf(row) : "") + " (" +
+                     row.help + (row.is_number ? "; " + rangeOf(row) : "") + " (" +
                          spherical_param::textOf(row.get(defaults)) + ")",
                      row.expert});
   }
-  lines.push_back({"outliers", "auto|SIGMA",
-                   "leave out stray points, or those that lie this number of standard deviations "
-                   "off, 0 to 1000 (off)",
-                   false});
-  lines.push_back(
-      {"parts", "all|largest|each",
-       "parts of the cloud that are meshed: all as one surface, that of most points, or "
-       "each by itself, to files of its own if the output's name holds %03d (all)",
-       false});
-  lines.push_back({"min-points", "N",
-                   "parts of fewer points are left out; 4 to 1000000000 (" +
-                       std::to_string(ReconstructionSettings().min_points) + ")",
-                   true});
   lines.push_back(
       {"strict", "",
        "end with exit code 1 if the mesh has self-intersections or folds, fills openings, "
@@ -152,23 +140,7 @@ std::vector<OptionInfo> reconstructionOptions() {
 
 ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line) {
   ReconstructionSettings settings;
-  if (command_line.has("outliers")) {
-    const std::string choice = command_line.value("outliers", "");
-    settings.outliers.emplace();
-    if (choice != "auto") {
-      settings.outliers->sigma = parseReal("outliers", choice, {0.0, 1000.0, true});
-    }
-  }
   settings.options = parseOptions(command_line);
-  settings.parts = parseName("parts", command_line.value("parts", "all"), parts_names);
-  if (command_line.has("min-points")) {
-    if (settings.parts == PartsMode::All) {
-      throw UsageError("option -min-points does nothing with -parts all",
-                       "leave -min-points out, or give -parts largest or -parts each");
-    }
-    settings.min_points = static_cast<int>(
-        parseInteger("min-points", command_line.value("min-points", ""), {4, 1000000000}));
-  }
   settings.strict = command_line.has("strict");
   return settings;
 }
@@ -179,14 +151,6 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
     if (value.index() != 0 && !failedCondition(row, settings.options)) {
       console.entry(flagOf(row), spherical_param::textOf(value));
     }
-  }
-  if (settings.outliers) {
-    const std::optional<double>& sigma = settings.outliers->sigma;
-    console.entry("outliers", sigma ? formatted(*sigma, 6) : "auto");
-  }
-  if (settings.parts != PartsMode::All) {
-    console.entry("parts", nameOf(settings.parts, parts_names) + ", of at least " +
-                               counted(static_cast<std::size_t>(settings.min_points), "point"));
   }
   if (settings.strict) {
     console.entry("strict", "faults are a failure");
@@ -199,11 +163,6 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
     json[row.name] =
         failedCondition(row, settings.options) ? Json(nullptr) : jsonOf(row.get(settings.options));
   }
-  json["outliers"] = !settings.outliers         ? Json(nullptr)
-                     : settings.outliers->sigma ? Json(*settings.outliers->sigma)
-                                                : Json("auto");
-  json["parts"] = nameOf(settings.parts, parts_names);
-  json["min_points"] = settings.parts == PartsMode::All ? Json(nullptr) : Json(settings.min_points);
   json["strict"] = settings.strict;
   return json;
 }

@@ -3,29 +3,17 @@
 #include "common/command_line.h"
 #include "common/console.h"
 #include "common/json_report.h"
-#include "parts.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
 
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
 
-/// Which points are left out.
-struct OutlierChoice {
-  /// OutlierOptions::sigma of findOutliers(); nothing: `auto`, those of findStrayPoints().
-  std::optional<double> sigma;
-};
-
 /// How a cloud is to be meshed.
 struct ReconstructionSettings {
-  std::optional<OutlierChoice> outliers;  ///< nothing: they are meshed
-  Options options;                        ///< the number of threads is never 0
-  PartsMode parts = PartsMode::All;       ///< which are meshed
-  int min_points = 50;                    ///< of a part, unless all are meshed together
-  bool strict = false;                    ///< faults are a failure, see Findings
+  Options options;      ///< the number of threads is never 0
+  bool strict = false;  ///< faults are a failure, see Findings
 };
 
 /// The lines of the options of the reconstruction: those of the library's table, and a few more.

@@ -2,7 +2,6 @@
 
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
-#include "surface_diagnosis.h"
 
 #include <Eigen/Geometry>
 
@@ -156,7 +155,7 @@ void reduce(std::size_t max_vertices, ReportMesh& mesh) {
   mesh.area_distortion = picked(mesh.area_distortion, kept);
   mesh.angle_distortion = picked(mesh.angle_distortion, kept);
   mesh.residual = picked(mesh.residual, kept);
-  mesh.triangles = triangulateSphere(mesh.sphere).triangles;
+  mesh.triangles = triangulateSphere(mesh.sphere);
   mesh.marks.clear();
   for (Index t = 0; t < mesh.triangles.cols(); ++t) {
     const auto mark = [&](Index k) { return marks_around[at(kept[at(mesh.triangles(k, t))])]; };
@@ -221,11 +220,11 @@ std::vector<Index> orderOnSphere(const Positions& sphere) {
   return order;
 }
 
-ReportMesh reportMesh(const CloudReconstruction& cloud, std::size_t max_triangles, int threads) {
-  const Surface& result = cloud.result;
+ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& result,
+                      std::size_t max_triangles, int threads) {
   ReportMesh mesh;
   mesh.vertices = orderOnSphere(result.sphere);
-  mesh.positions = picked(vertexPositions(cloud), mesh.vertices);
+  mesh.positions = picked(vertexPositions(cloud, result), mesh.vertices);
   mesh.sphere = picked(result.sphere, mesh.vertices);
   std::vector<Index> place_of(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

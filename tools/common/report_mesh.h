@@ -33,6 +33,7 @@ std::vector<Index> orderOnSphere(const Positions& sphere);
 
 /// Shows a result that was made with Options::details by a limited number of triangles: of a larger
 /// mesh a part of the vertices, spread over the sphere and triangulated there.
-ReportMesh reportMesh(const CloudReconstruction& cloud, std::size_t max_triangles, int threads);
+ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& surface,
+                      std::size_t max_triangles, int threads);
 
 }  // namespace spherical_param::tools

@@ -137,7 +137,7 @@ class Views {
     }
     this.edge = edges / (this.triangles.length / 3);
     // Discs that just cover a square grid of points.
-    const size = (Math.SQRT2 * spacing) / radius;
+    const size = spacing / radius;
     this.addPoints('cloud', {
       position: arrays.cloud ? rowsOf(this.normalized(arrays.cloud)) : position,
       normal: this.normal, color: this.color,

@@ -90,6 +90,7 @@ NeighborGraph buildNearestNeighborGraph(const Positions& points, const NeighborL
     result.report.bridges = shortestBridges(points, parts, 1);
     result.graph = withEdges(result.graph, result.report.bridges);
   }
+  result.report.edges = result.graph.edgeCount();
   return result;
 }
 

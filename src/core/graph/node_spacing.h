@@ -1,7 +1,7 @@
 #pragma once
 
-#include "median.h"
 #include "graph.h"
+#include "median.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>

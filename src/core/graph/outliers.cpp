@@ -1,52 +1,29 @@
 #include "outliers.h"
 
-#include "caller_neighbors.h"
-#include "local_delaunay_graph.h"
 #include "near_outliers.h"
-#include "neighbor_graph.h"
-#include "neighbor_lists.h"
-#include "neighbor_search.h"
-#include "ordered_points.h"
 #include "parallel.h"
 #include "progress.h"
-#include "spherical_param/errors.h"
-#include "stray_points.h"
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <string>
 #include <utility>
 
-namespace spherical_param {
+namespace spherical_param::internal {
 namespace {
 
+/// Neighbours that make the surface of a point.
+constexpr std::size_t kNeighbors = 16;
 /// Fewer span no plane.
 constexpr std::size_t kMinNeighbors = 3;
-/// Fewer positions cannot be meshed.
-constexpr std::size_t kMinPositions = 4;
+/// Nothing nearer to the surface of its neighbours is an outlier [their mean distances].
+constexpr double kMinScore = 1.0;
 /// Neighbours with mean distances longer than this number of times their median may be outliers.
 constexpr double kMaxDistanceRatio = 2.0;
 /// Neighbours whose spread across is less than this fraction of that along are on a line.
 constexpr double kMinSpreadRatio = 1e-6;
-
-[[noreturn]] void fail(const std::string& what) {
-  throw InvalidInput("findOutliers: " + what);
-}
-
-void checkOptions(const OutlierOptions& options) {
-  if (!(options.sigma >= 0.0 && options.sigma <= 1000.0))
-    fail("sigma = " + std::to_string(options.sigma) +
-         " is out of range; use a value in [0, 1000], mostly 2 to 5");
-  if (options.k < static_cast<int>(kMinNeighbors))
-    fail("k = " + std::to_string(options.k) + " is too small; use 3 or more neighbours");
-  if (!(options.least_score >= 0.0 && std::isfinite(options.least_score)))
-    fail("least_score = " + std::to_string(options.least_score) +
-         " is out of range; use a finite value that is not negative");
-}
 
 /// A neighbour of a point; ordered by how crowded it is there, then by how near it is.
 struct Neighbor {
@@ -83,20 +60,16 @@ double distanceFromPlane(const Positions& points, const Eigen::Vector3d& point,
 /// The points' neighbours, of which outliers are taken out, and their scores.
 class Scoring {
 public:
-  Scoring(const Positions& points, const NeighborLists& lists, const OutlierOptions& options,
-          const Execution& execution)
-      : points_(points), k_(static_cast<std::size_t>(options.k)), begin_(lists.offsets),
-        count_(lists.size()), used_(lists.size()), neighbors_(lists.indices),
-        mean_distance_(lists.size()), scores_(lists.size(), 0.0),
-        threads_(
-            internal::threadCount(execution.threads, lists.size(), internal::kParallelThreshold)) {
-    internal::forEachItem(lists.size(), threads_,
-                          [&](std::size_t, std::size_t i) { sortByDistance(i); });
+  Scoring(const Positions& points, const NeighborLists& lists, const Execution& execution)
+      : points_(points), begin_(lists.offsets), count_(lists.size()), used_(lists.size()),
+        neighbors_(lists.indices), mean_distance_(lists.size()), scores_(lists.size(), 0.0),
+        threads_(threadCount(execution.threads, lists.size(), kParallelThreshold)) {
+    forEachItem(lists.size(), threads_, [&](std::size_t, std::size_t i) { sortByDistance(i); });
   }
 
   /// Takes the given points out of all lists, and computes the scores of the others.
   void compute(const std::vector<char>& is_outlier) {
-    internal::forEachItem(used_.size(), threads_, [&](std::size_t, std::size_t i) {
+    forEachItem(used_.size(), threads_, [&](std::size_t, std::size_t i) {
       const auto begin = neighbors_.begin() + static_cast<std::ptrdiff_t>(begin_[i]);
       const auto end = begin + static_cast<std::ptrdiff_t>(count_[i]);
       const auto rest = std::count_if(
@@ -107,19 +80,18 @@ public:
             begin, end, [&](Index j) { return is_outlier[static_cast<std::size_t>(j)] == 0; });
         count_[i] = static_cast<std::size_t>(rest);
       }
-      used_[i] = std::min(count_[i], k_);
+      used_[i] = std::min(count_[i], kNeighbors);
       double sum = 0.0;
       for (std::size_t c = 0; c < used_[i]; ++c)
         sum += distance(i, begin[static_cast<std::ptrdiff_t>(c)]);
       mean_distance_[i] = used_[i] > 0 ? sum / static_cast<double>(used_[i]) : 0.0;
     });
-    internal::forEachBlock(used_.size(), threads_,
-                           [&](std::size_t, std::size_t first, std::size_t last) {
-                             std::vector<Neighbor> around;
-                             for (std::size_t i = first; i < last; ++i)
-                               if (is_outlier[i] == 0)
-                                 scores_[i] = score(i, around);
-                           });
+    forEachBlock(used_.size(), threads_, [&](std::size_t, std::size_t first, std::size_t last) {
+      std::vector<Neighbor> around;
+      for (std::size_t i = first; i < last; ++i)
+        if (is_outlier[i] == 0)
+          scores_[i] = score(i, around);
+    });
   }
 
   const std::vector<double>& scores() const { return scores_; }
@@ -161,7 +133,6 @@ private:
   }
 
   const Positions& points_;
-  std::size_t k_;
   const std::vector<std::size_t>& begin_;
   std::vector<std::size_t> count_;  ///< entries of each list that are left
   std::vector<std::size_t> used_;   ///< of these, the k nearest
@@ -171,42 +142,64 @@ private:
   int threads_;
 };
 
+/// The points that are not stray.
+struct Others {
+  Positions points;
+  NodeSubset subset;
+};
+
+Others withoutStray(const Positions& points, const std::vector<StrayPoint>& stray) {
+  Others others;
+  others.subset.new_of_old.assign(static_cast<std::size_t>(points.cols()), 0);
+  for (const StrayPoint& each : stray)
+    others.subset.new_of_old[static_cast<std::size_t>(each.point)] = -1;
+  for (std::size_t i = 0; i < others.subset.new_of_old.size(); ++i)
+    if (others.subset.new_of_old[i] == 0) {
+      others.subset.new_of_old[i] = static_cast<Index>(others.subset.old_of_new.size());
+      others.subset.old_of_new.push_back(static_cast<Index>(i));
+    }
+  others.points = points(Eigen::all, others.subset.old_of_new);
+  return others;
+}
+
+/// The nearest neighbours of all of the others, among themselves: those of a net have each other
+/// for neighbours, and stray points between two sheets are in the plane of both.
+NeighborLists listsOf(const Others& others, const Neighbors& neighbors, int count) {
+  std::vector<Index> all(others.subset.old_of_new.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return searchWithin(others.points, neighbors.search, others.subset)(all, count);
+}
+
 }  // namespace
 
-Outliers findOutliers(const Positions& points, const NeighborLists& lists,
-                      const OutlierOptions& options, const Execution& execution) {
-  checkOptions(options);
+DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& lists, double sigma,
+                                const Execution& execution) {
   const auto n = static_cast<std::size_t>(points.cols());
-  internal::checkNeighborLists("findOutliers", lists, n);
-  internal::checkFinite("findOutliers", points);
-
-  Outliers result;
-  Scoring scoring(points, lists, options, execution);
+  DeviatingPoints result;
+  Scoring scoring(points, lists, execution);
   std::vector<char> is_outlier(n, 0);
   std::size_t left = n;
-  const internal::FractionReport report = internal::reportOf(execution, "outliers");
+  const FractionReport report = reportOf(execution, "outliers");
   bool found = left > 0;
   while (found) {
-    internal::reportFraction(report, 0.0);
+    reportFraction(report, 0.0);
     scoring.compute(is_outlier);
-    ++result.rounds;
     const std::vector<double>& scores = scoring.scores();
     const auto mean_over_rest = [&](const auto& value) {
-      return internal::sumOfBlocks(n, scoring.threads(), 0.0,
-                                   [&](std::size_t begin, std::size_t end) {
-                                     double sum = 0.0;
-                                     for (std::size_t i = begin; i < end; ++i)
-                                       if (is_outlier[i] == 0)
-                                         sum += value(std::min(scores[i], 1.0));
-                                     return sum;
-                                   }) /
+      return sumOfBlocks(n, scoring.threads(), 0.0,
+                         [&](std::size_t begin, std::size_t end) {
+                           double sum = 0.0;
+                           for (std::size_t i = begin; i < end; ++i)
+                             if (is_outlier[i] == 0)
+                               sum += value(std::min(scores[i], 1.0));
+                           return sum;
+                         }) /
              static_cast<double>(left);
     };
-    result.mean = mean_over_rest([](double score) { return score; });
-    result.standard_deviation = std::sqrt(mean_over_rest(
-        [&](double score) { return (score - result.mean) * (score - result.mean); }));
-    result.threshold =
-        std::max(result.mean + options.sigma * result.standard_deviation, options.least_score);
+    const double mean = mean_over_rest([](double score) { return score; });
+    const double deviation =
+        std::sqrt(mean_over_rest([&](double score) { return (score - mean) * (score - mean); }));
+    result.threshold = std::max(mean + sigma * deviation, kMinScore);
     found = false;
     for (std::size_t i = 0; i < n; ++i)
       if (is_outlier[i] == 0 && scores[i] > result.threshold) {
@@ -214,10 +207,9 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
         --left;
         found = true;
       }
-    // With sigma and least_score near 0 there is no end to it before all points are outliers.
     found = found && left > kMinNeighbors;
   }
-  internal::reportFraction(report, 1.0);
+  reportFraction(report, 1.0);
   result.scores = scoring.scores();
   for (std::size_t i = 0; i < n; ++i)
     if (is_outlier[i] != 0)
@@ -225,134 +217,33 @@ Outliers findOutliers(const Positions& points, const NeighborLists& lists,
   return result;
 }
 
-namespace {
-
-/// The stray points of nodes and neighbour lists of them. \see findStrayPoints
-std::vector<StrayPoint> strayNodes(const Positions& nodes, const NeighborLists& lists,
-                                   const NeighborSearch& search, const Execution& execution) {
-  const internal::AgreedGraph agreed = internal::agreedGraph(nodes, lists, search, execution);
-  return internal::strayPoints(nodes, agreed.graph, agreed.in_stars_of);
-}
-
-/// The columns of a matrix that are not among the stray points, and their numbers.
-Positions othersOf(const Positions& nodes, const std::vector<StrayPoint>& stray,
-                   std::vector<Index>& numbers) {
-  auto next = stray.begin();
-  for (Index i = 0; i < static_cast<Index>(nodes.cols()); ++i)
-    if (next != stray.end() && next->point == i)
-      ++next;
-    else
-      numbers.push_back(i);
-  Positions others(3, static_cast<Eigen::Index>(numbers.size()));
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    others.col(static_cast<Eigen::Index>(i)) = nodes.col(numbers[i]);
-  return others;
-}
-
-/// The outliers among distinct points: the others are compared without the stray ones, and these
-/// are outliers if their distance is above the threshold of the others.
-Outliers findAmongNodes(const Positions& nodes, const OutlierOptions& options,
-                        const Execution& execution) {
-  const int count = std::min(options.k, std::numeric_limits<int>::max() / 2) * 2;
-  std::vector<Index> numbers(static_cast<std::size_t>(nodes.cols()));
-  std::iota(numbers.begin(), numbers.end(), Index{0});
-  const NeighborSearch search = makeNeighborSearch(nodes, execution);
-  const NeighborLists lists = search(numbers, count);
-  Execution preparation = execution;  // to the caller one stage, whatever is done in it
-  if (execution.progress)
-    preparation.progress = [&](const Progress& progress) {
-      return execution.progress({"neighbors", progress.fraction});
-    };
-  const std::vector<StrayPoint> stray = strayNodes(nodes, lists, search, preparation);
-  if (stray.empty()) {
-    internal::reportFraction(internal::reportOf(preparation, "neighbors"), 1.0);
-    return findOutliers(nodes, lists, options, execution);
+std::vector<char> markOutliers(OutlierMode mode, double sigma, const Positions& points,
+                               const Neighbors& neighbors, const std::vector<StrayPoint>& stray,
+                               const Execution& execution) {
+  std::vector<char> marked(static_cast<std::size_t>(points.cols()), 0);
+  const Others others = withoutStray(points, stray);
+  const auto mark_other = [&](std::size_t other) {
+    marked[static_cast<std::size_t>(others.subset.old_of_new[other])] = 1;
+  };
+  double threshold = 0.0;  // of stray points
+  if (mode == OutlierMode::Auto) {
+    const std::vector<double> near = nearOutliers(
+        others.points, listsOf(others, neighbors, kFittedNeighbors), execution.threads);
+    for (std::size_t i = 0; i < near.size(); ++i)
+      if (near[i] > 0.0)
+        mark_other(i);
+  } else {
+    const DeviatingPoints found =
+        deviatingPoints(others.points, listsOf(others, neighbors, 2 * static_cast<int>(kNeighbors)),
+                        sigma, execution);
+    threshold = found.threshold;
+    for (const Index i : found.indices)
+      mark_other(static_cast<std::size_t>(i));
   }
-  numbers.clear();
-  const Positions others = othersOf(nodes, stray, numbers);
-  Outliers result =
-      findOutliers(others, findNearestNeighbors(others, count, execution), options, execution);
-  std::vector<double> scores(static_cast<std::size_t>(nodes.cols()));
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    scores[static_cast<std::size_t>(numbers[i])] = result.scores[i];
-  for (Index& i : result.indices)
-    i = numbers[static_cast<std::size_t>(i)];
-  for (const StrayPoint& each : stray) {
-    scores[static_cast<std::size_t>(each.point)] = each.distance;
-    if (each.distance > result.threshold)
-      result.indices.push_back(each.point);
-  }
-  std::sort(result.indices.begin(), result.indices.end());
-  result.scores = std::move(scores);
-  return result;
-}
-
-}  // namespace
-
-Outliers findOutliers(const Positions& points, const OutlierOptions& options,
-                      const Execution& execution) {
-  checkOptions(options);
-  internal::checkThreads(execution.threads);
-  internal::checkFinite("findOutliers", points);
-  const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
-  const auto n = static_cast<std::size_t>(points.cols());
-  if (nodes.input_of_node.size() < kMinPositions) {
-    Outliers none;
-    none.scores.assign(n, 0.0);
-    return none;
-  }
-  Outliers result = findAmongNodes(nodes.points, options, execution);
-
-  const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
-  std::vector<char> is_outlier(nodes.input_of_node.size(), 0);
-  for (const Index node : result.indices)
-    is_outlier[static_cast<std::size_t>(node)] = 1;
-  result.indices.clear();
-  std::vector<double> scores(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto node = static_cast<std::size_t>(node_of_input[i]);
-    scores[i] = result.scores[node];
-    if (is_outlier[node] != 0)
-      result.indices.push_back(static_cast<Index>(i));
-  }
-  result.scores = std::move(scores);
-  return result;
-}
-
-Outliers findStrayPoints(const Positions& points, const Execution& execution) {
-  internal::checkThreads(execution.threads);
-  internal::checkFinite("findStrayPoints", points);
-  const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
-  Outliers result;
-  result.scores.assign(static_cast<std::size_t>(points.cols()), 0.0);
-  if (nodes.input_of_node.size() < kMinPositions)
-    return result;
-  const internal::Neighbors neighbors =
-      internal::nearestNeighbors(nodes, neighborsToSearch({}), execution);
-  std::vector<double> distances(nodes.input_of_node.size(), 0.0);
-  const std::vector<StrayPoint> stray =
-      strayNodes(nodes.points, neighbors.lists, neighbors.search, execution);
   for (const StrayPoint& each : stray)
-    distances[static_cast<std::size_t>(each.point)] = each.distance;
-  // Near a surface, but off it: without the others, which are no surface.
-  std::vector<Index> numbers;
-  const Positions others = othersOf(nodes.points, stray, numbers);
-  Execution search = execution;
-  if (execution.progress)
-    search.progress = [&](const Progress& progress) {
-      return execution.progress({"outliers", progress.fraction});
-    };
-  const std::vector<double> near = internal::nearOutliers(
-      others, findNearestNeighbors(others, internal::kFittedNeighbors, search), execution.threads);
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    distances[static_cast<std::size_t>(numbers[i])] = near[i];
-  const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
-  for (std::size_t i = 0; i < node_of_input.size(); ++i) {
-    result.scores[i] = distances[static_cast<std::size_t>(node_of_input[i])];
-    if (result.scores[i] > 0.0)
-      result.indices.push_back(static_cast<Index>(i));
-  }
-  return result;
+    if (each.distance > threshold)
+      marked[static_cast<std::size_t>(each.point)] = 1;
+  return marked;
 }
 
-}  // namespace spherical_param
+}  // namespace spherical_param::internal

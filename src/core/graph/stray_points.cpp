@@ -86,7 +86,7 @@ std::vector<char> pointsOf(const std::vector<Index>& piece, const std::vector<ch
 }  // namespace
 
 std::vector<StrayPoint> strayPoints(const Positions& points, const Graph& agreed,
-                                    const InStarsOf& in_stars_of) {
+                                    const Stars& stars) {
   UnionFind parts = connectedComponents(agreed);
   const std::vector<Index> piece = representatives(parts, agreed.size());
   const std::vector<std::size_t> sizes = setSizes(piece);
@@ -106,7 +106,7 @@ std::vector<StrayPoint> strayPoints(const Positions& points, const Graph& agreed
 
   on_surface = pointsOf(piece, is_surface);
   distance.setSurfaces(on_surface);
-  const std::vector<char> in_star = in_stars_of(on_surface);
+  const std::vector<char> in_star = stars.inStarsOf(on_surface);
   std::vector<StrayPoint> stray;
   for (std::size_t i = 0; i < agreed.size(); ++i) {
     if (on_surface[i] != 0 || in_star[i] != 0)

@@ -1,0 +1,116 @@
+#include "selection.h"
+
+#include "local_delaunay_graph.h"
+#include "outliers.h"
+#include "parts.h"
+#include "spherical_param/errors.h"
+#include "stray_points.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+/// The points that are not among the others; both ascending.
+std::vector<Index> without(const std::vector<Index>& points, const std::vector<Index>& others) {
+  std::vector<Index> rest;
+  std::set_difference(points.begin(), points.end(), others.begin(), others.end(),
+                      std::back_inserter(rest));
+  return rest;
+}
+
+}  // namespace
+
+Selection::Selection(const Positions& points, const Options& options,
+                     const NeighborSearchFactory& search_of, StageClock& clock, LeftOut& left_out)
+    : points_(points), options_(options), search_of_(search_of), clock_(clock),
+      left_out_(left_out) {
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    (points.col(i).allFinite() ? inputs_ : left_out.not_finite).push_back(static_cast<Index>(i));
+  if (options.outliers != OutlierMode::None || options.parts != PartsMode::All) {
+    clock.begin("neighbors");
+    cloud_ =
+        std::make_unique<Neighborhoods>(points, inputs_, options, search_of, clock.execution());
+    clock.begin("graph");
+    cloud_->findStars(clock.execution());
+  }
+  if (options.outliers != OutlierMode::None)
+    leaveOutOutliers();
+  if (options.parts == PartsMode::All)
+    parts_.push_back(inputs_);
+  else
+    takeApart();
+}
+
+void Selection::leaveOutOutliers() {
+  clock_.begin("outliers");
+  const Graph agreed = agreedGraph(cloud_->points(), cloud_->stars(), clock_.execution());
+  left_out_.outliers = cloud_->inputsOf(
+      markOutliers(options_.outliers, options_.outlier_sigma, cloud_->points(), cloud_->neighbors(),
+                   strayPoints(cloud_->points(), agreed, cloud_->stars()), clock_.execution()));
+  if (left_out_.outliers.empty())
+    return;
+  inputs_ = without(inputs_, left_out_.outliers);
+  clock_.begin("neighbors");
+  kept_ = std::make_unique<Neighborhoods>(points_, inputs_, options_, *cloud_, clock_.execution());
+  clock_.begin("graph");
+  kept_->findStars(clock_.execution());
+}
+
+void Selection::takeApart() {
+  clock_.begin("parts");
+  const Neighborhoods& all = kept_ ? *kept_ : *cloud_;
+  const Graph agreed = agreedGraph(all.points(), all.stars(), clock_.execution());
+  parts_ = all.groupInputs(
+      partsOf(all.points(), agreed, all.stars(), static_cast<std::size_t>(options_.min_points)));
+  if (parts_.empty())
+    throw InvalidInput(
+        "reconstruct: no part has min_points = " + std::to_string(options_.min_points) +
+        " points; give a lower min_points, or parts = all");
+  if (options_.parts == PartsMode::Largest)
+    parts_.resize(1);
+  std::vector<Index> meshed;
+  for (const std::vector<Index>& part : parts_)
+    meshed.insert(meshed.end(), part.begin(), part.end());
+  std::sort(meshed.begin(), meshed.end());
+  left_out_.other_parts = without(inputs_, meshed);
+}
+
+Positions Selection::pointsOf(std::size_t part) const {
+  const std::vector<Index>& inputs = parts_[part];
+  return static_cast<Eigen::Index>(inputs.size()) == points_.cols()
+             ? points_
+             : Positions(points_(Eigen::all, inputs));
+}
+
+Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
+  clock_.begin("neighbors");
+  if (!cloud_)
+    cloud_ =
+        std::make_unique<Neighborhoods>(points_, inputs_, options_, search_of_, clock_.execution());
+  Neighborhoods& all = kept_ ? *kept_ : *cloud_;
+  if (!isWhole(part))
+    part_ =
+        std::make_unique<Neighborhoods>(points_, parts_[part], options_, all, clock_.execution());
+  Neighborhoods& neighborhoods = isWhole(part) ? all : *part_;
+  clock_.begin("graph");
+  if (options_.graph == GraphMethod::LocalDelaunay && neighborhoods.stars().size() == 0)
+    neighborhoods.findStars(clock_.execution());
+  return neighborhoods;
+}
+
+void Selection::release(std::size_t part) {
+  if (part_)
+    part_->release();
+  if (part + 1 < parts_.size())
+    return;
+  if (cloud_)
+    cloud_->release();
+  if (kept_)
+    kept_->release();
+}
+
+}  // namespace spherical_param::internal
