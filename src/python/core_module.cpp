@@ -3,6 +3,8 @@
 // checks of types and documentation are the package's, in Python.
 
 #include "common/errors.h"
+#include "outliers.h"
+#include "parts.h"
 #include "python/arrays.h"
 #include "python/files.h"
 #include "python/listener.h"
@@ -15,8 +17,6 @@
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
-#include "outliers.h"
-#include "parts.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
@@ -352,6 +352,7 @@ PYBIND11_MODULE(_core, module) {
   const auto triangles = py::arg("triangles").noconvert();
   const auto sphere = py::arg("sphere").noconvert();
   module.def("option_table", &optionRows);
+  module.def("result_table", &resultTable);
   module.attr("has_report") = hasReportPage();
   module.def("reconstruct", &reconstructPoints, points, "rows"_a, "options"_a, py::kw_only(),
              "details"_a, "progress"_a);

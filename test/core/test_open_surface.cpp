@@ -26,7 +26,6 @@ void expectSound(const Surface& result, std::size_t boundaries) {
   EXPECT_TRUE(result.self_intersections.empty());
   EXPECT_EQ(result.boundary.size(), boundaries);
   EXPECT_EQ(result.isClosed(), boundaries == 0);
-  EXPECT_EQ(result.diagnosis.boundaries, boundaries);
   const std::map<Index, Index> next = test::boundaryOf(result.triangles);
   std::size_t vertices = 0;
   for (const std::vector<Index>& loop : result.boundary) {

@@ -187,7 +187,7 @@ void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
     const SurfaceDiagnosis result =
         diagnoseSurface(in.torus.points, in.torus.triangles, in.torus.graph.graph, {}, {}, threads);
     Numbers numbers(result.edges_outside_graph);
-    for (const CollapsedHandle& handle : result.handles)
+    for (const Handle& handle : result.handles)
       numbers.add(handle.vertices);
     for (const FilledHole& hole : result.filled_holes)
       numbers.add(Numbers(hole.area, hole.loops));

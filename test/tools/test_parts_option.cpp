@@ -55,14 +55,14 @@ TEST_F(PartsOption, EachMeshesEachPartToAFileOfItsOwnAsIfItWereAlone) {
 
   const json report = json::parse(content("report.json"));
   EXPECT_EQ(report["points"], 500);
-  EXPECT_EQ(report["left_out"], json::array());
+  EXPECT_EQ(report["left_out"]["other_parts"], json::array());
   ASSERT_EQ(report["parts"].size(), 2U);
   const json& part = report["parts"][0];
   EXPECT_EQ(part["points"], 300);
   EXPECT_EQ(part["output"], "out_000.ply");
   EXPECT_EQ(part["triangles"], 596);
-  EXPECT_EQ(part["diagnosis"]["kind"], "closed genus 0");
-  EXPECT_GT(part["box"]["min"][0], 7.0);
+  EXPECT_EQ(part["diagnosis"]["kind"], "closed_genus0");
+  EXPECT_GT(part["measures"]["box_min"][0], 7.0);
 }
 
 TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
@@ -75,7 +75,7 @@ TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
   EXPECT_EQ(out.triangles.rightCols(396).minCoeff(), 300);
   const json report = json::parse(content("report.json"));
   EXPECT_EQ(report["parts"].size(), 2U);
-  EXPECT_EQ(report["left_out"].size(), 60U);
+  EXPECT_EQ(report["left_out"]["other_parts"].size(), 60U);
   const std::string failure = "cannot mesh part 3 of 3 (60 points)";
   EXPECT_NE(report["failures"].dump().find(failure), std::string::npos);
   EXPECT_NE(result.errors.find("warning: " + failure), std::string::npos);
@@ -120,7 +120,7 @@ TEST_F(PartsOption, OfFewerPointsAreLeftOut) {
       {"three.xyz", "out.ply", "-parts", "each", "-min-points", "201", "-json", "report.json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(mesh("out.ply").points(), large);
-  EXPECT_EQ(json::parse(content("report.json"))["left_out"].size(), 260U);
+  EXPECT_EQ(json::parse(content("report.json"))["left_out"]["other_parts"].size(), 260U);
 }
 
 TEST_F(PartsOption, MistakesEndTheToolWithoutAFile) {

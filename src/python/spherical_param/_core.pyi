@@ -9,6 +9,7 @@ __version__: str
 has_report: bool
 
 def option_table() -> list[dict[str, Any]]: ...
+def result_table() -> list[dict[str, Any]]: ...
 def reconstruct(
     points: NDArray[np.float64],
     rows: Optional[NDArray[np.int32]],

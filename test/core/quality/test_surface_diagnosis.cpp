@@ -211,7 +211,7 @@ TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
     EXPECT_EQ(diagnosis.kind, SurfaceKind::Handles);
     EXPECT_EQ(diagnosis.genus, 1);
     ASSERT_EQ(diagnosis.handles.size(), 1U);
-    const CollapsedHandle& handle = diagnosis.handles.front();
+    const Handle& handle = diagnosis.handles.front();
     EXPECT_EQ(handle.edges, static_cast<std::size_t>(2 * ring));
     const Eigen::Vector3d cut = (torus.points.leftCols(ring).rowwise().mean() +
                                  torus.points.rightCols(ring).rowwise().mean()) /
