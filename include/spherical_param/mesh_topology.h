@@ -68,7 +68,7 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 /// positive if the triangles are oriented outward. Meaningless for an open mesh.
 ///
 /// \param points 3 x n; \param triangles 3 x m, indices in [0, n).
-/// \return the volume, of less than nothing if the triangles are oriented inward.
+/// \return the volume; negative if the triangles are oriented inward.
 /// \throw InvalidInput for an index out of range.
 double signedVolume(const Positions& points, const Triangles& triangles);
 

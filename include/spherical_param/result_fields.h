@@ -183,7 +183,7 @@ void visitFields(const Opening*, const Visit& visit) {
   visit({"spacing", "mean distance of the points at the loop", 1}, &Of::spacing);
   visit({"area", "of a surface over it: length of its vector area", 2}, &Of::area);
   visit({"boundary_length", "of the loop", 1}, &Of::boundary_length);
-  visit({"loop", "vertices around it, in order; one that it passes twice, twice", 0,
+  visit({"loop", "vertices around it, in order; a vertex that it passes twice is listed twice", 0,
          FieldKind::Loops},
         &Of::loop);
   visit({"triangles", "of the mesh over it, if it is filled", 0, FieldKind::TriangleList},

@@ -87,7 +87,7 @@ struct SurfaceEnergy {
   Bend bend = Bend::Angle;
   double mu = 0.3;
   /// Of Bend::Excess: n entries, the angle that is usual at each vertex; must outlive this.
-  const double* usual_angle = nullptr;
+  const double* typical_angle = nullptr;
 
   /// Of a surface with openings: where they are; must outlive this.
   const OpenPlaces* openings = nullptr;
@@ -103,7 +103,7 @@ struct SurfaceEnergy {
   }
 
   bool operator==(const SurfaceEnergy& other) const {
-    return bend == other.bend && mu == other.mu && usual_angle == other.usual_angle &&
+    return bend == other.bend && mu == other.mu && typical_angle == other.typical_angle &&
            openings == other.openings;
   }
 
@@ -128,7 +128,7 @@ struct SurfaceEnergy {
     case Bend::Excess:
       break;
     }
-    return length * std::max(0.0, angle - (usual_angle[v] + usual_angle[w]) / 2.0);
+    return length * std::max(0.0, angle - (typical_angle[v] + typical_angle[w]) / 2.0);
   }
 
 private:

@@ -38,7 +38,7 @@ constexpr int kMinHandleSteps = 8;
 /// Torn neighbours that count have normals less than 73 degrees apart, and are less than 37 degrees
 /// off both tangent planes: others are false neighbours, on sheets that nearly touch.
 constexpr double kMinNormalCosine = 0.3;
-constexpr double kMaxSlope = 0.6;
+constexpr double kMaxTornSlope = 0.6;
 
 /// The least number of torn neighbours of a handle. A cut with 9 points around it tears 18. The
 /// closed scans have 0, and up to 28 before the test of normals; random quarters of their points
@@ -269,8 +269,8 @@ std::vector<Edge> tornEdges(const MeshAndGraph& surface, const std::vector<Edge>
     const Eigen::Vector3d at_a = surface.normal(a);
     const Eigen::Vector3d at_b = surface.normal(b);
     const Eigen::Vector3d along = (surface.point(b) - surface.point(a)).normalized();
-    if (at_a.dot(at_b) >= kMinNormalCosine && std::abs(along.dot(at_a)) <= kMaxSlope &&
-        std::abs(along.dot(at_b)) <= kMaxSlope)
+    if (at_a.dot(at_b) >= kMinNormalCosine && std::abs(along.dot(at_a)) <= kMaxTornSlope &&
+        std::abs(along.dot(at_b)) <= kMaxTornSlope)
       torn.push_back(edge);
   }
   return torn;
