@@ -189,6 +189,10 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
 /// out.
 void meshParts(Selection& selection, const Options& options, StageClock& clock, Result& result) {
   const std::vector<std::vector<Index>>& parts = selection.parts();
+  if (parts.empty())
+    throw InvalidInput(
+        "reconstruct: no part has min_points = " + std::to_string(options.min_points) +
+        " points; give a lower min_points, or parts = all");
   std::size_t left = 0;
   for (const std::vector<Index>& part : parts)
     left += part.size();

@@ -179,12 +179,20 @@ py::dict toDict(const DistortionStatistics& statistics) {
 
 }  // namespace
 
-py::dict toDict(const Surface& surface) {
-  return Converter{surface.hasVolume()}.fieldsOf(surface);
-}
-
-py::dict toDict(const LeftOut& left_out) {
-  return Converter{false}.fieldsOf(left_out);
+py::dict toDict(const Result& result) {
+  py::list surfaces;
+  for (const Surface& surface : result.surfaces)
+    surfaces.append(Converter{surface.hasVolume()}.fieldsOf(surface));
+  py::dict stages;
+  for (const StageTime& stage : result.stages)
+    stages[py::str(stage.name)] = stage.seconds;
+  py::list findings;
+  for (const Finding& finding : result.findings)
+    findings.append(Converter{false}.fieldsOf(finding));
+  return py::dict("surfaces"_a = py::tuple(surfaces),
+                  "left_out"_a = Converter{false}.fieldsOf(result.left_out), "stages"_a = stages,
+                  "verdict"_a = result.verdict, "findings"_a = py::tuple(findings),
+                  "failures"_a = py::tuple(py::cast(result.failures)));
 }
 
 py::list resultTable() {

@@ -10,9 +10,7 @@
 namespace spherical_param::python {
 
 /// Structs in it are dictionaries, lists of structs and of arrays are tuples.
-pybind11::dict toDict(const Surface& surface);
-/// Arrays of rows of the cloud.
-pybind11::dict toDict(const LeftOut& left_out);
+pybind11::dict toDict(const Result& result);
 
 /// The structs of a surface, those that others consist of first: name, help and fields, each of
 /// which has a name, a type in Python, a help and the name of the struct that it consists of.

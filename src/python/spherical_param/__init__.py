@@ -51,8 +51,7 @@ from ._maps import (
     texture_coordinates,
 )
 from ._morph import ImpossiblePair, Morph, MorphFrame, morph
-from ._outliers import Outliers, find_outliers
-from ._parts import find_parts
+from ._outliers import Outliers, find_outliers, find_parts
 from ._reconstruct import reconstruct
 from ._results import Result, TriangleMark
 

@@ -19,7 +19,7 @@ from . import _core
 from ._arguments import ByteArray, FloatArray, IndexArray
 from ._clouds import Cloud
 from ._errors import InvalidInput
-from ._figures import Surface, attributes, make
+from ._figures import Finding, LeftOut, Surface, attributes, make
 from ._files import MeshExport, vertex_normals
 from ._progress import Progress, listening
 
@@ -51,26 +51,14 @@ class Source:
     """What a result was made of, for its report."""
 
     cloud: Cloud
-    keywords: dict[str, Any]
-    rows: Optional[IndexArray]  #: that were meshed; None: all
-    outliers: Optional[IndexArray]  #: rows that were left out; None: not looked for
-
-    @property
-    def left_out(self) -> Optional[IndexArray]:
-        """Rows of other parts; None: not looked for."""
-        if self.rows is None or "parts" not in self.keywords:
-            return None
-        is_left_out = np.isfinite(self.cloud.points).all(axis=1)
-        is_left_out[self.rows] = False
-        if self.outliers is not None:
-            is_left_out[self.outliers] = False
-        return np.flatnonzero(is_left_out).astype(np.int32)
+    options: dict[str, Any]
+    part: int  #: among the surfaces of the cloud
 
     @property
     def command(self) -> str:
         """The call that made the result."""
         name = "points" if self.cloud.name is None else repr(self.cloud.name)
-        keywords = (f", {key}={value!r}" for key, value in self.keywords.items())
+        keywords = (f", {key}={value!r}" for key, value in self.options.items())
         return f"spherical_param.reconstruct({name}{''.join(keywords)})"
 
 
@@ -87,7 +75,7 @@ class Result(Surface, MeshExport):
 
     vertices: FloatArray  #: (v, 3) the points[input_of_vertex] [unit of the input]
     vertex_of_input: IndexArray  #: (n,) vertex of each point of the cloud; -1: left out
-    ignored: int  #: points that are not finite
+    left_out: LeftOut  #: rows of the cloud that are in no surface, and why
     stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
     colors: Optional[ByteArray]  #: (v, 3) of the points; None if they have none
     _source: Source
@@ -138,16 +126,14 @@ class Result(Surface, MeshExport):
         source = self._source
         if not np.array_equal(source.cloud.points[self.input_of_vertex], self.vertices):
             raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
-        threads = arguments.thread_count(source.keywords.get("threads", 0))
+        threads = arguments.thread_count(source.options.get("threads", 0))
         with listening(progress) as listener:
             _core.write_report(
                 os.fsencode(path),
                 source.cloud.points,
                 source.cloud.colors,
-                source.rows,
-                source.outliers,
-                source.left_out,
-                {**source.keywords, "threads": threads},
+                {**source.options, "threads": threads},
+                part=source.part,
                 input=source.cloud.name or "points",
                 command=source.command,
                 progress=listener,
@@ -180,22 +166,45 @@ if Result.__doc__:  # not with python -OO
     Result.__doc__ = f"{inspect.cleandoc(Result.__doc__)}\n\n{attributes('Surface')}"
 
 
-def make_result(
-    fields: dict[str, Any], source: Source, *, ignored: int, stages: dict[str, float]
-) -> Result:
-    """The result that a surface of the core becomes.
+class Results(tuple[Result, ...]):
+    """The results of the parts of a cloud, that of most points first, and what is true of all."""
 
-    Its ``vertex_of_input`` is about its own points, that of the result about the whole cloud.
+    verdict: str  #: a headline: "3 meshes, all sound."
+    findings: tuple[Finding, ...]  #: of all results; those of several parts name them
+    failures: tuple[str, ...]  #: why parts could not be meshed
+    left_out: LeftOut  #: rows of the cloud that are in no surface, and why
+    stages: dict[str, float]  #: wall time of each stage, over all parts [s]
+
+    def __repr__(self) -> str:
+        return f"<spherical_param.Results: {self.verdict}>"
+
+
+def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) -> Results:
+    """The results that the surfaces of the core become.
+
+    ``vertex_of_input`` of a surface is about its own points, that of a result about the whole
+    cloud.
     """
-    vertex_of_input = np.full(len(source.cloud.points), -1, np.int32)
-    vertex_of_input[fields["inputs"]] = fields["vertex_of_input"]
-    vertices = fields["input_of_vertex"]
-    colors = source.cloud.colors
-    return Result(
-        **{**make("Surface", fields), "vertex_of_input": vertex_of_input},
-        vertices=source.cloud.points[vertices],
-        ignored=ignored,
-        stages=stages,
-        colors=None if colors is None else colors[vertices],
-        _source=source,
-    )
+    left_out = LeftOut(**fields["left_out"])
+    results = []
+    for part, surface in enumerate(fields["surfaces"]):
+        vertex_of_input = np.full(len(cloud.points), -1, np.int32)
+        vertex_of_input[surface["inputs"]] = surface["vertex_of_input"]
+        vertices = surface["input_of_vertex"]
+        results.append(
+            Result(
+                **{**make("Surface", surface), "vertex_of_input": vertex_of_input},
+                vertices=cloud.points[vertices],
+                left_out=left_out,
+                stages=fields["stages"],
+                colors=None if cloud.colors is None else cloud.colors[vertices],
+                _source=Source(cloud, options, part),
+            )
+        )
+    all_results = Results(results)
+    all_results.verdict = fields["verdict"]
+    all_results.findings = tuple(Finding(**make("Finding", each)) for each in fields["findings"])
+    all_results.failures = fields["failures"]
+    all_results.left_out = left_out
+    all_results.stages = fields["stages"]
+    return all_results
