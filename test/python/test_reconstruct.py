@@ -352,9 +352,9 @@ class Parts(unittest.TestCase):
             str(finding), '2 separate parts (100 and 400 points): try parts="each"'
         )
         for value, text in (("1e-8", "1e-8"), ("5", "5"), ("auto", '"auto"')):
-            finding = sp.Finding("a text", "option", value, False)
+            finding = sp.Finding("a text", "option", value, False, False)
             self.assertEqual(str(finding), f"a text: try option={text}")
-        self.assertEqual(str(sp.Finding("a text", "", "", False)), "a text")
+        self.assertEqual(str(sp.Finding("a text", "", "", False, False)), "a text")
 
 
 if __name__ == "__main__":
