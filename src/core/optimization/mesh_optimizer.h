@@ -37,9 +37,9 @@ public:
 
   /// Begins to work with another energy, or with other positions of the points.
   ///
-  /// \param energy its usual angles must not change; \see setExcessEnergy.
+  /// \param energy its typical angles must not change; \see setExcessEnergy.
   void setEnergy(const SurfaceEnergy& energy);
-  /// The same for Bend::Excess, with angles that are usual on the mesh as it is now: `factor` times
+  /// The same for Bend::Excess, with angles that are typical of the mesh as it is now: `factor` times
   /// the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks only at
   /// what has changed.
   void setExcessEnergy(double mu, double factor, double least);

@@ -81,12 +81,12 @@ struct SurfaceEnergy {
   enum class Bend {
     Angle,   ///< the angle: together, the total absolute mean curvature
     Power,   ///< angle^1.5
-    Excess,  ///< what exceeds the angles that are usual at its two vertices
+    Excess,  ///< what exceeds the angles that are typical at its two vertices
   };
 
   Bend bend = Bend::Angle;
   double mu = 0.3;
-  /// Of Bend::Excess: n entries, the angle that is usual at each vertex; must outlive this.
+  /// Of Bend::Excess: n entries, the angle that is typical at each vertex; must outlive this.
   const double* typical_angle = nullptr;
 
   /// Of a surface with openings: where they are; must outlive this.
@@ -96,7 +96,7 @@ struct SurfaceEnergy {
   /// flatFrom(), or above 1.
   double flat_cosine = 2.0;
 
-  /// The flat_cosine for usual angles of at least `least` [rad].
+  /// The flat_cosine for typical angles of at least `least` [rad].
   static double flatFrom(double least) {
     // acos falls at least as fast as its argument rises; the margin is that of fastAcos() and more.
     return std::cos(least) + 1e-6;
