@@ -17,6 +17,8 @@ using py::literals::operator""_a;
 
 /// A value of an option. Whatever Python takes for an integer or a number is one.
 OptionValue toValue(const OptionRow& row, const py::handle& value) {
+  if (value.is_none())
+    return {};
   if (py::isinstance<py::str>(value))
     return value.cast<std::string>();
   try {
@@ -61,8 +63,7 @@ Options toOptions(const py::dict& values) {
   Options options;
   for (const auto& [name, value] : values) {
     const OptionRow& row = findOption(name.cast<std::string>());
-    if (!value.is_none())  // the default
-      setOption(options, row.name, toValue(row, value));
+    setOption(options, row.name, toValue(row, value));
   }
   return options;
 }

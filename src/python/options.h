@@ -9,7 +9,6 @@ namespace spherical_param::python {
 /// The rows of optionTable() as the package in Python needs them.
 pybind11::list optionRows();
 
-/// Options from names and values; None is the default.
 /// \throw InvalidInput for a value that is out of range, or of another type.
 Options toOptions(const pybind11::dict& values);
 

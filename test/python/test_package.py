@@ -204,8 +204,7 @@ class Views(unittest.TestCase):
         self.assertGreater(len(data["frames"]), 2)
         self.assertEqual(
             data["command"],
-            "spherical_param.reconstruct(points, k=12, outliers='auto', parts='largest', "
-            "min_points=50)",
+            "spherical_param.reconstruct(points, parts='largest', outliers='auto', k=12)",
         )
         embedded = re.fullmatch(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>', mesh._repr_html_())
         self.assertIn('id="data"', html.unescape(embedded[1]))

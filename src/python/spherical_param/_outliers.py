@@ -11,6 +11,7 @@ from . import _arguments as arguments
 from . import _clouds, _core
 from ._arguments import IndexArray
 from ._clouds import CloudLike
+from ._errors import InvalidInput
 from ._progress import Progress, listening
 
 
@@ -60,7 +61,10 @@ def find_outliers(
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
         values = {"outliers": sigma, "threads": arguments.thread_count(threads)}
-        indices = _core.find_outliers(cloud.points, values, progress=listener)
+        try:
+            indices = _core.find_outliers(cloud.points, values, progress=listener)
+        except InvalidInput as error:  # which names the option of reconstruct()
+            raise InvalidInput(str(error).replace("outliers", "sigma", 1)) from None
     inliers = np.ones(len(cloud.points), dtype=np.bool_)
     inliers[indices] = False
     return Outliers(indices, inliers)
