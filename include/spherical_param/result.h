@@ -77,13 +77,13 @@ enum class SurfaceKind {
 };
 
 /// Bits of SurfaceDiagnosis::triangle_marks.
-struct TriangleMarks {
-  static constexpr std::uint8_t self_intersection = 1;  ///< intersects another
-  static constexpr std::uint8_t filled_hole = 2;        ///< over a certain opening that is filled
-  static constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
-  static constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
-  static constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
-};
+namespace triangle_mark {
+inline constexpr std::uint8_t self_intersection = 1;  ///< intersects another
+inline constexpr std::uint8_t filled_hole = 2;        ///< over a certain opening that is filled
+inline constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
+inline constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
+inline constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
+}  // namespace triangle_mark
 
 /// Neighbours in the graph, along the surface, that the mesh tears apart.
 struct Handle {
@@ -115,7 +115,7 @@ struct SurfaceDiagnosis {
   /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
   /// none where that was not needed, as neighbours are nowhere torn apart, or unknown.
   std::optional<int> genus;
-  /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless
+  /// For each triangle, the bits of all findings, listed or not; empty unless
   /// Options::details asks for it.
   std::vector<std::uint8_t> triangle_marks;
 

@@ -72,32 +72,12 @@ constexpr auto unlessEmpty(Member member) {
 }
 
 /// Name and help of a struct, by a pointer that is not followed. \return both
-constexpr ResultField describe(const TopologyFaults*) {
-  return {"TopologyFaults", "What is wrong with a mesh, and where."};
+constexpr ResultField describe(const MeshTopology*) {
+  return {"Topology", "Combinatorial properties of the mesh, counted on its triangles."};
 }
 /// Calls visit(field, access) for all fields of a struct, by a pointer that is not followed:
 /// std::invoke(access, struct) is the stored value, as a reference; or a pointer to it that is null
 /// where it has no meaning; or a value that follows from others.
-template <typename Visit>
-void visitFields(const TopologyFaults*, const Visit& visit) {
-  using Of = TopologyFaults;
-  visit({"boundary_edges", "with one triangle", 0, FieldKind::Vertices}, &Of::boundary_edges);
-  visit({"nonmanifold_edges", "with more than two triangles", 0, FieldKind::Vertices},
-        &Of::nonmanifold_edges);
-  visit({"misoriented_edges", "traversed twice in the same direction", 0, FieldKind::Vertices},
-        &Of::misoriented_edges);
-  visit({"nonmanifold_vertices", "whose triangles are not one fan", 0, FieldKind::Vertices},
-        &Of::nonmanifold_vertices);
-  visit({"unused_vertices", "of no triangle", 0, FieldKind::Vertices}, &Of::unused_vertices);
-  visit({"degenerate_triangles", "that name a vertex twice", 0, FieldKind::TriangleList},
-        &Of::degenerate_triangles);
-}
-
-/// \copydoc describe(const TopologyFaults*)
-constexpr ResultField describe(const MeshTopology*) {
-  return {"Topology", "Combinatorial properties of the mesh, counted on its triangles."};
-}
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
 template <typename Visit>
 void visitFields(const MeshTopology*, const Visit& visit) {
   using Of = MeshTopology;
@@ -113,17 +93,19 @@ void visitFields(const MeshTopology*, const Visit& visit) {
   visit({"components", "connected components of triangles"}, &Of::components);
   visit({"euler_characteristic", "V - E + F"}, &Of::euler_characteristic);
   visit({"genus", "of all components; none unless closed, manifold and oriented"}, &Of::genus);
-  visit({"faults", "what is wrong, and where", 0, FieldKind::CppOnly}, &Of::faults);
+  visit({"nonmanifold_vertices", "whose triangles are not one fan", 0, FieldKind::Vertices},
+        &Of::nonmanifold_vertices);
+  visit({"unused_vertices", "of no triangle", 0, FieldKind::Vertices}, &Of::unused_vertices);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const MeshMeasures*) {
   return {"Measures",
           "Size, place and mass properties of the mesh and the solid that it encloses. It has no "
           "volume, centroid and inertia where it is open or folded, or more than 1 % of its "
           "triangles intersect."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const MeshMeasures*, const Visit& visit) {
   using Of = MeshMeasures;
@@ -138,22 +120,22 @@ void visitFields(const MeshMeasures*, const Visit& visit) {
         &Of::inertia);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const StageTime*) {
   return {"StageTime", "Time of one stage."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const StageTime*, const Visit& visit) {
   visit({"name", "of the stage"}, &StageTime::name);
   visit({"seconds", "wall time [s]"}, &StageTime::seconds);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Finding*) {
   return {"Finding", "What to know of a mesh, and the option that deals with it."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Finding*, const Visit& visit) {
   using Of = Finding;
@@ -166,11 +148,11 @@ void visitFields(const Finding*, const Visit& visit) {
         &Of::is_consequence);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Opening*) {
   return {"Opening", "An opening of the sampled surface: a wide face of its neighbour graph."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Opening*, const Visit& visit) {
   using Of = Opening;
@@ -190,11 +172,11 @@ void visitFields(const Opening*, const Visit& visit) {
         &Of::triangles);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Handle*) {
   return {"Handle", "Neighbours along the surface that the mesh tears apart: probably a handle."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Handle*, const Visit& visit) {
   using Of = Handle;
@@ -204,11 +186,11 @@ void visitFields(const Handle*, const Visit& visit) {
   visit({"vertices", "their ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const PartBridge*) {
   return {"PartBridge", "Two parts of the cloud with a gap between them."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const PartBridge*, const Visit& visit) {
   using Of = PartBridge;
@@ -220,11 +202,11 @@ void visitFields(const PartBridge*, const Visit& visit) {
   visit({"vertices", "the ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const SurfaceDiagnosis*) {
   return {"Diagnosis", "What speaks against a closed surface without handles, and where."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   using Of = SurfaceDiagnosis;
@@ -241,11 +223,11 @@ void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
         unlessEmpty(&Of::triangle_marks));
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const ConsolidationReport*) {
   return {"Consolidation", "What consolidation found and did."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const ConsolidationReport*, const Visit& visit) {
   using Of = ConsolidationReport;
@@ -256,11 +238,11 @@ void visitFields(const ConsolidationReport*, const Visit& visit) {
   visit({"rms_displacement", "over the points", 1}, &Of::rms_displacement);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const LevelReport*) {
   return {"EmbeddingLevel", "Work on one level of the multilevel embedding."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const LevelReport*, const Visit& visit) {
   using Of = LevelReport;
@@ -272,11 +254,11 @@ void visitFields(const LevelReport*, const Visit& visit) {
   visit({"residual", "mean length of the tangential Laplacian at the end [radius]"}, &Of::residual);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const EmbeddingReport*) {
   return {"Embedding", "How the embedding on the sphere was reached."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const EmbeddingReport*, const Visit& visit) {
   using Of = EmbeddingReport;
@@ -293,11 +275,11 @@ void visitFields(const EmbeddingReport*, const Visit& visit) {
   visit({"levels", "of the multilevel embedding, the finest first"}, &Of::levels);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const HistoryFrame*) {
   return {"HistoryFrame", "One state of the embedding on its way."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const HistoryFrame*, const Visit& visit) {
   using Of = HistoryFrame;
@@ -309,11 +291,11 @@ void visitFields(const HistoryFrame*, const Visit& visit) {
   visit({"sphere", "unit vectors, of the vertices of the history"}, &Of::sphere);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const EmbeddingHistory*) {
   return {"History", "How the embedding unfolded, for some of the vertices."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const EmbeddingHistory*, const Visit& visit) {
   using Of = EmbeddingHistory;
@@ -321,11 +303,11 @@ void visitFields(const EmbeddingHistory*, const Visit& visit) {
   visit({"frames", "in the order of the work; the last is the embedding"}, &Of::frames);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const SmoothingReport*) {
   return {"Smoothing", "How far the smoothed surface is from the one given."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const SmoothingReport*, const Visit& visit) {
   using Of = SmoothingReport;
@@ -338,11 +320,11 @@ void visitFields(const SmoothingReport*, const Visit& visit) {
         &Of::self_intersections);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Surface*) {
   return {"Surface", "A mesh through all points, the map to the sphere, and their quality."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Surface*, const Visit& visit) {
   using Of = Surface;
@@ -394,11 +376,11 @@ void visitFields(const Surface*, const Visit& visit) {
         &Of::input_of_vertex);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const LeftOut*) {
   return {"LeftOut", "Input points that are in no surface, and why."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const LeftOut*, const Visit& visit) {
   using Of = LeftOut;
@@ -409,11 +391,11 @@ void visitFields(const LeftOut*, const Visit& visit) {
         &Of::other_parts);
 }
 
-/// \copydoc describe(const TopologyFaults*)
+/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Result*) {
   return {"Result", "What is made of a cloud."};
 }
-/// \copydoc visitFields(const TopologyFaults*, const Visit&)
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Result*, const Visit& visit) {
   using Of = Result;

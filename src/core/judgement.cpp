@@ -112,7 +112,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
     for (const auto& pair : result.self_intersections)
       for (const Index t : pair)
         result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
-            TriangleMarks::self_intersection;
+            triangle_mark::self_intersection;
   }
   result.intersecting_triangles = mesh.isSmoothed() ? mesh.smoothed.intersecting_triangles
                                                     : countTriangles(result.self_intersections);

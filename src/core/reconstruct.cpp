@@ -48,7 +48,7 @@ bool isAsPromised(const Surface& surface) {
   const MeshTopology& topology = surface.topology;
   return surface.isClosed()
              ? topology.isSphere()
-             : topology.manifold() && topology.oriented && topology.faults.unused_vertices.empty();
+             : topology.manifold() && topology.oriented && topology.unused_vertices.empty();
 }
 
 /// Whether the mesh may have openings.

@@ -119,14 +119,14 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());
   EXPECT_FALSE(intersecting.empty());
-  EXPECT_EQ(count(tangled, TriangleMarks::self_intersection), intersecting.size());
+  EXPECT_EQ(count(tangled, triangle_mark::self_intersection), intersecting.size());
   for (const Index t : intersecting)
     EXPECT_NE(tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
-                  TriangleMarks::self_intersection,
+                  triangle_mark::self_intersection,
               0);
   const Surface parts = mesh(test::twoSpheres(200, 160, 5.0), watched(quick()));
-  EXPECT_GT(count(parts, TriangleMarks::part_bridge), 0U);
-  EXPECT_EQ(count(parts, TriangleMarks::handle), 0U);
+  EXPECT_GT(count(parts, triangle_mark::part_bridge), 0U);
+  EXPECT_EQ(count(parts, triangle_mark::handle), 0U);
   EXPECT_EQ(count(mesh(test::ellipsoid(300), watched()), 0xff), 0U);
 }
 

@@ -181,7 +181,7 @@ TEST_P(EveryShape, ReferenceMeshHasTheSizeAndTheTopologyOfTheShape) {
       checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.vertices.cols()));
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.oriented);
-  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+  EXPECT_TRUE(topology.unused_vertices.empty());
   EXPECT_EQ(topology.components, shape == Shape::Pair ? 2u : 1u);
   const long openings = shape == Shape::Bowl    ? 1
                         : shape == Shape::Holed ? 4

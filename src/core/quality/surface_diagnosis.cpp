@@ -465,13 +465,13 @@ std::vector<std::uint8_t> marksOf(const MeshAndGraph& surface, const SurfaceDiag
   for (const Opening& opening : openings)
     if (opening.isCertain())
       for (const Index t : opening.triangles)
-        mark(t, TriangleMarks::filled_hole);
+        mark(t, triangle_mark::filled_hole);
   for (const Handle& handle : diagnosis.handles)
-    mark_around(handle.vertices, TriangleMarks::handle);
+    mark_around(handle.vertices, triangle_mark::handle);
   for (const PartBridge& bridge : diagnosis.bridges)
-    mark_around(bridge.vertices, TriangleMarks::part_bridge);
+    mark_around(bridge.vertices, triangle_mark::part_bridge);
   for (const Index t : outside_graph)
-    mark(t, TriangleMarks::outside_graph);
+    mark(t, triangle_mark::outside_graph);
   return marks;
 }
 

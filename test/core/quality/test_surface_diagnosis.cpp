@@ -327,22 +327,22 @@ TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
         EXPECT_TRUE(std::includes(of.begin(), of.end(), some.begin(), some.end()));
         at.insert(of.begin(), of.end());
       }
-      if (mark != TriangleMarks::filled_hole)
+      if (mark != triangle_mark::filled_hole)
         expect_marked(mark, [&](Eigen::Index t) {
           const auto corners = scene.triangles.col(t);
           return at.count(corners[0]) + at.count(corners[1]) + at.count(corners[2]) > 0;
         });
     };
-    expect_listed(few.filled_holes, all.filled_holes, TriangleMarks::filled_hole);
-    expect_listed(few.handles, all.handles, TriangleMarks::handle);
-    expect_listed(few.bridges, all.bridges, TriangleMarks::part_bridge);
+    expect_listed(few.filled_holes, all.filled_holes, triangle_mark::filled_hole);
+    expect_listed(few.handles, all.handles, triangle_mark::handle);
+    expect_listed(few.bridges, all.bridges, triangle_mark::part_bridge);
     std::ptrdiff_t filled = 0;
     for (const FilledHole& hole : all.filled_holes)
       filled += static_cast<std::ptrdiff_t>(hole.triangles);
     EXPECT_EQ(std::count_if(all.triangle_marks.begin(), all.triangle_marks.end(),
-                            [](int marks) { return (marks & TriangleMarks::filled_hole) != 0; }),
+                            [](int marks) { return (marks & triangle_mark::filled_hole) != 0; }),
               filled);
-    expect_marked(TriangleMarks::outside_graph, [&](Eigen::Index t) {
+    expect_marked(triangle_mark::outside_graph, [&](Eigen::Index t) {
       return fractionBeyondTwoSteps(scene.graph.graph, scene.triangles.col(t)) > 0.0;
     });
   }
