@@ -194,6 +194,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
     left += part.size();
   const auto all = static_cast<double>(left);
   std::exception_ptr first_error;
+  std::vector<Index> failed;
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto count = static_cast<double>(parts[part].size());
     clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
@@ -202,8 +203,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
       if (!first_error)
         first_error = std::current_exception();
       result.failures.push_back(internal::failureOf(part, parts, error.what()));
-      result.left_out.other_parts.insert(result.left_out.other_parts.end(), parts[part].begin(),
-                                         parts[part].end());
+      failed.insert(failed.end(), parts[part].begin(), parts[part].end());
     };
     try {
       result.surfaces.push_back(meshPart(selection, part, options, clock));
@@ -215,7 +215,9 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   }
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
-  std::sort(result.left_out.other_parts.begin(), result.left_out.other_parts.end());
+  std::vector<Index>& other_parts = result.left_out.other_parts;
+  other_parts.insert(other_parts.end(), failed.begin(), failed.end());
+  std::sort(other_parts.begin(), other_parts.end());
 }
 
 /// Says what was left out in the message of a failure: it may be the cause.
