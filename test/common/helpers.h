@@ -1,6 +1,7 @@
 #pragma once
 
-#include "neighbor_graph.h"
+#include "local_delaunay_graph.h"
+#include "nearest_neighbor_graph.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
@@ -189,7 +190,11 @@ inline GraphChoice nearest(int k = 25) {
 inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
                              const GraphChoice& choice = {}, const NeighborSearch& search = {},
                              const Execution& execution = {}) {
-  return buildNeighborGraph(points, lists, choice.method, choice.k, search, execution);
+  if (choice.method == GraphMethod::NearestNeighbors)
+    return internal::buildNearestNeighborGraph(points, lists, choice.k);
+  return internal::buildLocalDelaunayGraph(points,
+                                           internal::findStars(points, {lists, search}, execution),
+                                           internal::StraySearch::Yes, execution);
 }
 
 /// Execution on so many threads.

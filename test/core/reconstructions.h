@@ -61,22 +61,32 @@ inline Options watched(Options options = {}) {
   return options;
 }
 
-/// The surface of a cloud.
-inline Surface surfaceOf(const Positions& points, const Options& options = {}) {
-  return reconstruct(points, options);
+/// Makes a search by brute force among some of the points, which must outlive it.
+inline NeighborSearchFactory bruteForceFactory(const Positions& points) {
+  return [&points](const std::vector<Index>& some) -> NeighborSearch {
+    return [&points, some](const std::vector<Index>& queries, int count) {
+      const Positions of_some = points(Eigen::all, some);
+      std::vector<Index> places;
+      for (const Index query : queries)
+        places.push_back(
+            static_cast<Index>(std::lower_bound(some.begin(), some.end(), query) - some.begin()));
+      NeighborLists lists = bruteForceSearch(of_some)(places, count);
+      for (Index& entry : lists.indices)
+        entry = some[static_cast<std::size_t>(entry)];
+      return lists;
+    };
+  };
 }
 
-/// The same with a search of the caller.
-inline Surface surfaceOf(const Positions& points, const Options& options,
-                         const NeighborSearch& search) {
-  std::vector<Index> all(static_cast<std::size_t>(points.cols()));
-  std::iota(all.begin(), all.end(), Index{0});
-  return reconstruct(points, search(all, neighborsToSearch(options)), options, search);
+/// The surface of a cloud.
+inline Surface surfaceOf(const Positions& points, const Options& options = {},
+                         const NeighborSearchFactory& search_of = {}) {
+  return reconstruct(points, options, search_of).surface();
 }
 
 /// The same with neighbours by brute force.
 inline Surface mesh(const Positions& points, const Options& options = {}) {
-  return surfaceOf(points, options, bruteForceSearch(points));
+  return surfaceOf(points, options, bruteForceFactory(points));
 }
 
 inline Positions verticesOf(const Positions& points, const Surface& result) {

@@ -59,6 +59,9 @@ void expectFindings(const std::vector<Case>& cases, const Options& options = {})
 TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   expectFindings({
       {{}, [](Surface&) {}},
+      {{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
+      {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
+      {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }},
       {{"1 point looks like an outlier", "outliers", "auto", false},
        [](Surface& r) { r.outliers = {3}; }},
       {{"2,000 points look like outliers", "outliers", "auto", false},
@@ -101,27 +104,58 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
 }
 
 TEST(Findings, OfAFoldedMeshAreNoNoiseButConsolidationMayHelp) {
-  expectFindings(
-      {{{"the mesh is folded: 12 % of its edges join points that are far apart in the cloud",
-         "consolidation", "auto", true},
-        [](Surface& r) {
-          r.is_noisy = true;
-          r.diagnosis.edges_outside_graph = 0.12;
-        }}});
   Surface result = soundResult();
   result.is_noisy = true;
-  result.diagnosis.edges_outside_graph = 0.5;
+  result.diagnosis.edges_outside_graph = 0.12;
+  ASSERT_EQ(internal::findingsOf({}, result).size(), 1U);
+  EXPECT_EQ(internal::findingsOf({}, result)[0].option, "consolidation");
   result.outliers = {3};
   EXPECT_TRUE(internal::findingsOf({}, result).back().option.empty());
-  addBridge(result, 400, 400);
-  for (const Finding& finding : internal::findingsOf({}, result))
-    EXPECT_EQ(finding.text.find("nois"), std::string::npos) << finding.text;
 }
 
-TEST(Findings, OfWhatDoesNotHarmTheMeshAreNone) {
-  expectFindings({{{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
-                  {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
-                  {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }}});
+TEST(Findings, AFaultWithoutAnOptionBesideOneThatHasOneIsAConsequence) {
+  Surface result = soundResult();
+  result.intersecting_triangles = 2;
+  EXPECT_FALSE(internal::findingsOf({}, result).back().is_consequence);
+  result.outliers = {3};
+  const std::vector<Finding> findings = internal::findingsOf({}, result);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_FALSE(findings[0].is_consequence);
+  EXPECT_TRUE(findings[1].is_consequence);
+}
+
+TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
+  Result result;
+  result.surfaces.resize(3, soundResult());
+  result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
+  result.surfaces[2].findings = {{"noisy", "consolidation", "auto", false}, {"torn", "", "", true}};
+  result.failures = {
+      internal::failureOf(3, {{}, {}, {}, std::vector<Index>(1200)}, "reconstruct: it is flat")};
+  internal::summarize(result);
+  std::vector<std::string> texts;
+  for (const Finding& finding : result.findings)
+    texts.push_back(finding.text);
+  EXPECT_EQ(texts,
+            (std::vector<std::string>{"part 4 of 4 (1,200 points) cannot be meshed: it is flat",
+                                      "part 1, part 3: noisy", "part 3: torn"}));
+  EXPECT_EQ(result.verdict, "3 meshes, 1 of them with faults.");
+  result = {};
+  result.surfaces.resize(1, soundResult());
+  result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
+  result.surfaces[0].verdict = "Fine.";
+  internal::summarize(result);
+  EXPECT_EQ(result.findings[0].text + " " + result.verdict, "noisy Fine.");
+}
+
+TEST(LeftOut, SaysWhatAndHowMany) {
+  LeftOut left_out;
+  EXPECT_EQ(left_out.text(), "");
+  left_out.outliers = {3};
+  EXPECT_EQ(left_out.text(), "1 outlier");
+  left_out.not_finite = {1, 2};
+  left_out.other_parts.resize(1000);
+  EXPECT_EQ(left_out.text(),
+            "2 points that are not finite, 1 outlier, 1,000 points in other parts");
 }
 
 TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {

@@ -20,7 +20,7 @@ Options leftOpen(SurfaceMode mode = SurfaceMode::Open) {
 void expectSound(const Surface& result, std::size_t boundaries) {
   EXPECT_TRUE(result.topology.manifold());
   EXPECT_TRUE(result.topology.oriented);
-  EXPECT_TRUE(result.topology.faults.unused_vertices.empty());
+  EXPECT_TRUE(result.topology.unused_vertices.empty());
   EXPECT_EQ(result.topology.components, 1U);
   EXPECT_EQ(result.topology.euler_characteristic, 2 - static_cast<long long>(boundaries));
   EXPECT_TRUE(result.self_intersections.empty());

@@ -25,13 +25,13 @@ OptionValue numberOf(const OptionRow& row, double number) {
   return row.is_integer ? OptionValue(static_cast<std::int64_t>(number)) : OptionValue(number);
 }
 
-/// Values at the ends of the range, or all choices.
+/// Values at the ends of the range, and all choices.
 std::vector<OptionValue> goodValues(const OptionRow& row) {
   std::vector<OptionValue> values(row.choices.begin(), row.choices.end());
-  if (row.choices.empty()) {
+  if (row.is_number) {
     const double infinity = std::numeric_limits<double>::infinity();
     const double min = row.min_excluded ? std::nextafter(row.min, infinity) : row.min;
-    values = {numberOf(row, min), numberOf(row, row.max)};
+    values.insert(values.end(), {numberOf(row, min), numberOf(row, row.max)});
   }
   if (row.optional)
     values.emplace_back();
@@ -40,7 +40,7 @@ std::vector<OptionValue> goodValues(const OptionRow& row) {
 
 /// Numbers out of range.
 std::vector<OptionValue> numbersOutOfRange(const OptionRow& row) {
-  if (!row.choices.empty())
+  if (!row.is_number)
     return {};
   std::vector<OptionValue> values{numberOf(row, row.min - 1.0), numberOf(row, row.max + 1.0)};
   if (row.min_excluded)
@@ -75,8 +75,11 @@ TEST(OptionTable, NamesAndFieldsOccurOnceAndDefaultsAreInRange) {
     EXPECT_TRUE(fields.insert(row.field).second) << row.field;
     EXPECT_EQ(&findOption(row.name), &row);
     EXPECT_FALSE(row.help.empty() || rangeOf(row).empty());
-    for (const auto& [other, value] : row.used_with)
-      EXPECT_NO_THROW(findOption(other)) << row.name;
+    for (const auto& [other, values] : row.used_with)
+      for (const std::string& value : values) {
+        Options with;
+        EXPECT_NO_THROW(setOption(with, other, value)) << row.name;
+      }
     Options options;
     EXPECT_NO_THROW(setOption(options, row.name, row.get(options))) << row.name;
   }
@@ -102,8 +105,8 @@ TEST_P(EveryOption, ExtremeIsReadBackChangesNoOtherAndIsMeshed) {
       if (other.name != row.name) {
         EXPECT_EQ(other.get(options), other.get({})) << other.name;
       }
-    // Four points are no part.
-    for (const Index n : {row.name == "parts" ? 60 : 4, 150})
+    // Four points are no part, and of four one may deviate.
+    for (const Index n : {row.name == "parts" || row.name == "outliers" ? 60 : 4, 150})
       EXPECT_TRUE(
           test::isSphereOverAll(test::surfaceOf(test::randomSphere(n, 7), options).triangles, n));
   }
@@ -119,9 +122,9 @@ TEST_P(EveryOption, OutOfRangeOrOfAnotherKindIsRefusedByName) {
       expectRefusal(options, row.name);
     }
   bad.emplace_back("three");
-  if (!row.choices.empty() || row.is_integer)
+  if (!row.is_number || row.is_integer)
     bad.emplace_back(3.5);
-  if (!row.choices.empty())
+  if (!row.is_number)
     bad.emplace_back(std::int64_t{0});
   if (!row.optional)
     bad.emplace_back();
@@ -132,6 +135,16 @@ TEST_P(EveryOption, OutOfRangeOrOfAnotherKindIsRefusedByName) {
   }
 }
 
+TEST(OptionTable, OutliersAreNamesOrTheNumberOfDeviations) {
+  EXPECT_EQ(rangeOf(findOption("outliers")), "none, auto or a number from 0 to 1000");
+  Options options;
+  setOption(options, "outliers", std::int64_t{3});
+  EXPECT_EQ(options.outliers, OutlierMode::Deviation);
+  EXPECT_EQ(options.outlier_sigma, 3.0);
+  setOption(options, "outliers", "auto");
+  EXPECT_EQ(options.outliers, OutlierMode::Auto);
+}
+
 TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
   const auto refuses = [](const std::string& name, const auto& change) {
     Options options;
@@ -139,6 +152,8 @@ TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
     expectRefusal(options, name);
   };
   for (const int past : {-1, 3}) {
+    refuses("outliers", [=](Options& o) { o.outliers = static_cast<OutlierMode>(past); });
+    refuses("parts", [=](Options& o) { o.parts = static_cast<PartsMode>(past); });
     refuses("graph", [=](Options& o) { o.graph = static_cast<GraphMethod>(past); });
     refuses("embedding",
             [=](Options& o) { o.embedding.method = static_cast<EmbeddingMethod>(past); });

@@ -1,7 +1,6 @@
 #include "reconstructions.h"
 
 #include "embedding.h"
-#include "neighbor_search.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
@@ -12,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
@@ -244,7 +242,7 @@ TEST(Reconstruct, FindsTheNeighboursThatTheCallerWouldFind) {
   const Positions base = 5.0 * ellipsoid(400);
   const Positions points = horizontally(base, base.leftCols(50));
   for (const Options& options : bothMethods()) {
-    const Surface expected = surfaceOf(base, options, makeNeighborSearch(base));
+    const Surface expected = mesh(base, options);
     const Surface result = surfaceOf(base, options);
     expectGuarantees(base, result);
     EXPECT_EQ(result.triangles, expected.triangles);
@@ -254,39 +252,25 @@ TEST(Reconstruct, FindsTheNeighboursThatTheCallerWouldFind) {
   }
 }
 
-TEST(Reconstruct, RepeatedPointsNeedNoListsAndAreNotSearchedFor) {
-  const Positions base = ellipsoid(300);
-  const Positions points = horizontally(base, base.leftCols(50));
-  const auto lists = [&](int count) {
-    NeighborLists of_points = bruteForceNeighbors(base, count);
-    of_points.offsets.insert(of_points.offsets.end(), 50, of_points.offsets.back());
-    return of_points;
-  };
-  EXPECT_EQ(reconstruct(points, lists(25), paper()).triangles, mesh(base, paper()).triangles);
-  bool asked = false;
-  const Surface result =
-      reconstruct(points, lists(5), {}, [&](const std::vector<Index>& queries, int count) {
-        asked = true;
-        EXPECT_LT(*std::max_element(queries.begin(), queries.end()), 300);
-        return bruteForceSearch(points)(queries, count);
-      });
-  EXPECT_TRUE(asked);
-  expectGuarantees(points, result);
-}
-
 TEST(Reconstruct, WrongAnswersAndExceptionsOfTheSearchComeOut) {
-  const Positions points = randomSphere(60, 1);
-  NeighborLists lists = bruteForceNeighbors(points, 4);
-  NeighborLists wrong = lists;
-  wrong.indices[7] = 60;
-  for (const NeighborLists& answer : {NeighborLists(), wrong})
-    EXPECT_THROW(
-        reconstruct(points, lists, {}, [&](const std::vector<Index>&, int) { return answer; }),
-        InvalidInput);
-  EXPECT_THROW(reconstruct(points, lists, {},
-                           [](const std::vector<Index>&, int) -> NeighborLists {
-                             throw std::runtime_error("no search today");
-                           }),
+  const Positions points = horizontally(randomSphere(60, 1), randomSphere(60, 1));
+  const NeighborLists lists = bruteForceNeighbors(points.leftCols(60), 12);
+  const auto mesh_with = [&](const NeighborSearch& search) {
+    reconstruct(points, {}, [&](const std::vector<Index>&) { return search; });
+  };
+  EXPECT_NO_THROW(mesh_with([&](const std::vector<Index>& queries, int count) {
+    return bruteForceSearch(points.leftCols(60).eval())(queries, count);
+  }));
+  for (const Index wrong : {-1, 120, 60}) {  // the last repeats point 0, which the search is not of
+    NeighborLists answer = lists;
+    answer.indices[7] = wrong;
+    EXPECT_THROW(mesh_with([&](const std::vector<Index>&, int) { return answer; }), InvalidInput);
+  }
+  EXPECT_THROW(mesh_with([](const std::vector<Index>&, int) { return NeighborLists(); }),
+               InvalidInput);
+  EXPECT_THROW(mesh_with([](const std::vector<Index>&, int) -> NeighborLists {
+                 throw std::runtime_error("no search today");
+               }),
                std::runtime_error);
 }
 
@@ -357,37 +341,25 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
 }
 
 TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
-  const auto expect_reason = [](const Positions& points, const NeighborLists& lists,
-                                const std::string& reason) {
+  const auto expect_reason = [](const Positions& points, const std::string& reason) {
     try {
-      reconstruct(points, lists);
+      reconstruct(points);
       ADD_FAILURE() << "no exception for: " << reason;
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
     }
   };
   const Positions good = randomSphere(20, 1);
-  const NeighborLists lists = bruteForceNeighbors(good, 5);
   for (Index n = 0; n < 4; ++n)
-    expect_reason(good.leftCols(n), bruteForceNeighbors(good.leftCols(n), 5), "at least 4");
-  const Positions three = randomSphere(3, 1).replicate(1, 5);
-  expect_reason(three, bruteForceNeighbors(three, 5), "but there are 3");
+    expect_reason(good.leftCols(n), "at least 4");
+  expect_reason(randomSphere(3, 1).replicate(1, 5), "but there are 3");
   Positions plane = good;
   plane.row(1).setConstant(3.0);
-  expect_reason(plane, lists, "one plane");
+  expect_reason(plane, "one plane");
   Positions far_plane = 1e-300 * plane;
   far_plane.row(1).setConstant(1e99);  // which no scale brings near together with the rest
-  expect_reason(far_plane, lists, "one plane");
-  Positions bad = good;
-  bad(2, 11) = std::numeric_limits<double>::quiet_NaN();
-  expect_reason(bad, lists, "point 11 is not finite");
-  expect_reason(good * 1e101, lists, "beyond 1e100");
-  NeighborLists wrong = lists;
-  wrong.indices[0] = 20;
-  expect_reason(good, wrong, "neighbour 20 of 20");
-  wrong = lists;
-  wrong.offsets.pop_back();
-  expect_reason(good, wrong, "do not fit 20 points");
+  expect_reason(far_plane, "one plane");
+  expect_reason(good * 1e101, "beyond 1e100");
 }
 
 }  // namespace

@@ -64,7 +64,6 @@ void expectAllFieldsAreVisited() {
 
 TEST(ResultFields, EveryFieldOfEveryStructIsVisited) {
   static_assert(countFields<StageTime>() == 2);
-  expectAllFieldsAreVisited<TopologyFaults>();
   expectAllFieldsAreVisited<MeshTopology>();
   expectAllFieldsAreVisited<MeshMeasures>();
   expectAllFieldsAreVisited<StageTime>();
@@ -126,8 +125,7 @@ Surface onNodes() {
   r.boundary = {{0, 1, 2}, {0, 3, 2}};
   r.openings.resize(1);
   r.openings[0].loop = {0, 1, 3};
-  r.topology.faults.boundary_edges = {{0, 1}, {2, 3}};
-  r.topology.faults.unused_vertices = {0, 2};
+  r.topology.unused_vertices = {0, 2};
   r.diagnosis.handles.resize(1);
   r.diagnosis.handles[0].vertices = {1, 3};
   r.diagnosis.bridges.resize(1);
@@ -179,7 +177,7 @@ TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.openings[0].loop, (Indices{0, 1, 2}));
   EXPECT_EQ(result.topology.faults.boundary_edges,
             (std::vector<std::array<Index, 2>>{{0, 2}, {1, 3}}));
-  EXPECT_EQ(result.topology.faults.unused_vertices, (Indices{2, 3}));
+  EXPECT_EQ(result.topology.unused_vertices, (Indices{2, 3}));
   EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
   EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
   EXPECT_EQ(result.vertex_of_input, (Indices{0, 1, 2, 3, 3}));

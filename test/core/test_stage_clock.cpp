@@ -1,4 +1,6 @@
-// Progress and cancellation of reconstruct(). Each stage: see test_threads.cpp.
+// Stages, progress and cancellation of reconstruct(). Each stage: see test_threads.cpp.
+
+#include "stage_clock.h"
 
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
@@ -15,49 +17,96 @@
 namespace spherical_param {
 namespace {
 
-const std::vector<std::string> kStages{"neighbors",     "graph",        "openings",  "embedding",
-                                       "triangulation", "optimization", "smoothing", "quality"};
+using Names = std::vector<std::string>;
 
-Positions roughSphere() {
-  return test::withNoise(test::spiralSphere(60), 0.1, 3);
+TEST(StageClock, NestedProgressIsThatOfTheStageAndItsPart) {
+  std::vector<std::string> reports;
+  Execution user;
+  user.threads = 5;
+  user.time_limit = 1000.0;
+  user.progress = [&](const Progress& progress) {
+    reports.push_back(progress.stage + std::string(" ") + std::to_string(progress.fraction)[0] +
+                      " " + std::to_string(progress.part) + "/" + std::to_string(progress.parts));
+    return true;
+  };
+  internal::StageClock clock(user);
+  EXPECT_EQ(clock.execution().threads, 5);
+  EXPECT_FALSE(clock.execution().time_limit.has_value());
+  clock.begin("outliers");
+  clock.execution().progress({"graph", 0.0});
+  clock.begin("parts");
+  clock.beginPart(1, 4, 0.25, 0.25);
+  clock.begin("outliers");
+  const std::vector<StageTime> stages = clock.take();
+  EXPECT_EQ(reports, (Names{"outliers 0 0/1", "outliers 0 0/1", "outliers 1 0/1", "parts 0 0/1",
+                            "parts 1 1/4", "outliers 0 1/4", "outliers 1 1/4"}));
+  ASSERT_EQ(stages.size(), 2U);
+  EXPECT_EQ(stages[0].name + ", " + stages[1].name, "outliers, parts");
+}
+
+TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
+  Execution user;
+  internal::StageClock unlimited(user);
+  unlimited.beginPart(0, 2, 0.5, 0.5);
+  EXPECT_FALSE(unlimited.remaining().has_value());
+  user.time_limit = 1e6;
+  internal::StageClock clock(user);
+  EXPECT_NEAR(*clock.remaining(), 1e6, 1e3);
+  for (const double fraction : {0.25, 0.5, 1.0}) {  // none of them uses its share
+    clock.beginPart(0, 3, fraction, 0.1);
+    EXPECT_NEAR(*clock.remaining(), 1e6 * fraction, 1e3);
+  }
 }
 
 TEST(StageClock, StagesComeInOrderAndEachCanBeCancelled) {
-  std::vector<std::string> names;
+  const Positions sphere = test::spiralSphere(200);
+  const Positions points = test::horizontally(
+      test::horizontally(sphere, sphere.colwise() + Eigen::Vector3d(4.0, 0.0, 0.0)),
+      2.0 * test::spiralSphere(4));
+  const Names of_part{"openings",     "embedding", "triangulation",
+                      "optimization", "smoothing", "quality"};
+  Names expected{"neighbors", "graph", "outliers", "neighbors", "graph", "parts"};
+  for (int part = 0; part < 2; ++part) {
+    expected.insert(expected.end(), {"neighbors", "graph"});
+    expected.insert(expected.end(), of_part.begin(), of_part.end());
+  }
   Options options;
+  options.outliers = OutlierMode::Auto;
+  options.parts = PartsMode::Each;
   options.smoothing = 1;
+  Names names;
   options.progress = [&](const Progress& progress) {
     if (names.empty() || names.back() != progress.stage)
       names.emplace_back(progress.stage);
     return true;
   };
-  const Positions points = test::spiralSphere(200);
-  const Surface result = reconstruct(points, options);
-  EXPECT_EQ(names, kStages);
-  ASSERT_EQ(result.stages.size(), kStages.size());
-  for (std::size_t i = 0; i < kStages.size(); ++i) {
-    EXPECT_EQ(result.stages[i].name, kStages[i]);
+  const Result result = reconstruct(points, options);
+  EXPECT_EQ(names, expected);
+  Names timed{"neighbors", "graph", "outliers", "parts"};
+  timed.insert(timed.end(), of_part.begin(), of_part.end());
+  ASSERT_EQ(result.stages.size(), timed.size());
+  for (std::size_t i = 0; i < timed.size(); ++i) {
+    EXPECT_EQ(result.stages[i].name, timed[i]);
     EXPECT_GE(result.stages[i].seconds, 0.0);
-    options.progress = [&](const Progress& progress) { return progress.stage != kStages[i]; };
-    EXPECT_THROW(reconstruct(points, options), Cancelled) << kStages[i];
+    options.progress = [&](const Progress& progress) { return progress.stage != timed[i]; };
+    EXPECT_THROW(reconstruct(points, options), Cancelled) << timed[i];
   }
 }
 
 TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
-  const Positions points = test::spiralSphere(40000);
   std::map<std::string, std::vector<double>> fractions;
   Options options;
   options.progress = [&](const Progress& progress) {
     fractions[progress.stage].push_back(progress.fraction);
     return true;
   };
-  test::surfaceOf(points, options);
+  test::surfaceOf(test::spiralSphere(40000), options);
   ASSERT_EQ(fractions.size(), 7U);
   for (const auto& [stage, of_stage] : fractions) {
     EXPECT_TRUE(test::areFractions(of_stage)) << stage;
     EXPECT_EQ(of_stage.front(), 0.0) << stage;
     EXPECT_EQ(of_stage.back(), 1.0) << stage;
-    EXPECT_GE(of_stage.size(), 4U) << stage;  // two of them its begin and end
+    EXPECT_GE(of_stage.size(), 3U) << stage;  // two of them its begin and end
   }
 }
 
@@ -66,60 +115,45 @@ struct CallersFault {
   int number;
 };
 
-using Callback = std::function<bool(double)>;
-using Outcome = std::pair<Triangles, Positions>;
-using Work = std::function<Outcome(const Callback&)>;
-
-/// Throws, and cancels, at every call of the callback: what comes out is that, no call follows, and
-/// the next work is as the first one.
-void expectEndsAtEveryCall(const Work& work) {
-  const Outcome plain = work({});
-  int calls = 0;
-  const auto caller = std::this_thread::get_id();
-  EXPECT_EQ(work([&](double) {
-              EXPECT_EQ(std::this_thread::get_id(), caller);
-              ++calls;
-              return true;
-            }),
-            plain);
-  ASSERT_GT(calls, 0);
-  for (int k = 0; k < calls; ++k)
-    for (const bool throws : {true, false}) {
-      int seen = 0;
-      const Callback at_k = [&](double) {
-        EXPECT_LE(seen, k) << "called again after it ended the work";
-        if (seen++ < k)
-          return true;
-        if (throws)
-          throw CallersFault{k};
-        return false;
-      };
-      try {
-        work(at_k);
-        ADD_FAILURE() << "call " << k << " of " << calls << " did not end the work";
-      } catch (const CallersFault& fault) {
-        EXPECT_TRUE(throws);
-        EXPECT_EQ(fault.number, k);
-      } catch (const Cancelled&) {
-        EXPECT_FALSE(throws);
-      }
-    }
-  EXPECT_EQ(work({}), plain);
-}
-
 TEST(ProgressCallback, EndsReconstructAtEveryCall) {
   Options smoothed;
   smoothed.smoothing = 2;
   smoothed.embedding.history_vertices = 10;
   Options paper = test::paper();
   paper.embedding.max_iterations = 20;
-  for (const Positions& points : {test::randomSphere(4, 1), roughSphere()})
-    for (Options options : {smoothed, paper})
-      expectEndsAtEveryCall([&](const Callback& callback) {
-        options.progress = test::reportingTo(callback).progress;
-        const Surface result = test::surfaceOf(points, options);
-        return Outcome(result.triangles, result.sphere);
-      });
+  const Positions points = test::withNoise(test::spiralSphere(60), 0.1, 3);
+  for (Options options : {smoothed, paper}) {
+    const auto sphere_of = [&](const std::function<bool(double)>& callback) {
+      options.progress = test::reportingTo(callback).progress;
+      return test::surfaceOf(points, options).sphere;
+    };
+    const Positions plain = sphere_of({});
+    const auto calls = static_cast<int>(test::fractionsOf([&](const auto& callback) {
+                                          EXPECT_EQ(sphere_of(callback), plain);
+                                        }).size());
+    ASSERT_GT(calls, 0);
+    for (int k = 0; k < calls; ++k)
+      for (const bool throws : {true, false}) {
+        int seen = 0;
+        const auto at_k = [&](double) {
+          EXPECT_LE(seen, k) << "called again after it ended the work";
+          if (seen++ < k)
+            return true;
+          if (throws)
+            throw CallersFault{k};
+          return false;
+        };
+        try {
+          sphere_of(at_k);
+          ADD_FAILURE() << "call " << k << " of " << calls << " did not end the work";
+        } catch (const CallersFault& fault) {
+          EXPECT_EQ(fault.number, throws ? k : -1);
+        } catch (const Cancelled&) {
+          EXPECT_FALSE(throws);
+        }
+      }
+    EXPECT_EQ(sphere_of({}), plain);
+  }
 }
 
 }  // namespace

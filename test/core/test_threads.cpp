@@ -77,6 +77,7 @@ struct Inputs {
   test::Scene torus = test::cutTorus(2100, 24, 0.05);
   test::Tube knot = test::bentTube(20.0, 2.2 * test::kPi, 86);  // into itself
   Positions rough = test::withNoise(test::randomSphere(6000, 8), 0.02, 9);
+  Positions scattered = test::horizontally(points, 2.0 * test::spiralSphere(40));
 
   Inputs() {
     std::mt19937 random(7);
@@ -98,10 +99,8 @@ Numbers numbersOf(const Surface& surface) {
 
 Numbers numbersOf(const MeshTopology& topology) {
   return Numbers(topology.vertices, topology.edges, topology.components,
-                 topology.euler_characteristic, topology.faults.boundary_edges,
-                 topology.faults.nonmanifold_edges, topology.faults.misoriented_edges,
-                 topology.faults.nonmanifold_vertices, topology.faults.unused_vertices,
-                 topology.faults.degenerate_triangles);
+                 topology.euler_characteristic, topology.oriented,
+                 topology.nonmanifold_vertices, topology.unused_vertices);
 }
 
 Numbers numbersOf(const MeshOptimization& optimization) {
@@ -235,6 +234,23 @@ std::vector<Stage> stagesOf(const Inputs& in) {
          for (const Opening& opening : result.openings)
            numbers.add(opening.loop);
          return numbers;
+       }},
+      {"outliers",
+       [&](const Execution& e) {
+         Numbers numbers;
+         for (const OutlierMode mode : {OutlierMode::Auto, OutlierMode::Deviation}) {
+           Options options;
+           static_cast<Execution&>(options) = e;
+           options.outliers = mode;
+           numbers.add(findOutliers(in.scattered, options));
+         }
+         return numbers;
+       }},
+      {"parts",
+       [&](const Execution& e) {
+         Options options;
+         static_cast<Execution&>(options) = e;
+         return Numbers(findParts(in.scattered, options));
        }},
       {"consolidation",
        [&](const Execution& e) {

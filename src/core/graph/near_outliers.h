@@ -9,7 +9,7 @@ namespace spherical_param::internal {
 /// Nearest neighbours through which nearOutliers() lays a surface.
 constexpr int kFittedNeighbors = 20;
 
-/// How far points near a surface are off it, as findStrayPoints() defines it.
+/// How far points near a surface are off it.
 ///
 /// \param points  3 x n, finite, distinct.
 /// \param lists   n lists of the kFittedNeighbors nearest others of each point, with or without the

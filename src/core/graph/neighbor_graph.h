@@ -18,7 +18,7 @@ struct Bridge {
   double length;  ///< distance of the two points [unit of the input]
 };
 
-/// A point that belongs to no surface. \see findStrayPoints
+/// A point that belongs to no surface. \see internal::strayPoints
 struct StrayPoint {
   Index point;      ///< its number
   double distance;  ///< to the nearest surface [mean distance of neighbours there]

@@ -339,6 +339,8 @@ Index searchForMore(const Positions& points, const NeighborSearch& search, int t
     const NeighborLists lists = search(open, count);
     checkLists(lists, open.size(), stars.size());
     findStars(points, open, lists, threads, scratch, {}, stars);
+    for (const Index i : open)
+      stars.kind[static_cast<std::size_t>(i)].is_beyond_list = true;
     reportFraction(report, static_cast<double>(count) / most);
   }
   return searched;
@@ -396,7 +398,7 @@ Stars findStars(const Positions& points, const Neighbors& neighbors, const Stars
     const auto end = neighbors.lists.indices.begin() +
                      static_cast<std::ptrdiff_t>(neighbors.lists.offsets[i + 1]);
     // A star of more candidates than its list may have lost one that the list does not show.
-    if (subset.has_lost[i] != 0 || all.kind[old].candidates > end - list) {
+    if (subset.has_lost[i] != 0 || all.kind[old].is_beyond_list) {
       changed.push_back(static_cast<Index>(i));
       lists.indices.insert(lists.indices.end(), list, end);
       lists.offsets.push_back(lists.indices.size());

@@ -12,10 +12,11 @@ namespace spherical_param::internal {
 
 /// How the star of a point was found.
 struct StarKind {
-  Index candidates = -1;       ///< nearest points that are known; -1: not looked at yet
-  bool tangent_plane = false;  ///< there is one that can be trusted
-  bool certified = false;      ///< no further point can change the star
-  bool wants_more = false;     ///< more candidates may help
+  Index candidates = -1;        ///< nearest points that are known; -1: not looked at yet
+  bool tangent_plane = false;   ///< there is one that can be trusted
+  bool certified = false;       ///< no further point can change the star
+  bool wants_more = false;      ///< more candidates may help
+  bool is_beyond_list = false;  ///< more neighbours than those of its list were searched for
 };
 
 /// The star of each node: its Voronoi neighbours in its tangent plane, or, where the nearest points

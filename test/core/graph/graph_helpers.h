@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "neighbor_graph.h"
+#include "spherical_param/reconstruct.h"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +17,22 @@
 namespace spherical_param::test {
 
 using Edges = std::set<std::pair<Index, Index>>;
+
+/// The numbers from `begin` to `end`.
+inline std::vector<Index> range(Eigen::Index begin, Eigen::Index end) {
+  std::vector<Index> result(static_cast<std::size_t>(end - begin));
+  std::iota(result.begin(), result.end(), static_cast<Index>(begin));
+  return result;
+}
+
+/// The outliers of a cloud that reconstruct() leaves out.
+inline std::vector<Index> outliersOf(const Positions& points, OutlierMode mode,
+                                     double sigma = 4.0) {
+  Options options;
+  options.outliers = mode;
+  options.outlier_sigma = sigma;
+  return findOutliers(points, options);
+}
 
 /// Row i of a graph, or list i of neighbour lists.
 inline std::vector<Index> rowOf(const std::vector<std::size_t>& offsets,

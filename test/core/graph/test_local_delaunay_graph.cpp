@@ -1,4 +1,4 @@
-#include "neighbor_graph.h"
+#include "local_delaunay_graph.h"
 
 #include "graph_helpers.h"
 

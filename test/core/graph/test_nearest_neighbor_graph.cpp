@@ -1,4 +1,4 @@
-#include "neighbor_graph.h"
+#include "nearest_neighbor_graph.h"
 
 #include "graph_helpers.h"
 #include "union_find.h"

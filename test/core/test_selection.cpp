@@ -1,0 +1,222 @@
+#include "selection.h"
+
+#include "reconstructions.h"
+#include "spherical_param/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using test::horizontally;
+using test::surfaceOf;
+
+Positions movedTo(double x, const Positions& points) {
+  return points.colwise() + Eigen::Vector3d(x, 0.0, 0.0);
+}
+
+/// Two noisy spheres, points of no surface, repeated points and points that are not finite.
+Positions mixedCloud() {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Positions points =
+      horizontally(test::withNoise(test::randomSphere(300, 1), 0.01, 2),
+                   movedTo(4.0, test::withNoise(test::randomSphere(150, 3), 0.01, 4)));
+  points = horizontally(points, 2.0 * test::spiralSphere(6));
+  points = horizontally(points, points.middleCols(280, 176));
+  points = horizontally(points, Positions::Constant(3, 2, nan));
+  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937_64(7));
+  return points(Eigen::all, order);
+}
+
+/// Every point is in one list, and each list is ascending.
+void expectPartition(const Positions& points, const Result& result) {
+  std::vector<std::vector<Index>> lists{result.left_out.not_finite, result.left_out.outliers,
+                                        result.left_out.other_parts};
+  for (const Surface& surface : result.surfaces)
+    lists.push_back(surface.inputs);
+  std::vector<Index> all;
+  for (const std::vector<Index>& list : lists) {
+    EXPECT_TRUE(std::is_sorted(list.begin(), list.end()));
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  ASSERT_EQ(static_cast<Eigen::Index>(all.size()), points.cols());
+  for (Index i = 0; i < points.cols(); ++i)
+    EXPECT_EQ(all[static_cast<std::size_t>(i)], i);
+  for (const Index i : result.left_out.not_finite)
+    EXPECT_FALSE(points.col(i).allFinite());
+}
+
+/// A surface in the numbers of the cloud is that of its points alone.
+void expectAlone(const Positions& points, const Surface& surface, Options options) {
+  options.outliers = OutlierMode::None;
+  options.parts = PartsMode::All;
+  options.threads = 1;
+  const Surface alone = surfaceOf(points(Eigen::all, surface.inputs), options);
+  EXPECT_EQ(surface.triangles, alone.triangles);
+  EXPECT_EQ(surface.sphere, alone.sphere);
+  EXPECT_EQ(surface.consolidated, alone.consolidated);
+  EXPECT_EQ(surface.vertex_of_input, alone.vertex_of_input);
+  for (std::size_t v = 0; v < alone.vertexCount(); ++v)
+    EXPECT_EQ(surface.input_of_vertex.at(v),
+              surface.inputs[static_cast<std::size_t>(alone.input_of_vertex[v])]);
+  for (std::size_t i = 0; i < surface.inputs.size(); ++i)
+    EXPECT_EQ(surface.vertexOf(surface.inputs[i]), alone.vertex_of_input[i]);
+}
+
+TEST(Selection, EverySurfaceIsThatOfItsPointsAlone) {
+  const Positions points = mixedCloud();
+  for (const PartsMode parts : {PartsMode::All, PartsMode::Largest, PartsMode::Each})
+    for (const OutlierMode outliers :
+         {OutlierMode::None, OutlierMode::Auto, OutlierMode::Deviation})
+      for (const ConsolidationMode consolidation :
+           {ConsolidationMode::None, ConsolidationMode::Auto})
+        for (const int threads : {1, 3}) {
+          Options options = test::quick();
+          options.parts = parts;
+          options.outliers = outliers;
+          options.consolidation = consolidation;
+          options.threads = threads;
+          const Result result = reconstruct(points, options);
+          expectPartition(points, result);
+          EXPECT_EQ(result.surfaces.size(), parts == PartsMode::Each ? 2U : 1U);
+          EXPECT_EQ(result.left_out.not_finite.size(), 2U);
+          EXPECT_EQ(result.left_out.outliers, findOutliers(points, options));
+          EXPECT_EQ(result.left_out.outliers.size(), outliers == OutlierMode::None ? 0U : 12U);
+          for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
+            expectAlone(points, result.surfaces[i], options);
+            if (parts != PartsMode::All) {
+              EXPECT_EQ(result.surfaces[i].inputs, findParts(points, options)[i]);
+            }
+          }
+        }
+}
+
+TEST(Selection, TheGraphOfNearestNeighboursHasPartsAsWell) {
+  const Positions points = mixedCloud();
+  Options options = test::quick(test::paper());
+  options.embedding.max_iterations = 50;
+  options.parts = PartsMode::Each;
+  options.outliers = OutlierMode::Auto;
+  const Result result = reconstruct(points, options);
+  expectPartition(points, result);
+  ASSERT_EQ(result.surfaces.size(), 2U);
+  for (const Surface& surface : result.surfaces)
+    expectAlone(points, surface, options);
+}
+
+/// A square of 10 x 10 points, of which there is no closed surface.
+Positions square(double x) {
+  Positions points(3, 100);
+  for (int i = 0; i < 100; ++i)
+    points.col(i) << x + i / 10 + 0.01 * (i * i % 7), i % 10 + 0.01 * (i * i % 5), 0.0;
+  return points;
+}
+
+TEST(Selection, APartThatCannotBeMeshedIsLeftOutUnlessNoneCanBe) {
+  Options options;
+  options.parts = PartsMode::Each;
+  const Result result = reconstruct(horizontally(square(9.0), test::spiralSphere(80)), options);
+  ASSERT_EQ(result.surfaces.size(), 1U);
+  EXPECT_EQ(result.surface().inputs.front(), 100);
+  EXPECT_EQ(result.left_out.other_parts.size(), 100U);
+  ASSERT_EQ(result.failures.size(), 1U);
+  EXPECT_EQ(result.failures[0].find("part 1 of 2 (100 points) cannot be meshed: all points lie"),
+            0U);
+  EXPECT_EQ(result.findings.front().text, result.failures[0]);
+  EXPECT_TRUE(result.findings.front().is_fault);
+  EXPECT_THROW(reconstruct(horizontally(square(0.0), square(30.0)), options), InvalidInput);
+}
+
+TEST(Selection, ErrorsSayWhatWasLeftOut) {
+  const auto message_of = [](const Positions& points, const Options& options) {
+    try {
+      reconstruct(points, options);
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  Positions points = test::randomSphere(5, 1);
+  points(1, 0) = points(2, 3) = std::numeric_limits<double>::infinity();
+  EXPECT_NE(message_of(points, {}).find("there are 3 (left out: 2 points that are not finite)"),
+            std::string::npos)
+      << message_of(points, {});
+  EXPECT_EQ(message_of(points.leftCols(0), {}).find("left out"), std::string::npos);
+  Options options;
+  options.parts = PartsMode::Largest;
+  options.outliers = OutlierMode::Auto;
+  options.min_points = 1000;
+  EXPECT_NE(message_of(mixedCloud(), options)
+                .find("min_points = 1000 points (left out: 2 points that are not finite, 12 "
+                      "outliers)"),
+            std::string::npos)
+      << message_of(mixedCloud(), options);
+}
+
+TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
+  const Positions points = mixedCloud();
+  for (const PartsMode parts : {PartsMode::All, PartsMode::Each})
+    for (const OutlierMode outliers : {OutlierMode::None, OutlierMode::Auto}) {
+      Options options = test::quick();
+      options.parts = parts;
+      options.outliers = outliers;
+      int made = 0;
+      const Result result = reconstruct(points, options, [&](const std::vector<Index>& some) {
+        ++made;
+        EXPECT_TRUE(std::is_sorted(some.begin(), some.end()));
+        EXPECT_EQ(some.size(), 456U);
+        for (const Index i : some)
+          for (Index j = 0; j < i; ++j)
+            EXPECT_NE(points.col(j), points.col(i));
+        return [&, some, search = test::bruteForceFactory(points)(some)](
+                   const std::vector<Index>& queries, int count) {
+          for (const Index query : queries)
+            EXPECT_TRUE(std::binary_search(some.begin(), some.end(), query));
+          return search(queries, count);
+        };
+      });
+      EXPECT_EQ(made, 1);
+      const Result expected = reconstruct(points, options);
+      ASSERT_EQ(result.surfaces.size(), expected.surfaces.size());
+      for (std::size_t i = 0; i < expected.surfaces.size(); ++i)
+        EXPECT_EQ(result.surfaces[i].triangles, expected.surfaces[i].triangles);
+    }
+}
+
+TEST(Selection, PartsShareOneTimeLimit) {
+  Positions points(3, 0);
+  for (int part = 0; part < 8; ++part)
+    points = horizontally(points, movedTo(4.0 * part, test::noisySphere(100, 0.5)));
+  Options options;
+  options.parts = PartsMode::Each;
+  options.time_limit = 1.0;
+  // The first part takes it all.
+  options.progress = [](const Progress& progress) {
+    if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
+        progress.fraction == 1.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    return true;
+  };
+  const auto out_of_time = [&] {
+    const Result result = reconstruct(points, options);
+    EXPECT_EQ(result.surfaces.size(), 8U);
+    return std::count_if(result.surfaces.begin(), result.surfaces.end(),
+                         [](const Surface& surface) { return surface.is_out_of_time; });
+  };
+  EXPECT_EQ(out_of_time(), 8);
+  options.time_limit = 1e9;
+  EXPECT_EQ(out_of_time(), 0);
+}
+
+}  // namespace
+}  // namespace spherical_param
