@@ -175,8 +175,6 @@ TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.outliers, (Indices{0, 2}));
   EXPECT_EQ(result.boundary, (std::vector<Indices>{{0, 3, 2}, {1, 3, 2}}));  // turned, not sorted
   EXPECT_EQ(result.openings[0].loop, (Indices{0, 1, 2}));
-  EXPECT_EQ(result.topology.faults.boundary_edges,
-            (std::vector<std::array<Index, 2>>{{0, 2}, {1, 3}}));
   EXPECT_EQ(result.topology.unused_vertices, (Indices{2, 3}));
   EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
   EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
