@@ -39,13 +39,6 @@ void scaleBack(int exponent, Surface& result) {
     scale(opening.width);
     scale_all(opening.center);
   }
-  for (FilledHole& hole : result.diagnosis.filled_holes) {
-    scale(hole.area, 2);
-    scale(hole.boundary_length);
-    scale(hole.diameter);
-    scale(hole.spacing);
-    scale_all(hole.center);
-  }
   for (CollapsedHandle& handle : result.diagnosis.handles) {
     scale(handle.size);
     scale_all(handle.center);
@@ -91,11 +84,6 @@ void renumber(const std::vector<Index>& vertex_of_node, Surface& result) {
     return a.size() != b.size() ? a.size() > b.size() : a < b;
   });
   renumber_all(result.outliers);
-  for (FilledHole& hole : result.diagnosis.filled_holes) {
-    renumber_all(hole.vertices);
-    for (std::vector<Index>& loop : hole.loops)
-      renumber_loop(loop);
-  }
   for (CollapsedHandle& handle : result.diagnosis.handles)
     renumber_all(handle.vertices);
   for (PartBridge& bridge : result.diagnosis.bridges)
