@@ -30,12 +30,12 @@ void visitQuantities(Surface& r, const Visit& visit) {
   visit("rms displacement", r.smoothing.rms_displacement, 1);
   visit("volume before", r.smoothing.volume_before, 3);
   visit("volume after", r.smoothing.volume_after, 3);
-  for (FilledHole& hole : r.diagnosis.filled_holes) {
-    visit("hole area", hole.area, 2);
-    visit("hole boundary", hole.boundary_length, 1);
-    visit("hole diameter", hole.diameter, 1);
-    visit("hole spacing", hole.spacing, 1);
-    visit_all("hole center", hole.center, 1);
+  for (Opening& opening : r.openings) {
+    visit("opening area", opening.area, 2);
+    visit("opening boundary", opening.boundary_length, 1);
+    visit("opening width", opening.width, 1);
+    visit("opening spacing", opening.spacing, 1);
+    visit_all("opening center", opening.center, 1);
   }
   for (CollapsedHandle& handle : r.diagnosis.handles) {
     visit("handle size", handle.size, 1);
@@ -57,9 +57,9 @@ Surface onNodes() {
   r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
   r.history.vertices = {3, 0};
   r.outliers = {0, 1};
-  r.diagnosis.filled_holes.resize(1);
-  r.diagnosis.filled_holes[0].vertices = {0, 1, 2};
-  r.diagnosis.filled_holes[0].loops = {{0, 1, 2}};
+  r.openings.resize(1);
+  r.openings[0].loop = {0, 1, 2};
+  r.openings[0].triangles = {1, 3};
   r.diagnosis.handles.resize(1);
   r.diagnosis.handles[0].vertices = {1, 3};
   r.diagnosis.bridges.resize(1);
@@ -97,8 +97,8 @@ TEST(ResultUnits, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.vertex_residuals, (std::vector<double>{1, 3, 0, 2}));
   EXPECT_EQ(result.history.vertices, (Indices{1, 2}));
   EXPECT_EQ(result.outliers, (Indices{0, 2}));
-  EXPECT_EQ(result.diagnosis.filled_holes[0].vertices, (Indices{0, 2, 3}));
-  EXPECT_EQ(result.diagnosis.filled_holes[0].loops[0], (Indices{0, 3, 2}));  // turned, not sorted
+  EXPECT_EQ(result.openings[0].loop, (Indices{0, 3, 2}));  // turned, not sorted
+  EXPECT_EQ(result.openings[0].triangles, (Indices{1, 3}));
   EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
   EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
   EXPECT_EQ(result.vertex_of_input, (Indices{0, 1, 2, 3, 3}));
@@ -119,12 +119,12 @@ void expectScaled(Surface& result, Surface& scaled, double scale) {
 }
 
 TEST(ResultUnits, ResultOfAScaledCloudIsTheScaledResult) {
-  // Open at one end, so that there is a filled hole to measure.
+  // Open at one end, so that there is an opening to measure.
   const Positions points = test::withNoise(test::spiralSphere(500), 0.003, 8).rightCols(400);
   Options options;
   options.smoothing = 2;
   Surface result = test::mesh(points, options);
-  ASSERT_EQ(result.diagnosis.filled_holes.size(), 1U);
+  ASSERT_EQ(result.openings.size(), 1U);
   for (const double scale : {4.0, std::ldexp(1.0, -70), 1000.0, 1e50}) {
     SCOPED_TRACE(scale);
     Surface scaled = test::mesh(scale * points, options);
