@@ -151,10 +151,9 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
        "/triangulation/method /optimization/method /optimization/phases/0/name "
        "/verdict /diagnosis/kind /options/graph /options/embedding "
        "/options/weights /options/triangulation /options/optimization"},
-      {"array",
-       "/residuals /stages /findings /self_intersecting_pairs /graph/bridges "
-       "/graph/without_tangent_plane /embedding/levels /diagnosis/filled_holes /diagnosis/handles "
-       "/diagnosis/bridges /diagnosis/outliers /openings /boundary"},
+      {"array", "/residuals /stages /findings /self_intersecting_pairs /graph/bridges "
+                "/graph/without_tangent_plane /embedding/levels /diagnosis/handles "
+                "/diagnosis/bridges /diagnosis/outliers /openings /boundary"},
       {"null", "/outliers /smoothing /options/tolerance /options/max_iterations "
                "/options/stagnation_window /options/outliers /options/sphere"}};
   const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {
@@ -305,12 +304,14 @@ TEST_F(ReconstructionTool, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
   EXPECT_EQ(shifted["vertices"], 1000);
   EXPECT_EQ(shifted["stages"][1]["name"], "outliers");
   EXPECT_EQ(mesh("out.ply").vertexCount(), 1000U);
-  ASSERT_EQ(plain["diagnosis"]["filled_holes"].size(), 1U);
-  ASSERT_EQ(shifted["diagnosis"]["filled_holes"].size(), 1U);
+  ASSERT_EQ(plain["openings"].size(), 1U);
+  ASSERT_EQ(shifted["openings"].size(), 1U);
+  EXPECT_EQ(plain["openings"][0]["filled"], true);
+  EXPECT_GT(plain["openings"][0]["triangles"], 0);
   EXPECT_EQ(plain["diagnosis"]["kind"], "open");
-  auto expected = plain["diagnosis"]["filled_holes"][0]["vertices"].get<std::vector<int>>();
+  auto expected = plain["openings"][0]["loop"].get<std::vector<int>>();
   std::transform(expected.begin(), expected.end(), expected.begin(), [](int v) { return v + 3; });
-  EXPECT_EQ(shifted["diagnosis"]["filled_holes"][0]["vertices"], json(expected));
+  EXPECT_EQ(shifted["openings"][0]["loop"], json(expected));
 }
 
 TEST_F(ReconstructionTool, BridgesBetweenPartsNamePointsOfTheInput) {

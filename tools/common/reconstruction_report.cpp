@@ -198,6 +198,7 @@ Json openingsToJson(const CloudReconstruction& cloud) {
   Json json = Json::array();
   for (const Opening& opening : cloud.result.openings) {
     json.push_back({{"filled", opening.is_filled},
+                    {"triangles", opening.triangles.size()},
                     {"certainty", opening.certainty},
                     {"flat", opening.is_flat},
                     {"location", toJson(opening.center)},
@@ -220,18 +221,6 @@ Json diagnosisToJson(const CloudReconstruction& cloud) {
   json["outliers"] = Json::array();
   for (const Index point : cloud.result.outliers) {
     json["outliers"].push_back(cloud.meshed[static_cast<std::size_t>(point)]);
-  }
-  json["filled_holes"] = Json::array();
-  for (const FilledHole& hole : diagnosis.filled_holes) {
-    json["filled_holes"].push_back({{"cause", nameOf(hole.cause, surface_names)},
-                                    {"location", toJson(hole.center)},
-                                    {"size", hole.diameter},
-                                    {"spacing", hole.spacing},
-                                    {"triangles", hole.triangles},
-                                    {"area", hole.area},
-                                    {"boundary_length", hole.boundary_length},
-                                    {"vertices", inputIndices(cloud, hole.vertices)},
-                                    {"loops", loopsToJson(cloud, hole.loops)}});
   }
   json["handles"] = Json::array();
   for (const CollapsedHandle& handle : diagnosis.handles) {
