@@ -183,13 +183,11 @@ void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
     return Numbers(result.alignment, result.unevenness);
   });
   add_silent("diagnosis", [&in](int threads) {
-    const SurfaceDiagnosis result =
-        diagnoseSurface(in.torus.points, in.torus.triangles, in.torus.graph.graph, {}, {}, threads);
+    const SurfaceDiagnosis result = diagnoseSurface(in.torus.points, in.torus.triangles,
+                                                    in.torus.graph.graph, {}, {}, {}, threads);
     Numbers numbers(result.edges_outside_graph);
     for (const Handle& handle : result.handles)
       numbers.add(handle.vertices);
-    for (const FilledHole& hole : result.filled_holes)
-      numbers.add(Numbers(hole.area, hole.loops));
     return numbers;
   });
 }
