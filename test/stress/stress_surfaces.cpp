@@ -41,6 +41,9 @@ Opening measured(const std::vector<Vector3d>& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i)
     doubled += (loop[i] - opening.center).cross(loop[(i + 1) % loop.size()] - opening.center);
   opening.area = doubled.norm() / 2.0;
+  opening.is_flat = std::all_of(loop.begin(), loop.end(), [&](const Vector3d& p) {
+    return std::abs(doubled.normalized().dot(p - opening.center)) < 1e-6;
+  });
   return opening;
 }
 
@@ -96,11 +99,9 @@ Truth truthOf(Shape shape) {
   return truth;
 }
 
-/// Openings narrower than this are not certain [distance of the points].
-constexpr double kMinWidth = 10.0;
-
+/// Whether an opening must be certain: 9 spacings wide, with a ragged rim, and not flat.
 bool isWide(const Opening& opening, double spacing) {
-  return diameterOf(opening.area) >= kMinWidth * spacing;
+  return diameterOf(opening.area) >= 12.0 * spacing && !opening.is_flat;
 }
 
 /// The openings that were found for certain against those there are.

@@ -2,7 +2,6 @@
 
 #include "corner_table.h"
 #include "graph_cycles.h"
-#include "median.h"
 #include "node_spacing.h"
 #include "parallel.h"
 #include "union_find.h"
@@ -413,7 +412,9 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
       }
     }
     sortUnique(joint.vertices);
-    joint.spacing = internal::medianOf(spacings);
+    const auto median = spacings.begin() + static_cast<std::ptrdiff_t>((spacings.size() - 1) / 2);
+    std::nth_element(spacings.begin(), median, spacings.end());
+    joint.spacing = *median;
     if (joint.gap < kMinPartGap * joint.spacing)
       continue;
     joint.center = surface.mean(joint.vertices);
