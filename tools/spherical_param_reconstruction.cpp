@@ -215,6 +215,7 @@ Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
   json["verdict"] = cloud.result.verdict;
   json["usable"] = cloud.result.isUsable();
   json["findings"] = toJson(cloud.result.findings);
+  json["failures"] = cloud.result.failures;
   json["parts"] = Json::array();
   for (const Surface& surface : cloud.result.surfaces) {
     Json part;

@@ -93,9 +93,9 @@ void visitFields(const MeshTopology*, const Visit& visit) {
   visit({"components", "connected components of triangles"}, &Of::components);
   visit({"euler_characteristic", "V - E + F"}, &Of::euler_characteristic);
   visit({"genus", "of all components; none unless closed, manifold and oriented"}, &Of::genus);
-  visit({"nonmanifold_vertices", "whose triangles are not one fan", 0, FieldKind::Vertices},
+  visit({"nonmanifold_vertices", "whose triangles are not one fan", 0, FieldKind::CppOnly},
         &Of::nonmanifold_vertices);
-  visit({"unused_vertices", "of no triangle", 0, FieldKind::Vertices}, &Of::unused_vertices);
+  visit({"unused_vertices", "of no triangle", 0, FieldKind::CppOnly}, &Of::unused_vertices);
 }
 
 /// \copydoc describe(const MeshTopology*)
@@ -402,6 +402,7 @@ void visitFields(const Result*, const Visit& visit) {
   visit({"verdict", "a headline, e.g. '3 meshes, all sound.'"}, &Of::verdict);
   visit({"findings", "of all surfaces; those of several parts name them"}, &Of::findings);
   visit({"usable", "all surfaces are"}, &Of::isUsable);
+  visit({"failures", "why parts could not be meshed"}, &Of::failures);
   visit({"left_out", "points in no surface"}, &Of::left_out);
   visit({"surfaces", "of the parts that were meshed, that of most points first"}, &Of::surfaces);
   visit({"stages", "in the order of the work, of all surfaces together"}, &Of::stages);

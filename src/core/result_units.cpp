@@ -83,16 +83,6 @@ struct Renumbering {
       return a.size() != b.size() ? a.size() > b.size() : a < b;
     });
   }
-
-  void operator()(const ResultField& field, std::vector<std::array<Index, 2>>& edges) const {
-    if (field.kind != FieldKind::Vertices)
-      return;
-    for (std::array<Index, 2>& edge : edges) {
-      edge = {vertexOf(edge[0]), vertexOf(edge[1])};
-      std::sort(edge.begin(), edge.end());
-    }
-    std::sort(edges.begin(), edges.end());
-  }
 };
 
 }  // namespace

@@ -64,7 +64,9 @@ void Selection::takeApart() {
   const Graph agreed = agreedGraph(all.points(), all.stars(), clock_.execution());
   parts_ = all.groupInputs(
       partsOf(all.points(), agreed, all.stars(), static_cast<std::size_t>(options_.min_points)));
-  if (options_.parts == PartsMode::Largest && !parts_.empty())
+  if (parts_.empty())
+    return;
+  if (options_.parts == PartsMode::Largest)
     parts_.resize(1);
   std::vector<Index> meshed;
   for (const std::vector<Index>& part : parts_)

@@ -125,7 +125,6 @@ Surface onNodes() {
   r.boundary = {{0, 1, 2}, {0, 3, 2}};
   r.openings.resize(1);
   r.openings[0].loop = {0, 1, 3};
-  r.topology.unused_vertices = {0, 2};
   r.diagnosis.handles.resize(1);
   r.diagnosis.handles[0].vertices = {1, 3};
   r.diagnosis.bridges.resize(1);
@@ -175,7 +174,6 @@ TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.outliers, (Indices{0, 2}));
   EXPECT_EQ(result.boundary, (std::vector<Indices>{{0, 3, 2}, {1, 3, 2}}));  // turned, not sorted
   EXPECT_EQ(result.openings[0].loop, (Indices{0, 1, 2}));
-  EXPECT_EQ(result.topology.unused_vertices, (Indices{2, 3}));
   EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
   EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
   EXPECT_EQ(result.vertex_of_input, (Indices{0, 1, 2, 3, 3}));

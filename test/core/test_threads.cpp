@@ -99,8 +99,8 @@ Numbers numbersOf(const Surface& surface) {
 
 Numbers numbersOf(const MeshTopology& topology) {
   return Numbers(topology.vertices, topology.edges, topology.components,
-                 topology.euler_characteristic, topology.oriented,
-                 topology.nonmanifold_vertices, topology.unused_vertices);
+                 topology.euler_characteristic, topology.oriented, topology.nonmanifold_vertices,
+                 topology.unused_vertices);
 }
 
 Numbers numbersOf(const MeshOptimization& optimization) {

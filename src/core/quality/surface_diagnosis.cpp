@@ -342,11 +342,13 @@ struct Cycles {
 ///
 /// \param apart edges of the graph whose ends are more than two steps apart on the mesh.
 void findHandles(const MeshAndGraph& surface, const Graph& graph, const std::vector<Edge>& apart,
-                 const std::vector<Edge>& bridges, std::size_t openings, bool count_cycles,
-                 SurfaceDiagnosis& result) {
+                 const std::vector<Edge>& bridges, const std::vector<Opening>& openings,
+                 bool count_cycles, SurfaceDiagnosis& result) {
   // A mesh that is folded tears neighbours apart without handles as well.
   if (result.isFolded()) {
-    if (count_cycles && openings == 0)
+    const bool is_open = std::any_of(openings.begin(), openings.end(),
+                                     [](const Opening& opening) { return opening.isCertain(); });
+    if (count_cycles && !is_open)
       result.genus = Cycles(graph).genus(0);
     return;
   }
@@ -354,7 +356,7 @@ void findHandles(const MeshAndGraph& surface, const Graph& graph, const std::vec
   if (result.handles.empty() || !count_cycles)
     return;
   const Cycles cycles(graph);
-  result.genus = cycles.genus(openings);
+  result.genus = cycles.genus(openings.size());
   // Without handles, neighbours are torn apart where the mesh is folded.
   if (result.genus ? *result.genus == 0 : !cycles.mayBeHandles())
     result.handles.clear();
@@ -534,8 +536,8 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   result.bridges = findBridges(surface, graph, bridge_edges);
   // A mesh that was squeezed through a bridge tears neighbours apart without handles.
   if (result.bridges.empty())
-    findHandles(surface, sparse, differences.apart, bridge_edges, openings.size(),
-                options.count_cycles, result);
+    findHandles(surface, sparse, differences.apart, bridge_edges, openings, options.count_cycles,
+                result);
   if (options.mark_triangles)
     result.triangle_marks = marksOf(surface, result, openings, differences.triangles);
   result.kind = kindOf(result, openings, options.count_cycles);
