@@ -8,8 +8,8 @@
 #include "helpers.h"
 #include "scan_shapes.h"
 #include "spherical_param/reconstruct.h"
-#include "surface_diagnosis.h"
 #include "stress.h"
+#include "surface_diagnosis.h"
 
 #include <Eigen/Geometry>
 
@@ -141,7 +141,7 @@ Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, 
   Options options;
   if (quick && truth.kind != SurfaceKind::ClosedGenus0 && truth.openings.empty())
     options.optimization = OptimizationMethod::Flips;  // the full one takes long in vain
-  const Surface result = reconstruct(points, options);
+  const Surface result = reconstruct(points, options).surface();
   const SurfaceDiagnosis& found = result.diagnosis;
   Complaints complaints;
   const std::string fault = stress::faultOf(points, options, result);
