@@ -216,12 +216,12 @@ TEST(Selection, PartsShareOneTimeLimit) {
     points = horizontally(points, movedTo(4.0 * part, test::noisySphere(100, 0.5)));
   Options options;
   options.parts = PartsMode::Each;
-  options.time_limit = 1.0;
+  options.time_limit = 0.3;
   // The first part takes it all.
   options.progress = [](const Progress& progress) {
     if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
         progress.fraction == 1.0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+      std::this_thread::sleep_for(std::chrono::milliseconds(320));
     return true;
   };
   const auto out_of_time = [&] {

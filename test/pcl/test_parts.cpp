@@ -119,12 +119,12 @@ TEST(PartsOfCloud, ShareOneTimeLimit) {
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
   reconstruction.setParts(PartsMode::Each);
-  reconstruction.setTimeLimit(1.0);
+  reconstruction.setTimeLimit(0.3);
   // The first part takes it all.
   reconstruction.setProgressCallback([](const spherical_param::Progress& progress) {
     if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
         progress.fraction == 1.0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+      std::this_thread::sleep_for(std::chrono::milliseconds(320));
     return true;
   });
   meshed(reconstruction);
