@@ -9,7 +9,6 @@
 #include "scan_shapes.h"
 #include "spherical_param/reconstruct.h"
 #include "stress.h"
-#include "surface_diagnosis.h"
 
 #include <Eigen/Geometry>
 
