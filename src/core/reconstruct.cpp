@@ -146,9 +146,8 @@ Surface meshNodes(internal::OrderedPoints& nodes, NeighborGraph graph, bool is_f
 }
 
 /// Meshes the points of a part as they are.
-Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
-                 StageClock& clock) {
-  Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
+Surface meshAsIs(Selection& selection, std::size_t part, Neighborhoods& neighborhoods,
+                 const Options& options, StageClock& clock) {
   const bool is_flat = areCoplanar(selection.pointsOf(part));
   if (is_flat && !mayBeOpen(options))
     refuseFlat(options);
@@ -166,16 +165,17 @@ Surface meshConsolidated(const Positions& points, const Options& options, StageC
   as_is.parts = PartsMode::All;
   LeftOut none;
   Selection selection(consolidation.points, as_is, {}, clock, none);
-  Surface surface = meshAsIs(selection, 0, options, clock);
+  Surface surface = meshAsIs(selection, 0, selection.neighborhoodsOf(0), options, clock);
   internal::toInput(consolidation, surface);
   return surface;
 }
 
-Surface meshPart(Selection& selection, std::size_t part, const Options& options,
-                 StageClock& clock) {
-  Surface surface = options.consolidation == ConsolidationMode::Auto
+/// \param neighborhoods of the part as it is; null: its points are consolidated.
+Surface meshPart(Selection& selection, std::size_t part, Neighborhoods* neighborhoods,
+                 const Options& options, StageClock& clock) {
+  Surface surface = neighborhoods == nullptr
                         ? meshConsolidated(selection.pointsOf(part), options, clock)
-                        : meshAsIs(selection, part, options, clock);
+                        : meshAsIs(selection, part, *neighborhoods, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "
                        "as a defect of the library");
@@ -209,8 +209,12 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
       result.failures.push_back(internal::failureOf(part, parts, error.what()));
       failed.insert(failed.end(), parts[part].begin(), parts[part].end());
     };
+    // Outside of the try: what the caller's search throws is passed on.
+    Neighborhoods* const neighborhoods = options.consolidation == ConsolidationMode::Auto
+                                             ? nullptr
+                                             : &selection.neighborhoodsOf(part);
     try {
-      result.surfaces.push_back(meshPart(selection, part, options, clock));
+      result.surfaces.push_back(meshPart(selection, part, neighborhoods, options, clock));
     } catch (const InvalidInput& error) {
       leave_out(error);
     } catch (const ComputeError& error) {

@@ -112,6 +112,23 @@ inline auto bruteForceSearch(const Positions& points) {
   };
 }
 
+/// Makes a search by brute force among some of the points, which must outlive it.
+inline NeighborSearchFactory bruteForceFactory(const Positions& points) {
+  return [&points](const std::vector<Index>& some) -> NeighborSearch {
+    return [&points, some](const std::vector<Index>& queries, int count) {
+      const Positions of_some = points(Eigen::all, some);
+      std::vector<Index> places;
+      for (const Index query : queries)
+        places.push_back(
+            static_cast<Index>(std::lower_bound(some.begin(), some.end(), query) - some.begin()));
+      NeighborLists lists = bruteForceSearch(of_some)(places, count);
+      for (Index& entry : lists.indices)
+        entry = some[static_cast<std::size_t>(entry)];
+      return lists;
+    };
+  };
+}
+
 /// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold sphere in
 /// one piece over exactly the vertices [0, n): every directed edge once and its reverse once, the
 /// link of every vertex one cycle, V - E + F = 2 with one piece.

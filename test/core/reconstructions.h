@@ -61,23 +61,6 @@ inline Options watched(Options options = {}) {
   return options;
 }
 
-/// Makes a search by brute force among some of the points, which must outlive it.
-inline NeighborSearchFactory bruteForceFactory(const Positions& points) {
-  return [&points](const std::vector<Index>& some) -> NeighborSearch {
-    return [&points, some](const std::vector<Index>& queries, int count) {
-      const Positions of_some = points(Eigen::all, some);
-      std::vector<Index> places;
-      for (const Index query : queries)
-        places.push_back(
-            static_cast<Index>(std::lower_bound(some.begin(), some.end(), query) - some.begin()));
-      NeighborLists lists = bruteForceSearch(of_some)(places, count);
-      for (Index& entry : lists.indices)
-        entry = some[static_cast<std::size_t>(entry)];
-      return lists;
-    };
-  };
-}
-
 /// The surface of a cloud.
 inline Surface surfaceOf(const Positions& points, const Options& options = {},
                          const NeighborSearchFactory& search_of = {}) {

@@ -193,18 +193,35 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
     }
 }
 
+TEST(Selection, WhatTheCallersSearchThrowsIsPassedOnFromAPartAsWell) {
+  const Positions points =
+      horizontally(test::randomSphere(200, 1), movedTo(4.0, test::randomSphere(150, 2)));
+  Options options;
+  options.parts = PartsMode::Each;
+  EXPECT_THROW(reconstruct(points, options,
+                           [&](const std::vector<Index>& some) {
+                             return [search = test::bruteForceFactory(points)(some)](
+                                        const std::vector<Index>& queries, int count) {
+                               if (*std::min_element(queries.begin(), queries.end()) >= 200)
+                                 throw ComputeError("of the second part alone");
+                               return search(queries, count);
+                             };
+                           }),
+               ComputeError);
+}
+
 TEST(Selection, PartsShareOneTimeLimit) {
   Positions points(3, 0);
   for (int part = 0; part < 8; ++part)
     points = horizontally(points, movedTo(4.0 * part, test::noisySphere(100, 0.5)));
   Options options;
   options.parts = PartsMode::Each;
-  options.time_limit = 1.0;
+  options.time_limit = 0.3;
   // The first part takes it all.
   options.progress = [](const Progress& progress) {
     if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
         progress.fraction == 1.0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+      std::this_thread::sleep_for(std::chrono::milliseconds(320));
     return true;
   };
   const auto out_of_time = [&] {

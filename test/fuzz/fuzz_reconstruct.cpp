@@ -1,4 +1,4 @@
-// reconstruct() with everything made of bytes: points, neighbours, options, callbacks.
+// reconstruct() with everything made of bytes: points, searches, options, callbacks.
 
 #include "fuzz_input.h"
 #include "spherical_param/reconstruct.h"
@@ -49,6 +49,14 @@ Options optionsFrom(Bytes& bytes) {
   options.details = which % 2 != 0;
   if (which / 2 % 2 != 0)
     options.consolidation = ConsolidationMode::Auto;
+  if (which / 4 % 2 != 0) {
+    options.outliers = bytes.choice<OutlierMode>(3);
+    options.outlier_sigma = bytes.realOr(4.0);
+  }
+  if (which / 8 % 2 != 0) {
+    options.parts = bytes.choice<PartsMode>(3);
+    options.min_points = bytes.integerOr(8);
+  }
   return options;
 }
 
@@ -64,43 +72,69 @@ bool areRight(const Options& o) {
          in(e.damping, 0.0, 1.0) && e.damping > 0.0 &&
          (!e.tolerance || in(*e.tolerance, 0.0, 1.0)) && in(e.max_iterations, 0, any) &&
          in(e.stagnation_window, 0, any) && in(e.starts, 1, 100) &&
-         in(e.history.vertices, 0, 1 << 24) && in(e.history.frames, 2, 10000) &&
-         in(o.graph, 0, 1) && (!o.k || in(*o.k, 3, any)) &&
-         in(o.triangulation.method, 0, 1) && in(o.optimization.method, 0, 2) &&
-         in(o.smoothing.steps, 0, 10000) && in(o.threads, 0, 1024);
+         in(e.history_vertices, 0, 1 << 24) && in(e.history_frames, 2, 10000) &&
+         in(o.outliers, 0, 2) &&
+         (o.outliers != OutlierMode::Deviation || in(o.outlier_sigma, 0.0, 1000.0)) &&
+         in(o.parts, 0, 2) && in(o.min_points, 4, any) && in(o.graph, 0, 1) &&
+         (!o.k || in(*o.k, 3, any)) && in(o.triangulation, 0, 1) && in(o.optimization, 0, 2) &&
+         in(o.smoothing, 0, 10000) && in(o.threads, 0, 1024);
 }
 
-/// A search that answers correctly, or from bytes.
+/// Makes a search that answers correctly, or from bytes.
 class Search {
 public:
   Search(Bytes bytes, const Positions& points)
-      : bytes_(bytes), n_(static_cast<std::size_t>(points.cols())), points_(fuzz::tamed(points)) {
+      : bytes_(bytes), points_(points), tamed_(fuzz::tamed(points)) {
     const std::uint8_t how = bytes.byte();
     is_right_ = how < 128;
     is_in_range_ = how < 200;
     throws_ = how >= 240;
     wrong_at_ = bytes.byte() % 4U;
   }
-  NeighborLists operator()(const std::vector<Index>& queries, int count) {
-    require(count >= 3, "a search is for 3 neighbours or more");
-    require(stress::areLists({{0, queries.size()}, queries}, 1, n_), "a search is at points");
-    require(!was_bad_ && !has_thrown_, "the search is not asked again after a wrong answer");
-    if (is_right_ || calls_++ < wrong_at_)
-      return test::bruteForceSearch(points_)(queries, count);
-    has_thrown_ = throws_;
-    if (throws_)
-      throw fuzz::kFaultOfSearch;
-    NeighborLists lists = fuzz::arbitraryLists(bytes_, queries.size(), n_, is_in_range_);
-    was_bad_ = !stress::areLists(lists, queries.size(), n_);
-    return lists;
+  NeighborSearch operator()(const std::vector<Index>& some) {
+    require(some_.empty(), "one search is made");
+    require(std::is_sorted(some.begin(), some.end()), "points are ascending");
+    std::vector<Index> first;
+    for (const auto& entry : stress::firstAtPlaces(stress::finiteOf(points_)))
+      first.push_back(entry.second);
+    require(some.size() == first.size() &&
+                stress::firstAtPlaces(points_(Eigen::all, some)).size() == some.size(),
+            "it is made of one point at each position");
+    some_ = some;
+    return [this, right = test::bruteForceFactory(tamed_)(some)](const std::vector<Index>& queries,
+                                                                 int count) {
+      require(count >= 3, "a search is for 3 neighbours or more");
+      require(areSome({{0, queries.size()}, queries}, 1), "a search is at points it was made of");
+      require(!was_bad_ && !has_thrown_, "the search is not asked again after a wrong answer");
+      if (is_right_ || calls_++ < wrong_at_)
+        return right(queries, count);
+      has_thrown_ = throws_;
+      if (throws_)
+        throw fuzz::kFaultOfSearch;
+      NeighborLists lists = fuzz::arbitraryLists(
+          bytes_, queries.size(),
+          is_in_range_ ? some_.size() : static_cast<std::size_t>(points_.cols()), is_in_range_);
+      if (is_in_range_)
+        for (Index& index : lists.indices)
+          index = some_[static_cast<std::size_t>(index)];
+      was_bad_ = !areSome(lists, queries.size());
+      return lists;
+    };
   }
   bool wasBad() const { return was_bad_; }
   bool hasThrown() const { return has_thrown_; }
 
 private:
+  bool areSome(const NeighborLists& lists, std::size_t count) const {
+    return stress::areLists(lists, count, static_cast<std::size_t>(points_.cols())) &&
+           std::all_of(lists.indices.begin(), lists.indices.end(),
+                       [&](Index i) { return std::binary_search(some_.begin(), some_.end(), i); });
+  }
+
   Bytes bytes_;
-  std::size_t n_;
-  Positions points_;
+  const Positions& points_;
+  Positions tamed_;
+  std::vector<Index> some_;
   bool is_right_ = true;
   bool is_in_range_ = true;
   bool throws_ = false;
@@ -110,7 +144,7 @@ private:
   bool has_thrown_ = false;
 };
 
-void checkResult(const Positions& points, const Options& options, const Surface& result) {
+void checkSurface(const Positions& points, const Options& options, const Surface& result) {
   if (options.consolidation == ConsolidationMode::None) {
     const std::string fault = stress::faultOf(points, options, result);
     if (!fault.empty())
@@ -120,11 +154,9 @@ void checkResult(const Positions& points, const Options& options, const Surface&
     require(result.consolidated.allFinite() &&
                 result.consolidated.cols() == static_cast<Eigen::Index>(result.vertexCount()),
             "the consolidated points are as many finite ones as there are vertices");
-    require(result.vertex_of_input.size() == static_cast<std::size_t>(points.cols()),
-            "each point has a vertex");
+    require(result.vertex_of_input.size() == result.inputs.size(), "each point has a vertex");
     for (std::size_t v = 0; v < result.vertexCount(); ++v)
-      require(result.vertex_of_input[static_cast<std::size_t>(result.input_of_vertex[v])] ==
-                  static_cast<Index>(v),
+      require(result.vertexOf(result.input_of_vertex[v]) == static_cast<Index>(v),
               "a vertex is that of its first point");
   }
   require(!options.details || result.vertex_residuals.size() == result.vertexCount(),
@@ -140,6 +172,19 @@ void checkResult(const Positions& points, const Options& options, const Surface&
             "a pair is of two triangles");
 }
 
+void checkResult(const Positions& points, const Options& options, const Result& result) {
+  const std::string fault = stress::faultOfLists(points, options, result);
+  if (!fault.empty())
+    fuzz::finding(fault);
+  for (const Surface& surface : result.surfaces) {
+    require(options.parts == PartsMode::All ||
+                stress::firstAtPlaces(points(Eigen::all, surface.inputs)).size() >=
+                    static_cast<std::size_t>(options.min_points),
+            "a part has its minimum number of distinct points");
+    checkSurface(points, options, surface);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -150,42 +195,30 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes of_search = bytes;
   bytes.raw<std::uint16_t>();
   const Positions points = fuzz::pointsFrom(bytes);
-  const auto n = static_cast<std::size_t>(points.cols());
 
   // Valid, but too long to wait for.
   if (options.embedding.max_iterations > 3000 || options.embedding.starts > 20 ||
       options.smoothing > 300)
     watch.cancelAt(2000);
-  const std::array<std::string, 9> stages{"consolidation", "neighbors", "graph",
-                                          "openings",      "embedding", "triangulation",
-                                          "optimization",  "smoothing", "quality"};
+  const std::array<std::string, 11> stages{
+      "neighbors", "graph",         "outliers",     "parts",     "consolidation", "openings",
+      "embedding", "triangulation", "optimization", "smoothing", "quality"};
   if (watch.listens())
     options.progress = [&](const Progress& progress) {
       const bool goes_on = watch(progress);
       require(std::count(stages.begin(), stages.end(), progress.stage) == 1, "a stage is known");
+      require(progress.part < progress.parts, "a part is one of those there are");
       return goes_on;
     };
 
   Search search(of_search, points);
-  NeighborLists lists;
-  lists.offsets.assign(n + 1, 0);
-  bool has_search = (way & 8) != 0;
-  if (way % 8 < 2) {
-    lists = fuzz::nearest(points, 3 + way / 8);
-    has_search = way % 2 == 0;
-  } else if (way % 8 < 4) {
-    lists = fuzz::arbitraryLists(bytes, n, n, way % 8 == 2);
-  }
-  Surface result;
+  NeighborSearchFactory search_of;
+  if (way % 2 == 0)
+    search_of = std::ref(search);
+  Result result;
   std::string message;
   const Ending ending = fuzz::endingOf(
-      watch,
-      [&] {
-        result = way % 8 > 4 ? reconstruct(points, options)
-                             : reconstruct(points, lists, options,
-                                           has_search ? NeighborSearch(std::ref(search)) : nullptr);
-      },
-      message);
+      watch, [&] { result = reconstruct(points, options, search_of); }, message);
   if (ending == Ending::AsTheWatchAsked)
     return 0;
   require(search.hasThrown() == (ending == Ending::FaultOfSearch),
@@ -194,12 +227,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   if (ending == Ending::ComputeError)
     fuzz::finding("on valid input: " + message);
-  const bool is_valid = stress::canBeMeshed(points) && stress::areLists(lists, n, n) &&
-                        !search.wasBad() && areRight(options);
-  if (ending == Ending::InvalidInput && is_valid)
+  const bool is_right = !search.wasBad() && areRight(options);
+  if (ending == Ending::InvalidInput && is_right && stress::mustBeMeshed(points, options))
     fuzz::finding("valid input is rejected: " + message);
   if (ending == Ending::Answer) {
-    require(is_valid, "points, lists and options that are not valid are rejected");
+    require(is_right && stress::canBeMeshed(points),
+            "points, answers and options that are not valid are rejected");
     checkResult(points, options, result);
   }
   return 0;

@@ -5,7 +5,6 @@
 #include "embedding.h"
 #include "embedding_starts.h"
 #include "mesh_optimization.h"
-#include "neighbor_graph.h"
 #include "neighbor_search.h"
 #include "openings.h"
 #include "outliers.h"
@@ -14,6 +13,7 @@
 #include "sphere_triangulation.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
 
@@ -33,7 +33,7 @@ namespace {
 using namespace spherical_param;
 
 NeighborGraph graphOf(const Positions& points) {
-  return buildNeighborGraph(points, nearest(points, 6), GraphMethod::NearestNeighbors, 6);
+  return internal::buildNearestNeighborGraph(points, nearest(points, 6), 6);
 }
 
 /// Whether a stage may be given the points: finite, distinct, and scaled to an extent of about 1.
@@ -53,9 +53,7 @@ Positions scaledToOne(const Positions& points) {
 Graph graphFrom(Bytes& bytes, const Positions& points) {
   const auto n = static_cast<std::size_t>(points.cols());
   if (bytes.oneIn(4))
-    return buildNeighborGraph(points, arbitraryLists(bytes, n, n, true),
-                              GraphMethod::NearestNeighbors, 6)
-        .graph;
+    return internal::buildNearestNeighborGraph(points, arbitraryLists(bytes, n, n, true), 6).graph;
   return graphOf(points).graph;
 }
 
@@ -154,7 +152,7 @@ void fuzzGraph(Bytes& bytes, const Positions& points, Watch& watch) {
       return arbitraryLists(bytes, queries.size(), n, how % 8 != 7);
     };
   const Execution execution = executionFrom(bytes, watch);
-  requireConnected(buildNeighborGraph(points, lists, method, k, search, execution).graph, n);
+  requireConnected(test::graphOf(points, lists, {method, k}, search, execution).graph, n);
 }
 
 void fuzzEmbedding(Bytes& bytes, const Positions& given, Watch& watch) {
@@ -191,21 +189,30 @@ void fuzzEmbedding(Bytes& bytes, const Positions& given, Watch& watch) {
 
 void fuzzOutliers(Bytes& bytes, const Positions& points, Watch& watch) {
   const auto n = static_cast<std::size_t>(points.cols());
-  OutlierOptions options;
-  options.sigma = bytes.realOr(4.0);
-  options.k = bytes.integerOr(16);
-  options.least_score = bytes.realOr(1.0);
-  const Execution execution = executionFrom(bytes, watch);
-  const auto by_lists = [&] {
-    const NeighborLists lists =
-        bytes.oneIn(2) ? nearest(points, 12) : arbitraryLists(bytes, n, n, bytes.oneIn(2));
-    return findOutliers(points, lists, options, execution);
+  const auto are_points = [&](const std::vector<Index>& some) {
+    return std::is_sorted(some.begin(), some.end()) &&
+           stress::areLists({{0, some.size()}, some}, 1, n);
   };
-  const Outliers result = bytes.oneIn(2) ? findOutliers(points, options, execution) : by_lists();
-  require(result.scores.size() == n &&
-              std::is_sorted(result.indices.begin(), result.indices.end()) &&
-              stress::areLists({{0, result.indices.size()}, result.indices}, 1, n),
-          "each point has a score, and outliers are points, in order");
+  if (areNodes(points)) {
+    const double sigma = within(0.0, 1000.0, bytes.realOr(4.0));
+    const NeighborLists lists =
+        bytes.oneIn(2) ? nearest(points, 32) : arbitraryLists(bytes, n, n, true);
+    const internal::DeviatingPoints found = internal::deviatingPoints(points, lists, sigma, {});
+    require(found.scores.size() == n && are_points(found.indices),
+            "each point has a score, and outliers are points, in order");
+  }
+  Options options;
+  static_cast<Execution&>(options) = executionFrom(bytes, watch);
+  options.outliers = bytes.choice<OutlierMode>(3);
+  options.outlier_sigma = bytes.realOr(4.0);
+  options.min_points = bytes.integerOr(8);
+  const std::vector<Index> outliers = findOutliers(points, options);
+  require(are_points(outliers), "outliers are points, in order");
+  for (const std::vector<Index>& part : findParts(points, options)) {
+    require(are_points(part), "parts are points, in order");
+    for (const Index i : part)
+      require(!std::binary_search(outliers.begin(), outliers.end(), i), "no outlier is in a part");
+  }
 }
 
 /// Whether no coordinate has digits below 1e-100 of the largest one: intersections are then exact.

@@ -74,7 +74,8 @@ struct HardCase {
   }
   /// The triangles of the core on the used points, as indices of the cloud.
   Triangles expected(const Options& options = {}) const {
-    const Surface result = spherical_param::reconstruct(positionsOf(*cloud, used), options);
+    const Surface result =
+        spherical_param::reconstruct(positionsOf(*cloud, used), options).surface();
     return result.triangles.unaryExpr([&](spherical_param::Index v) {
       return used[static_cast<std::size_t>(result.input_of_vertex[static_cast<std::size_t>(v)])];
     });
@@ -97,13 +98,11 @@ inline void expectNothingLeft(const Reconstruction& reconstruction, const pcl::P
   EXPECT_TRUE(mesh.polygons.empty() && mesh.cloud.data.empty());
   EXPECT_EQ(mesh.cloud.width + mesh.cloud.height, 0U);
   EXPECT_NE(reconstruction.getErrorMessage(), "");
-  const Surface& result = reconstruction.getResult();
-  EXPECT_EQ(result.triangles.cols() + result.sphere.cols(), 0);
-  EXPECT_TRUE(result.vertex_of_input.empty() && result.findings.empty());
+  const spherical_param::Result& result = reconstruction.getResult();
+  EXPECT_TRUE(result.surfaces.empty() && result.findings.empty() && result.verdict.empty());
   EXPECT_TRUE(reconstruction.getUsedIndices().empty());
   EXPECT_TRUE(reconstruction.getVertexIndices().empty());
   EXPECT_EQ(reconstruction.getIgnoredPointCount(), 0U);
-  EXPECT_TRUE(result.verdict.empty());
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
   EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
 }

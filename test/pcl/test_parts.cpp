@@ -1,8 +1,13 @@
-// Parts of a cloud, meshed by SphericalParamReconstruction.
+// Parts of a cloud and outliers, in SphericalParamReconstruction.
 
 #include "reconstructions.h"
 
 #include <pcl/search/kdtree.h>
+
+#include <chrono>
+#include <random>
+#include <string>
+#include <thread>
 
 namespace {
 
@@ -37,7 +42,6 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
           pcl::search::KdTree<PointXYZ>::Ptr(new pcl::search::KdTree<PointXYZ>));
     reconstruction.setInputCloud(makeTwo());
     reconstruction.setParts(PartsMode::Each);
-    EXPECT_EQ(reconstruction.getParts(), PartsMode::Each);
     const Polygons polygons = meshed(reconstruction);
     ASSERT_EQ(reconstruction.getPartCount(), 2U);
     EXPECT_EQ(polygons.size(), 596U + 396U);
@@ -47,10 +51,11 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
     Reconstruction alone;
     alone.setInputCloud(beside(makeEllipsoid(300)));
     const Triangles of_large = trianglesOf(meshed(alone));
-    EXPECT_EQ(reconstruction.getResult(0).triangles, of_large);
+    EXPECT_EQ(reconstruction.getResult().surfaces[0].triangles, of_large);
     EXPECT_EQ(reconstruction.getVertexIndices(0).at(static_cast<std::size_t>(of_large(0, 0))),
               polygons.front().vertices.front());
-    EXPECT_EQ(reconstruction.getResult(1).triangles, trianglesOf(meshed(makeEllipsoid(200))));
+    EXPECT_EQ(reconstruction.getResult().surfaces[1].triangles,
+              trianglesOf(meshed(makeEllipsoid(200))));
     EXPECT_TRUE(reconstruction.getDiagnosis(1).looksClosedGenus0());
     const auto sphere = reconstruction.getSphereCoordinates();
     EXPECT_TRUE(sphere->is_dense);
@@ -74,28 +79,75 @@ TEST(PartsOfCloud, HaveALeastSize) {
   reconstruction.setInputCloud(makeTwo());
   reconstruction.setParts(PartsMode::Each);
   reconstruction.setMinPartSize(201);
-  EXPECT_EQ(reconstruction.getMinPartSize(), 201);
   EXPECT_EQ(meshed(reconstruction).size(), 596U);
   reconstruction.setMinPartSize(301);
   Polygons polygons;
   reconstruction.reconstruct(polygons);
   EXPECT_TRUE(polygons.empty());
-  EXPECT_NE(reconstruction.getErrorMessage().find("no part of the cloud has 301 points"),
+  EXPECT_NE(reconstruction.getErrorMessage().find("no part has min_points = 301 points"),
             std::string::npos);
   EXPECT_EQ(reconstruction.getPartCount(), 1U);
-  EXPECT_EQ(reconstruction.getResult().triangles.cols(), 0);
+  EXPECT_TRUE(reconstruction.getResult().surfaces.empty());
 }
 
-TEST(PartsOfCloud, ThatAreFlatAreLeftOut) {
-  Cloud::Ptr cloud = makeEllipsoid(300);
+TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
+  const Cloud::Ptr cloud = makeEllipsoid(300);
   for (int i = 0; i < 100; ++i)
     cloud->push_back(PointXYZ(5.0F + 0.2F * static_cast<float>(i % 10),
                               0.2F * static_cast<float>(i / 10), 0.0F));
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
   reconstruction.setParts(PartsMode::Each);
+  testing::internal::CaptureStderr();
   EXPECT_EQ(meshed(reconstruction).size(), 596U);
+  const std::string warning = testing::internal::GetCapturedStderr();
+  EXPECT_NE(warning.find("part 2 of 2 (100 points) cannot be meshed"), std::string::npos);
   EXPECT_EQ(reconstruction.getPartCount(), 1U);
+  EXPECT_EQ(reconstruction.getResult().left_out.other_parts.size(), 100U);
+}
+
+TEST(PartsOfCloud, ShareOneTimeLimit) {
+  const Cloud::Ptr cloud(new Cloud);
+  std::mt19937 random(3);
+  std::normal_distribution<float> noise(0.0F, 0.1F);
+  for (int part = 0; part < 8; ++part)
+    for (PointXYZ point : *makeEllipsoid(150)) {
+      point.x += noise(random) + 6.0F * static_cast<float>(part);
+      point.y += noise(random);
+      cloud->push_back(point);
+    }
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setParts(PartsMode::Each);
+  reconstruction.setTimeLimit(0.3);
+  // The first part takes it all.
+  reconstruction.setProgressCallback([](const spherical_param::Progress& progress) {
+    if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
+        progress.fraction == 1.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(320));
+    return true;
+  });
+  meshed(reconstruction);
+  EXPECT_EQ(reconstruction.getPartCount(), 8U);
+  for (const Surface& surface : reconstruction.getResult().surfaces)
+    EXPECT_TRUE(surface.is_out_of_time);
+}
+
+TEST(OutliersOfCloud, AreLeftOutAndListed) {
+  const Cloud::Ptr cloud = makeEllipsoid(400);
+  for (const float x : {4.0F, -4.0F})
+    cloud->push_back(PointXYZ(x, 0.0F, 0.0F));
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  for (const double sigma : {6.0, 1000.0}) {
+    reconstruction.setOutliers(spherical_param::OutlierMode::Deviation);
+    reconstruction.setOutlierSigma(sigma);
+    EXPECT_EQ(reconstruction.getOutlierSigma(), sigma);
+    meshed(reconstruction);
+    const auto& outliers = reconstruction.getResult().left_out.outliers;
+    EXPECT_EQ(outliers.size(), sigma == 6.0 ? 2U : 0U);
+    EXPECT_EQ(reconstruction.getSphereCoordinates()->is_dense, outliers.empty());
+  }
 }
 
 }  // namespace

@@ -39,14 +39,15 @@ TEST_F(SphericalParamReconstruction, MeshIsThatOfTheCoreInIndicesOfTheCloud) {
     EXPECT_EQ(reconstruction.getUsedIndices(), hard.used);
     EXPECT_EQ(reconstruction.getIgnoredPointCount(), 3U);
     EXPECT_EQ(reconstruction.getVertexIndices().size(), hard.used.size() - 1);
-    EXPECT_EQ(reconstruction.getResult().duplicates(), 1U);
+    const Surface& surface = reconstruction.getResult().surface();
+    EXPECT_EQ(surface.duplicates(), 1U);
     for (std::size_t v = 0; v < reconstruction.getVertexIndices().size(); ++v)
       EXPECT_EQ(reconstruction.getVertexIndices()[v],
-                hard.used[static_cast<std::size_t>(reconstruction.getResult().input_of_vertex[v])]);
+                hard.indices[static_cast<std::size_t>(surface.input_of_vertex[v])]);
     const Surface expected =
-        spherical_param::reconstruct(positionsOf(*hard.cloud, hard.used), options);
-    EXPECT_EQ(reconstruction.getResult().sphere, expected.sphere);
-    EXPECT_EQ(reconstruction.getResult().smoothed, expected.smoothed);
+        spherical_param::reconstruct(positionsOf(*hard.cloud, hard.used), options).surface();
+    EXPECT_EQ(surface.sphere, expected.sphere);
+    EXPECT_EQ(surface.smoothed, expected.smoothed);
     EXPECT_EQ(reconstruction.getSelfIntersections(), expected.self_intersections);
     EXPECT_EQ(reconstruction.getResult().verdict, expected.verdict);
   }
@@ -123,7 +124,7 @@ TEST_F(SphericalParamReconstruction, EachMistakeIsNamed) {
   few->push_back(few->front());  // a repetition makes no fourth point
   few->push_back(PointXYZ(kNan, 0.0F, 0.0F));
   expect_failure_of(few, "at least 4");
-  expect_failure_of(few, "1 are not finite");
+  expect_failure_of(few, "left out: 1 point that is not finite");
   const Cloud::Ptr flat = makeEllipsoid(100);
   for (PointXYZ& point : *flat)
     point.z = 0.25F;
@@ -187,7 +188,7 @@ TEST_F(SphericalParamReconstruction, AllOverloadsAgreeAndASuccessFollowsAFailure
   EXPECT_EQ(trianglesOf(meshed(reconstruction)), triangles);
   reconstruction.reconstruct();
   EXPECT_EQ(reconstruction.getErrorMessage(), "");
-  EXPECT_EQ(reconstruction.getResult().triangles, triangles);
+  EXPECT_EQ(reconstruction.getResult().surface().triangles, triangles);
 }
 
 TEST_F(SphericalParamReconstruction, FailureIsPrintedOnceAndSuccessPrintsNothing) {
@@ -216,9 +217,8 @@ TEST_F(SphericalParamReconstruction, MovedPointsAreThoseOfConsolidation) {
   Reconstruction reconstruction;
   reconstruction.setInputCloud(makeEllipsoid(800));
   reconstruction.setConsolidation(spherical_param::ConsolidationMode::Auto);
-  EXPECT_EQ(reconstruction.getConsolidation(), spherical_param::ConsolidationMode::Auto);
   meshed(reconstruction);
-  const Surface& result = reconstruction.getResult();
+  const Surface& result = reconstruction.getResult().surface();
   const auto moved = reconstruction.getMovedPoints();
   ASSERT_EQ(moved->size(), 800U);
   ASSERT_GT(result.consolidated.cols(), 0);
@@ -237,7 +237,7 @@ TEST_F(SphericalParamReconstruction, SphereAndMovedPointsFitTheCloudAndOutliveIt
   EXPECT_TRUE(reconstruction.getMovedPoints()->empty());
   reconstruction.setSmoothing(2);
   meshed(reconstruction);
-  const Surface& result = reconstruction.getResult();
+  const Surface& result = reconstruction.getResult().surface();
   reconstruction.setInputCloud(makeEllipsoid(5));
   for (const auto& [cloud, expected] :
        {std::pair(reconstruction.getSphereCoordinates(), result.sphere),
@@ -274,6 +274,10 @@ struct Setter {
 TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
   using Integer = std::int64_t;
   const std::vector<Setter> setters{
+      SETTER("outliers", "auto", Outliers, spherical_param::OutlierMode::Auto),
+      SETTER("parts", "each", Parts, spherical_param::PartsMode::Each),
+      SETTER("min_points", Integer{7}, MinPartSize, 7),
+      SETTER("consolidation", "auto", Consolidation, spherical_param::ConsolidationMode::Auto),
       SETTER("graph", "knn", GraphMethod, GraphMethod::NearestNeighbors),
       SETTER("k", Integer{17}, KSearch, 17),
       SETTER("embedding", "iterative", EmbeddingMethod, EmbeddingMethod::Iterative),
@@ -362,13 +366,6 @@ TEST_F(SphericalParamReconstruction, EveryStageReportsFromTheCallingThreadAndCan
       EXPECT_THROW(reconstruction.reconstruct(mesh), std::domain_error) << stage;
       expectNothingLeft(reconstruction, mesh);
     }
-    // The search of the user finds the neighbours one by one, which can be ended in the middle.
-    reconstruction.setProgressCallback([](const Progress& progress) {
-      return progress.stage != std::string("neighbors") || progress.fraction == 0.0 ||
-             progress.fraction == 1.0;
-    });
-    if (with_search)
-      expectFailure(reconstruction, "cancelled");
     reconstruction.setProgressCallback([](const Progress&) -> bool { throw 5; });
     EXPECT_THROW(reconstruction.reconstruct(), int);
     int calls = 0;
@@ -382,6 +379,17 @@ TEST_F(SphericalParamReconstruction, EveryStageReportsFromTheCallingThreadAndCan
   }
 }
 
+TEST_F(SphericalParamReconstruction, TheSearchOfTheUserCanBeEndedInTheMiddle) {
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(makeEllipsoid(5000));
+  reconstruction.setSearchMethod(SearchPtr(new pcl::search::KdTree<PointXYZ>()));
+  reconstruction.setProgressCallback([](const Progress& progress) {
+    return progress.stage != std::string("neighbors") || progress.fraction == 0.0 ||
+           progress.fraction == 1.0;
+  });
+  expectFailure(reconstruction, "cancelled");
+}
+
 TEST_F(SphericalParamReconstruction, ObjectsInSeveralThreadsAndCopiesAreIndependent) {
   const Cloud::Ptr cloud = makeEllipsoid(500);
   const auto run = [&](std::size_t i) {
@@ -392,7 +400,7 @@ TEST_F(SphericalParamReconstruction, ObjectsInSeveralThreadsAndCopiesAreIndepend
       reconstruction.setSearchMethod(SearchPtr(new pcl::search::KdTree<PointXYZ>));
     pcl::PolygonMesh mesh;
     reconstruction.reconstruct(mesh);
-    return reconstruction.getResult().sphere;
+    return reconstruction.getResult().surface().sphere;
   };
   std::vector<Positions> spheres(4);
   std::vector<std::thread> threads;

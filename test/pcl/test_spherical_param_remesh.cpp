@@ -81,7 +81,7 @@ TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVerticesSmoothedOrNot) 
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
   ASSERT_EQ(points.cols(), 1000);
   const spherical_param::MapDistortion distortion = spherical_param::measureMapDistortion(
-      points, reconstruction.getResult().triangles, map.sphere);
+      points, reconstruction.getResult().surface().triangles, map.sphere);
   EXPECT_EQ(distortion.flipped_triangles, 0);
   EXPECT_EQ(distortion.area.mean, map.distortion.area.mean);
   for (std::size_t v = 0; v < 1000; ++v) {
@@ -91,7 +91,7 @@ TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVerticesSmoothedOrNot) 
   }
   reconstruction.setSmoothing(3);
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
-  EXPECT_EQ(points, reconstruction.getResult().smoothed);
+  EXPECT_EQ(points, reconstruction.getResult().surface().smoothed);
 }
 
 TEST_F(SphericalParamRemesh, SameForAnyNumberOfThreads) {

@@ -68,10 +68,26 @@ inline bool liesInPlane(const Positions& points) {
   });
 }
 
-/// Whether reconstruct() must mesh points; it must reject all others.
+/// Those of the points that are finite.
+inline Positions finiteOf(const Positions& points) {
+  std::vector<Index> finite;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      finite.push_back(i);
+  return points(Eigen::all, finite);
+}
+
+/// Whether reconstruct() may mesh points; it must reject all others.
 inline bool canBeMeshed(const Positions& points) {
-  return points.allFinite() && (points.array().abs() <= 1e100).all() &&
-         firstAtPlaces(points).size() >= 4 && !liesInPlane(points);
+  const Positions finite = finiteOf(points);
+  return (finite.array().abs() <= 1e100).all() && firstAtPlaces(finite).size() >= 4 &&
+         !liesInPlane(finite);
+}
+
+/// Whether it must mesh them: without outliers, or in its parts, there may be nothing to mesh.
+inline bool mustBeMeshed(const Positions& points, const spherical_param::Options& options) {
+  return options.outliers == spherical_param::OutlierMode::None &&
+         options.parts == spherical_param::PartsMode::All && canBeMeshed(points);
 }
 
 /// Whether lists are as types.h says: `count` lists of indices in [0, n).
@@ -104,10 +120,11 @@ inline bool facesInward(const Positions& points, const Triangles& triangles) {
   return volume < -1e-12L * size;
 }
 
-/// What a result lacks of what is guaranteed; empty if it lacks nothing.
-inline std::string faultOf(const Positions& points, const spherical_param::Options& options,
+/// What a surface of some points of a cloud lacks of what is guaranteed; empty if it lacks nothing.
+inline std::string faultOf(const Positions& cloud, const spherical_param::Options& options,
                            const spherical_param::Surface& result) {
-  const auto n = static_cast<std::size_t>(points.cols());
+  const Positions points = cloud(Eigen::all, result.inputs);
+  const std::size_t n = result.inputs.size();
   const std::map<Place, Index> first = firstAtPlaces(points);
   const std::size_t v = first.size();
   if (result.vertexCount() != v || result.duplicates() != n - v ||
@@ -116,8 +133,9 @@ inline std::string faultOf(const Positions& points, const spherical_param::Optio
   for (std::size_t i = 0; i < n; ++i) {
     const auto p = points.col(static_cast<Eigen::Index>(i));
     const auto vertex = static_cast<std::size_t>(result.vertex_of_input[i]);
-    if (vertex >= v ||
-        result.input_of_vertex[vertex] != first.at({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}))
+    const auto expected =
+        static_cast<std::size_t>(first.at({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}));
+    if (vertex >= v || result.input_of_vertex[vertex] != result.inputs[expected])
       return "the vertex of a point is not that of the first point at its place";
   }
   const auto count = static_cast<Eigen::Index>(v);
@@ -125,36 +143,76 @@ inline std::string faultOf(const Positions& points, const spherical_param::Optio
     return "the mesh is not a sphere over all points";
   if (!result.topology.isSphere())
     return "the result's own check says that the mesh is not a sphere";
-  if (facesInward(points(Eigen::all, result.input_of_vertex), result.triangles))
+  if (facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
     return "the triangles face inward";
   if (result.sphere.cols() != count || !areUnitVectors(result.sphere))
     return "the embedding is not of unit vectors";
   if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))
     return "the volume or the area is not finite";
-  if (options.smoothing > 0 &&
-      (result.smoothed.cols() != count || !result.smoothed.allFinite()))
+  if (options.smoothing > 0 && (result.smoothed.cols() != count || !result.smoothed.allFinite()))
     return "the smoothed points are not as many finite ones";
   return "";
 }
 
+/// What the lists of a result lack; empty if they lack nothing.
+inline std::string faultOfLists(const Positions& points, const spherical_param::Options& options,
+                                const spherical_param::Result& result) {
+  using spherical_param::PartsMode;
+  const spherical_param::LeftOut& left_out = result.left_out;
+  std::vector<int> times(static_cast<std::size_t>(points.cols()), 0);
+  bool is_ascending = true;
+  const auto count = [&](const std::vector<Index>& list) {
+    is_ascending = is_ascending && std::is_sorted(list.begin(), list.end());
+    for (const Index i : list)
+      ++times.at(static_cast<std::size_t>(i));
+  };
+  for (const spherical_param::Surface& surface : result.surfaces)
+    count(surface.inputs);
+  for (const auto& list : {left_out.not_finite, left_out.outliers, left_out.other_parts})
+    count(list);
+  if (!is_ascending || std::any_of(times.begin(), times.end(), [](int t) { return t != 1; }))
+    return "not every point is in one list, or a list is not ascending";
+  if (static_cast<Eigen::Index>(left_out.not_finite.size()) !=
+      points.cols() - finiteOf(points).cols())
+    return "not all points that are not finite are listed";
+  if (options.outliers == spherical_param::OutlierMode::None && !left_out.outliers.empty())
+    return "outliers that were not to be looked for";
+  if (options.parts == PartsMode::All && !left_out.other_parts.empty())
+    return "other parts of a whole cloud";
+  if (result.surfaces.empty() || (options.parts != PartsMode::Each && result.surfaces.size() > 1))
+    return "not the number of surfaces";
+  for (std::size_t i = 1; i < result.surfaces.size(); ++i)
+    if (result.surfaces[i].inputs.size() > result.surfaces[i - 1].inputs.size())
+      return "the surface of most points is not the first";
+  for (const std::string& failure : result.failures)
+    if (failure.find("please report") != std::string::npos)
+      return failure;
+  return "";
+}
+
 /// The arrays and numbers of a result bit by bit, to compare results.
-inline std::string bytesOf(const spherical_param::Surface& result) {
+inline std::string bytesOf(const spherical_param::Result& result) {
   std::string bytes;
   const auto add = [&bytes](const auto& array) {
     const auto count = static_cast<std::size_t>(array.size());
     bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
     bytes.append(reinterpret_cast<const char*>(array.data()), count * sizeof *array.data());
   };
-  add(result.triangles);
-  add(result.sphere);
-  add(result.smoothed);
-  add(result.vertex_of_input);
-  add(result.input_of_vertex);
-  add(result.vertex_residuals);
-  add(result.self_intersections);
-  add(result.embedding.residuals);
-  add(std::array{result.measures.volume, result.measures.area, result.embedding.energy,
-                 result.optimization.energy, result.smoothing.volume_after});
+  for (const spherical_param::Surface& surface : result.surfaces) {
+    add(surface.triangles);
+    add(surface.sphere);
+    add(surface.smoothed);
+    add(surface.inputs);
+    add(surface.vertex_of_input);
+    add(surface.input_of_vertex);
+    add(surface.vertex_residuals);
+    add(surface.self_intersections);
+    add(surface.embedding.residuals);
+    add(std::array{surface.measures.volume, surface.measures.area, surface.embedding.residual,
+                   surface.smoothing.volume_after});
+  }
+  add(result.left_out.outliers);
+  add(result.left_out.other_parts);
   add(result.verdict);
   for (const spherical_param::Finding& finding : result.findings)
     add(finding.text);

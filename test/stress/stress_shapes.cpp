@@ -77,41 +77,39 @@ Options someOptions(stress::Random& random, bool is_large) {
   embedding.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
   embedding.starts = 1 + one(3);
   options.seed = static_cast<std::uint32_t>(one(1000000));
+  options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(3)) : OutlierMode::None;
+  options.parts = one(5) == 0 ? static_cast<PartsMode>(one(3)) : PartsMode::All;
+  options.min_points = 4 + one(60);
   return options;
-}
-
-/// With lists of the caller, or without.
-Surface reconstructBy(bool by_lists, const Positions& points, const Options& options) {
-  if (!by_lists)
-    return reconstruct(points, options);
-  const NeighborLists lists =
-      points.allFinite() ? test::bruteForceNeighbors(points, neighborsToSearch(options))
-                         : NeighborLists();
-  return reconstruct(points, lists, options);
 }
 
 /// What is wrong with the answer to a set; empty if nothing is.
 std::string tryOut(const Positions& points, std::uint64_t seed) {
   stress::Random random(seed ^ 0x5eedULL);
   Options options = someOptions(random, points.cols() > 600);
-  const bool by_lists = random.chance(0.4);
+  const NeighborSearchFactory search_of =
+      random.chance(0.4) ? test::bruteForceFactory(points) : NeighborSearchFactory();
   options.threads = 1;
-  const bool can_be_meshed = stress::canBeMeshed(points);
   try {
-    const Surface result = reconstructBy(by_lists, points, options);
-    if (!can_be_meshed)
+    const Result result = reconstruct(points, options, search_of);
+    if (!stress::canBeMeshed(points))
       return "points that cannot be meshed are accepted";
-    const std::string fault = stress::faultOf(points, options, result);
+    std::string fault = stress::faultOfLists(points, options, result);
+    for (const Surface& surface : result.surfaces) {
+      if (fault.empty())
+        fault = stress::faultOf(points, options, surface);
+      if (fault.empty() &&
+          !isClosedForVtk(surface.triangles, static_cast<Index>(surface.vertexCount())))
+        fault = "VTK takes the mesh for open, no manifold, or several pieces";
+    }
     if (!fault.empty())
       return fault;
-    if (!isClosedForVtk(result.triangles, static_cast<Index>(result.vertexCount())))
-      return "VTK takes the mesh for open, no manifold, or several pieces";
     options.threads = 3;
     if (random.chance(0.25) &&
-        stress::bytesOf(result) != stress::bytesOf(reconstructBy(by_lists, points, options)))
+        stress::bytesOf(result) != stress::bytesOf(reconstruct(points, options, search_of)))
       return "other bytes with 3 threads";
   } catch (const InvalidInput& error) {
-    return can_be_meshed ? std::string("rejected: ") + error.what() : "";
+    return stress::mustBeMeshed(points, options) ? std::string("rejected: ") + error.what() : "";
   } catch (const std::exception& error) {
     return std::string("not a documented exception: ") + error.what();
   }

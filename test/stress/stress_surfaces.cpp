@@ -138,7 +138,7 @@ Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, 
   Options options;
   if (quick && truth.kind != SurfaceKind::ClosedGenus0 && truth.openings.empty())
     options.optimization = OptimizationMethod::Flips;  // the full one takes long in vain
-  const Surface result = reconstruct(points, options);
+  const Surface result = reconstruct(points, options).surface();
   const SurfaceDiagnosis& found = result.diagnosis;
   Complaints complaints;
   const std::string fault = stress::faultOf(points, options, result);

@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,7 +53,7 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
   }
   if (below(20) == 0) {
     job.is_valid = false;
-    job.points(1, job.points.cols() / 2) = std::numeric_limits<double>::quiet_NaN();
+    job.points.row(1).setConstant(0.5);
   }
   Options& options = job.options;
   options.graph = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
@@ -68,17 +67,21 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
   options.seed = static_cast<std::uint32_t>(below(1000));
   options.details = below(4) == 0;
   options.threads = 1 + below(2);
+  options.outliers = below(4) == 0 ? OutlierMode::Auto : OutlierMode::None;
+  options.parts = below(4) == 0 ? PartsMode::Each : PartsMode::All;
   return job;
 }
 
 /// All of the answer as bytes; nothing if it is of the wrong kind.
 std::string answerTo(const Job& job) {
   try {
-    const Surface result = reconstruct(job.points, job.options);
-    const bool is_right = job.is_valid && stress::faultOf(job.points, job.options, result).empty();
+    const Result result = reconstruct(job.points, job.options);
+    bool is_right = job.is_valid && stress::faultOfLists(job.points, job.options, result).empty();
+    for (const Surface& surface : result.surfaces)
+      is_right = is_right && stress::faultOf(job.points, job.options, surface).empty();
     return is_right ? stress::bytesOf(result) : std::string();
   } catch (const InvalidInput& error) {
-    return job.is_valid ? std::string() : error.what();
+    return stress::mustBeMeshed(job.points, job.options) ? std::string() : error.what();
   }
 }
 

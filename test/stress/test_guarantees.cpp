@@ -55,7 +55,7 @@ TEST(Guarantees, BadAllocIsPassedOnFromEveryAllocation) {
   options.threads = 2;
   constexpr long many = 1L << 40;
   left = many;
-  const Triangles expected = reconstruct(points, options).triangles;
+  const Triangles expected = reconstruct(points, options).surface().triangles;
   const long allocations = many - left;
   ASSERT_GT(allocations, 1000);
   std::mt19937_64 random(1);
@@ -66,7 +66,7 @@ TEST(Guarantees, BadAllocIsPassedOnFromEveryAllocation) {
     EXPECT_THROW(reconstruct(points, options), std::bad_alloc) << "allocation " << which;
   }
   left = -1;
-  EXPECT_EQ(reconstruct(points, options).triangles, expected);
+  EXPECT_EQ(reconstruct(points, options).surface().triangles, expected);
 }
 
 TEST(Guarantees, AKilledToolLeavesNoHalfWrittenFile) {

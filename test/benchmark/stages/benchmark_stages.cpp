@@ -5,10 +5,10 @@
 // A name has the stage, the number of points and the number of threads.
 
 #include "embedding.h"
+#include "local_delaunay_graph.h"
 #include "mesh_optimization.h"
-#include "neighbor_graph.h"
+#include "nearest_neighbor_graph.h"
 #include "neighbor_search.h"
-#include "outliers.h"
 #include "point_set.h"
 #include "scan_shapes.h"
 #include "smoothing.h"
@@ -53,6 +53,13 @@ Positions scanOf(Index count) {
   return tools::generateScan(options).points.cast<float>().cast<double>();
 }
 
+NeighborGraph delaunayGraphOf(const Positions& points, const internal::Neighbors& neighbors,
+                              const Execution& execution) {
+  return internal::buildLocalDelaunayGraph(points,
+                                           internal::findStars(points, neighbors, execution),
+                                           internal::StraySearch::Yes, execution);
+}
+
 /// A scan and what each stage makes of the results of the stages before it, with all threads.
 class Data {
 public:
@@ -73,7 +80,7 @@ public:
     std::iota(all.begin(), all.end(), Index{0});
     lists = search(all, kNeighbors);
     long_lists = search(all, kPaperNeighbors);
-    graph = buildNeighborGraph(points, lists, GraphMethod::LocalDelaunay, kNeighbors, search);
+    graph = delaunayGraphOf(points, {lists, search}, {});
     sphere = embed(graph.graph, points).directions;
     sphere_triangles = triangulateSphere(sphere);
     if (signedVolume(points, sphere_triangles) < 0.0)
@@ -137,16 +144,20 @@ const std::vector<Entry> kEntries = {
        keep(findNearestNeighbors(d.points, kNeighbors, withThreads(n)));
      }},
     {"outliers", true,
-     [](const Data& d, int n) { keep(findOutliers(d.points, d.long_lists, {}, withThreads(n))); }},
+     [](const Data& d, int n) {
+       Options options;
+       options.outliers = OutlierMode::Auto;
+       options.threads = n;
+       keep(findOutliers(d.scan, options));
+     }},
     {"tangent Delaunay graph", true,
      [](const Data& d, int n) {
-       keep(buildNeighborGraph(d.points, d.lists, GraphMethod::LocalDelaunay, kNeighbors,
-                               n == 1 ? d.search_alone : d.search, withThreads(n)));
+       keep(delaunayGraphOf(d.points, {d.lists, n == 1 ? d.search_alone : d.search},
+                            withThreads(n)));
      }},
     {"nearest-neighbour graph", false,
      [](const Data& d, int) {
-       keep(buildNeighborGraph(d.points, d.long_lists, GraphMethod::NearestNeighbors,
-                               kPaperNeighbors));
+       keep(internal::buildNearestNeighborGraph(d.points, d.long_lists, kPaperNeighbors));
      }},
     {"embedding, multilevel", true, [](const Data& d, int n) { embedBy({}, d, n); }},
     {"embedding, converged", true, [](const Data& d, int n) { embedBy(toTolerance(1e-8), d, n); }},

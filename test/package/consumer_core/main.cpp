@@ -12,7 +12,7 @@ int main() {
     const double r = std::sqrt(1.0 - z * z);
     points.col(i) << 3.0 * r * std::cos(2.4 * i), 2.0 * r * std::sin(2.4 * i), z;
   }
-  const spherical_param::Surface result = spherical_param::reconstruct(points);
+  const spherical_param::Surface result = spherical_param::reconstruct(points).surface();
   const spherical_param::SphereMap map =
       spherical_param::computeSphereMap(points, result.triangles, result.sphere);
   std::cout << "spherical_param " << SPHERICAL_PARAM_VERSION << ": " << result.triangles.cols()

@@ -6,7 +6,7 @@
 #endif
 #include <pcl/point_types.h>
 #include <pcl/surface/spherical_param_reconstruction.h>
-#include <spherical_param/point_set.h>
+#include <spherical_param/mesh_topology.h>
 
 #include <cmath>
 
@@ -27,9 +27,9 @@ int main() {
   reconstruction.setInputCloud(cloud);
   pcl::PolygonMesh mesh;
   reconstruction.reconstruct(mesh);
-  const spherical_param::Surface& result = reconstruction.getResult();
+  const spherical_param::Surface& surface = reconstruction.getResult().surface();
   return mesh.polygons.size() == 796 &&
-                 spherical_param::findDistinctPoints(result.sphere).input_of_vertex.size() == 400
+                 spherical_param::checkTopology(surface.triangles, 400).isSphere()
              ? 0
              : 2;
 }
