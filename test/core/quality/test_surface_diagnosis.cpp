@@ -1,5 +1,6 @@
 #include "surface_diagnosis.h"
 
+#include "graphs.h"
 #include "helpers.h"
 #include "openings.h"
 #include "surface_scenes.h"
