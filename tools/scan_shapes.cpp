@@ -1149,7 +1149,7 @@ const std::vector<ShapeInfo>& allShapes() {
       {Shape::Snake, "snake", "a coiled snake with its head raised", true},
       {Shape::Plate, "plate", "a flat plate with rounded edges", true},
       {Shape::Torus, "torus", "a torus (genus 1)", false},
-      {Shape::Bowl, "bowl", "a shell without its lid (open)", false},
+      {Shape::Bowl, "bowl", "an open shell", false},
       {Shape::Pair, "pair", "two spheres apart (two pieces)", false},
       {Shape::DoubleTorus, "double_torus", "two tori grown together (genus 2)", false},
       {Shape::Holed, "holed", "a rabbit with four openings (open)", false},

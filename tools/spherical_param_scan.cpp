@@ -42,14 +42,14 @@ const std::vector<OptionInfo> option_table = {
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A scan of a hand to try the other tools on", "hand scan.ply"},
-    {"A noisy one of another size, and the surface that it comes from",
+    {"A noisy scan of another size, and its true surface",
      "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
 };
 
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " SHAPE output [options]\n\n"
-         "Writes points that are spread evenly over a generated surface.\n"
+         "Writes points spread evenly over a generated surface.\n"
          "  SHAPE:  a shape or preset, see -list\n  output: " +
          extensionsFor(FileUse::WriteCloud) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
@@ -94,7 +94,7 @@ void applyShape(const std::string& name, ScanOptions& scan) {
     scan.shape = preset->shape;
     scan.points = preset->points;
   } else {
-    throw UsageError("there is no shape " + inQuotes(name),
+    throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + tool_name + " -list' for the shapes");
   }
 }
@@ -102,9 +102,9 @@ void applyShape(const std::string& name, ScanOptions& scan) {
 Settings parseSettings(const CommandLine& command_line) {
   std::vector<std::string> words = command_line.others();
   if (words.size() != 2) {
-    throw UsageError(words.empty()       ? "there is no shape"
-                     : words.size() == 1 ? "there is no output file, or no shape"
-                                         : "there is one word too many: " + inQuotes(words[2]),
+    throw UsageError(words.empty()       ? "the shape is missing"
+                     : words.size() == 1 ? "the output file or the shape is missing"
+                                         : "one word too many: " + inQuotes(words[2]),
                      "run '" + tool_name + " SHAPE output [options]', -h shows the options");
   }
   if (formatOf(words[0]) && !formatOf(words[1])) {

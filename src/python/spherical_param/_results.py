@@ -117,7 +117,7 @@ class Result(Surface, MeshExport):
         Cancelled, MemoryError, KeyboardInterrupt
         """
         if not os.fspath(path).lower().endswith(".html"):
-            raise InvalidInput(f"{os.fspath(path)!r} is no name of a page; give one with .html")
+            raise InvalidInput(f"{os.fspath(path)!r} does not end in .html; give a name that does")
         if not _core.has_report:
             raise InvalidInput(
                 "this package was built without the page; install three.js (libjs-three) and build "
