@@ -317,7 +317,7 @@ struct Result {
   /// Largest.
   std::vector<Surface> surfaces;
   LeftOut left_out;                   ///< points in none of them
-  std::vector<std::string> failures;  ///< why parts could not be meshed, a clause each
+  std::vector<std::string> failures;  ///< why parts could not be meshed, a clause each: faults
   std::vector<StageTime> stages;      ///< in the order of the work, of all surfaces together
   std::string verdict;                ///< a headline, e.g. "3 meshes, all sound."
   std::vector<Finding> findings;      ///< of all surfaces; those of several parts name them
