@@ -238,20 +238,6 @@ TEST(Reconstruct, RepeatedPointsBecomeOneVertexAndAreReported) {
   expectGuarantees(copies, surfaceOf(copies));
 }
 
-TEST(Reconstruct, FindsTheNeighboursThatTheCallerWouldFind) {
-  const Positions base = 5.0 * ellipsoid(400);
-  const Positions points = horizontally(base, base.leftCols(50));
-  for (const Options& options : bothMethods()) {
-    const Surface expected = mesh(base, options);
-    const Surface result = surfaceOf(base, options);
-    expectGuarantees(base, result);
-    EXPECT_EQ(result.triangles, expected.triangles);
-    EXPECT_EQ(result.sphere, expected.sphere);
-    // Repeated points are merged before neighbours are sought.
-    EXPECT_EQ(surfaceOf(points, options).triangles, expected.triangles);
-  }
-}
-
 TEST(Reconstruct, WrongAnswersAndExceptionsOfTheSearchComeOut) {
   const Positions points = horizontally(randomSphere(60, 1), randomSphere(60, 1));
   const NeighborLists lists = bruteForceNeighbors(points.leftCols(60), 12);
