@@ -1,4 +1,5 @@
 #include "filled_graph.h"
+#include "graphs.h"
 
 #include "graph_cycles.h"
 #include "graph_helpers.h"
