@@ -195,7 +195,8 @@ Json filesToJson(const Settings& settings) {
 /// The members that are the same for the whole cloud and for each of its parts.
 Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
   Json json = filesToJson(settings);
-  json.update(cloudToJson(cloud));
+  json["points"] = cloud.data->points.size();
+  json["left_out"] = toJson(cloud.result.left_out);
   json["stages"] = toJson(cloud.stages);
   json["peak_memory_bytes"] = peakMemoryToJson();
   return json;
@@ -204,7 +205,7 @@ Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
 /// The report on one surface.
 Json report(const Settings& settings, const CloudReconstruction& cloud, const Surface& surface) {
   Json json = cloudReport(settings, cloud);
-  addSurface(settings.reconstruction, surface, json);
+  json.update(toJson(surface));
   return json;
 }
 
@@ -214,12 +215,13 @@ Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
   json["verdict"] = cloud.result.verdict;
   json["usable"] = cloud.result.isUsable();
   json["findings"] = toJson(cloud.result.findings);
+  json["failures"] = cloud.result.failures;
   json["parts"] = Json::array();
   for (const Surface& surface : cloud.result.surfaces) {
     Json part;
     part["points"] = surface.inputs.size();
     part["output"] = numbered(settings.output, json["parts"].size());
-    addSurface(settings.reconstruction, surface, part);
+    part.update(toJson(surface));
     json["parts"].push_back(std::move(part));
   }
   return json;
@@ -267,7 +269,6 @@ void printSummary(const Settings& settings, const CloudReconstruction& cloud, Co
       console.heading("\nsurface of " + counted(surface.inputs.size(), "point"));
     }
     printTables(surface, console);
-    printMeasures(surface, console);
     vertices += surface.vertexCount();
     triangles += static_cast<std::size_t>(surface.triangles.cols());
   }
@@ -356,6 +357,9 @@ void run(const std::vector<std::string>& words) {
       },
       [&] { printSummary(settings, cloud, console); });
   Findings findings(settings.report.quiet, settings.reconstruction.strict, settings.page.empty());
+  for (const std::string& failure : cloud.result.failures) {
+    findings.add(failure);
+  }
   findings.add("", cloud.result.findings);
   findings.print();
   findings.requireSoundness(cloud.result.isUsable());

@@ -2,7 +2,6 @@
 
 #include "spherical_param/types.h"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -11,17 +10,6 @@ namespace spherical_param {
 
 /// \addtogroup checks
 /// @{
-
-/// What is wrong with a mesh, and where. A sound closed surface has all lists empty.
-struct TopologyFaults {
-  std::vector<std::array<Index, 2>> boundary_edges;     ///< edges with one triangle
-  std::vector<std::array<Index, 2>> nonmanifold_edges;  ///< edges with more than two triangles
-  /// Edges whose two triangles traverse them in the same direction.
-  std::vector<std::array<Index, 2>> misoriented_edges;
-  std::vector<Index> nonmanifold_vertices;  ///< vertices whose triangles are not one fan
-  std::vector<Index> unused_vertices;       ///< vertices of no triangle
-  std::vector<Index> degenerate_triangles;  ///< triangles that name a vertex twice
-};
 
 /// Combinatorial properties of a triangle mesh.
 struct MeshTopology {
@@ -36,7 +24,8 @@ struct MeshTopology {
   long long euler_characteristic = 0;  ///< V - E + F over the used vertices
   /// Sum of the genera of the components; none unless closed, manifold and oriented.
   std::optional<long long> genus;
-  TopologyFaults faults;  ///< what is wrong, and where
+  std::vector<Index> nonmanifold_vertices;  ///< vertices whose triangles are not one fan, ascending
+  std::vector<Index> unused_vertices;       ///< vertices of no triangle, ascending
 
   /// Manifold at edges and vertices. \return whether it is
   bool manifold() const { return edge_manifold && vertex_manifold; }
@@ -44,13 +33,13 @@ struct MeshTopology {
   /// \return whether it is one
   bool isSphere() const {
     return closed && manifold() && oriented && components == 1 && genus == 0 &&
-           faults.unused_vertices.empty();
+           unused_vertices.empty();
   }
   /// A manifold with boundary, consistently oriented, in one piece over all vertices.
   /// \return whether it is one
   bool isOpenSurface() const {
     return triangles > 0 && !closed && manifold() && oriented && components == 1 &&
-           faults.unused_vertices.empty();
+           unused_vertices.empty();
   }
 };
 
@@ -68,7 +57,7 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 /// positive if the triangles are oriented outward. Meaningless for an open mesh.
 ///
 /// \param points 3 x n; \param triangles 3 x m, indices in [0, n).
-/// \return the volume, of less than nothing if the triangles are oriented inward.
+/// \return the volume; negative if the triangles are oriented inward.
 /// \throw InvalidInput for an index out of range.
 double signedVolume(const Positions& points, const Triangles& triangles);
 

@@ -55,8 +55,10 @@ std::vector<Index> findOutliers(const Positions& points, const Options& options)
 ///
 /// \param points 3 x n.
 /// \param options Options::min_points, outliers; threads, progress.
-/// \return the numbers of the points of each part, ascending; that of most points first.
-/// \throw InvalidInput as above, also if there is no part; Cancelled.
+/// \return the numbers of the points of each part, ascending; that of most points first. None if
+/// all
+///         are too small.
+/// \throw InvalidInput as above; Cancelled.
 /// Cost: that of a neighbour graph.
 std::vector<std::vector<Index>> findParts(const Positions& points, const Options& options = {});
 

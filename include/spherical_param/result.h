@@ -59,7 +59,12 @@ struct Opening {
   double certainty = 0.0;
   /// The loop lies in a plane: it may be a flat face of the surface without points inside.
   bool is_flat = false;
-  bool is_filled = false;  ///< the mesh has triangles there
+  bool is_filled = false;        ///< the mesh has triangles there
+  std::vector<Index> triangles;  ///< of the mesh over a filled opening; each lies over one only
+
+  /// Whether it is an opening of the surface for sure, not a gap in the sampling or a flat face:
+  /// SurfaceMode::Auto leaves these open, and to fill one is a fault. \return true if it is
+  bool isCertain() const { return certainty >= 1.0 && !is_flat; }
 };
 
 /// What a cloud shows, judged by its mesh and its neighbour graph.
@@ -72,34 +77,16 @@ enum class SurfaceKind {
 };
 
 /// Bits of SurfaceDiagnosis::triangle_marks.
-struct TriangleMarks {
-  static constexpr std::uint8_t self_intersection = 1;  ///< intersects another
-  static constexpr std::uint8_t filled_hole = 2;        ///< part of a filled hole
-  static constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
-  static constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
-  static constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
-};
-
-/// Connected triangles over a place without points that is wide against the distance of the points
-/// around it: an opening of the surface, or a cut through a handle or between parts.
-struct FilledHole {
-  SurfaceKind cause = SurfaceKind::Open;  ///< or Handles, SeveralParts, of which it is a trace
-  std::size_t triangles = 0;              ///< of the mesh, over the place
-  double area = 0.0;                      ///< [squared unit of the input]
-  double boundary_length = 0.0;           ///< of all its rims [unit of the input]
-  double diameter = 0.0;  ///< of the disc that area and boundary make [unit of the input]
-  double spacing = 0.0;   ///< distance of the points at its rim [unit of the input]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< centroid of its triangles
-  std::vector<Index> vertices;                       ///< of its rim, ascending
-  /// Its boundary: closed loops of vertices that are joined by edges of the mesh, the last to the
-  /// first, with the filled hole on the left seen from outside. Complete whatever max_vertices is;
-  /// the longest first, each from its lowest vertex. Several where the filled hole has more than
-  /// one rim.
-  std::vector<std::vector<Index>> loops;
-};
+namespace triangle_mark {
+inline constexpr std::uint8_t self_intersection = 1;  ///< intersects another
+inline constexpr std::uint8_t filled_hole = 2;        ///< over a certain opening that is filled
+inline constexpr std::uint8_t handle = 4;             ///< at the ends of torn edges of a handle
+inline constexpr std::uint8_t part_bridge = 8;        ///< at the ends of bridges between parts
+inline constexpr std::uint8_t outside_graph = 16;     ///< at an edge outside the graph's 2-ring
+}  // namespace triangle_mark
 
 /// Neighbours in the graph, along the surface, that the mesh tears apart.
-struct CollapsedHandle {
+struct Handle {
   std::size_t edges = 0;  ///< of the graph that are torn
   double size = 0.0;      ///< diagonal of the box around them [unit of the input]
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of their ends
@@ -119,18 +106,16 @@ struct PartBridge {
 /// What speaks against a closed genus-0 surface, and where.
 struct SurfaceDiagnosis {
   SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest of what was found
-  std::vector<FilledHole> filled_holes;          ///< by falling area
-  std::vector<CollapsedHandle> handles;          ///< by falling number of edges
+  std::vector<Handle> handles;                   ///< by falling number of edges
   std::vector<PartBridge> bridges;               ///< by falling number of points
   bool is_one_sided = false;                     ///< found with openings alone: the mesh tears it
-  std::size_t boundaries = 0;  ///< loops around openings that the mesh leaves open
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph, in [0,
   /// 1].
   double edges_outside_graph = 0.0;
   /// Handles of the surface, counted by the cycles of the graph whatever the mesh does to them;
   /// none where that was not needed, as neighbours are nowhere torn apart, or unknown.
   std::optional<int> genus;
-  /// For each triangle, the TriangleMarks of all findings, listed or not; empty unless
+  /// For each triangle, the bits of all findings, listed or not; empty unless
   /// Options::details asks for it.
   std::vector<std::uint8_t> triangle_marks;
 
@@ -139,8 +124,6 @@ struct SurfaceDiagnosis {
   /// Whether the mesh leaves the graph in too many places to show the surface, whatever that is.
   /// \return true if more than a tenth of its edges do
   bool isFolded() const;
-  /// Filled holes that are a trace of nothing else. \return their number
-  std::size_t openings() const;
 };
 
 /// What consolidation found and did.
@@ -291,6 +274,13 @@ struct Surface {
   /// Where the vertices were moved. \return `smoothed`, or without smoothing `consolidated`: empty
   /// if they are the input's points
   const Positions& moved() const { return smoothed.cols() > 0 ? smoothed : consolidated; }
+  /// Certain openings that the mesh fills. \return their number
+  std::size_t filledOpenings() const {
+    return static_cast<std::size_t>(
+        std::count_if(openings.begin(), openings.end(), [](const Opening& opening) {
+          return opening.is_filled && opening.isCertain();
+        }));
+  }
   /// Whether the mesh is closed. \return true if it has no boundary
   bool isClosed() const { return boundary.empty(); }
   /// Whether the mesh can be worked with. \return true if at most 1 % of its triangles intersect
@@ -327,7 +317,7 @@ struct Result {
   /// Largest.
   std::vector<Surface> surfaces;
   LeftOut left_out;                   ///< points in none of them
-  std::vector<std::string> failures;  ///< why parts could not be meshed, a clause each
+  std::vector<std::string> failures;  ///< why parts could not be meshed, a clause each: faults
   std::vector<StageTime> stages;      ///< in the order of the work, of all surfaces together
   std::string verdict;                ///< a headline, e.g. "3 meshes, all sound."
   std::vector<Finding> findings;      ///< of all surfaces; those of several parts name them

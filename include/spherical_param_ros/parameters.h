@@ -1,29 +1,18 @@
 #pragma once
 
-#include "parts.h"
-#include "spherical_param/reconstruct.h"
+#include "spherical_param/options.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace spherical_param_ros {
 
-/// Which points are left out.
-struct OutlierChoice {
-  /// OutlierOptions::sigma of findOutliers(); unset: those of findStrayPoints().
-  std::optional<double> sigma;
-};
-
 /// How clouds are meshed, and how they wait for it.
 struct Settings {
-  spherical_param::Options options;       ///< `progress` is ignored
-  std::optional<OutlierChoice> outliers;  ///< unset: they are not looked for
-  spherical_param::PartsMode parts = spherical_param::PartsMode::All;  ///< which are meshed
-  int min_points = 50;  ///< distinct points of a part, unless all are meshed together; 4 and up
+  spherical_param::Options options;  ///< `progress` is ignored
   /// Larger clouds are refused, so that no cloud takes all memory; 0: none is.
   std::size_t max_points = 5000000;
   std::size_t queue_depth = 1;  ///< clouds that wait, at most; 1 and up

@@ -16,7 +16,8 @@ namespace {
 
 /// Above this fraction of edges beyond the graph's 2-ring a mesh that nothing optimises is folded.
 /// Unfolded embeddings of closed surfaces have 0.0005 and less, folded limbs 0.003 and more, the
-/// filled hole of a bowl of some thousand points 0.002. Measured on local Delaunay neighbourhoods.
+/// filled opening of a bowl of some thousand points 0.002. Measured on local Delaunay
+/// neighbourhoods.
 constexpr double kMaxEdgesOutside = 0.001;
 /// Parts of this fraction of the largest are objects of their own, smaller ones what lies beside.
 constexpr double kMinFractionOfLargest = 0.25;
@@ -78,16 +79,15 @@ std::optional<Finding> handlesOf(const SurfaceDiagnosis& diagnosis) {
   return std::nullopt;
 }
 
-/// Openings that the mesh fills. Those that were to be filled are no fault.
-Finding filledOf(const SurfaceDiagnosis& diagnosis, const Options& options) {
+/// Certain openings that the mesh fills. Those that were to be filled are no fault.
+Finding filledOf(const Surface& result, const Options& options) {
   std::size_t points = 0;
-  for (const FilledHole& hole : diagnosis.filled_holes)
-    if (hole.cause == SurfaceKind::Open && !hole.loops.empty())
-      points = std::max(points, hole.loops.front().size());
-  const std::string of = points > 0 ? " of " + counted(points, "point") : std::string();
-  const std::size_t count = diagnosis.openings();
-  const bool is_open =
-      options.surface == SurfaceMode::Open || options.graph != GraphMethod::LocalDelaunay;
+  for (const Opening& opening : result.openings)
+    if (opening.is_filled && opening.isCertain())
+      points = std::max(points, opening.loop.size());
+  const std::string of = " of " + counted(points, "point");
+  const std::size_t count = result.filledOpenings();
+  const bool is_open = options.surface == SurfaceMode::Open;
   return {(count == 1 ? "opening" + of : grouped(count) + " openings, the largest" + of) +
               ", filled",
           is_open ? "" : "surface", is_open ? "" : "open",
@@ -126,8 +126,8 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
                         "outliers", "auto", false});
   if (!diagnosis.bridges.empty())
     findings.push_back(partsOf(diagnosis.bridges));
-  if (diagnosis.openings() > 0)
-    findings.push_back(filledOf(diagnosis, options));
+  if (result.filledOpenings() > 0)
+    findings.push_back(filledOf(result, options));
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
   if (const std::optional<Finding> handles = handlesOf(diagnosis))
@@ -172,8 +172,8 @@ std::string verdictOf(const Options& options, const Surface& result) {
   std::vector<std::string> doubts;
   if (!diagnosis.bridges.empty())
     doubts.emplace_back("joins " + counted(diagnosis.bridges.size() + 1, "separate part"));
-  if (diagnosis.openings() > 0)
-    doubts.emplace_back("fills " + counted(diagnosis.openings(), "opening"));
+  if (result.filledOpenings() > 0)
+    doubts.emplace_back("fills " + counted(result.filledOpenings(), "opening"));
   if (diagnosis.is_one_sided)
     doubts.emplace_back("tears a surface with one side");
   else if (diagnosis.genus.value_or(0) > 0)
@@ -197,10 +197,8 @@ std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& p
 }
 
 void summarize(Result& result) {
-  for (const std::string& failure : result.failures)
-    result.findings.push_back({failure, "", "", true});
   const std::vector<Surface>& surfaces = result.surfaces;
-  std::vector<std::string> parts(result.failures.size());  // that each finding is true of
+  std::vector<std::string> parts;  // that each finding is true of
   std::size_t faulty = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     faulty += hasFault(surfaces[i].findings) ? 1 : 0;

@@ -20,7 +20,7 @@ std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& p
                       std::string error);
 
 /// Fills verdict and findings of a result: those of its surfaces, what is true of several said
-/// once, and Result::failures.
+/// once.
 void summarize(Result& result);
 
 /// A headline: whether the mesh is sound, and what is left open, filled, cut or joined.

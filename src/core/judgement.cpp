@@ -72,22 +72,14 @@ void takeSurface(const Positions& points, const OpenSurface& openings, MeshedClo
           : findSelfIntersections(points, result.triangles, execution);
 }
 
-/// Diagnoses the cloud by a mesh and a graph.
-///
-/// \param boundaries loops around openings that the mesh leaves open.
-SurfaceDiagnosis diagnose(const Positions& points, const Triangles& mesh, std::size_t boundaries,
-                          const NeighborGraph& graph, bool is_out_of_time, const Options& options) {
+/// Diagnoses the cloud by its mesh, its graph and their openings.
+SurfaceDiagnosis diagnose(const Positions& points, const Surface& result, const MeshedCloud& mesh,
+                          const Options& options) {
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
-  of_diagnosis.count_cycles = !is_out_of_time;
-  SurfaceDiagnosis diagnosis = diagnoseSurface(points, mesh, graph.graph, graph.report.bridges,
-                                               of_diagnosis, options.threads);
-  if (boundaries > 0) {
-    diagnosis.boundaries = boundaries;
-    if (diagnosis.kind == SurfaceKind::ClosedGenus0)
-      diagnosis.kind = SurfaceKind::Open;
-  }
-  return diagnosis;
+  of_diagnosis.count_cycles = !mesh.optimization.report.is_out_of_time;
+  return diagnoseSurface(points, result.triangles, mesh.graph.graph, mesh.graph.report.bridges,
+                         result.openings, of_diagnosis, options.threads);
 }
 
 }  // namespace
@@ -97,11 +89,10 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   const FractionReport report = reportOf(execution, "quality");
   Surface result;
   takeSurface(points, openings, mesh, execution, result);
-  result.openings = openings.found();
+  result.openings = openings.found(points, mesh.graph.graph, result.triangles);
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
-  result.diagnosis = diagnose(points, result.triangles, result.boundary.size(), mesh.graph,
-                              mesh.optimization.report.is_out_of_time, options);
+  result.diagnosis = diagnose(points, result, mesh, options);
   if (openings.isOneSided()) {
     result.diagnosis.is_one_sided = true;
     result.diagnosis.kind = SurfaceKind::Unclear;
@@ -121,7 +112,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
     for (const auto& pair : result.self_intersections)
       for (const Index t : pair)
         result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
-            TriangleMarks::self_intersection;
+            triangle_mark::self_intersection;
   }
   result.intersecting_triangles = mesh.isSmoothed() ? mesh.smoothed.intersecting_triangles
                                                     : countTriangles(result.self_intersections);

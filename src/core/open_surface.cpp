@@ -9,21 +9,19 @@
 namespace spherical_param::internal {
 namespace {
 
-/// From this certainty on SurfaceMode::Auto trusts in an opening: of 9 spacings. The closed models
-/// have none above 4.8; a random quarter of the points of one has a false one of 6.4.
-constexpr double kCertain = 1.0;
-
-/// Whether an opening is wide enough to be taken for one.
+/// Whether virtual nodes fill an opening, open or filled. SurfaceMode::Auto trusts those alone that
+/// are 9 spacings wide. The closed models have none above 4.8; a random quarter of the points of
+/// one has a false one of 6.4.
 bool isTrusted(const Opening& opening, const Options& options) {
-  return options.surface != SurfaceMode::Auto || opening.certainty >= kCertain;
+  return options.surface != SurfaceMode::Auto || opening.certainty >= 1.0;
 }
 
 /// Whether the mesh has triangles over an opening.
 bool isFilled(const Opening& opening, bool is_cloud_flat, double unit, const Options& options) {
   if (is_cloud_flat)
     return false;
-  return options.surface == SurfaceMode::Closed || !isTrusted(opening, options) ||
-         (options.surface == SurfaceMode::Auto && opening.is_flat) ||
+  return options.surface == SurfaceMode::Closed ||
+         (options.surface == SurfaceMode::Auto && !opening.isCertain()) ||
          opening.loop.size() <= static_cast<std::size_t>(options.fill_holes) ||
          opening.area * unit * unit <= options.fill_holes_area;
 }
@@ -63,6 +61,26 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, bool is_fl
                                       }),
                        found.openings.end());
   embedded_ = std::move(found);
+}
+
+std::vector<Opening> OpenSurface::found(const Positions& points, const Graph& graph,
+                                        const Triangles& triangles) const {
+  std::vector<Opening> all = found_;
+  Openings filled;
+  filled.spacing = embedded_.spacing;
+  std::vector<std::size_t> number;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].is_filled) {
+      filled.openings.push_back(all[i]);
+      number.push_back(i);
+    }
+  if (number.empty())
+    return all;
+  const OpenPlaces places(points, graph, filled);
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    if (const auto over = places.openingOver(triangles(0, t), triangles(1, t), triangles(2, t)))
+      all[number[*over]].triangles.push_back(static_cast<Index>(t));
+  return all;
 }
 
 bool seeksOpenings(const Options& options) {

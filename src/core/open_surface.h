@@ -6,6 +6,7 @@
 #include "spherical_param/result.h"
 
 #include <optional>
+#include <vector>
 
 namespace spherical_param::internal {
 
@@ -28,8 +29,12 @@ public:
   /// nullptr: the mesh is closed.
   const OpenPlaces* places() const { return places_ ? &*places_ : nullptr; }
   bool isOneSided() const { return embedded_.is_one_sided; }
-  /// All that were found.
-  const std::vector<Opening>& found() const { return found_; }
+  /// All that were found, with the triangles over those that are filled.
+  ///
+  /// \param points, graph those in which they were found.
+  /// \param triangles of the mesh.
+  std::vector<Opening> found(const Positions& points, const Graph& graph,
+                             const Triangles& triangles) const;
 
   /// embed() of a graph of the nodes, with virtual nodes in the openings.
   Embedding embedded(const Positions& points, const Graph& graph, const Options& options,

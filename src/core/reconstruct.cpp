@@ -48,7 +48,7 @@ bool isAsPromised(const Surface& surface) {
   const MeshTopology& topology = surface.topology;
   return surface.isClosed()
              ? topology.isSphere()
-             : topology.manifold() && topology.oriented && topology.faults.unused_vertices.empty();
+             : topology.manifold() && topology.oriented && topology.unused_vertices.empty();
 }
 
 /// Whether the mesh may have openings.
@@ -189,12 +189,16 @@ Surface meshPart(Selection& selection, std::size_t part, Neighborhoods* neighbor
 /// out.
 void meshParts(Selection& selection, const Options& options, StageClock& clock, Result& result) {
   const std::vector<std::vector<Index>>& parts = selection.parts();
+  if (parts.empty())
+    throw InvalidInput(
+        "reconstruct: no part has min_points = " + std::to_string(options.min_points) +
+        " points; give a lower min_points, or parts = all");
   std::size_t left = 0;
   for (const std::vector<Index>& part : parts)
     left += part.size();
   const auto all = static_cast<double>(left);
   std::exception_ptr first_error;
-  std::vector<Index> failed;
+  std::vector<Index> failed;  // points of parts that cannot be meshed
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto count = static_cast<double>(parts[part].size());
     clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
@@ -219,9 +223,9 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   }
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
-  std::vector<Index>& other_parts = result.left_out.other_parts;
-  other_parts.insert(other_parts.end(), failed.begin(), failed.end());
-  std::sort(other_parts.begin(), other_parts.end());
+  std::vector<Index>& left_out = result.left_out.other_parts;
+  left_out.insert(left_out.end(), failed.begin(), failed.end());
+  std::sort(left_out.begin(), left_out.end());
 }
 
 /// Says what was left out in the message of a failure: it may be the cause.

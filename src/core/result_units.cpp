@@ -1,6 +1,9 @@
 #include "result_units.h"
 
+#include "spherical_param/result_fields.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -9,104 +12,86 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Gives the result, computed on scaled points, the unit of the input.
-void scaleBack(int exponent, Surface& result) {
-  const auto scale = [exponent](double& value, int power = 1) {
-    value = std::ldexp(value, power * exponent);
-  };
-  const auto scale_all = [exponent](auto& values, int power = 1) {
-    values = values.unaryExpr([=](double x) { return std::ldexp(x, power * exponent); }).eval();
-  };
-  scale(result.measures.volume, 3);
-  scale(result.measures.area, 2);
-  scale(result.measures.mean_edge_length);
-  scale_all(result.measures.box_min);
-  scale_all(result.measures.box_max);
-  scale_all(result.measures.centroid);
-  scale_all(result.measures.inertia, 5);
-  if (result.smoothed.cols() > 0) {
-    scale_all(result.smoothed);
-    scale(result.smoothing.max_displacement);
-    scale(result.smoothing.mean_displacement);
-    scale(result.smoothing.rms_displacement);
-    scale(result.smoothing.volume_before, 3);
-    scale(result.smoothing.volume_after, 3);
-  }
-  for (Opening& opening : result.openings) {
-    scale(opening.boundary_length);
-    scale(opening.area, 2);
-    scale(opening.spacing);
-    scale(opening.width);
-    scale_all(opening.center);
-  }
-  for (FilledHole& hole : result.diagnosis.filled_holes) {
-    scale(hole.area, 2);
-    scale(hole.boundary_length);
-    scale(hole.diameter);
-    scale(hole.spacing);
-    scale_all(hole.center);
-  }
-  for (CollapsedHandle& handle : result.diagnosis.handles) {
-    scale(handle.size);
-    scale_all(handle.center);
-  }
-  for (PartBridge& bridge : result.diagnosis.bridges) {
-    scale(bridge.gap);
-    scale(bridge.spacing);
-    scale_all(bridge.center);
-  }
-}
+/// Gives numbers that were computed on scaled points the unit of the input.
+struct Scaling {
+  int exponent;
 
-/// Gives the result, computed on nodes, the numbers of the vertices.
-void renumber(const std::vector<Index>& vertex_of_node, Surface& result) {
-  const auto vertex = [&](Index node) { return vertex_of_node[static_cast<std::size_t>(node)]; };
-  const auto renumber_all = [&](std::vector<Index>& nodes) {
-    std::transform(nodes.begin(), nodes.end(), nodes.begin(), vertex);
-    std::sort(nodes.begin(), nodes.end());
-  };
-  const auto permute = [&](Positions& of_nodes) {
-    Positions of_vertices(3, of_nodes.cols());
-    for (Eigen::Index node = 0; node < of_nodes.cols(); ++node)
-      of_vertices.col(vertex(static_cast<Index>(node))) = of_nodes.col(node);
-    of_nodes = std::move(of_vertices);
-  };
-  result.triangles = result.triangles.unaryExpr(vertex);
-  permute(result.sphere);
-  permute(result.smoothed);
-  std::transform(result.history.vertices.begin(), result.history.vertices.end(),
-                 result.history.vertices.begin(), vertex);
-  std::vector<double> of_vertices(result.vertex_residuals.size());
-  for (std::size_t node = 0; node < of_vertices.size(); ++node)
-    of_vertices[static_cast<std::size_t>(vertex_of_node[node])] = result.vertex_residuals[node];
-  result.vertex_residuals = std::move(of_vertices);
-  const auto renumber_loop = [&](std::vector<Index>& loop) {
-    std::transform(loop.begin(), loop.end(), loop.begin(), vertex);
-    std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
-  };
-  for (Opening& opening : result.openings)
-    renumber_loop(opening.loop);
-  for (std::vector<Index>& loop : result.boundary)
-    renumber_loop(loop);
-  std::sort(result.boundary.begin(), result.boundary.end(), [](const auto& a, const auto& b) {
-    return a.size() != b.size() ? a.size() > b.size() : a < b;
-  });
-  renumber_all(result.outliers);
-  for (FilledHole& hole : result.diagnosis.filled_holes) {
-    renumber_all(hole.vertices);
-    for (std::vector<Index>& loop : hole.loops)
-      renumber_loop(loop);
+  double scaled(const ResultField& field, double x) const {
+    return std::ldexp(x, field.power * exponent);
   }
-  for (CollapsedHandle& handle : result.diagnosis.handles)
-    renumber_all(handle.vertices);
-  for (PartBridge& bridge : result.diagnosis.bridges)
-    renumber_all(bridge.vertices);
-}
+
+  template <typename Value>
+  void operator()(const ResultField&, Value&) const {}
+
+  void operator()(const ResultField& field, double& value) const { value = scaled(field, value); }
+
+  template <int Rows, int Cols>
+  void operator()(const ResultField& field, Eigen::Matrix<double, Rows, Cols>& values) const {
+    if (field.power != 0)
+      values = values.unaryExpr([&](double x) { return scaled(field, x); }).eval();
+  }
+};
+
+/// Gives indices and arrays that were computed on nodes the numbers of the vertices.
+struct Renumbering {
+  const std::vector<Index>& vertex_of_node;
+
+  Index vertexOf(Index node) const { return vertex_of_node[static_cast<std::size_t>(node)]; }
+
+  template <typename Value>
+  void operator()(const ResultField&, Value&) const {}
+
+  void operator()(const ResultField&, Triangles& triangles) const {
+    triangles = triangles.unaryExpr([this](Index node) { return vertexOf(node); }).eval();
+  }
+
+  void operator()(const ResultField& field, Positions& columns) const {
+    if (field.kind != FieldKind::PerVertex)
+      return;
+    Positions of_vertices(3, columns.cols());
+    for (Eigen::Index node = 0; node < columns.cols(); ++node)
+      of_vertices.col(vertexOf(static_cast<Index>(node))) = columns.col(node);
+    columns = std::move(of_vertices);
+  }
+
+  void operator()(const ResultField& field, std::vector<double>& values) const {
+    if (field.kind != FieldKind::PerVertex)
+      return;
+    std::vector<double> of_vertices(values.size());
+    for (std::size_t node = 0; node < values.size(); ++node)
+      of_vertices[static_cast<std::size_t>(vertex_of_node[node])] = values[node];
+    values = std::move(of_vertices);
+  }
+
+  void operator()(const ResultField& field, std::vector<Index>& nodes) const {
+    const bool is_loop = field.kind == FieldKind::Loops;
+    const bool is_set = field.kind == FieldKind::Vertices;
+    if (!is_loop && !is_set && field.kind != FieldKind::VertexList)
+      return;
+    for (Index& node : nodes)
+      node = vertexOf(node);
+    if (is_loop)
+      std::rotate(nodes.begin(), std::min_element(nodes.begin(), nodes.end()), nodes.end());
+    else if (is_set)
+      std::sort(nodes.begin(), nodes.end());
+  }
+
+  void operator()(const ResultField& field, std::vector<std::vector<Index>>& loops) const {
+    for (std::vector<Index>& loop : loops)
+      (*this)(field, loop);
+    std::sort(loops.begin(), loops.end(), [](const auto& a, const auto& b) {
+      return a.size() != b.size() ? a.size() > b.size() : a < b;
+    });
+  }
+};
 
 }  // namespace
 
 void toInput(OrderedPoints& nodes, Surface& result) {
-  scaleBack(nodes.exponent, result);
-  renumber(nodes.vertex_of_node, result);
+  const Renumbering renumbering{nodes.vertex_of_node};
+  visitValues(result, Scaling{nodes.exponent});
+  visitValues(result, renumbering);
+  renumbering({"outliers", "", 0, FieldKind::Vertices}, result.outliers);
   result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
   result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
   for (Index& vertex : result.outliers)

@@ -3,12 +3,10 @@
 #include "local_delaunay_graph.h"
 #include "outliers.h"
 #include "parts.h"
-#include "spherical_param/errors.h"
 #include "stray_points.h"
 
 #include <algorithm>
 #include <iterator>
-#include <string>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -67,9 +65,7 @@ void Selection::takeApart() {
   parts_ = all.groupInputs(
       partsOf(all.points(), agreed, all.stars(), static_cast<std::size_t>(options_.min_points)));
   if (parts_.empty())
-    throw InvalidInput(
-        "reconstruct: no part has min_points = " + std::to_string(options_.min_points) +
-        " points; give a lower min_points, or parts = all");
+    return;
   if (options_.parts == PartsMode::Largest)
     parts_.resize(1);
   std::vector<Index> meshed;

@@ -17,11 +17,11 @@ public:
   /// \param points    3 x n; must outlive this, as the other arguments must.
   /// \param search_of makes the search for neighbours; may be empty.
   /// \param left_out  of which all that is not meshed is listed.
-  /// \throw InvalidInput if no part has Options::min_points points, or too few points are left.
+  /// \throw InvalidInput if too few points are left.
   Selection(const Positions& points, const Options& options, const NeighborSearchFactory& search_of,
             StageClock& clock, LeftOut& left_out);
 
-  /// The points of each part, the one of most points first.
+  /// The points of each part, the one of most points first. None if all are too small.
   const std::vector<std::vector<Index>>& parts() const { return parts_; }
   /// The points of a part, 3 x m.
   Positions pointsOf(std::size_t part) const;

@@ -109,7 +109,7 @@ Triangles manifoldPart(Triangles triangles, std::size_t vertices) {
     if (topology.manifold())
       break;
     std::vector<char> is_fault(vertices, 0);
-    for (const Index v : topology.faults.nonmanifold_vertices)
+    for (const Index v : topology.nonmanifold_vertices)
       is_fault[static_cast<std::size_t>(v)] = 1;
     Eigen::Index kept = 0;
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {

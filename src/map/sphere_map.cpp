@@ -84,8 +84,8 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
     fault = "it is not manifold";
   else if (!topology.oriented)
     fault = "its triangles are not oriented consistently";
-  else if (!topology.faults.unused_vertices.empty())
-    fault = "vertex " + std::to_string(topology.faults.unused_vertices.front()) +
+  else if (!topology.unused_vertices.empty())
+    fault = "vertex " + std::to_string(topology.unused_vertices.front()) +
             " belongs to no triangle";
   else if (topology.components != 1)
     fault = "it has " + std::to_string(topology.components) + " pieces";

@@ -23,7 +23,7 @@ namespace {
 /// A step x -> (x + s(x)) / |x + s(x)| of a tangential field is locally one to one where |s|^2 +
 /// |Ds|^2 < 1, as I + (s, Ds) then has an inverse; and a map of the sphere that is so everywhere is
 /// one to one. The field is examined at some places: the bound leaves room for those between.
-constexpr double kMaxSlope = 0.4;
+constexpr double kMaxWarpSlope = 0.4;
 /// Landmarks collide if they come nearer to each other than this fraction of the least of their
 /// distances at the beginning and the end.
 constexpr double kMinApproach = 0.25;
@@ -507,7 +507,7 @@ private:
         break;
       const Field field(places_, values, support_);
       const auto [slope, where] = steepestOf(field, places_, spread_, threads_);
-      if (farthest > kMaxStep || !field.isFinite() || !(slope <= kMaxSlope * kMaxSlope)) {
+      if (farthest > kMaxStep || !field.isFinite() || !(slope <= kMaxWarpSlope * kMaxWarpSlope)) {
         step = 0.5 * (goal - t);
         if (is_last || step < kMinStep)
           return active_[std::min(where, active_.size() - 1)];

@@ -15,8 +15,6 @@
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/map/texture_atlas.h"
-#include "outliers.h"
-#include "parts.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/version.h"
@@ -50,60 +48,35 @@ std::string withoutFunctionName(const std::string& message) {
   return length > 0 && message.compare(length, 2, ": ") == 0 ? message.substr(length + 2) : message;
 }
 
-/// \param rows that are meshed; none: all of them.
-py::dict reconstructPoints(const DoubleArray& array, const std::optional<IndexArray>& rows,
-                           const py::dict& values, bool details, const py::object& progress) {
+py::dict reconstructPoints(const DoubleArray& array, const py::dict& values, bool details,
+                           const py::object& progress) {
   Options options = toOptions(values);
   options.details = details;
   Listener listener(progress);
   static_cast<Execution&>(options) = listener.execution(options.threads, options.time_limit);
-  const FinitePoints finite(array, rows);
-  try {
-    return toDict(listener.run([&] { return reconstruct(finite.points, options); }), finite);
-  } catch (const InvalidInput& error) {
-    if (finite.ignored == 0)
-      throw;
-    throw InvalidInput(std::string(error.what()) + " (of the points, " +
-                       std::to_string(finite.ignored) + " are not finite)");
-  }
+  const Positions points = toPositions(array);
+  return toDict(listener.run([&] { return reconstruct(points, options); }));
 }
 
-/// \param sigma none: stray points
-py::dict findOutlierPoints(const DoubleArray& array, const std::optional<double>& sigma, int k,
-                           int threads, const py::object& progress) {
-  OutlierOptions options;
-  options.sigma = sigma.value_or(options.sigma);
-  options.k = k;
+IndexArray findOutlierPoints(const DoubleArray& array, const py::dict& values,
+                             const py::object& progress) {
+  Options options = toOptions(values);
   Listener listener(progress);
-  const FinitePoints finite(array);
-  const Outliers found = listener.run([&] {
-    return sigma ? findOutliers(finite.points, options, listener.execution(threads))
-                 : findStrayPoints(finite.points, listener.execution(threads));
-  });
-  std::vector<Index> indices;
-  for (const Index point : found.indices)
-    indices.push_back(finite.rows[static_cast<std::size_t>(point)]);
-  std::vector<double> scores(finite.given, std::nan(""));
-  for (std::size_t i = 0; i < finite.rows.size(); ++i)
-    scores[static_cast<std::size_t>(finite.rows[i])] = found.scores[i];
-  return py::dict("indices"_a = toArray(indices), "scores"_a = toArray(scores),
-                  "threshold"_a = found.threshold, "rounds"_a = found.rounds);
+  static_cast<Execution&>(options) = listener.execution(options.threads);
+  const Positions points = toPositions(array);
+  return toArray(listener.run([&] { return findOutliers(points, options); }));
 }
 
-py::list findPartsOfPoints(const DoubleArray& array, int min_points, int threads,
-                           const py::object& progress) {
+py::tuple findPartsOfPoints(const DoubleArray& array, const py::dict& values,
+                            const py::object& progress) {
+  Options options = toOptions(values);
   Listener listener(progress);
-  const FinitePoints finite(array);
-  const Parts found = listener.run(
-      [&] { return findParts(finite.points, min_points, listener.execution(threads)); });
+  static_cast<Execution&>(options) = listener.execution(options.threads);
+  const Positions points = toPositions(array);
   py::list parts;
-  for (const Part& part : found.parts) {
-    std::vector<Index> rows;
-    for (const Index point : part.points)
-      rows.push_back(finite.rows[static_cast<std::size_t>(point)]);
-    parts.append(toArray(rows));
-  }
-  return parts;
+  for (const std::vector<Index>& part : listener.run([&] { return findParts(points, options); }))
+    parts.append(toArray(part));
+  return py::tuple(parts);
 }
 
 py::dict mapToSphere(const DoubleArray& points, const IndexArray& triangles,
@@ -352,19 +325,18 @@ PYBIND11_MODULE(_core, module) {
   const auto triangles = py::arg("triangles").noconvert();
   const auto sphere = py::arg("sphere").noconvert();
   module.def("option_table", &optionRows);
+  module.def("result_table", &resultTable);
   module.attr("has_report") = hasReportPage();
-  module.def("reconstruct", &reconstructPoints, points, "rows"_a, "options"_a, py::kw_only(),
-             "details"_a, "progress"_a);
+  module.def("reconstruct", &reconstructPoints, points, "options"_a, py::kw_only(), "details"_a,
+             "progress"_a);
   module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "progress"_a);
   module.def("write_mesh", &writeMeshFile, "path"_a, points, triangles, "normals"_a, "colors"_a);
-  module.def("write_report", &writeReportFile, "path"_a, points, "colors"_a, "rows"_a, "outliers"_a,
-             "left_out"_a, "keywords"_a, py::kw_only(), "input"_a, "command"_a, "progress"_a);
+  module.def("write_report", &writeReportFile, "path"_a, points, "colors"_a, "options"_a,
+             py::kw_only(), "part"_a, "input"_a, "command"_a, "progress"_a);
   module.def("morph", &morphMeshes, "first"_a, "second"_a, py::kw_only(), "pairs"_a, "align"_a,
              "connectivity"_a, "samples"_a, "fit"_a, "threads"_a, "progress"_a);
-  module.def("find_outliers", &findOutlierPoints, points, py::kw_only(), "sigma"_a, "k"_a,
-             "threads"_a, "progress"_a);
-  module.def("find_parts", &findPartsOfPoints, points, py::kw_only(), "min_points"_a, "threads"_a,
-             "progress"_a);
+  module.def("find_outliers", &findOutlierPoints, points, "options"_a, py::kw_only(), "progress"_a);
+  module.def("find_parts", &findPartsOfPoints, points, "options"_a, py::kw_only(), "progress"_a);
   module.def("sphere_map", &mapToSphere, points, triangles, sphere, py::kw_only(), "area_weight"_a,
              "sweeps"_a, "threads"_a, "progress"_a);
   module.def("measure_map_distortion", &measureDistortion, points, triangles, sphere, py::kw_only(),

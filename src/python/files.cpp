@@ -16,19 +16,12 @@
 
 #include <memory>
 #include <utility>
-#include <vector>
 
 namespace spherical_param::python {
 namespace {
 
 namespace py = pybind11;
 using py::literals::operator""_a;
-
-constexpr Names<PartsMode, 3> kPartsNames = {{
-    {"all", PartsMode::All},
-    {"largest", PartsMode::Largest},
-    {"each", PartsMode::Each},
-}};
 
 tools::PointData toPointData(const DoubleArray& points, const std::optional<DoubleArray>& normals,
                              const std::optional<ByteArray>& colors) {
@@ -44,40 +37,16 @@ tools::PointData toPointData(const DoubleArray& points, const std::optional<Doub
   return data;
 }
 
-/// What the tools make of their command line.
-tools::ReconstructionSettings toSettings(const py::dict& keywords) {
-  tools::ReconstructionSettings settings;
-  py::dict table;
-  for (const auto& [key, value] : keywords) {
-    const auto name = key.cast<std::string>();
-    if (name == "parts")
-      settings.parts = valueOf("parts", value.cast<std::string>(), kPartsNames);
-    else if (name == "min_points")
-      settings.min_points = value.cast<int>();
-    else if (name != "outliers")
-      table[key] = value;
-    else if (py::isinstance<py::str>(value))
-      settings.outliers = tools::OutlierChoice{};
-    else if (!value.is_none())
-      settings.outliers = tools::OutlierChoice{value.cast<double>()};
-  }
-  settings.options = toOptions(table);
-  tools::keepForHtmlReport(settings);
-  return settings;
-}
-
-std::vector<Index> toIndices(const IndexArray& array) {
-  return {array.data(), array.data() + array.size()};
-}
-
 tools::Json reportOf(const tools::ReconstructionSettings& settings, const std::string& input,
-                     const tools::CloudReconstruction& cloud) {
+                     const tools::CloudReconstruction& cloud, const Surface& surface) {
   tools::Json json;
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = input;
   json["options"] = tools::reconstructionOptionsToJson(settings);
-  json.update(tools::cloudToJson(settings, cloud));
-  tools::addMesh(settings, cloud, json);
+  json["points"] = cloud.data->points.size();
+  json["left_out"] = tools::toJson(cloud.result.left_out);
+  json["stages"] = tools::toJson(cloud.stages);
+  json.update(tools::toJson(surface));
   return json;
 }
 
@@ -114,33 +83,26 @@ bool hasReportPage() {
 }
 
 void writeReportFile(const std::string& path, const DoubleArray& points,
-                     const std::optional<ByteArray>& colors, const std::optional<IndexArray>& rows,
-                     const std::optional<IndexArray>& outliers,
-                     const std::optional<IndexArray>& left_out, const py::dict& keywords,
-                     const std::string& input, const std::string& command,
+                     const std::optional<ByteArray>& colors, const py::dict& values,
+                     std::size_t part, const std::string& input, const std::string& command,
                      const py::object& progress) {
   Listener listener(progress);
-  tools::ReconstructionSettings settings = toSettings(keywords);
+  tools::ReconstructionSettings settings;
+  settings.options = toOptions(values);
+  tools::keepForHtmlReport(settings);
   static_cast<Execution&>(settings.options) =
       listener.execution(settings.options.threads, settings.options.time_limit);
-  FinitePoints finite(points, rows);
   tools::CloudReconstruction cloud;
   cloud.data = std::make_shared<tools::PointData>(toPointData(points, std::nullopt, colors));
-  cloud.ignored = finite.ignored;
-  if (outliers)
-    cloud.outliers = tools::OutlierRemoval{std::nullopt, toIndices(*outliers)};
-  if (left_out)
-    cloud.parts = Parts{{}, toIndices(*left_out)};
-  cloud.meshed = std::move(finite.rows);
+  const Positions positions = toPositions(points);
   listener.run([&] {
-    cloud.result = reconstruct(finite.points, settings.options);
+    cloud.result = reconstruct(positions, settings.options);
     cloud.stages = cloud.result.stages;
-    for (const Index point : cloud.result.input_of_vertex)
-      cloud.point_of_vertex.push_back(cloud.meshed[static_cast<std::size_t>(point)]);
+    const Surface& surface = cloud.result.surfaces.at(part);
     tools::OutputFile file(path);
     tools::writeHtmlReport(file, tools::reportPage(),
-                           {"spherical_param", command, reportOf(settings, input, cloud), &cloud,
-                            settings.options.threads});
+                           {"spherical_param", command, reportOf(settings, input, cloud, surface),
+                            &cloud, &surface, settings.options.threads});
     file.commit();
   });
 }

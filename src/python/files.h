@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -21,19 +22,15 @@ void writeMeshFile(const std::string& path, const DoubleArray& points, const Ind
 /// Whether the module was built with the page.
 bool hasReportPage();
 
-/// Meshes a cloud once more, with all that the page shows.
+/// Meshes a cloud once more, with all that the page of one of its surfaces shows.
 ///
-/// \param rows     of the points that are meshed; none: all of them.
-/// \param outliers rows that were left out, and
-/// \param left_out those of other parts; none: not looked for.
-/// \param keywords of reconstruct() in Python.
-/// \param input    name of the cloud.
-/// \param command  that does the same again.
+/// \param values  options, \see toOptions
+/// \param part    of the surfaces, that is shown.
+/// \param input   name of the cloud.
+/// \param command that does the same again.
 void writeReportFile(const std::string& path, const DoubleArray& points,
-                     const std::optional<ByteArray>& colors, const std::optional<IndexArray>& rows,
-                     const std::optional<IndexArray>& outliers,
-                     const std::optional<IndexArray>& left_out, const pybind11::dict& keywords,
-                     const std::string& input, const std::string& command,
+                     const std::optional<ByteArray>& colors, const pybind11::dict& values,
+                     std::size_t part, const std::string& input, const std::string& command,
                      const pybind11::object& progress);
 
 }  // namespace spherical_param::python

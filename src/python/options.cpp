@@ -53,8 +53,9 @@ py::list optionRows() {
   py::list rows;
   for (const OptionRow& row : optionTable())
     rows.append(py::dict("name"_a = row.name, "help"_a = row.help, "range"_a = rangeOf(row),
-                         "choices"_a = row.choices, "is_integer"_a = row.is_integer,
-                         "optional"_a = row.optional, "default"_a = toObject(row.get({}))));
+                         "choices"_a = row.choices, "is_number"_a = row.is_number,
+                         "is_integer"_a = row.is_integer, "optional"_a = row.optional,
+                         "default"_a = toObject(row.get({}))));
   return rows;
 }
 
@@ -65,23 +66,6 @@ Options toOptions(const py::dict& values) {
     setOption(options, row.name, toValue(row, value));
   }
   return options;
-}
-
-FinitePoints::FinitePoints(const DoubleArray& array, const std::optional<IndexArray>& chosen) {
-  const Positions all = toPositions(array);
-  given = static_cast<std::size_t>(all.cols());
-  std::vector<bool> is_chosen(given, !chosen);
-  if (chosen)
-    for (const Index* row = chosen->data(); row != chosen->data() + chosen->size(); ++row)
-      is_chosen.at(static_cast<std::size_t>(*row)) = true;
-  rows.reserve(given);
-  for (std::size_t i = 0; i < given; ++i) {
-    const bool is_finite = all.col(static_cast<Eigen::Index>(i)).allFinite();
-    ignored += is_finite ? 0 : 1;
-    if (is_finite && is_chosen[i])
-      rows.push_back(static_cast<Index>(i));
-  }
-  points = rows.size() == given ? all : Positions(all(Eigen::all, rows));
 }
 
 }  // namespace spherical_param::python

@@ -1,9 +1,16 @@
 #include "python/reports.h"
 
 #include "python/arrays.h"
-#include "python/names.h"
+#include "spherical_param/result_fields.h"
 
-#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <vector>
 
 namespace spherical_param::python {
 namespace {
@@ -19,141 +26,151 @@ py::list listOf(const Items& items, const Convert& convert) {
   return list;
 }
 
-/// What was not asked for is empty in the core.
 template <typename Value>
-py::object orNone(const std::vector<Value>& values) {
-  return values.empty() ? py::object(py::none()) : py::object(toArray(values));
+constexpr const Value* kOf = nullptr;
+
+using Loops = std::vector<std::vector<Index>>;
+
+/// Turns what belongs to a surface into objects of Python.
+struct Converter {
+  bool has_volume;
+
+  template <typename Struct>
+  py::dict fieldsOf(const Struct& self) const {
+    py::dict dict;
+    visitFields(&self, [&](const ResultField& field, auto access) {
+      if (field.kind == FieldKind::OfSolid && !has_volume)
+        dict[field.name] = py::none();
+      else if (field.kind != FieldKind::CppOnly)
+        dict[field.name] = object(std::invoke(access, self));
+    });
+    return dict;
+  }
+
+  template <typename Value>
+  py::object object(const Value& value) const {
+    if constexpr (std::is_pointer_v<Value>)
+      return value == nullptr ? py::none() : object(*value);
+    else if constexpr (isDescribed(kOf<Value>))
+      return fieldsOf(value);
+    else if constexpr (isDescribedList(kOf<Value>) || std::is_same_v<Value, Loops>)
+      return py::tuple(listOf(value, [this](const auto& item) { return object(item); }));
+    else if constexpr (std::is_enum_v<Value>)
+      return py::str(nameOf(value));
+    else if constexpr (std::is_arithmetic_v<Value>)
+      return py::cast(value);
+    else
+      return other(value);
+  }
+
+private:
+  template <typename Value>
+  py::object other(const std::optional<Value>& value) const {
+    return value ? object(*value) : py::none();
+  }
+  static py::object other(const std::string& text) { return py::str(text); }
+  template <typename Array>
+  static py::object other(const Array& array) {
+    return toArray(array);
+  }
+};
+
+/// What Python calls the type of a field, and the shape of an array.
+struct PythonType {
+  std::string name;
+  std::string shape = {};
+  std::string of_struct = {};
+};
+
+template <typename Value>
+PythonType typeOf(const std::optional<Value>*);
+
+template <typename Value>
+PythonType typeOf(const Value*) {
+  if constexpr (isDescribed(kOf<Value>)) {
+    const std::string name = describe(kOf<Value>).name;
+    return {name, "", name};
+  } else if constexpr (isDescribedList(kOf<Value>)) {
+    const std::string name = describe(kOf<typename Value::value_type>).name;
+    return {"tuple[" + name + ", ...]", "", name};
+  } else if constexpr (std::is_enum_v<Value>) {
+    std::string names;
+    for (const char* name : namesOf(Value()))
+      names += (names.empty() ? "'" : ", '") + std::string(name) + "'";
+    return {"Literal[" + names + "]"};
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    return {"bool"};
+  } else if constexpr (std::is_integral_v<Value>) {
+    return {"int"};
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    return {"float"};
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return {"str"};
+  } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+    return {"FloatArray", "(3,)"};
+  } else if constexpr (std::is_same_v<Value, Eigen::Matrix3d>) {
+    return {"FloatArray", "(3, 3)"};
+  } else if constexpr (std::is_same_v<Value, Positions>) {
+    return {"FloatArray", "(n, 3)"};
+  } else if constexpr (std::is_same_v<Value, Triangles>) {
+    return {"IndexArray", "(n, 3)"};
+  } else if constexpr (std::is_same_v<Value, std::vector<std::array<Index, 2>>>) {
+    return {"IndexArray", "(n, 2)"};
+  } else if constexpr (std::is_same_v<Value, Loops>) {
+    return {"tuple[IndexArray, ...]", "(n,) each:"};
+  } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
+    return {"FloatArray", "(n,)"};
+  } else if constexpr (std::is_same_v<Value, std::vector<std::uint8_t>>) {
+    return {"ByteArray", "(n,)"};
+  } else {
+    static_assert(std::is_same_v<Value, std::vector<Index>>, "a type that Python does not know");
+    return {"IndexArray", "(n,)"};
+  }
 }
 
-py::object orNone(const Positions& points) {
-  return points.cols() == 0 ? py::object(py::none()) : py::object(toArray(points));
+PythonType optional(PythonType type) {
+  type.name = "Optional[" + type.name + "]";
+  return type;
 }
 
-py::object toObject(const EmbeddingHistory& history) {
-  if (history.frames.empty())
-    return py::none();
-  return py::dict("vertices"_a = toArray(history.vertices),
-                  "frames"_a = listOf(history.frames, [](const HistoryFrame& frame) {
-                    return py::dict("level"_a = frame.level, "nodes"_a = frame.nodes,
-                                    "step"_a = nameOf(frame.step), "iteration"_a = frame.iteration,
-                                    "residual"_a =
-                                        frame.residual ? py::cast(*frame.residual) : py::none(),
-                                    "sphere"_a = toArray(frame.sphere));
-                  }));
+template <typename Value>
+PythonType typeOf(const std::optional<Value>*) {
+  return optional(typeOf(kOf<Value>));
 }
 
-py::dict toDict(const MeshTopology& topology) {
-  return py::dict("vertices"_a = topology.vertices, "edges"_a = topology.edges,
-                  "triangles"_a = topology.triangles, "closed"_a = topology.closed,
-                  "manifold"_a = topology.manifold(), "oriented"_a = topology.oriented,
-                  "components"_a = topology.components,
-                  "euler_characteristic"_a = topology.euler_characteristic,
-                  "genus"_a = topology.genus ? py::cast(*topology.genus) : py::none());
+std::string helpOf(const ResultField& field, const std::string& shape) {
+  const char* const units[] = {"",
+                               " [unit of the input]",
+                               " [squared unit of the input]",
+                               " [cubed unit of the input]",
+                               " [unit of the input to the fourth]",
+                               " [unit of the input to the fifth]"};
+  return shape + (shape.empty() ? "" : " ") + field.help + units[field.power];
 }
 
-/// \param has_volume else what the mesh encloses is meaningless.
-py::dict toDict(const MeshMeasures& measures, bool has_volume) {
-  const auto known = [has_volume](const py::object& value) {
-    return has_volume ? value : py::none();
-  };
-  return py::dict("volume"_a = known(py::float_(measures.volume)), "area"_a = measures.area,
-                  "mean_edge_length"_a = measures.mean_edge_length,
-                  "box_min"_a = toArray(measures.box_min), "box_max"_a = toArray(measures.box_max),
-                  "centroid"_a = known(toArray(measures.centroid)),
-                  "inertia"_a = known(toArray(measures.inertia)));
-}
-
-py::dict toDict(const Bridge& bridge) {
-  return py::dict("start"_a = bridge.from, "end"_a = bridge.to, "length"_a = bridge.length);
-}
-
-py::dict toDict(const SurfaceDiagnosis& diagnosis) {
-  const py::list filled_holes = listOf(diagnosis.filled_holes, [](const FilledHole& hole) {
-    return py::dict("cause"_a = nameOf(hole.cause), "triangles"_a = hole.triangles,
-                    "area"_a = hole.area, "boundary_length"_a = hole.boundary_length,
-                    "diameter"_a = hole.diameter, "spacing"_a = hole.spacing,
-                    "center"_a = toArray(hole.center), "vertices"_a = toArray(hole.vertices),
-                    "loops"_a = listOf(
-                        hole.loops, [](const std::vector<Index>& loop) { return toArray(loop); }));
+/// Adds a struct and, before it, those that it consists of.
+template <typename Struct>
+void addRows(const Struct*, py::list& rows, std::set<std::string>& known) {
+  const ResultField about = describe(kOf<Struct>);
+  if (!known.insert(about.name).second)
+    return;
+  py::list fields;
+  visitFields(kOf<Struct>, [&](const ResultField& field, auto access) {
+    if (field.kind == FieldKind::CppOnly)
+      return;
+    using Got = std::decay_t<std::invoke_result_t<decltype(access), const Struct&>>;
+    using Value = std::decay_t<std::remove_pointer_t<Got>>;
+    if constexpr (isDescribed(kOf<Value>))
+      addRows(kOf<Value>, rows, known);
+    else if constexpr (isDescribedList(kOf<Value>))
+      addRows(kOf<typename Value::value_type>, rows, known);
+    PythonType type = typeOf(kOf<Value>);
+    if (std::is_pointer_v<Got> || field.kind == FieldKind::OfSolid)
+      type = optional(type);
+    fields.append(py::dict("name"_a = field.name, "type"_a = type.name,
+                           "help"_a = helpOf(field, type.shape), "struct"_a = type.of_struct));
   });
-  const py::list handles = listOf(diagnosis.handles, [](const CollapsedHandle& handle) {
-    return py::dict("edges"_a = handle.edges, "size"_a = handle.size,
-                    "center"_a = toArray(handle.center), "vertices"_a = toArray(handle.vertices));
-  });
-  const py::list bridges = listOf(diagnosis.bridges, [](const PartBridge& bridge) {
-    return py::dict("points"_a = bridge.points, "other_points"_a = bridge.other_points,
-                    "gap"_a = bridge.gap, "spacing"_a = bridge.spacing,
-                    "center"_a = toArray(bridge.center), "vertices"_a = toArray(bridge.vertices));
-  });
-  return py::dict("kind"_a = nameOf(diagnosis.kind),
-                  "genus"_a = diagnosis.genus ? py::cast(*diagnosis.genus) : py::none(),
-                  "looks_closed_genus0"_a = diagnosis.looksClosedGenus0(),
-                  "openings"_a = diagnosis.openings(), "boundaries"_a = diagnosis.boundaries,
-                  "is_one_sided"_a = diagnosis.is_one_sided, "filled_holes"_a = filled_holes,
-                  "handles"_a = handles, "bridges"_a = bridges,
-                  "edges_outside_graph"_a = diagnosis.edges_outside_graph,
-                  "triangle_marks"_a = orNone(diagnosis.triangle_marks));
-}
-
-py::dict toDict(const Opening& opening) {
-  return py::dict("loop"_a = toArray(opening.loop), "boundary_length"_a = opening.boundary_length,
-                  "area"_a = opening.area, "spacing"_a = opening.spacing, "width"_a = opening.width,
-                  "center"_a = toArray(opening.center), "certainty"_a = opening.certainty,
-                  "is_flat"_a = opening.is_flat, "is_filled"_a = opening.is_filled);
-}
-
-py::dict toDict(const GraphReport& graph) {
-  return py::dict("edges"_a = graph.edges, "components"_a = graph.components,
-                  "bridges"_a =
-                      listOf(graph.bridges, [](const Bridge& bridge) { return toDict(bridge); }),
-                  "without_tangent_plane"_a = toArray(graph.without_tangent_plane),
-                  "searched_again"_a = graph.searched_again, "uncertified"_a = graph.uncertified,
-                  "weak"_a = graph.weak);
-}
-
-py::dict toDict(const EmbeddingReport& embedding) {
-  const py::list levels = listOf(embedding.levels, [](const LevelReport& level) {
-    return py::dict("nodes"_a = level.nodes, "edges"_a = level.edges, "sweeps"_a = level.sweeps,
-                    "newton_iterations"_a = level.newton_iterations,
-                    "linear_iterations"_a = level.linear_iterations, "residual"_a = level.residual);
-  });
-  return py::dict("stop_reason"_a = nameOf(embedding.stop_reason),
-                  "iterations"_a = embedding.iterations, "residual"_a = embedding.residual,
-                  "residuals"_a = toArray(embedding.residuals),
-                  "centroid_norm"_a = embedding.centroid_norm,
-                  "fallback_start"_a = embedding.fallback_start, "levels"_a = levels,
-                  "starts"_a = embedding.starts, "collapsed_starts"_a = embedding.collapsed_starts,
-                  "added_barrier"_a = embedding.added_barrier, "energy"_a = embedding.energy);
-}
-
-py::dict toDict(const TriangulationReport& triangulation) {
-  return py::dict(
-      "hull_vertices"_a = triangulation.hull_vertices, "reinserted"_a = triangulation.reinserted,
-      "coincident"_a = triangulation.coincident, "hull_rejected"_a = triangulation.hull_rejected);
-}
-
-py::dict toDict(const OptimizationReport& optimization) {
-  const py::list phases = listOf(optimization.phases, [](const OptimizationPhase& phase) {
-    return py::dict("name"_a = phase.name, "tried"_a = phase.tried, "moves"_a = phase.moves,
-                    "energy_before"_a = phase.energy_before, "energy"_a = phase.energy,
-                    "self_intersections"_a =
-                        phase.self_intersections ? py::cast(*phase.self_intersections) : py::none(),
-                    "seconds"_a = phase.seconds);
-  });
-  return py::dict("phases"_a = phases, "energy"_a = optimization.energy,
-                  "rough"_a = optimization.rough, "noise_steps"_a = optimization.noise_steps,
-                  "is_out_of_time"_a = optimization.is_out_of_time,
-                  "smoothed_self_intersections"_a = optimization.smoothed_self_intersections,
-                  "alignment"_a = optimization.alignment, "unevenness"_a = optimization.unevenness);
-}
-
-py::dict toDict(const SmoothingReport& smoothing) {
-  return py::dict("max_displacement"_a = smoothing.max_displacement,
-                  "mean_displacement"_a = smoothing.mean_displacement,
-                  "rms_displacement"_a = smoothing.rms_displacement,
-                  "volume_before"_a = smoothing.volume_before,
-                  "volume_after"_a = smoothing.volume_after,
-                  "self_intersections"_a = smoothing.self_intersections);
+  rows.append(py::dict("name"_a = about.name, "help"_a = about.help, "fields"_a = fields));
 }
 
 py::dict toDict(const DistortionStatistics& statistics) {
@@ -162,57 +179,28 @@ py::dict toDict(const DistortionStatistics& statistics) {
 
 }  // namespace
 
-py::dict toDict(const Surface& result, const FinitePoints& finite) {
-  const std::vector<Index>& input_of_kept = finite.rows;
-  std::vector<Index> vertex_of_input(finite.given, -1);
-  for (std::size_t i = 0; i < input_of_kept.size(); ++i)
-    vertex_of_input[static_cast<std::size_t>(input_of_kept[i])] = result.vertex_of_input[i];
-  std::vector<Index> outliers;
-  for (const Index point : result.outliers)
-    outliers.push_back(input_of_kept[static_cast<std::size_t>(point)]);
-  std::vector<Index> input_of_vertex(result.input_of_vertex.size());
-  std::transform(result.input_of_vertex.begin(), result.input_of_vertex.end(),
-                 input_of_vertex.begin(),
-                 [&](Index kept) { return input_of_kept[static_cast<std::size_t>(kept)]; });
-  py::dict dict("triangles"_a = toArray(result.triangles), "sphere"_a = toArray(result.sphere),
-                "vertex_of_input"_a = toArray(vertex_of_input),
-                "input_of_vertex"_a = toArray(input_of_vertex), "outliers"_a = toArray(outliers),
-                "duplicates"_a = result.duplicates(), "ignored"_a = finite.ignored,
-                "self_intersections"_a = toArray(result.self_intersections),
-                "smoothed"_a = orNone(result.smoothed),
-                "consolidated"_a = orNone(result.consolidated));
-  dict["boundary"] =
-      listOf(result.boundary, [](const std::vector<Index>& loop) { return toArray(loop); });
-  dict["openings"] =
-      listOf(result.openings, [](const Opening& opening) { return toDict(opening); });
-  dict["topology"] = toDict(result.topology);
-  dict["measures"] = toDict(result.measures, result.hasVolume());
-  dict["diagnosis"] = toDict(result.diagnosis);
-  const ConsolidationReport& consolidation = result.consolidation;
-  dict["consolidation"] =
-      py::dict("noise"_a = consolidation.noise, "merged"_a = consolidation.merged,
-               "max_displacement"_a = consolidation.max_displacement,
-               "mean_displacement"_a = consolidation.mean_displacement,
-               "rms_displacement"_a = consolidation.rms_displacement);
-  dict["graph"] = toDict(result.graph);
-  dict["embedding"] = toDict(result.embedding);
-  dict["triangulation"] = toDict(result.triangulation);
-  dict["optimization"] = toDict(result.optimization);
-  dict["smoothing"] = toDict(result.smoothing);
+py::dict toDict(const Result& result) {
+  py::list surfaces;
+  for (const Surface& surface : result.surfaces)
+    surfaces.append(Converter{surface.hasVolume()}.fieldsOf(surface));
   py::dict stages;
   for (const StageTime& stage : result.stages)
     stages[py::str(stage.name)] = stage.seconds;
-  dict["stages"] = stages;
-  dict["history"] = toObject(result.history);
-  dict["vertex_residuals"] = orNone(result.vertex_residuals);
-  dict["intersecting_triangles"] = result.intersecting_triangles;
-  dict["usable"] = result.isUsable();
-  dict["verdict"] = result.verdict;
-  dict["findings"] = listOf(result.findings, [](const Finding& finding) {
-    return py::dict("text"_a = finding.text, "option"_a = finding.option, "value"_a = finding.value,
-                    "is_fault"_a = finding.is_fault);
-  });
-  return dict;
+  py::list findings;
+  for (const Finding& finding : result.findings)
+    findings.append(Converter{false}.fieldsOf(finding));
+  return py::dict("surfaces"_a = py::tuple(surfaces),
+                  "left_out"_a = Converter{false}.fieldsOf(result.left_out), "stages"_a = stages,
+                  "verdict"_a = result.verdict, "findings"_a = py::tuple(findings),
+                  "failures"_a = py::tuple(py::cast(result.failures)));
+}
+
+py::list resultTable() {
+  py::list rows;
+  std::set<std::string> known;
+  addRows(kOf<Surface>, rows, known);
+  addRows(kOf<LeftOut>, rows, known);
+  return rows;
 }
 
 py::dict toDict(const MapDistortion& distortion) {

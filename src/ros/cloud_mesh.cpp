@@ -1,8 +1,6 @@
 #include "spherical_param_ros/cloud_mesh.h"
 
 #include "spherical_param/errors.h"
-#include "outliers.h"
-#include "parts.h"
 #include "spherical_param/reconstruct.h"
 
 #include <pcl/PCLPointField.h>
@@ -19,8 +17,8 @@ namespace spherical_param_ros {
 namespace {
 
 using spherical_param::Index;
-using spherical_param::PartsMode;
 using spherical_param::Positions;
+using spherical_param::Result;
 using spherical_param::Surface;
 
 /// A cloud that cannot be used: the message is "cause; remedy".
@@ -116,94 +114,17 @@ Axes axesOf(const pcl::PCLPointCloud2& cloud) {
   return {findField(cloud, "x"), findField(cloud, "y"), findField(cloud, "z")};
 }
 
-/// Points of a cloud, and the record of each.
-struct Points {
-  Positions positions;           ///< 3 x n, finite
-  std::vector<Index> of_record;  ///< n entries, ascending
-};
-
-Points finitePoints(const pcl::PCLPointCloud2& cloud) {
+/// One point for each record, finite or not.
+Positions pointsOf(const pcl::PCLPointCloud2& cloud) {
   const Axes axes = axesOf(cloud);
-  const std::size_t count = std::size_t{cloud.width} * cloud.height;
-  Points points;
-  points.positions.resize(3, static_cast<Eigen::Index>(count));
-  Eigen::Index finite = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* record = recordOf(cloud, i);
-    points.positions.col(finite) << coordinate(record, *axes[0]), coordinate(record, *axes[1]),
+  Positions points(3, static_cast<Eigen::Index>(std::size_t{cloud.width} * cloud.height));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const std::uint8_t* record = recordOf(cloud, static_cast<std::size_t>(i));
+    points.col(i) << coordinate(record, *axes[0]), coordinate(record, *axes[1]),
         coordinate(record, *axes[2]);
-    if (points.positions.col(finite).allFinite()) {
-      points.of_record.push_back(static_cast<Index>(i));
-      ++finite;
-    }
   }
-  points.positions.conservativeResize(3, finite);
   return points;
 }
-
-/// Those at some places of the list, ascending.
-Points subset(const Points& points, const std::vector<Index>& places) {
-  Points some;
-  some.positions = points.positions(Eigen::all, places);
-  some.of_record.reserve(places.size());
-  for (const Index place : places)
-    some.of_record.push_back(points.of_record[static_cast<std::size_t>(place)]);
-  return some;
-}
-
-std::vector<Index> outliersOf(const Positions& points, const OutlierChoice& choice,
-                              const spherical_param::Execution& execution) {
-  if (!choice.sigma)
-    return spherical_param::findStrayPoints(points, execution).indices;
-  spherical_param::OutlierOptions options;
-  options.sigma = *choice.sigma;
-  return spherical_param::findOutliers(points, options, execution).indices;
-}
-
-/// Removes outliers. \return their number \throw BadCloud, Cancelled
-std::size_t removeOutliers(Points& points, const OutlierChoice& choice,
-                           const spherical_param::Execution& execution) {
-  constexpr std::size_t min_points = 4;
-  const std::vector<Index> outliers = outliersOf(points.positions, choice, execution);
-  if (outliers.empty())
-    return 0;
-  const std::size_t count = points.of_record.size();
-  if (count - outliers.size() < min_points)
-    throw BadCloud(std::to_string(outliers.size()) + " of " + std::to_string(count) +
-                   " points are outliers, and the rest cannot be meshed; raise outliers");
-  std::vector<Index> kept;
-  for (std::size_t i = 0; i < count; ++i)
-    if (!std::binary_search(outliers.begin(), outliers.end(), static_cast<Index>(i)))
-      kept.push_back(static_cast<Index>(i));
-  points = subset(points, kept);
-  return outliers.size();
-}
-
-/// The points of each surface that is meshed. \throw BadCloud if there are none
-std::vector<Points> takeApart(Points points, const Settings& settings,
-                              const spherical_param::Execution& execution) {
-  std::vector<Points> parts;
-  if (settings.parts == PartsMode::All) {
-    parts.push_back(std::move(points));
-    return parts;
-  }
-  for (const spherical_param::Part& part :
-       spherical_param::findParts(points.positions, settings.min_points, execution).parts) {
-    parts.push_back(subset(points, part.points));
-    if (settings.parts == PartsMode::Largest)
-      break;
-  }
-  if (parts.empty())
-    throw BadCloud("no part of the cloud has min_points, " + std::to_string(settings.min_points) +
-                   ", points; lower min_points, or set parts to all");
-  return parts;
-}
-
-/// A surface and the record of each of its vertices.
-struct PartMesh {
-  Surface result;
-  std::vector<Index> record_of_vertex;
-};
 
 /// PCL packs colours as blue, green, red, alpha, in an integer or in the bits of a float.
 void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
@@ -223,13 +144,12 @@ void copyColors(const pcl::PCLPointCloud2& cloud, Mesh& mesh) {
 }
 
 /// Appends a surface. \param mesh has space for its records
-void append(const pcl::PCLPointCloud2& cloud, const PartMesh& part, Mesh& mesh) {
+void append(const pcl::PCLPointCloud2& cloud, const Surface& result, Mesh& mesh) {
   const Axes axes = axesOf(cloud);
-  const Surface& result = part.result;
   const std::size_t first = mesh.vertices.size();
   for (std::size_t i = 0; i < result.vertexCount(); ++i) {
     std::uint8_t* record = mesh.cloud.data.data() + (first + i) * mesh.cloud.point_step;
-    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(part.record_of_vertex[i])),
+    std::memcpy(record, recordOf(cloud, static_cast<std::size_t>(result.input_of_vertex[i])),
                 mesh.cloud.point_step);
     mesh.vertices.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -248,13 +168,13 @@ void append(const pcl::PCLPointCloud2& cloud, const PartMesh& part, Mesh& mesh) 
 }
 
 std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
-                                     const std::vector<PartMesh>& parts) {
+                                     const std::vector<Surface>& parts) {
   auto mesh = std::make_shared<Mesh>();
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  for (const PartMesh& part : parts) {
-    vertices += part.result.vertexCount();
-    triangles += static_cast<std::size_t>(part.result.triangles.cols());
+  for (const Surface& part : parts) {
+    vertices += part.vertexCount();
+    triangles += static_cast<std::size_t>(part.triangles.cols());
   }
   pcl::PCLPointCloud2& kept = mesh->cloud;
   kept.header = cloud.header;
@@ -268,95 +188,40 @@ std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
   kept.data.resize(vertices * kept.point_step);
   mesh->vertices.reserve(vertices);
   mesh->triangles.reserve(triangles);
-  for (const PartMesh& part : parts)
+  for (const Surface& part : parts)
     append(cloud, part, *mesh);
   copyColors(cloud, *mesh);
   return mesh;
 }
 
-PartMesh meshPart(const Points& points, const spherical_param::Options& options) {
-  PartMesh part;
-  part.result = spherical_param::reconstruct(points.positions, options);
-  part.record_of_vertex.reserve(part.result.vertexCount());
-  for (const Index point : part.result.input_of_vertex)
-    part.record_of_vertex.push_back(points.of_record[static_cast<std::size_t>(point)]);
-  return part;
-}
-
-/// Adds what is to be said of a surface.
-void addFindings(const Surface& result, Outcome& outcome) {
-  for (const spherical_param::Finding& finding : result.findings) {
+/// What is to be said of a result.
+void describe(const Result& result, Outcome& outcome) {
+  outcome.warnings = result.failures;
+  for (const spherical_param::Finding& finding : result.findings)
     outcome.warnings.push_back(finding.option.empty() ? finding.text
                                                       : finding.text + ": try " + finding.option +
                                                             " = " + finding.value);
+  outcome.message = result.verdict;
+  outcome.has_faults = !result.failures.empty() || spherical_param::hasFault(result.findings);
+  outcome.parts = result.surfaces.size();
+  outcome.ignored = result.left_out.not_finite.size();
+  outcome.outliers = result.left_out.outliers.size();
+  outcome.other_points = result.left_out.other_parts.size();
+  for (const Surface& surface : result.surfaces) {
+    outcome.duplicates += surface.duplicates();
+    outcome.self_intersections += surface.self_intersections.size();
   }
-  outcome.duplicates += result.duplicates();
-  outcome.self_intersections += result.self_intersections.size();
-}
-
-/// Meshes each part by itself. A part that cannot be meshed is left out with a warning.
-/// \throw InvalidInput if none can be, Cancelled
-std::vector<PartMesh> meshParts(const std::vector<Points>& parts,
-                                const spherical_param::Options& options,
-                                const std::function<double()>& passed, Outcome& outcome) {
-  std::size_t points_left = 0;
-  for (const Points& part : parts)
-    points_left += part.of_record.size();
-  std::vector<PartMesh> meshes;
-  std::exception_ptr failure;
-  std::size_t faulty = 0;
-  for (const Points& part : parts) {
-    const std::size_t count = part.of_record.size();
-    spherical_param::Options of_part = options;
-    // Each part has its share of the time that is left.
-    if (of_part.time_limit)
-      of_part.time_limit = std::max(0.0, *options.time_limit - passed()) *
-                           static_cast<double>(count) / static_cast<double>(points_left);
-    points_left -= count;
-    try {
-      meshes.push_back(meshPart(part, of_part));
-    } catch (const spherical_param::InvalidInput& error) {
-      failure = failure ? failure : std::current_exception();
-      outcome.other_points += count;
-      outcome.warnings.push_back("a part of " + std::to_string(count) +
-                                 " points is left out: " + error.what());
-      continue;
-    }
-    const Surface& result = meshes.back().result;
-    addFindings(result, outcome);
-    faulty += spherical_param::hasFault(result.findings) ? 1 : 0;
-  }
-  if (meshes.empty())
-    std::rethrow_exception(failure);
-  outcome.parts = meshes.size();
-  outcome.has_faults = faulty > 0;
-  outcome.message = meshes.front().result.verdict;
-  if (meshes.size() > 1)
-    outcome.message =
-        std::to_string(meshes.size()) + " meshes, " +
-        (faulty == 0 ? "all sound." : std::to_string(faulty) + " of them with faults.");
-  return meshes;
 }
 
 void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
-                 const std::function<bool()>& is_wanted, const std::function<double()>& passed,
-                 Outcome& outcome) {
+                 const std::function<bool()>& is_wanted, Outcome& outcome) {
   outcome.points = std::size_t{cloud.width} * cloud.height;
   checkLayout(cloud, settings.max_points);
   spherical_param::Options options = settings.options;
   options.progress = [&](const spherical_param::Progress&) { return !is_wanted || is_wanted(); };
-  checkOptions(options);
-  Points points = finitePoints(cloud);
-  outcome.ignored = outcome.points - points.of_record.size();
-  if (points.of_record.empty())
-    throw BadCloud("all points are not finite; check the scanner and the filters before this node");
-  if (settings.outliers)
-    outcome.outliers = removeOutliers(points, *settings.outliers, options);
-  outcome.other_points = points.of_record.size();
-  const std::vector<Points> parts = takeApart(std::move(points), settings, options);
-  for (const Points& part : parts)
-    outcome.other_points -= part.of_record.size();
-  outcome.mesh = makeMesh(cloud, meshParts(parts, options, passed, outcome));
+  const Result result = spherical_param::reconstruct(pointsOf(cloud), options);
+  describe(result, outcome);
+  outcome.mesh = makeMesh(cloud, result.surfaces);
   outcome.status = Status::Done;
 }
 
@@ -385,7 +250,7 @@ Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   };
   Outcome outcome;
   try {
-    reconstruct(cloud, settings, is_wanted, passed, outcome);
+    reconstruct(cloud, settings, is_wanted, outcome);
   } catch (const BadCloud& error) {
     outcome.message = error.what();
   } catch (const spherical_param::Cancelled&) {

@@ -31,13 +31,28 @@ bool isUnset(const Value& value) {
   return value == Value(std::int64_t{kUnset}) || value == Value(double{kUnset});
 }
 
+/// The shortest text that is read as the same number.
+std::string shortest(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof(text), number).ptr};
+}
+
+/// Whether numbers are given as texts: a parameter of ROS has one type.
+bool isText(const OptionRow& row) {
+  return !row.choices.empty();
+}
+
 Value toValue(const OptionRow& row, const OptionValue& value) {
-  if (const auto* integer = std::get_if<std::int64_t>(&value))
-    return *integer;
-  if (const auto* number = std::get_if<double>(&value))
-    return *number;
   if (const auto* name = std::get_if<std::string>(&value))
     return *name;
+  const auto* integer = std::get_if<std::int64_t>(&value);
+  const auto* number = std::get_if<double>(&value);
+  if (isText(row))
+    return shortest(number != nullptr ? *number : static_cast<double>(*integer));
+  if (integer != nullptr)
+    return *integer;
+  if (number != nullptr)
+    return *number;
   return row.is_integer ? Value(std::int64_t{kUnset}) : Value(double{kUnset});
 }
 
@@ -48,16 +63,31 @@ OptionValue toOption(const OptionRow& row, const Value& value) {
     return *integer;
   if (const auto* number = std::get_if<double>(&value))
     return *number;
-  if (const auto* name = std::get_if<std::string>(&value))
-    return *name;
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    const char* end = text->data() + text->size();
+    double number = 0.0;
+    if (row.is_number && std::from_chars(text->data(), end, number).ptr == end)
+      return number;
+    return *text;
+  }
   refuse(row.name, value, rangeOf(row));
 }
 
 /// The parameter of an option of the core.
 Parameter option(const OptionRow& row) {
   const std::string unset = row.optional ? ", or -1: unset" : "";
-  return {{row.name, row.help + "; " + rangeOf(row) + unset, toValue(row, row.get({})),
-           row.optional ? kUnset : row.min, row.max, row.choices},
+  ParameterInfo info{row.name,
+                     row.help + "; " + rangeOf(row) + unset,
+                     toValue(row, row.get({})),
+                     row.optional ? kUnset : row.min,
+                     row.max,
+                     row.choices};
+  if (row.is_number && isText(row)) {
+    // Any text: a number may be among them.
+    info.choices.clear();
+    info.min = info.max = 0.0;
+  }
+  return {info,
           [&row](const Settings& settings) { return toValue(row, row.get(settings.options)); },
           [&row](Settings& settings, const Value& value) {
             setOption(settings.options, row.name, toOption(row, value));
@@ -88,82 +118,6 @@ Parameter integer(const std::string& name, const std::string& description, int m
           }};
 }
 
-/// A number, or its text; NaN if it is none.
-double numberOf(const Value& value) {
-  if (const auto* integer = std::get_if<std::int64_t>(&value))
-    return static_cast<double>(*integer);
-  if (const auto* number = std::get_if<double>(&value))
-    return *number;
-  double number = std::numeric_limits<double>::quiet_NaN();
-  if (const auto* text = std::get_if<std::string>(&value)) {
-    const char* end = text->data() + text->size();
-    if (std::from_chars(text->data(), end, number).ptr != end)
-      return std::numeric_limits<double>::quiet_NaN();
-  }
-  return number;
-}
-
-/// The shortest text that is read as the same number.
-std::string shortest(double number) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof(text), number).ptr};
-}
-
-// Not "off": in YAML that is the truth value false.
-constexpr const char* kNone = "none";
-
-Parameter outliers() {
-  const std::string name = "outliers";
-  const std::string range = "none, auto or a number from 0 to 1000";
-  return {{name,
-           "points that are left out: stray ones (auto), or those that many deviations off the "
-           "others; " +
-               range,
-           std::string(kNone),
-           0.0,
-           0.0,
-           {}},
-          [](const Settings& settings) -> Value {
-            if (!settings.outliers)
-              return std::string(kNone);
-            const std::optional<double>& sigma = settings.outliers->sigma;
-            return sigma ? shortest(*sigma) : std::string("auto");
-          },
-          [=](Settings& settings, const Value& value) {
-            if (value == Value(std::string(kNone))) {
-              settings.outliers.reset();
-            } else if (value == Value(std::string("auto"))) {
-              settings.outliers = OutlierChoice();
-            } else {
-              const double sigma = numberOf(value);
-              if (!(sigma >= 0.0 && sigma <= 1000.0))
-                refuse(name, value, range);
-              settings.outliers = OutlierChoice{sigma};
-            }
-          }};
-}
-
-Parameter parts() {
-  const std::string name = "parts";
-  // In the order of PartsMode.
-  const std::vector<std::string> names = {"all", "largest", "each"};
-  return {{name,
-           "which parts are meshed: all as one surface, that of most points, or each by itself; "
-           "all, largest or each",
-           names.front(), 0.0, 0.0, names},
-          [=](const Settings& settings) {
-            return Value(names[static_cast<std::size_t>(settings.parts)]);
-          },
-          [=](Settings& settings, const Value& value) {
-            for (std::size_t i = 0; i < names.size(); ++i)
-              if (value == Value(names[i])) {
-                settings.parts = static_cast<spherical_param::PartsMode>(i);
-                return;
-              }
-            refuse(name, value, "all, largest or each");
-          }};
-}
-
 Parameter cancelRunning() {
   const std::string name = "cancel_running";
   return {{name,
@@ -184,11 +138,6 @@ std::vector<Parameter> makeParameters() {
   std::vector<Parameter> all;
   for (const OptionRow& row : spherical_param::optionTable())
     all.push_back(option(row));
-  all.push_back(outliers());
-  all.push_back(parts());
-  all.push_back(integer(
-      "min_points", "points of a part, at least, unless parts is all", 4,
-      [](Settings & s) -> auto& { return s.min_points; }));
   all.push_back(integer(
       "max_points", "larger clouds are refused; 0: none is", 0,
       [](Settings & s) -> auto& { return s.max_points; }));

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "local_delaunay_graph.h"
-#include "nearest_neighbor_graph.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
@@ -193,27 +191,6 @@ inline std::vector<std::array<Index, 3>> canonical(const Triangles& triangles) {
   return result;
 }
 
-/// How a graph is made.
-struct GraphChoice {
-  GraphMethod method = GraphMethod::LocalDelaunay;
-  int k = 12;
-};
-
-/// The graph of the k nearest neighbours.
-inline GraphChoice nearest(int k = 25) {
-  return {GraphMethod::NearestNeighbors, k};
-}
-
-inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
-                             const GraphChoice& choice = {}, const NeighborSearch& search = {},
-                             const Execution& execution = {}) {
-  if (choice.method == GraphMethod::NearestNeighbors)
-    return internal::buildNearestNeighborGraph(points, lists, choice.k);
-  return internal::buildLocalDelaunayGraph(points,
-                                           internal::findStars(points, {lists, search}, execution),
-                                           internal::StraySearch::Yes, execution);
-}
-
 /// Execution on so many threads.
 inline Execution onThreads(int threads) {
   Execution execution;
@@ -276,27 +253,6 @@ inline double volumeOf(const Positions& points, const Triangles& triangles) {
   return sum / 6.0;
 }
 
-/// The edges of triangles as a graph, with the lengths of the points.
-inline Graph graphOfMesh(const Positions& points, const Triangles& triangles) {
-  std::vector<std::pair<Index, Index>> entries;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      entries.emplace_back(triangles(k, t), triangles((k + 1) % 3, t));
-      entries.emplace_back(triangles((k + 1) % 3, t), triangles(k, t));
-    }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  Graph graph;
-  graph.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
-  for (const auto& [i, j] : entries) {
-    ++graph.offsets[static_cast<std::size_t>(i) + 1];
-    graph.neighbors.push_back(j);
-    graph.lengths.push_back((points.col(i) - points.col(j)).norm());
-  }
-  std::partial_sum(graph.offsets.begin(), graph.offsets.end(), graph.offsets.begin());
-  return graph;
-}
-
 /// A closed tube of radius 1 whose axis is an arc, with its true triangles.
 struct Tube {
   Positions points;
@@ -346,35 +302,6 @@ inline Tube bentTube(double length, double turn, int ring) {
     tube.triangles.col(t++) << n - 1, (rings - 1) * ring + k, (rings - 1) * ring + (k + 1) % ring;
   }
   return tube;
-}
-
-/// Fraction of the edges of triangles that join nodes more than two steps apart in a graph.
-inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triangles) {
-  const auto row = [&](Index i) {
-    const auto begin = graph.neighbors.begin() +
-                       static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i)]);
-    const auto end = graph.neighbors.begin() +
-                     static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i) + 1]);
-    return std::vector<Index>(begin, end);
-  };
-  Index beyond = 0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Index a = triangles(k, t);
-      const Index b = triangles((k + 1) % 3, t);
-      bool near = false;
-      for (const Index middle : row(a)) {
-        const std::vector<Index> next = row(middle);
-        near = near || middle == b || std::find(next.begin(), next.end(), b) != next.end();
-      }
-      beyond += near ? 0 : 1;
-    }
-  return static_cast<double>(beyond) / static_cast<double>(3 * triangles.cols());
-}
-
-/// The graph of the tangent Delaunay neighbours, by brute force.
-inline NeighborGraph localDelaunayGraph(const Positions& points) {
-  return graphOf(points, bruteForceNeighbors(points, 12), {}, bruteForceSearch(points));
 }
 
 /// A torus of rings x around quads, each split in two, over the vertices r * around + k: six

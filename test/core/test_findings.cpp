@@ -22,10 +22,12 @@ Surface soundResult() {
   return result;
 }
 
-FilledHole holeOf(std::size_t points) {
-  FilledHole hole;
-  hole.loops = {std::vector<Index>(points)};
-  return hole;
+Opening filledOpening(std::size_t points, double certainty = 1.0) {
+  Opening opening;
+  opening.loop.resize(points);
+  opening.certainty = certainty;
+  opening.is_filled = true;
+  return opening;
 }
 
 void addBridge(Surface& result, std::size_t points, std::size_t other_points) {
@@ -76,10 +78,10 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
          addBridge(r, 1, 3);
        }},
       {{"opening of 432 points, filled", "surface", "open", true},
-       [](Surface& r) { r.diagnosis.filled_holes = {holeOf(432)}; }},
+       [](Surface& r) { r.openings = {filledOpening(432)}; }},
       {{"2 openings, the largest of 432 points, filled", "surface", "open", true},
        [](Surface& r) {
-         r.diagnosis.filled_holes = {holeOf(40), holeOf(432)};
+         r.openings = {filledOpening(40), filledOpening(432), filledOpening(500, 0.9)};
        }},
       {{"the points are noisy", "consolidation", "auto", false},
        [](Surface& r) { r.is_noisy = true; }},
@@ -135,9 +137,8 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
     texts.push_back(finding.text);
-  EXPECT_EQ(texts,
-            (std::vector<std::string>{"part 4 of 4 (1,200 points) cannot be meshed: it is flat",
-                                      "part 1, part 3: noisy", "part 3: torn"}));
+  EXPECT_EQ(result.failures[0], "part 4 of 4 (1,200 points) cannot be meshed: it is flat");
+  EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
   EXPECT_EQ(result.verdict, "3 meshes, 1 of them with faults.");
   result = {};
   result.surfaces.resize(1, soundResult());
@@ -158,12 +159,25 @@ TEST(LeftOut, SaysWhatAndHowMany) {
             "2 points that are not finite, 1 outlier, 1,000 points in other parts");
 }
 
+TEST(Findings, OfWhatDoesNotHarmTheMeshAreNone) {
+  expectFindings({{{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
+                  {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
+                  {{}, [](Surface& r) { r.openings = {filledOpening(432, 0.9)}; }},
+                  {{}, [](Surface& r) { r.openings.resize(2); }},
+                  {{},
+                   [](Surface& r) {
+                     r.openings = {filledOpening(432)};
+                     r.openings[0].is_flat = true;
+                   }},
+                  {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }}});
+}
+
 TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
   Options filling;
   filling.surface = SurfaceMode::Open;
   filling.fill_holes = 500;
   expectFindings({{{"opening of 432 points, filled", "", "", false},
-                   [](Surface& r) { r.diagnosis.filled_holes = {holeOf(432)}; }}},
+                   [](Surface& r) { r.openings = {filledOpening(432)}; }}},
                  filling);
 }
 
@@ -201,11 +215,11 @@ TEST(Verdict, SaysInProportionWhatIsWrong) {
   expect("A sound mesh.", [](Surface&) {});
   expect("A sound mesh with 2 openings.", [](Surface& r) { r.boundary.resize(2); });
   expect("A sound mesh, but it fills 1 opening.",
-         [](Surface& r) { r.diagnosis.filled_holes = {holeOf(432)}; });
+         [](Surface& r) { r.openings = {filledOpening(432)}; });
   expect("A sound mesh, but it joins 2 separate parts, fills 1 opening and cuts 1 handle.",
          [](Surface& r) {
            addBridge(r, 1, 2);
-           r.diagnosis.filled_holes = {holeOf(432)};
+           r.openings = {filledOpening(432)};
            r.diagnosis.genus = 1;
          });
   expect("A sound mesh with 1 opening, but it is folded.", [](Surface& r) {

@@ -99,10 +99,8 @@ Numbers numbersOf(const Surface& surface) {
 
 Numbers numbersOf(const MeshTopology& topology) {
   return Numbers(topology.vertices, topology.edges, topology.components,
-                 topology.euler_characteristic, topology.faults.boundary_edges,
-                 topology.faults.nonmanifold_edges, topology.faults.misoriented_edges,
-                 topology.faults.nonmanifold_vertices, topology.faults.unused_vertices,
-                 topology.faults.degenerate_triangles);
+                 topology.euler_characteristic, topology.oriented, topology.nonmanifold_vertices,
+                 topology.unused_vertices);
 }
 
 Numbers numbersOf(const MeshOptimization& optimization) {
@@ -185,13 +183,11 @@ void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
     return Numbers(result.alignment, result.unevenness);
   });
   add_silent("diagnosis", [&in](int threads) {
-    const SurfaceDiagnosis result =
-        diagnoseSurface(in.torus.points, in.torus.triangles, in.torus.graph.graph, {}, {}, threads);
+    const SurfaceDiagnosis result = diagnoseSurface(in.torus.points, in.torus.triangles,
+                                                    in.torus.graph.graph, {}, {}, {}, threads);
     Numbers numbers(result.edges_outside_graph);
-    for (const CollapsedHandle& handle : result.handles)
+    for (const Handle& handle : result.handles)
       numbers.add(handle.vertices);
-    for (const FilledHole& hole : result.filled_holes)
-      numbers.add(Numbers(hole.area, hole.loops));
     return numbers;
   });
 }

@@ -6,6 +6,7 @@
 #include "embedding_starts.h"
 #include "mesh_optimization.h"
 #include "neighbor_search.h"
+#include "openings.h"
 #include "outliers.h"
 #include "point_set.h"
 #include "smoothing.h"
@@ -293,8 +294,9 @@ void fuzzDiagnosis(Bytes& bytes, const Positions& given, Watch&) {
   options.max_vertices = bytes.byte();
   options.mark_triangles = bytes.oneIn(2);
   options.count_cycles = bytes.oneIn(2);
-  const SurfaceDiagnosis result = diagnoseSurface(
-      points, triangles, graph.graph, graph.report.bridges, options, bytes.integerOr(0));
+  const SurfaceDiagnosis result =
+      diagnoseSurface(points, triangles, graph.graph, graph.report.bridges,
+                      findOpenings(points, graph.graph).openings, options, bytes.integerOr(0));
   require(!options.mark_triangles ||
               result.triangle_marks.size() == static_cast<std::size_t>(triangles.cols()),
           "each triangle has a mark");

@@ -2,6 +2,7 @@
 
 import ast
 import base64
+import dataclasses
 import html
 import inspect
 import json
@@ -57,9 +58,18 @@ class Documentation(unittest.TestCase):
             names = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
             self.assertEqual(names, list(inspect.signature(sp.reconstruct).parameters))
 
+    def test_type_checkers_read_the_fields_of_results(self):
+        stub = ast.parse((Path(sp.__file__).parent / "_figures.pyi").read_text())
+        classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+        for name in ("Topology", "Diagnosis", "Embedding", "HistoryFrame"):
+            made = getattr(sp, name)
+            names = [node.target.id for node in classes[name].body]
+            self.assertEqual(names, [field.name for field in dataclasses.fields(made)])
+            self.assertEqual(set(typing.get_type_hints(made)), set(names))
+
     def test_help_explains_the_marks_of_triangles(self):
         for mark in sp.TriangleMark:
-            self.assertIn(f"TriangleMark.{mark.name}`` ({mark.value})", inspect.getdoc(sp.Diagnosis))
+            self.assertIn(f"TriangleMark.{mark.name}`` ({mark.value})", inspect.getdoc(sp.TriangleMark))
 
     def test_there_is_one_version(self):
         cmake = (SOURCE / "CMakeLists.txt").read_text()
@@ -188,14 +198,13 @@ class Views(unittest.TestCase):
         self.assertEqual(data["report"]["verdict"], mesh.verdict)
         self.assertEqual(data["report"]["measures"]["volume"], mesh.measures.volume)
         self.assertEqual((data["report"]["points"], data["report"]["vertices"]), (401, 300))
-        self.assertEqual(data["report"]["outliers"]["indices"], [400])
-        self.assertEqual(data["report"]["left_out"], [*range(300, 400)])
+        self.assertEqual(data["report"]["left_out"]["outliers"], [400])
+        self.assertEqual(data["report"]["left_out"]["other_parts"], [*range(300, 400)])
         self.assertEqual(data["report"]["options"]["parts"], "largest")
         self.assertGreater(len(data["frames"]), 2)
         self.assertEqual(
             data["command"],
-            "spherical_param.reconstruct(points, k=12, outliers='auto', parts='largest', "
-            "min_points=50)",
+            "spherical_param.reconstruct(points, parts='largest', outliers='auto', k=12)",
         )
         embedded = re.fullmatch(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>', mesh._repr_html_())
         self.assertIn('id="data"', html.unescape(embedded[1]))

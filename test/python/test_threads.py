@@ -98,7 +98,7 @@ class Progress(unittest.TestCase):
         for stages, function, arguments, options in (
             (STAGES, sp.reconstruct, points, {}),
             (MAP_STAGES, sp.remesh, mesh, {"points": 200, "sweeps": 3}),
-            (["neighbors", "outliers"], sp.find_outliers, points, {}),
+            (["neighbors", "graph", "outliers"], sp.find_outliers, points, {}),
         ):
             told = []
 

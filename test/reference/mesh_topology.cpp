@@ -61,7 +61,8 @@ std::size_t countFans(const std::vector<std::array<Index, 2>>& links) {
 
 MeshTopology topologyOf(const Triangles& triangles, Index n) {
   MeshTopology result;
-  TopologyFaults& faults = result.faults;
+  result.closed = triangles.cols() > 0;
+  result.edge_manifold = result.oriented = true;
   result.triangles = static_cast<std::size_t>(triangles.cols());
   std::map<std::array<Index, 2>, std::vector<bool>> edges;  // whether a side runs upwards
   std::vector<std::vector<std::array<Index, 2>>> links(static_cast<std::size_t>(n));
@@ -71,7 +72,7 @@ MeshTopology topologyOf(const Triangles& triangles, Index n) {
     for (int k = 0; k < 3; ++k)
       used[static_cast<std::size_t>(corners[k])] = true;
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
-      faults.degenerate_triangles.push_back(t);
+      result.edge_manifold = false;
       continue;
     }
     for (int k = 0; k < 3; ++k) {
@@ -81,22 +82,21 @@ MeshTopology topologyOf(const Triangles& triangles, Index n) {
       links[static_cast<std::size_t>(a)].push_back({b, corners[(k + 2) % 3]});
     }
   }
-  for (const auto& [edge, sides] : edges) {
-    if (sides.size() == 1)
-      faults.boundary_edges.push_back(edge);
-    else if (sides.size() > 2)
-      faults.nonmanifold_edges.push_back(edge);
-    else if (sides[0] == sides[1])
-      faults.misoriented_edges.push_back(edge);
+  for (const auto& each : edges) {
+    const std::vector<bool>& sides = each.second;
+    result.closed = result.closed && sides.size() > 1;
+    result.edge_manifold = result.edge_manifold && sides.size() <= 2;
+    result.oriented =
+        result.oriented && (sides.size() == 1 || (sides.size() == 2 && sides[0] != sides[1]));
   }
   for (Index v = 0; v < n; ++v) {
     if (!used[static_cast<std::size_t>(v)]) {
-      faults.unused_vertices.push_back(v);
+      result.unused_vertices.push_back(v);
       continue;
     }
     ++result.vertices;
     if (countFans(links[static_cast<std::size_t>(v)]) > 1)
-      faults.nonmanifold_vertices.push_back(v);
+      result.nonmanifold_vertices.push_back(v);
   }
   result.edges = edges.size();
   result.components = countPieces(triangles, n);

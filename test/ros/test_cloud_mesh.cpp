@@ -55,7 +55,8 @@ Positions positionsOf(const pcl::PCLPointCloud2& cloud) {
 /// The outcome has the core's mesh of these points, to the bit; smoothed ones in their precision.
 template <typename Scalar>
 void expectCoresMesh(const Outcome& outcome, const Positions& points, const Settings& settings) {
-  const auto result = spherical_param::reconstruct(points, settings.options);
+  const auto whole = spherical_param::reconstruct(points, settings.options);
+  const spherical_param::Surface& result = whole.surface();
   Positions vertices = points(Eigen::all, result.input_of_vertex);
   if (result.smoothed.cols() > 0)
     vertices = result.smoothed.cast<Scalar>().template cast<double>();
@@ -173,34 +174,23 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
   setPoint(cloud, 20, kNan, 0.0, 0.0);
   setPoint(cloud, 100, 20.0, 0.0, 0.0);
   Settings settings;
-  settings.outliers = OutlierChoice{4.0};
-  const Outcome outcome = meshed(cloud, settings);
-  EXPECT_EQ(outcome.outliers, 1U);
-  ASSERT_EQ(outcome.mesh->vertices.size(), 1498U);
-  EXPECT_EQ(record(outcome.mesh->cloud, 98), record(cloud, 99));
-  EXPECT_EQ(record(outcome.mesh->cloud, 99), record(cloud, 101));
-  // Before the search, within it, when the outliers are told from the others, and thereafter.
+  EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 point looks like an outlier"),
+            std::string::npos);
+  for (const char* outliers : {"auto", "4"}) {
+    setParameter(settings, "outliers", std::string(outliers));
+    const Outcome outcome = meshed(cloud, settings);
+    EXPECT_EQ(outcome.outliers, 1U);
+    ASSERT_EQ(outcome.mesh->vertices.size(), 1498U);
+    EXPECT_EQ(record(outcome.mesh->cloud, 98), record(cloud, 99));
+    EXPECT_EQ(record(outcome.mesh->cloud, 99), record(cloud, 101));
+  }
   for (const int wanted : {0, 1, 2, 20}) {
     int asked = 0;
     const Outcome ended = meshCloud(cloud, settings, [&] { return asked++ < wanted; });
     EXPECT_EQ(ended.status, Status::Cancelled);
     EXPECT_EQ(ended.mesh, nullptr);
     EXPECT_EQ(asked, wanted + 1);
-    EXPECT_EQ(ended.outliers, wanted < 20 ? 0U : 1U);
   }
-}
-
-TEST(RosCloudMesh, StrayPointsAreLeftOutAutomatically) {
-  pcl::PCLPointCloud2 cloud = ellipsoid(1500);
-  setPoint(cloud, 100, 20.0, 0.0, 0.0);
-  Settings settings;
-  EXPECT_EQ(meshed(cloud, settings).outliers, 0U);
-  EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 point looks like an outlier"),
-            std::string::npos);
-  settings.outliers = OutlierChoice();
-  const Outcome outcome = meshed(cloud, settings);
-  EXPECT_EQ(outcome.outliers, 1U);
-  EXPECT_EQ(outcome.mesh->vertices.size(), 1499U);
 }
 
 /// Takes some records of a cloud.
@@ -212,62 +202,41 @@ pcl::PCLPointCloud2 some(pcl::PCLPointCloud2 cloud, std::uint32_t first, std::ui
   return cloud;
 }
 
-/// An ellipsoid of 400 points, one of 700 in some distance, a disc of 60, and three single points.
+/// Ellipsoids of 400 and of 700 points with a distance between them, and three single points.
 pcl::PCLPointCloud2 severalParts() {
-  pcl::PCLPointCloud2 cloud = ellipsoid(1163);
-  const Positions unit = positionsOf<float>(cloud);
+  pcl::PCLPointCloud2 cloud = ellipsoid(1103);
   const Positions small = positionsOf<float>(ellipsoid(400));
   const Positions large = positionsOf<float>(ellipsoid(700));
   for (std::uint32_t i = 0; i < cloud.width; ++i) {
-    Eigen::Vector3d p(100.0 * (i - 1159.0), 50.0, 0.0);
+    Eigen::Vector3d p(100.0 * (i - 1099.0), 50.0, 0.0);
     if (i < 400)
       p = small.col(i);
     else if (i < 1100)
       p = large.col(i - 400) + Eigen::Vector3d(6.0, 0.0, 0.0);
-    else if (i < 1160)
-      p = std::sqrt((i - 1099.5) / 60.0) *
-              Eigen::Vector3d(std::cos(2.4 * i), std::sin(2.4 * i), 0.0) +
-          Eigen::Vector3d(12.0, 0.0, 0.0);
     setPoint(cloud, i, p.x(), p.y(), p.z());
   }
   return cloud;
 }
 
-TEST(RosCloudMesh, LargestMeshesThePartOfMostPointsAlone) {
-  const pcl::PCLPointCloud2 cloud = severalParts();
-  Settings settings;
-  settings.parts = spherical_param::PartsMode::Largest;
-  const Outcome outcome = meshed(cloud, settings);
-  EXPECT_EQ(outcome.parts, 1U);
-  EXPECT_EQ(outcome.other_points, 463U);
-  const pcl::PCLPointCloud2 part = some(cloud, 400, 700);
-  EXPECT_EQ(outcome.mesh->cloud.data, part.data);
-  expectCoresMesh<float>(outcome, positionsOf<float>(part), settings);
-}
-
 TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
   const pcl::PCLPointCloud2 cloud = severalParts();
   Settings settings;
-  settings.parts = spherical_param::PartsMode::Each;
+  settings.options.parts = spherical_param::PartsMode::Each;
   settings.options.smoothing = 3;
+  settings.options.time_limit = 100.0;
   const Outcome outcome = meshed(cloud, settings);
-  // The disc is a plane, which cannot be meshed; the three points are no part.
   EXPECT_EQ(outcome.parts, 2U);
-  EXPECT_EQ(outcome.other_points, 63U);
+  EXPECT_EQ(outcome.other_points, 3U);
   EXPECT_EQ(outcome.message, "2 meshes, all sound.");
-  ASSERT_EQ(outcome.warnings.size(), 1U);
-  EXPECT_NE(outcome.warnings[0].find("60 points is left out"), std::string::npos);
   const Mesh& mesh = *outcome.mesh;
   ASSERT_EQ(mesh.vertices.size(), 1100U);
   EXPECT_EQ(mesh.colors.size(), 1100U);
-  settings.parts = spherical_param::PartsMode::All;
+  settings.options.parts = spherical_param::PartsMode::All;
   std::uint32_t first = 0;
   std::size_t first_triangle = 0;
   for (const auto& [from, count] : {std::pair(400U, 700U), std::pair(0U, 400U)}) {
     const Outcome alone = meshed(some(cloud, from, count), settings);
     EXPECT_EQ(some(mesh.cloud, first, count).data, alone.mesh->cloud.data);
-    for (std::size_t i = 0; i < count; ++i)
-      EXPECT_EQ(mesh.vertices[first + i], alone.mesh->vertices[i]);
     for (std::size_t t = 0; t < alone.mesh->triangles.size(); ++t)
       for (std::size_t corner = 0; corner < 3; ++corner)
         EXPECT_EQ(mesh.triangles.at(first_triangle + t)[corner],
@@ -278,18 +247,21 @@ TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
   EXPECT_EQ(mesh.triangles.size(), first_triangle);
 }
 
-TEST(RosCloudMesh, CloudsWithoutPartsAreRefusedAndPointsOfSmallPartsCounted) {
+TEST(RosCloudMesh, SmallPartsAreCountedAndATimeLimitIsThatOfAllParts) {
   const pcl::PCLPointCloud2 cloud = severalParts();
   Settings settings;
-  settings.parts = spherical_param::PartsMode::Each;
-  settings.min_points = 500;
-  EXPECT_EQ(meshed(cloud, settings).other_points, 463U);
-  settings.min_points = 1000;
+  settings.options.parts = spherical_param::PartsMode::Each;
+  settings.options.min_points = 500;
+  EXPECT_EQ(meshed(cloud, settings).other_points, 403U);
+  settings.options.min_points = 1000;
   const Outcome refused = meshCloud(cloud, settings, {});
   EXPECT_EQ(refused.status, Status::Failed);
-  EXPECT_NE(refused.message.find("min_points, 1000, points; lower"), std::string::npos)
-      << refused.message;
-  EXPECT_EQ(refused.other_points, 1163U);
+  EXPECT_NE(refused.message.find("min_points = 1000"), std::string::npos) << refused.message;
+  settings.options.min_points = 50;
+  settings.options.time_limit = 0.0;
+  const Outcome hurried = meshed(cloud, settings);
+  ASSERT_EQ(hurried.warnings.size(), 1U);
+  EXPECT_EQ(hurried.warnings[0].find("part 1, part 2: the time limit"), 0U) << hurried.warnings[0];
 }
 
 TEST(RosCloudMesh, AnOpenSurfaceIsNoFaultUnlessItsOpeningsAreFilled) {

@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,13 +18,15 @@ using Values = std::vector<std::pair<std::string, Value>>;
 
 TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
   const auto& rows = spherical_param::optionTable();
-  ASSERT_EQ(parameters().size(), rows.size() + 7);
+  ASSERT_EQ(parameters().size(), rows.size() + 4);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ParameterInfo& info = parameters()[i];
     EXPECT_EQ(info.name, rows[i].name);
-    EXPECT_EQ(info.choices, rows[i].choices);
-    EXPECT_EQ(info.min, rows[i].optional ? kUnset : rows[i].min) << info.name;
-    EXPECT_EQ(info.max, rows[i].max) << info.name;
+    // A parameter has one type: numbers beside names are texts, and any text may be given.
+    const bool is_mixed = rows[i].is_number && !rows[i].choices.empty();
+    EXPECT_EQ(info.choices, is_mixed ? std::vector<std::string>() : rows[i].choices);
+    EXPECT_EQ(info.min, is_mixed ? 0.0 : rows[i].optional ? kUnset : rows[i].min) << info.name;
+    EXPECT_EQ(info.max, is_mixed ? 0.0 : rows[i].max) << info.name;
     EXPECT_NE(info.description.find(rangeOf(rows[i])), std::string::npos) << info.description;
     // No value in its range means that it is not set.
     EXPECT_TRUE(!rows[i].optional || rows[i].min > kUnset) << info.name;
@@ -33,9 +34,10 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
 }
 
 TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
-  const Values own = {{"outliers", std::string("none")},     {"parts", std::string("all")},
-                      {"min_points", std::int64_t{50}},      {"max_points", std::int64_t{5000000}},
-                      {"queue_depth", std::int64_t{1}},      {"cancel_running", true},
+  const Values own = {{"outliers", std::string("none")},
+                      {"max_points", std::int64_t{5000000}},
+                      {"queue_depth", std::int64_t{1}},
+                      {"cancel_running", true},
                       {"max_cancellations", std::int64_t{3}}};
   for (const auto& [name, value] : own)
     EXPECT_EQ(parameterOf({}, name), value) << name;
@@ -48,9 +50,10 @@ TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
 }
 
 TEST(RosParameters, EachChangesWhatItNamesOnly) {
-  Values values = {{"outliers", std::string("4.25")},     {"parts", std::string("each")},
-                   {"min_points", std::int64_t{7}},       {"max_points", std::int64_t{1000}},
-                   {"queue_depth", std::int64_t{4}},      {"cancel_running", false},
+  Values values = {{"outliers", std::string("4.25")},
+                   {"max_points", std::int64_t{1000}},
+                   {"queue_depth", std::int64_t{4}},
+                   {"cancel_running", false},
                    {"max_cancellations", std::int64_t{9}}};
   for (const spherical_param::OptionRow& row : spherical_param::optionTable()) {
     if (!row.choices.empty())
@@ -75,11 +78,11 @@ TEST(RosParameters, AnIntegerWillDoForANumberAndWhatIsSetCanBeUnset) {
   EXPECT_EQ(settings.options.embedding.exponent, 4.0);
   for (const Value& number : {Value(4), Value(4.0), Value(std::string("4"))}) {
     setParameter(settings, "outliers", number);
-    EXPECT_EQ(settings.outliers.value().sigma, 4.0);
-    setParameter(settings, "outliers", std::string("auto"));
-    EXPECT_EQ(settings.outliers.value().sigma, std::nullopt);
+    EXPECT_EQ(settings.options.outliers, spherical_param::OutlierMode::Deviation);
+    EXPECT_EQ(settings.options.outlier_sigma, 4.0);
+    EXPECT_EQ(parameterOf(settings, "outliers"), Value(std::string("4")));
     setParameter(settings, "outliers", std::string("none"));
-    EXPECT_FALSE(settings.outliers.has_value());
+    EXPECT_EQ(settings.options.outliers, spherical_param::OutlierMode::None);
   }
   for (const Value& unset : {Value(std::int64_t{kUnset}), Value(-1.0)})
     for (const char* name : {"k", "tolerance"}) {
@@ -101,9 +104,6 @@ TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
                         {"outliers", false},
                         {"outliers", nan},
                         {"outliers", std::string("4 or 5")},
-                        {"parts", std::string("some")},
-                        {"parts", 1},
-                        {"min_points", 3},
                         {"max_points", -1},
                         {"max_points", std::int64_t{1} << 40},
                         {"queue_depth", 0},

@@ -32,12 +32,7 @@ double diameterOf(double area) {
   return std::sqrt(4.0 * area / test::kPi);
 }
 
-/// A boundary loop of a surface.
-struct Opening {
-  Vector3d center = Vector3d::Zero();
-  double area = 0.0;
-};
-
+/// Center and area of a boundary loop.
 Opening measured(const std::vector<Vector3d>& loop) {
   Opening opening;
   for (const Vector3d& p : loop)
@@ -46,6 +41,9 @@ Opening measured(const std::vector<Vector3d>& loop) {
   for (std::size_t i = 0; i < loop.size(); ++i)
     doubled += (loop[i] - opening.center).cross(loop[(i + 1) % loop.size()] - opening.center);
   opening.area = doubled.norm() / 2.0;
+  opening.is_flat = std::all_of(loop.begin(), loop.end(), [&](const Vector3d& p) {
+    return std::abs(doubled.normalized().dot(p - opening.center)) < 1e-6;
+  });
   return opening;
 }
 
@@ -101,36 +99,36 @@ Truth truthOf(Shape shape) {
   return truth;
 }
 
-/// The openings that were found against those there are.
-void checkOpenings(const std::vector<FilledHole>& holes, const Truth& truth,
-                   const Positions& vertices, double spacing, Complaints& complaints) {
+/// Whether an opening must be certain: 9 spacings wide, with a ragged rim, and not flat.
+bool isWide(const Opening& opening, double spacing) {
+  return diameterOf(opening.area) >= 12.0 * spacing && !opening.is_flat;
+}
+
+/// The openings that were found for certain against those there are.
+void checkOpenings(const std::vector<Opening>& all, const Truth& truth, double spacing,
+                   Complaints& complaints) {
   std::vector<int> hits(truth.openings.size(), 0);
-  for (const FilledHole& hole : holes) {
-    if (hole.cause != SurfaceKind::Open)
+  for (const Opening& found : all) {
+    if (!found.isCertain())
       continue;
-    std::vector<Vector3d> loop;
-    for (const Index v : hole.loops.at(0))
-      loop.emplace_back(vertices.col(v));
-    const Vector3d center = measured(loop).center;
     bool exists = false;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const Opening& opening = truth.openings[i];
       const double diameter = diameterOf(opening.area);
-      if ((opening.center - center).norm() > diameter / 2.0)
+      if ((opening.center - found.center).norm() > diameter / 2.0)
         continue;
       exists = true;
       ++hits[i];
       // The points at the rim are up to a spacing off it.
-      if (std::abs(diameterOf(hole.area) - diameter) > 2.0 * spacing + 0.02 * diameter)
-        complaints.push_back("an area of " + std::to_string(hole.area) + " instead of " +
+      if (std::abs(diameterOf(found.area) - diameter) > 2.0 * spacing + 0.02 * diameter)
+        complaints.push_back("an area of " + std::to_string(found.area) + " instead of " +
                              std::to_string(opening.area));
     }
     if (!exists)
       complaints.emplace_back("an opening that does not exist");
   }
   for (std::size_t i = 0; i < hits.size(); ++i)
-    // Narrower ones are not told from uneven sampling, see surface_diagnosis.h.
-    if (hits[i] > 1 || (hits[i] == 0 && diameterOf(truth.openings[i].area) >= 8.0 * spacing))
+    if (hits[i] > 1 || (hits[i] == 0 && isWide(truth.openings[i], spacing)))
       complaints.push_back("an opening was found " + std::to_string(hits[i]) + " times");
 }
 
@@ -151,7 +149,7 @@ Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, 
   const bool is_wide =
       truth.openings.empty() ||
       std::any_of(truth.openings.begin(), truth.openings.end(),
-                  [&](const Opening& o) { return diameterOf(o.area) >= 8.0 * spacing; });
+                  [&](const Opening& opening) { return isWide(opening, spacing); });
   if (found.kind != truth.kind && is_wide)
     complaints.push_back("not of the true kind: " + result.verdict);
   if (truth.handles > 0 ? found.genus != truth.handles
@@ -159,8 +157,7 @@ Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, 
     complaints.push_back("not of genus " + std::to_string(truth.handles) + ": " + result.verdict);
   if (found.bridges.size() != (truth.kind == SurfaceKind::SeveralParts ? 1 : 0))
     complaints.push_back(std::to_string(found.bridges.size()) + " bridges");
-  checkOpenings(found.filled_holes, truth, points(Eigen::all, result.input_of_vertex), spacing,
-                complaints);
+  checkOpenings(result.openings, truth, spacing, complaints);
   const bool is_closed = truth.kind == SurfaceKind::ClosedGenus0;
   if (!is_closed && is_wide && result.findings.empty())
     complaints.emplace_back("nothing is said of it");

@@ -154,7 +154,7 @@ TEST_F(EveryTool, StrictMakesFaultsAFailureAndWritesTheFiles) {
     const json& findings = (tool.name == "morph" ? report["first"] : report)["findings"];
     EXPECT_FALSE(findings.empty());
     for (const json& finding : findings)
-      if (finding["fault"] == true) {
+      if (finding["is_fault"] == true) {
         EXPECT_NE(lines[0].find(finding["text"].get<std::string>()), std::string::npos) << finding;
       }
   }

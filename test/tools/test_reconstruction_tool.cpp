@@ -79,7 +79,7 @@ TEST_F(ReconstructionTool, DuplicatesAndPointsThatAreNotFiniteAreLeftOutAndCount
   write("in.xyz", text + "1 inf 0\n");
   const json report = reportOf({"in.xyz", "out.ply"});
   EXPECT_EQ(report["points"], 222);
-  EXPECT_EQ(report["ignored_points"], 2);
+  EXPECT_EQ(report["left_out"]["not_finite"], json({0, 221}));
   EXPECT_EQ(report["duplicates"], 20);
   EXPECT_EQ(report["vertices"], 200);
   EXPECT_TRUE(report["findings"].empty());
@@ -93,16 +93,14 @@ TEST_F(ReconstructionTool, StrayPointsAreListedAndLeftOutByAuto) {
   ASSERT_EQ(run(SCAN_TOOL, {"ellipsoid", "plain.xyz", "-points", "800"}).exit_code, 0);
   write("stray.xyz", "nan 0 0\n9 9 9\n" + content("plain.xyz") + "-9 9 0\n");
   const json found = reportOf({"stray.xyz", "out.ply"});
-  EXPECT_EQ(found["diagnosis"]["outliers"], json({1, 802}));
+  EXPECT_EQ(found["outliers"], json({1, 802}));
   EXPECT_EQ(found["findings"][0]["text"], "2 points look like outliers");
-  EXPECT_TRUE(found["outliers"].is_null());
+  EXPECT_EQ(found["left_out"]["outliers"], json::array());
   EXPECT_EQ(found["vertices"], 802);
   const json without = reportOf({"stray.xyz", "out.ply", "-outliers", "auto"});
-  EXPECT_EQ(without["outliers"]["indices"], json({1, 802}));
-  EXPECT_TRUE(without["outliers"]["sigma"].is_null());
-  EXPECT_TRUE(without["outliers"]["threshold"].is_null());
+  EXPECT_EQ(without["left_out"]["outliers"], json({1, 802}));
   EXPECT_EQ(without["options"]["outliers"], "auto");
-  EXPECT_TRUE(without["diagnosis"]["outliers"].empty());
+  EXPECT_TRUE(without["outliers"].empty());
   EXPECT_EQ(without["vertices"], 800);
 }
 
@@ -110,53 +108,44 @@ TEST_F(ReconstructionTool, ATimeLimitThatEndsTheWorkIsSaid) {
   ASSERT_EQ(run(SCAN_TOOL, {"ellipsoid", "in.xyz", "-points", "800", "-noise", "0.5"}).exit_code,
             0);
   const json limited = reportOf({"in.xyz", "out.ply", "-time-limit", "0"});
-  EXPECT_EQ(limited["optimization"]["out_of_time"], true);
+  EXPECT_EQ(limited["is_out_of_time"], true);
   EXPECT_NE(limited["findings"].dump().find("time limit"), std::string::npos);
   EXPECT_TRUE(mesh("out.ply").isSphere());
   EXPECT_EQ(limited["options"]["time_limit"], 0.0);
   const json parts = reportOf({"in.xyz", "out.ply", "-time-limit", "0", "-parts", "largest"});
-  EXPECT_EQ(parts["optimization"]["out_of_time"], true);
+  EXPECT_EQ(parts["is_out_of_time"], true);
   const json free = reportOf({"in.xyz", "out.ply"});
-  EXPECT_EQ(free["optimization"]["out_of_time"], false);
+  EXPECT_EQ(free["is_out_of_time"], false);
   EXPECT_TRUE(free["options"]["time_limit"].is_null());
 }
 
 TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   const std::vector<std::pair<std::string, std::string>> keys = {
       {"number_integer",
-       "/points /vertices /duplicates /ignored_points /triangles /components /genus /iterations "
-       "/peak_memory_bytes /self_intersections /intersecting_triangles /graph/edges "
-       "/graph/components "
-       "/graph/without_tangent_plane_count /graph/searched_again /graph/uncertified /graph/weak "
-       "/embedding/starts /embedding/collapsed_starts /triangulation/hull_vertices "
-       "/triangulation/reinserted /triangulation/coincident /optimization/noise_steps "
-       "/optimization/phases/0/tried /optimization/phases/0/moves "
-       "/graph/k /options/k /options/starts /options/seed "
+       "/points /vertices /edges /duplicates /triangles /components /genus /embedding/iterations "
+       "/peak_memory_bytes /self_intersections /intersecting_triangles "
+       "/embedding/levels/0/newton_iterations /options/k /options/starts /options/seed "
        "/options/smoothing /options/threads"},
       {"number_float",
-       "/residual /edges_outside_graph /stages/0/seconds /embedding/centroid_norm "
-       "/embedding/energy /embedding/operator_complexity /embedding/grid_complexity "
-       "/optimization/energy /optimization/rough /optimization/alignment "
-       "/optimization/unevenness /optimization/phases/0/energy_before "
-       "/optimization/phases/0/energy /optimization/phases/0/seconds "
-       "/measures/volume /measures/area /measures/mean_edge_length "
-       "/measures/bounding_box/min/2 /measures/bounding_box/max/2 /measures/centroid/2 "
-       "/measures/inertia/2/2 /options/exponent /options/damping"},
+       "/embedding/residual /diagnosis/edges_outside_graph /stages/0/seconds "
+       "/embedding/centroid_norm /measures/volume /measures/area /measures/mean_edge_length "
+       "/measures/box_min/2 /measures/box_max/2 /measures/centroid/2 /measures/inertia/2/2 "
+       "/options/exponent /options/damping"},
       {"boolean",
-       "/usable /closed /manifold /oriented /converged /fallback_start /embedding/barrier "
-       "/embedding/added_barrier /triangulation/hull_rejected /optimization/noisy "
-       "/diagnosis/looks_closed_genus0 /options/strict /options/ascii /options/quiet"},
+       "/usable /closed /manifold /oriented /is_noisy /is_out_of_time /embedding/converged "
+       "/embedding/fallback_start /embedding/added_barrier /diagnosis/looks_closed_genus0 "
+       "/options/strict /options/ascii /options/quiet"},
       {"string",
-       "/stop_reason /input /output /version /stages/0/name /graph/method /embedding/method "
-       "/triangulation/method /optimization/method /optimization/phases/0/name "
-       "/verdict /diagnosis/kind /options/graph /options/embedding "
-       "/options/weights /options/triangulation /options/optimization"},
+       "/input /output /version /stages/0/name /embedding/stop_reason /verdict /diagnosis/kind "
+       "/options/outliers /options/graph /options/embedding /options/weights "
+       "/options/triangulation "
+       "/options/optimization"},
       {"array",
-       "/residuals /stages /findings /self_intersecting_pairs /graph/bridges "
-       "/graph/without_tangent_plane /embedding/levels /diagnosis/filled_holes /diagnosis/handles "
-       "/diagnosis/bridges /diagnosis/outliers /openings /boundary"},
-      {"null", "/outliers /smoothing /options/tolerance /options/max_iterations "
-               "/options/stagnation_window /options/outliers /options/sphere"}};
+       "/stages /findings /self_intersecting_pairs /embedding/residuals /embedding/levels "
+       "/diagnosis/handles /diagnosis/bridges /outliers /openings /boundary /left_out/not_finite "
+       "/left_out/outliers /left_out/other_parts"},
+      {"null", "/consolidation /smoothing /options/tolerance /options/max_iterations "
+               "/options/stagnation_window /options/sphere"}};
   const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {
       {"number_integer", &json::is_number_integer},
       {"number_float", &json::is_number_float},
@@ -178,8 +167,9 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
   for (const char* key : {"closed", "manifold", "oriented"})
     EXPECT_EQ(report[key], true) << key;
   EXPECT_EQ(report["genus"], 0);
-  EXPECT_EQ(report["diagnosis"]["kind"], "closed genus 0");
-  EXPECT_EQ(report["stop_reason"], "unfinished");  // smoothing is no step to a solution
+  EXPECT_EQ(report["diagnosis"]["kind"], "closed_genus0");
+  EXPECT_EQ(report["embedding"]["stop_reason"],
+            "unfinished");  // smoothing is no step to a solution
   const MeshFile out = mesh("out.ply");
   EXPECT_NEAR(report["measures"]["volume"],
               spherical_param::test::volumeOf(out.points(), out.triangles), 1e-9);
@@ -200,7 +190,7 @@ TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
   EXPECT_EQ(open["self_intersections"], 0);
   ASSERT_EQ(open["boundary"].size(), 1U);
   ASSERT_EQ(open["openings"].size(), 1U);
-  EXPECT_EQ(open["openings"][0]["filled"], false);
+  EXPECT_EQ(open["openings"][0]["is_filled"], false);
   EXPECT_EQ(open["diagnosis"]["kind"], "open");
   // V - E + F = 1.
   const std::size_t edges = open["boundary"][0].size();
@@ -212,11 +202,11 @@ TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
   EXPECT_EQ(text.errors, "");
   const json filled = reportOf({"open.ply", "out.ply", "-surface", "open", "-fill-holes", "1000"});
   EXPECT_EQ(filled["closed"], true);
-  EXPECT_EQ(filled["openings"][0]["filled"], true);
+  EXPECT_EQ(filled["openings"][0]["is_filled"], true);
   const json closed = reportOf({"open.ply", "out.ply"});
   EXPECT_EQ(closed["closed"], true);
   ASSERT_EQ(closed["openings"].size(), 1U);
-  EXPECT_EQ(closed["openings"][0]["filled"], true);
+  EXPECT_EQ(closed["openings"][0]["is_filled"], true);
 }
 
 TEST_F(ReconstructionTool, ConsolidationIsReportedAndWritten) {
@@ -240,25 +230,21 @@ TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
   const json paper =
       reportOf({"in.ply", "out.ply", "-graph", "knn", "--embedding=iterative", "-max-iterations=3",
                 "-triangulation", "qhull", "-optimization", "none", "-weights", "inverse"});
-  EXPECT_EQ(paper["iterations"], 3);
-  EXPECT_EQ(paper["stop_reason"], "iteration limit");
+  const json& iteration = paper["embedding"];
+  EXPECT_EQ(iteration["iterations"], 3);
+  EXPECT_EQ(iteration["stop_reason"], "iteration_limit");
   // A residual before each step and at the end.
-  EXPECT_EQ(paper["residuals"].size(), 4U);
-  EXPECT_EQ(paper["residuals"].back(), paper["residual"]);
-  EXPECT_FALSE(paper["embedding"].contains("levels"));
-  // 25 neighbours of each of 200 points.
-  EXPECT_EQ(paper["graph"]["k"], 25);
-  EXPECT_GE(paper["graph"]["edges"], 200 * 25 / 2);
-  EXPECT_TRUE(paper["optimization"]["phases"].empty());
+  EXPECT_EQ(iteration["residuals"].size(), 4U);
+  EXPECT_EQ(iteration["residuals"].back(), iteration["residual"]);
+  EXPECT_TRUE(iteration["levels"].empty());
   for (const char* unused : {"exponent", "starts", "tolerance", "k"})
     EXPECT_TRUE(paper["options"][unused].is_null()) << unused;
   EXPECT_EQ(paper["options"]["max_iterations"], 3);
   EXPECT_EQ(paper["options"]["weights"], "inverse");
 
   const json standard = reportOf({"in.ply", "out.ply", "-starts", "5"});
-  EXPECT_EQ(standard["embedding"]["starts"], 5);
-  EXPECT_EQ(standard["graph"]["k"], 12);
-  EXPECT_LT(standard["graph"]["edges"], 200 * 4);
+  EXPECT_EQ(standard["options"]["starts"], 5);
+  EXPECT_LT(standard["embedding"]["levels"][0]["edges"], 200 * 4);
   EXPECT_TRUE(standard["options"]["max_iterations"].is_null());
   EXPECT_EQ(standard["options"]["exponent"], 3.0);
 }
@@ -266,29 +252,18 @@ TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
 TEST_F(ReconstructionTool, ReportTellsTheLevelsAndWhetherTheyConverged) {
   write("large.xyz", linesOf(ellipsoid(3000)));
   const json report = reportOf({"large.xyz", "out.ply", "-tolerance", "1e-8"});
-  EXPECT_EQ(report["stop_reason"], "converged");
-  EXPECT_EQ(report["converged"], true);
-  EXPECT_LE(report["residual"], 1e-8);
-  const json& levels = report["embedding"]["levels"];
+  const json& embedding = report["embedding"];
+  EXPECT_EQ(embedding["stop_reason"], "converged");
+  EXPECT_EQ(embedding["converged"], true);
+  EXPECT_LE(embedding["residual"], 1e-8);
+  const json& levels = embedding["levels"];
   ASSERT_GE(levels.size(), 2U);
-  EXPECT_EQ(report["iterations"], levels[0]["newton_iterations"]);
-  EXPECT_EQ(report["residuals"].size(), report["iterations"].get<std::size_t>() + 1);
+  EXPECT_EQ(embedding["iterations"], levels[0]["newton_iterations"]);
+  EXPECT_EQ(embedding["residuals"].size(), embedding["iterations"].get<std::size_t>() + 1);
   EXPECT_EQ(levels[0]["nodes"], 3000);
-  EXPECT_EQ(levels[0]["edges"], report["graph"]["edges"]);
-  EXPECT_EQ(levels[0]["residual"], report["residual"]);
-  EXPECT_TRUE(levels[0]["coarsening_ratio"].is_null());
-  double nodes = 0.0;
-  double edges = 0.0;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    nodes += levels[i]["nodes"].get<double>();
-    edges += levels[i]["edges"].get<double>();
-    if (i > 0) {
-      EXPECT_EQ(levels[i]["coarsening_ratio"].get<double>(),
-                levels[i - 1]["nodes"].get<double>() / levels[i]["nodes"].get<double>());
-    }
-  }
-  EXPECT_EQ(report["embedding"]["grid_complexity"], nodes / 3000.0);
-  EXPECT_EQ(report["embedding"]["operator_complexity"], edges / levels[0]["edges"].get<double>());
+  EXPECT_EQ(levels[0]["residual"], embedding["residual"]);
+  for (std::size_t i = 1; i < levels.size(); ++i)
+    EXPECT_LT(levels[i]["nodes"], levels[i - 1]["nodes"]);
 }
 
 TEST_F(ReconstructionTool, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
@@ -297,20 +272,19 @@ TEST_F(ReconstructionTool, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
   write("shifted.xyz", "nan 0 0\n5 5 5\n5 5 5\n" + content("plain.xyz"));
   const json plain = reportOf({"plain.xyz", "out.ply", "-outliers", "6"});
   const json shifted = reportOf({"shifted.xyz", "out.ply", "-outliers", "6"});
-  EXPECT_TRUE(plain["outliers"]["indices"].empty());
-  EXPECT_EQ(shifted["outliers"]["indices"], json({1, 2}));
-  EXPECT_EQ(shifted["outliers"]["count"], 2);
-  EXPECT_EQ(shifted["outliers"]["sigma"], 6.0);
-  EXPECT_TRUE(shifted["outliers"]["threshold"].is_number_float());
+  EXPECT_TRUE(plain["left_out"]["outliers"].empty());
+  EXPECT_EQ(shifted["left_out"]["outliers"], json({1, 2}));
+  EXPECT_EQ(shifted["left_out"]["not_finite"], json({0}));
   EXPECT_EQ(shifted["vertices"], 1000);
-  EXPECT_EQ(shifted["stages"][1]["name"], "outliers");
+  EXPECT_NE(shifted["stages"].dump().find("\"outliers\""), std::string::npos);
   EXPECT_EQ(mesh("out.ply").vertexCount(), 1000U);
-  ASSERT_EQ(plain["diagnosis"]["filled_holes"].size(), 1U);
-  ASSERT_EQ(shifted["diagnosis"]["filled_holes"].size(), 1U);
+  ASSERT_EQ(plain["openings"].size(), 1U);
+  ASSERT_EQ(shifted["openings"].size(), 1U);
   EXPECT_EQ(plain["diagnosis"]["kind"], "open");
-  auto expected = plain["diagnosis"]["filled_holes"][0]["vertices"].get<std::vector<int>>();
+  EXPECT_GT(plain["openings"][0]["triangles"], 0);
+  auto expected = plain["openings"][0]["loop"].get<std::vector<int>>();
   std::transform(expected.begin(), expected.end(), expected.begin(), [](int v) { return v + 3; });
-  EXPECT_EQ(shifted["diagnosis"]["filled_holes"][0]["vertices"], json(expected));
+  EXPECT_EQ(shifted["openings"][0]["loop"], json(expected));
 }
 
 TEST_F(ReconstructionTool, BridgesBetweenPartsNamePointsOfTheInput) {
@@ -318,16 +292,13 @@ TEST_F(ReconstructionTool, BridgesBetweenPartsNamePointsOfTheInput) {
   write("pair.xyz", "nan nan nan\n" + linesOf(points) + linesOf(other));
   tool({"pair.xyz", "out.ply", "-graph", "knn", "-optimization", "none", "-json", "report.json"});
   const json report = json::parse(content("report.json"));
-  EXPECT_EQ(report["graph"]["components"], 2);
-  EXPECT_EQ(report["diagnosis"]["kind"], "several parts");
-  ASSERT_EQ(report["graph"]["bridges"].size(), 1U);
-  const json& bridge = report["graph"]["bridges"][0];
-  const int from = bridge["from"];
-  const int to = bridge["to"];
-  const int low = std::min(from, to);
-  const int high = std::max(from, to);
-  ASSERT_TRUE(low >= 1 && low < 201 && high >= 201 && high < 401);
-  EXPECT_NEAR(bridge["length"], (other.col(high - 201) - points.col(low - 1)).norm(), 1e-12);
+  EXPECT_EQ(report["diagnosis"]["kind"], "several_parts");
+  ASSERT_EQ(report["diagnosis"]["bridges"].size(), 1U);
+  const json& bridge = report["diagnosis"]["bridges"][0];
+  const auto ends = bridge["vertices"].get<std::vector<Eigen::Index>>();
+  ASSERT_EQ(ends.size(), 2U);
+  ASSERT_TRUE(ends[0] >= 1 && ends[0] < 201 && ends[1] >= 201 && ends[1] < 401);
+  EXPECT_NEAR(bridge["gap"], (other.col(ends[1] - 201) - points.col(ends[0] - 1)).norm(), 1e-12);
 }
 
 TEST_F(ReconstructionTool, SelfIntersectionsOfTheReportAreThoseOfTheMesh) {
@@ -363,8 +334,6 @@ TEST_F(ReconstructionTool, SmoothingMovesThePointsAloneAndTellsHowFar) {
   EXPECT_EQ(out.colors(), gray);
   EXPECT_TRUE(out.isSphere());
   const json& smoothing = report["smoothing"];
-  EXPECT_EQ(smoothing["steps"], 3);
-  EXPECT_EQ(smoothing["method"], "biharmonic");
   const Eigen::VectorXd moved = (out.points() - noisy).colwise().norm();
   EXPECT_GT(moved.maxCoeff(), 0.001);
   constexpr double rounding = 1e-6;  // of single precision
@@ -437,9 +406,9 @@ TEST_F(ReconstructionTool, PrintsSixLinesAndWarningsApart) {
 TEST_F(ReconstructionTool, VerbosePrintsOptionsStagesAndTables) {
   const RunResult result = tool({"in.ply", "out.ply", "-smoothing", "3", "-verbose"});
   EXPECT_EQ(result.output.find_first_of("\r\033"), std::string::npos);
-  for (const char* line :
-       {"\n  graph               delaunay\n", "\n  embedding  ", "\n  write  ", "\n  level ",
-        "\n  phase ", "\n  volume  ", "\n  centroid  ", "\nverdict   A sound mesh.\n"})
+  for (const char* line : {"\n  graph               delaunay\n", "\n  embedding  ", "\n  write  ",
+                           "\n  nodes  edges  sweeps ", "\n  volume  ", "\n  centroid  ",
+                           "\nverdict   A sound mesh.\n"})
     EXPECT_NE(result.output.find(line), std::string::npos) << line;
 }
 

@@ -181,7 +181,7 @@ TEST_P(EveryShape, ReferenceMeshHasTheSizeAndTheTopologyOfTheShape) {
       checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.vertices.cols()));
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.oriented);
-  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+  EXPECT_TRUE(topology.unused_vertices.empty());
   EXPECT_EQ(topology.components, shape == Shape::Pair ? 2u : 1u);
   const long openings = shape == Shape::Bowl    ? 1
                         : shape == Shape::Holed ? 4
@@ -205,7 +205,7 @@ TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
   const Positions points = scanOf(GetParam().shape, n).points;
   const auto expect_sphere = [&](const char* name, const Options& options) {
     SCOPED_TRACE(name);
-    const Surface result = reconstruct(points, options);
+    const Surface result = reconstruct(points, options).surface();
     EXPECT_EQ(result.vertexCount(), static_cast<std::size_t>(n));
     EXPECT_TRUE(test::isSphereOverAll(result.triangles, n));
     EXPECT_GT(volumeOf(points, result.triangles), 0.0);

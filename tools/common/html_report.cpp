@@ -4,6 +4,7 @@
 #include "common/report_mesh.h"
 #include "common/report_page.h"
 #include "common/text.h"
+#include "spherical_param/result_fields.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/version.h"
 
@@ -33,22 +34,6 @@ constexpr std::size_t min_history_vertices = 1000;
 
 /// Outliers that are shown at most.
 constexpr std::size_t max_outliers = 75000;
-
-const char* nameOfStep(EmbeddingStep step) {
-  switch (step) {
-  case EmbeddingStep::Start:
-    return "start";
-  case EmbeddingStep::Sweeps:
-    return "sweep";
-  case EmbeddingStep::Newton:
-    return "newton";
-  case EmbeddingStep::Iteration:
-    return "iteration";
-  case EmbeddingStep::End:
-    return "end";
-  }
-  return "";
-}
 
 std::string deflated(std::string_view bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
@@ -275,7 +260,7 @@ Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays&
     directions.insert(directions.end(), shown.begin(), shown.end());
     frames.push_back({{"level", frame.level},
                       {"nodes", frame.nodes},
-                      {"step", nameOfStep(frame.step)},
+                      {"step", nameOf(frame.step)},
                       {"iteration", frame.iteration},
                       {"residual", frame.residual ? Json(*frame.residual) : Json(nullptr)}});
   }
@@ -383,7 +368,10 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
                   {"triangles", surface.triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
                   {"shown_triangles", mesh.triangles.cols()}};
-  json["spacing"] = surface.measures.mean_edge_length;
+  // Where only some vertices are shown, they are farther from each other.
+  json["spacing"] =
+      surface.measures.mean_edge_length * std::sqrt(static_cast<double>(surface.vertexCount()) /
+                                                    static_cast<double>(mesh.positions.cols()));
   json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = Json::array();
   for (Eigen::Index i = 0; i < 9; ++i) {

@@ -1,299 +1,182 @@
 #include "common/reconstruction_report.h"
 
-#include "common/names.h"
-#include "spherical_param/version.h"
+#include "common/text.h"
+#include "spherical_param/result_fields.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace spherical_param::tools {
 namespace {
 
-const Names<SurfaceKind> surface_names = {
-    {"closed genus 0", SurfaceKind::ClosedGenus0},
-    {"open", SurfaceKind::Open},
-    {"handles", SurfaceKind::Handles},
-    {"several parts", SurfaceKind::SeveralParts},
-    {"unclear", SurfaceKind::Unclear},
-};
-
-const Names<StopReason> stop_reason_names = {
-    {"converged", StopReason::Converged},   {"iteration limit", StopReason::IterationLimit},
-    {"stagnated", StopReason::Stagnated},   {"collapsed", StopReason::Collapsed},
-    {"unfinished", StopReason::Unfinished},
-};
-
-/// The numbers of vertices in the input.
-std::vector<Index> inputIndices(const Surface& surface, const std::vector<Index>& vertices) {
-  std::vector<Index> indices;
-  indices.reserve(vertices.size());
-  for (const Index vertex : vertices) {
-    indices.push_back(surface.input_of_vertex[static_cast<std::size_t>(vertex)]);
-  }
-  return indices;
+/// Whether values of a kind are left out: they are large, or mean nothing without others.
+bool isLeftOut(FieldKind kind) {
+  return kind == FieldKind::PerVertex || kind == FieldKind::PerTriangle ||
+         kind == FieldKind::PerInput || kind == FieldKind::CppOnly;
 }
 
-/// How many times fewer nodes a level has than the next finer one; the finest has no such ratio.
-std::optional<double> coarseningRatio(const std::vector<LevelReport>& levels, std::size_t level) {
-  if (level == 0) {
-    return std::nullopt;
-  }
-  return static_cast<double>(levels[level - 1].nodes) / static_cast<double>(levels[level].nodes);
-}
+/// Turns what belongs to a surface into JSON.
+class Writer {
+public:
+  /// \param surface nothing: what is written has no vertices.
+  explicit Writer(const Surface* surface = nullptr) : surface_(surface) {}
 
-/// Whether a barrier held the centroid of the sphere, so that the embedding did not collapse.
-bool hasBarrier(const ReconstructionSettings& settings, const EmbeddingReport& embedding) {
-  return !embedding.levels.empty() &&
-         (embedding.added_barrier || settings.options.embedding.weights != EdgeWeights::Adaptive);
-}
-
-Json embeddingToJson(const ReconstructionSettings& settings, const Surface& surface) {
-  const EmbeddingReport& embedding = surface.embedding;
-  const std::vector<LevelReport>& levels = embedding.levels;
-  Json json;
-  json["method"] = optionText(settings.options, "embedding");
-  json["centroid_norm"] = embedding.centroid_norm;
-  // The iteration knows neither levels nor energy.
-  if (levels.empty()) {
+  template <typename Struct>
+  Json fieldsOf(const Struct& self) const {
+    Json json = Json::object();
+    visitFields(&self, [&](const ResultField& field, auto access) {
+      if (isLeftOut(field.kind)) {
+        return;
+      }
+      const auto& value = std::invoke(access, self);
+      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, MeshTopology>) {
+        json.update(fieldsOf(value));
+      } else {
+        json[field.name] = toJson(field, value);
+      }
+    });
     return json;
   }
-  json["barrier"] = hasBarrier(settings, embedding);
-  json["added_barrier"] = embedding.added_barrier;
-  json["levels"] = Json::array();
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const std::optional<double> ratio = coarseningRatio(levels, i);
-    // Of coarser levels, the solver looks at the residual of those alone that it solves.
-    const bool is_known = i == 0 || levels[i].newton_iterations > 0;
-    json["levels"].push_back({{"nodes", levels[i].nodes},
-                              {"edges", levels[i].edges},
-                              {"coarsening_ratio", ratio ? Json(*ratio) : Json(nullptr)},
-                              {"sweeps", levels[i].sweeps},
-                              {"newton_iterations", levels[i].newton_iterations},
-                              {"linear_iterations", levels[i].linear_iterations},
-                              {"residual", is_known ? Json(levels[i].residual) : Json(nullptr)}});
+
+  template <typename Value>
+  Json toJson(const ResultField& field, const Value& value) const {
+    constexpr const Value* type = nullptr;
+    if (field.kind == FieldKind::OfSolid && !(surface_ != nullptr && surface_->hasVolume())) {
+      return nullptr;
+    }
+    if constexpr (isDescribed(type)) {
+      return fieldsOf(value);
+    } else if constexpr (std::is_enum_v<Value>) {
+      return nameOf(value);
+    } else if constexpr (std::is_base_of_v<Eigen::DenseBase<Value>, Value>) {
+      return rowsOf(value);
+    } else {
+      return value;
+    }
   }
-  return json;
+
+  template <typename Struct>
+  Json toJson(const ResultField& field, const Struct* value) const {
+    return value == nullptr ? Json(nullptr) : toJson(field, *value);
+  }
+
+  template <typename Value>
+  Json toJson(const ResultField& field, const std::optional<Value>& value) const {
+    return value ? toJson(field, *value) : Json(nullptr);
+  }
+
+  template <typename Item>
+  Json toJson(const ResultField& field, const std::vector<Item>& items) const {
+    if (field.kind == FieldKind::TriangleList) {
+      return items.size();
+    }
+    Json json = Json::array();
+    for (const Item& item : items) {
+      json.push_back(toJson(field, item));
+    }
+    return json;
+  }
+
+  Json toJson(const ResultField& field, const Index& index) const {
+    const bool is_vertex = field.kind == FieldKind::Vertices ||
+                           field.kind == FieldKind::VertexList || field.kind == FieldKind::Loops;
+    return is_vertex ? surface_->input_of_vertex[static_cast<std::size_t>(index)] : index;
+  }
+
+private:
+  /// A vector as a list, a matrix as a list of its rows.
+  template <typename Matrix>
+  static Json rowsOf(const Matrix& matrix) {
+    Json json = Json::array();
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      if constexpr (Matrix::ColsAtCompileTime == 1) {
+        json.push_back(matrix[row]);
+      } else {
+        json.push_back(Json(
+            std::vector<typename Matrix::Scalar>(matrix.row(row).begin(), matrix.row(row).end())));
+      }
+    }
+    return json;
+  }
+
+  const Surface* surface_;
+};
+
+/// A name or value as people read it.
+std::string inWords(const Json& value) {
+  if (value.is_array()) {
+    std::string text;
+    for (const Json& item : value) {
+      text += (text.empty() ? "" : " ") + inWords(item);
+    }
+    return text;
+  }
+  std::string text = value.is_string()         ? value.get<std::string>()
+                     : value.is_number_float() ? formatted(value.get<double>(), 6)
+                                               : value.dump();
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
 }
 
-/// The first pairs of triangles that intersect.
-Json selfIntersectionsToJson(const Surface& surface) {
-  constexpr std::size_t most_pairs = 1000;
-  const auto& pairs = surface.self_intersections;
-  Json json = Json::array();
-  for (std::size_t i = 0; i < std::min(most_pairs, pairs.size()); ++i) {
-    json.push_back({pairs[i][0], pairs[i][1]});
-  }
-  return json;
-}
-
-Json consolidationToJson(const ReconstructionSettings& settings,
-                         const ConsolidationReport& consolidation) {
-  if (settings.options.consolidation == ConsolidationMode::None) {
-    return nullptr;
-  }
-  return {{"noise", consolidation.noise},
-          {"merged", consolidation.merged},
-          {"max_displacement", consolidation.max_displacement},
-          {"mean_displacement", consolidation.mean_displacement},
-          {"rms_displacement", consolidation.rms_displacement}};
-}
-
-Json smoothingToJson(const ReconstructionSettings& settings, const SmoothingReport& smoothing) {
-  if (settings.options.smoothing == 0) {
-    return nullptr;
-  }
-  return {{"steps", settings.options.smoothing},
-          {"max_displacement", smoothing.max_displacement},
-          {"mean_displacement", smoothing.mean_displacement},
-          {"rms_displacement", smoothing.rms_displacement},
-          {"volume_before", smoothing.volume_before},
-          {"volume_after", smoothing.volume_after},
-          {"self_intersections", smoothing.self_intersections}};
-}
-
-Json loopsToJson(const Surface& surface, const std::vector<std::vector<Index>>& loops) {
-  Json json = Json::array();
-  for (const std::vector<Index>& loop : loops) {
-    json.push_back(inputIndices(surface, loop));
-  }
-  return json;
-}
-
-Json openingsToJson(const Surface& surface) {
-  Json json = Json::array();
-  for (const Opening& opening : surface.openings) {
-    json.push_back({{"filled", opening.is_filled},
-                    {"certainty", opening.certainty},
-                    {"flat", opening.is_flat},
-                    {"location", toJson(opening.center)},
-                    {"size", opening.width},
-                    {"spacing", opening.spacing},
-                    {"area", opening.area},
-                    {"boundary_length", opening.boundary_length},
-                    {"edges", opening.loop.size()},
-                    {"loop", inputIndices(surface, opening.loop)}});
-  }
-  return json;
-}
-
-Json diagnosisToJson(const Surface& surface) {
-  const SurfaceDiagnosis& diagnosis = surface.diagnosis;
-  Json json;
-  json["kind"] = nameOf(diagnosis.kind, surface_names);
-  json["looks_closed_genus0"] = diagnosis.looksClosedGenus0();
-  json["genus"] = diagnosis.genus ? Json(*diagnosis.genus) : Json(nullptr);
-  json["outliers"] = Json::array();
-  for (const Index point : surface.outliers) {
-    json["outliers"].push_back(point);
-  }
-  json["filled_holes"] = Json::array();
-  for (const FilledHole& hole : diagnosis.filled_holes) {
-    json["filled_holes"].push_back({{"cause", nameOf(hole.cause, surface_names)},
-                                    {"location", toJson(hole.center)},
-                                    {"size", hole.diameter},
-                                    {"spacing", hole.spacing},
-                                    {"triangles", hole.triangles},
-                                    {"area", hole.area},
-                                    {"boundary_length", hole.boundary_length},
-                                    {"vertices", inputIndices(surface, hole.vertices)},
-                                    {"loops", loopsToJson(surface, hole.loops)}});
-  }
-  json["handles"] = Json::array();
-  for (const CollapsedHandle& handle : diagnosis.handles) {
-    json["handles"].push_back({{"location", toJson(handle.center)},
-                               {"size", handle.size},
-                               {"edges", handle.edges},
-                               {"vertices", inputIndices(surface, handle.vertices)}});
-  }
-  json["bridges"] = Json::array();
-  for (const PartBridge& bridge : diagnosis.bridges) {
-    json["bridges"].push_back({{"location", toJson(bridge.center)},
-                               {"size", bridge.gap},
-                               {"spacing", bridge.spacing},
-                               {"points", bridge.points},
-                               {"other_points", bridge.other_points},
-                               {"vertices", inputIndices(surface, bridge.vertices)}});
-  }
-  return json;
-}
-
-Json measuresToJson(const Surface& result) {
-  const MeshMeasures& measures = result.measures;
-  const auto known = [&result](const Json& value) {
-    return result.hasVolume() ? value : Json(nullptr);
-  };
-  Json json;
-  json["volume"] = known(measures.volume);
-  json["area"] = measures.area;
-  json["mean_edge_length"] = measures.mean_edge_length;
-  json["bounding_box"] = {{"min", toJson(measures.box_min)}, {"max", toJson(measures.box_max)}};
-  json["centroid"] = known(toJson(measures.centroid));
-  Json inertia = Json::array();
-  for (Eigen::Index row = 0; row < 3; ++row) {
-    inertia.push_back(toJson(measures.inertia.row(row)));
-  }
-  json["inertia"] = known(inertia);
-  return json;
-}
-
-/// Prints the levels as multigrid solvers print theirs.
-void printHierarchy(const std::vector<LevelReport>& levels, Console& console) {
-  if (levels.empty()) {
+/// Prints a list of structs as a table.
+void printTable(const Json& rows, Console& console) {
+  if (rows.empty()) {
     return;
   }
+  std::vector<std::string> lines(rows.size() + 1);
+  for (const auto& [name, first] : rows.front().items()) {
+    std::vector<std::string> cells = {inWords(name)};
+    for (const Json& row : rows) {
+      cells.push_back(inWords(row[name]));
+    }
+    std::size_t width = 0;
+    for (const std::string& cell : cells) {
+      width = std::max(width, cell.size() + 2);
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      lines[i] += std::string(width - cells[i].size(), ' ') + cells[i];
+    }
+  }
   console.heading("");
-  console.heading("  Number of levels:    " + std::to_string(levels.size()));
-  console.heading("");
-  const std::string head = "level      nodes      edges  ratio  sweeps  Newton     CG";
-  console.heading("  " + head);
-  console.heading("  " + std::string(head.size(), '-'));
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const LevelReport& level = levels[i];
-    const std::optional<double> ratio = coarseningRatio(levels, i);
-    std::array<char, 128> line{};
-    std::snprintf(line.data(), line.size(), "  %5zu %10zu %10zu %6s %7d %7d %6d", i, level.nodes,
-                  level.edges, ratio ? formatted(*ratio, 3).c_str() : "", level.sweeps,
-                  level.newton_iterations, level.linear_iterations);
-    console.heading(line.data());
+  for (const std::string& line : lines) {
+    console.heading(line);
   }
   console.heading("");
 }
 
 }  // namespace
 
+Json toJson(const Surface& surface) {
+  constexpr std::size_t max_pairs = 1000;
+  Json json = Writer(&surface).fieldsOf(surface);
+  const auto& pairs = surface.self_intersections;
+  const auto count = static_cast<std::ptrdiff_t>(std::min(max_pairs, pairs.size()));
+  json["self_intersecting_pairs"] =
+      std::vector<std::array<Index, 2>>(pairs.begin(), pairs.begin() + count);
+  return json;
+}
+
+Json toJson(const LeftOut& left_out) {
+  return Writer().fieldsOf(left_out);
+}
+
 Json toJson(const std::vector<Finding>& findings) {
-  Json json = Json::array();
-  for (const Finding& finding : findings) {
-    json.push_back({{"text", finding.text},
-                    {"option", finding.option},
-                    {"value", finding.value},
-                    {"fault", finding.is_fault}});
-  }
-  return json;
-}
-
-Json cloudToJson(const CloudReconstruction& cloud) {
-  const LeftOut& left_out = cloud.result.left_out;
-  Json json;
-  json["points"] = cloud.data->points.size();
-  json["ignored_points"] = left_out.not_finite.size();
-  json["outliers"] = left_out.outliers;
-  json["left_out"] = left_out.other_parts;
-  return json;
-}
-
-void addSurface(const ReconstructionSettings& settings, const Surface& result, Json& json) {
-  json["verdict"] = result.verdict;
-  json["usable"] = result.isUsable();
-  json["findings"] = toJson(result.findings);
-  json["duplicates"] = result.duplicates();
-  json["vertices"] = result.vertexCount();
-  json["triangles"] = result.triangles.cols();
-  json["closed"] = result.topology.closed;
-  json["manifold"] = result.topology.manifold();
-  json["oriented"] = result.topology.oriented;
-  json["components"] = result.topology.components;
-  json["genus"] = result.topology.genus ? Json(*result.topology.genus) : Json(nullptr);
-  json["self_intersections"] = result.self_intersections.size();
-  json["intersecting_triangles"] = result.intersecting_triangles;
-  json["self_intersecting_pairs"] = selfIntersectionsToJson(result);
-  json["measures"] = measuresToJson(result);
-  json["diagnosis"] = diagnosisToJson(result);
-  json["openings"] = openingsToJson(result);
-  json["boundary"] = loopsToJson(result, result.boundary);
-  json["edges_outside_graph"] = result.diagnosis.edges_outside_graph;
-  json["converged"] = result.embedding.converged();
-  json["stop_reason"] = nameOf(result.embedding.stop_reason, stop_reason_names);
-  json["iterations"] = result.embedding.iterations;
-  json["fallback_start"] = result.embedding.fallback_start;
-  json["residual"] = result.embedding.residual;
-  json["residuals"] = result.embedding.residuals;
-  json["consolidation"] = consolidationToJson(settings, result.consolidation);
-  json["embedding"] = embeddingToJson(settings, result);
-  json["smoothing"] = smoothingToJson(settings, result.smoothing);
+  return Writer().toJson({}, findings);
 }
 
 void printTables(const Surface& surface, Console& console) {
-  printHierarchy(surface.embedding.levels, console);
-}
-
-void printMeasures(const Surface& result, Console& console) {
-  const auto listed = [](const Eigen::Vector3d& vector) {
-    return formatted(vector.x(), 6) + " " + formatted(vector.y(), 6) + " " +
-           formatted(vector.z(), 6);
-  };
-  const MeshMeasures& measures = result.measures;
-  console.entry("mean edge", formatted(measures.mean_edge_length, 4));
-  console.entry("area", formatted(measures.area, 6));
-  console.entry("bounding box", listed(measures.box_min) + " to " + listed(measures.box_max));
-  if (result.hasVolume()) {
-    console.entry("volume", formatted(measures.volume, 6));
-    console.entry("centroid", listed(measures.centroid));
+  const Json json = toJson(surface);
+  printTable(json["embedding"]["levels"], console);
+  for (const auto& [name, value] : json["measures"].items()) {
+    if (!value.is_null()) {
+      console.entry(inWords(name), inWords(value));
+    }
   }
 }
 

@@ -1,24 +1,22 @@
 #pragma once
 
-#include "common/cloud_reconstruction.h"
 #include "common/console.h"
 #include "common/json_report.h"
-#include "common/reconstruction_options.h"
+#include "spherical_param/result.h"
+
+#include <vector>
 
 namespace spherical_param::tools {
 
-/// What was read, and what of it was left out, as members of a report.
-Json cloudToJson(const CloudReconstruction& cloud);
+/// The figures of a surface by the names of its fields; those of its topology stand among them.
+/// Vertices are rows of the cloud, lists of triangles their number, and arrays with an entry for
+/// each vertex or triangle are left out. Of the triangles that intersect, the first 1,000 pairs.
+Json toJson(const Surface& surface);
 
-/// Adds a surface of a cloud.
-void addSurface(const ReconstructionSettings& settings, const Surface& surface, Json& json);
-
+Json toJson(const LeftOut& left_out);
 Json toJson(const std::vector<Finding>& findings);
 
-/// Prints the table of the embedding's levels.
+/// Prints the levels of the embedding, and the size of the mesh; what it encloses, if anything.
 void printTables(const Surface& surface, Console& console);
-
-/// Prints the size of the mesh; volume and centroid where it encloses something.
-void printMeasures(const Surface& result, Console& console);
 
 }  // namespace spherical_param::tools

@@ -101,14 +101,14 @@ std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
   }
   // The self-intersections of the result are those of the points of the input.
   for (std::uint8_t& mark : marks) {
-    mark = static_cast<std::uint8_t>(mark & ~TriangleMarks::self_intersection);
+    mark = static_cast<std::uint8_t>(mark & ~triangle_mark::self_intersection);
   }
   if (result.smoothing.self_intersections > 0) {
     Execution execution;
     execution.threads = threads;
     for (const auto& pair : findSelfIntersections(result.smoothed, result.triangles, execution)) {
       for (const Index t : pair) {
-        marks[at(t)] = static_cast<std::uint8_t>(marks[at(t)] | TriangleMarks::self_intersection);
+        marks[at(t)] = static_cast<std::uint8_t>(marks[at(t)] | triangle_mark::self_intersection);
       }
     }
   }

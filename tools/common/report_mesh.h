@@ -20,7 +20,7 @@ struct ReportMesh {
   std::vector<double> area_distortion;
   std::vector<double> angle_distortion;
   std::vector<double> residual;
-  std::vector<std::uint8_t> marks;  ///< t entries, bits of TriangleMarks
+  std::vector<std::uint8_t> marks;  ///< t entries, bits of triangle_mark
 };
 
 /// The entries of a list, or columns of points, at some indices.

@@ -69,7 +69,7 @@ function sampledNormals(points, triangles, marks) {
   const normals = [];
   const corner = (i) => new THREE.Vector3().fromArray(points, 3 * triangles[i]);
   for (let i = 0; i < triangles.length; i += stride) {
-    if (marks[i / 3] & 2) continue; // a filled hole is no surface of the object
+    if (marks[i / 3] & 2) continue; // a filled opening is no surface of the object
     const [a, b, c] = [corner(i), corner(i + 1), corner(i + 2)];
     normals.push(b.sub(a).cross(c.sub(a)));
   }

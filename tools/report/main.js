@@ -270,8 +270,9 @@ async function main() {
   showVerdict(data);
   showTables(data);
   showStages(data.report.stages ?? []);
-  if ((data.report.residuals ?? []).length > 1) {
-    showCurve('residual', data.report.residuals, 'iteration', () => {});
+  const residuals = data.report.embedding?.residuals ?? [];
+  if (residuals.length > 1) {
+    showCurve('residual', residuals, 'iteration', () => {});
   }
   byId('content').hidden = false;
 

@@ -64,7 +64,7 @@ function showVerdict(data) {
   }
   const findings = report.findings ?? [];
   byId('verdict').dataset.kind = !checks.every(([good]) => good) ? 'bad'
-    : findings.some((finding) => finding.fault) ? 'fair' : 'good';
+    : findings.some((finding) => finding.is_fault) ? 'fair' : 'good';
   byId('verdict-words').textContent = report.verdict ?? '';
   byId('findings').replaceChildren(...checks.map(([good, yes, no]) =>
     make('li', { 'data-good': String(good) }, good ? `✓ ${yes}` : `✗ ${no}`)));
@@ -80,42 +80,39 @@ function showPairs(id, pairs) {
     headRow(name, make('td', {}, inWords(value))))));
 }
 
-function showGrid(id, list, columns) {
+/** A table of objects that have the same keys. */
+function showGrid(id, list) {
   byId(`${id}-card`).hidden = list.length === 0;
+  const keys = Object.keys(list[0] ?? {});
   byId(id).replaceChildren(make('table', {},
-    make('tr', {}, Object.keys(columns).map((title) => make('th', { scope: 'col' }, title))),
-    list.map((entry) => make('tr', {}, Object.values(columns).map((key) =>
-      make('td', {}, inWords(entry[key])))))));
+    make('tr', {}, keys.map((key) => make('th', { scope: 'col' }, key.replaceAll('_', ' ')))),
+    list.map((entry) => make('tr', {}, keys.map((key) => make('td', {}, inWords(entry[key])))))));
 }
 
 function showTables(data) {
   const report = data.report;
   const embedding = report.embedding ?? {};
-  const box = report.measures?.bounding_box;
+  const { box_min: low, box_max: high } = report.measures ?? {};
   showPairs('numbers', [
     ['Points read', report.points],
-    ['Points not finite', report.ignored_points],
+    ['Points not finite', report.left_out?.not_finite?.length || undefined],
     ['Duplicates', report.duplicates],
-    ['Outliers left out', report.outliers?.count],
-    ['Outliers in the mesh', report.diagnosis?.outliers?.length || undefined],
+    ['Outliers left out', report.left_out?.outliers?.length || undefined],
+    ['Outliers in the mesh', report.outliers?.length || undefined],
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],
-    ['Edges outside the graph', report.edges_outside_graph],
+    ['Edges outside the graph', report.diagnosis?.edges_outside_graph],
     ['Volume', report.measures?.volume],
     ['Area', report.measures?.area],
     ['Mean edge length', report.measures?.mean_edge_length],
-    ['Size', box?.max?.map((x, c) => number(x - box.min[c])).join(' × ')],
-    ['Energy of the sphere', embedding.energy],
-    ['Residual', report.residual],
-    ['Stopped', report.stop_reason],
+    ['Size', high?.map((x, c) => number(x - low[c])).join(' × ')],
+    ['Residual', embedding.residual],
+    ['Stopped', embedding.stop_reason?.replaceAll('_', ' ')],
     ['Points moved by smoothing (max)', report.smoothing?.max_displacement],
     ['Peak memory [bytes]', report.peak_memory_bytes],
   ].filter(([, value]) => value !== undefined && value !== null));
   showPairs('options', Object.entries(report.options ?? {}));
-  showGrid('levels', embedding.levels ?? [], {
-    Nodes: 'nodes', Edges: 'edges', Sweeps: 'sweeps', Newton: 'newton_iterations',
-    CG: 'linear_iterations', Residual: 'residual',
-  });
+  showGrid('levels', embedding.levels ?? []);
   byId('command').textContent = data.command;
   byId('json').addEventListener('toggle', () => {
     byId('json').lastChild.textContent = JSON.stringify(report, null, 2);

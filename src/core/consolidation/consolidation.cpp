@@ -61,7 +61,7 @@ constexpr double kMergeDistance = 1.0;
 /// Scans have 0.17 to 0.30, points with noise up to 0.38, dense ones 0.42 to 0.62, and 0.22 to 0.38
 /// after one round of merging. Without a bound, normals of dense clouds are off by 14 to 42 degrees
 /// instead of 5 to 8; with 0.3, the RMS distance of one scan is twice as large.
-constexpr double kMaxRoundness = 0.4;
+constexpr double kMinThickRoundness = 0.4;
 /// Neighbourhoods on thin limbs of few points are round as well, but do not become flatter, however
 /// many points are merged. Where they are still round when fewer than this number are left, nothing
 /// is merged: 3,400 points of an animal on thin legs became 22 otherwise.
@@ -220,7 +220,7 @@ public:
   std::size_t size() const { return static_cast<std::size_t>(points_.cols()); }
   const Positions& points() const { return points_; }
   /// Whether the noise is above what neighbourhoods can tell from the surface.
-  bool isThick() const { return roundness_ > kMaxRoundness; }
+  bool isThick() const { return roundness_ > kMinThickRoundness; }
 
   /// Clusters of neighbours, of some three points each.
   ///

@@ -1,7 +1,7 @@
 #include "graph_hierarchy.h"
 
-#include "members.h"
 #include "parallel.h"
+#include "partition.h"
 #include "progress.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int th
   forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double turn = factor * keys[i] + golden_ratio * seed;
-      // Only lengths that are no numbers lead to keys that are none, which have no order.
+      // A length that is NaN gives a key that is NaN, which no comparison orders.
       keys[i] = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
     }
   });
@@ -194,7 +194,7 @@ std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
 /// The graph of the aggregates that touch.
 Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
                   const FractionReport& report) {
-  const Members members(cells.of_node, count);
+  const Partition partition(cells.of_node, count);
   reportFraction(report, 0.0);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Scratch {
@@ -208,7 +208,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
     std::vector<Index>& touched = scratch[thread].touched;
     shortest.resize(count, infinity);
     touched.clear();
-    members.forEach(static_cast<Index>(c), [&](Index member) {
+    partition.forEach(static_cast<Index>(c), [&](Index member) {
       const auto i = static_cast<std::size_t>(member);
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
         const auto j = static_cast<std::size_t>(graph.neighbors[e]);

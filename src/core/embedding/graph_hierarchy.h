@@ -1,7 +1,7 @@
 #pragma once
 
-#include "spherical_param/execution.h"
 #include "graph.h"
+#include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/SparseCore>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "edge_weights.h"
-#include "parallel.h"
 #include "graph.h"
+#include "parallel.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 #include "graph_building.h"
 
 #include "component_tree.h"
-#include "members.h"
+#include "partition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,21 +16,21 @@ Bridge bridgeOf(const Positions& points, const ComponentTree::Pair& pair) {
   return {pair.from, pair.to, edgeLength(points, pair.from, pair.to)};
 }
 
-/// Appends up to `count` bridges for each joint; tree and members know the components.
+/// Appends up to `count` bridges for each joint; tree and partition know the components.
 void appendFurther(const Positions& points, const ComponentTree& tree,
-                   const std::vector<Index>& part, const Members& members,
+                   const std::vector<Index>& part, const Partition& partition,
                    const std::vector<Bridge>& joints, int count, std::vector<Bridge>& bridges) {
   std::vector<Index> taken;
   for (const Bridge& joint : joints) {
     // The joints are a tree of the components: from the smaller ends no point asks too often.
     Index smaller = part[static_cast<std::size_t>(joint.from)];
     Index other = part[static_cast<std::size_t>(joint.to)];
-    if (members.count(other) < members.count(smaller))
+    if (partition.count(other) < partition.count(smaller))
       std::swap(smaller, other);
     taken = {joint.from, joint.to};
     for (int k = 0; k < count; ++k) {
       ComponentTree::Pair closest;
-      members.forEach(smaller, [&](Index i) {
+      partition.forEach(smaller, [&](Index i) {
         if (std::find(taken.begin(), taken.end(), i) == taken.end())
           tree.nearestIn(other, i, taken, closest);
       });
@@ -159,10 +159,10 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
   Index component_count = countSets(part);
   ComponentTree tree(points);
   while (component_count > 1) {
-    const Members members(part, n);
+    const Partition partition(part, n);
     Index largest = 0;
     for (Index component = 1; component < static_cast<Index>(n); ++component)
-      if (members.count(component) > members.count(largest))
+      if (partition.count(component) > partition.count(largest))
         largest = component;
     tree.setComponents(part);
 
@@ -179,7 +179,7 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
         joints.push_back(bridgeOf(points, pair));
     }
     bridges.insert(bridges.end(), joints.begin(), joints.end());
-    appendFurther(points, tree, part, members, joints, bridges_per_joint - 1, bridges);
+    appendFurther(points, tree, part, partition, joints, bridges_per_joint - 1, bridges);
     component_count -= static_cast<Index>(joints.size());
     part = representatives(parts, n);
   }
@@ -193,11 +193,11 @@ std::vector<Bridge> furtherBridges(const Positions& points, const std::vector<In
     return bridges;
   ComponentTree tree(points);
   tree.setComponents(part);
-  appendFurther(points, tree, part, Members(part, part.size()), joints, count, bridges);
+  appendFurther(points, tree, part, Partition(part, part.size()), joints, count, bridges);
   return bridges;
 }
 
-std::vector<Bridge> danglingBridges(const Positions& points, const Graph& graph, int count) {
+std::vector<Bridge> articulationBridges(const Positions& points, const Graph& graph, int count) {
   std::vector<Bridge> bridges;
   const SearchTree search(graph);
   if (search.parts().empty())

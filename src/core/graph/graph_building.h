@@ -52,7 +52,7 @@ std::vector<Bridge> furtherBridges(const Positions& points, const std::vector<In
 ///
 /// \param points 3 x n.
 /// \param graph  n nodes, connected.
-std::vector<Bridge> danglingBridges(const Positions& points, const Graph& graph, int count);
+std::vector<Bridge> articulationBridges(const Positions& points, const Graph& graph, int count);
 
 /// The graph with further edges; repetitions, also of edges that it holds already, do no harm.
 Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges);

@@ -136,7 +136,7 @@ void connect(const Positions& points, const Stars& stars, const internal::Fracti
     result.graph = internal::withEdges(result.graph, result.report.bridges);
   }
   const std::vector<Bridge> bridges =
-      internal::danglingBridges(points, result.graph, kBridgesPerJoint - 1);
+      internal::articulationBridges(points, result.graph, kBridgesPerJoint - 1);
   if (bridges.empty())
     return;
   result.graph = internal::withEdges(result.graph, bridges);

@@ -25,7 +25,7 @@ constexpr double kTie = 1e-9;
 /// Largest ratio of the smallest to the middle variance of a neighbourhood with a tangent plane:
 /// above, all directions are alike. Stars are better than what takes their place for as long as
 /// there is any plane at all. With 0.5 a model has 6 self-intersections, without a bound 2.
-constexpr double kMaxRoundness = 0.9;
+constexpr double kMaxPlaneRoundness = 0.9;
 /// Least ratio of the middle to the largest variance: below, the neighbourhood is a line. Without,
 /// a sphere scanned in lines has 27 self-intersections instead of 3.
 constexpr double kMinWidthRatio = 0.01;
@@ -36,7 +36,7 @@ constexpr double kMinWidthRatio = 0.01;
 constexpr int kTangentNeighbors = 10;
 /// Candidates steeper than this to the tangent plane are on another sheet [sine of the angle]. With
 /// 1 a model has 2 self-intersections, with 0.7 two have 2 and 412.
-constexpr double kMaxSlope = 0.85;
+constexpr double kMaxCandidateSlope = 0.85;
 /// Nearest neighbours used of a list, and searched for, at most. With 12 or 24 a sphere scanned in
 /// lines has some 20,000 self-intersections instead of 3; with 64, 0, but the search takes longer.
 constexpr int kMaxCandidates = 32;
@@ -202,7 +202,7 @@ bool findTangentPlane(const std::vector<Candidate>& candidates, std::size_t coun
   axes = solver.eigenvectors();
   const Eigen::Vector3d& variances = solver.eigenvalues();
   is_line = !(variances[1] > kMinWidthRatio * variances[2]);
-  return !is_line && variances[0] <= kMaxRoundness * variances[1];
+  return !is_line && variances[0] <= kMaxPlaneRoundness * variances[1];
 }
 
 /// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
@@ -271,7 +271,8 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, 
         break;
     }
     if (kind.tangent_plane) {
-      const bool certified = findVoronoiNeighbors(candidates, axes, kMaxSlope, cell, star, count);
+      const bool certified =
+          findVoronoiNeighbors(candidates, axes, kMaxCandidateSlope, cell, star, count);
       kind.certified = certified || complete;
       kind.wants_more = !kind.certified;
     } else {

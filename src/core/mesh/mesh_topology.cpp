@@ -72,7 +72,12 @@ private:
 struct Findings {
   std::size_t vertices = 0;
   std::size_t edges = 0;
-  TopologyFaults faults;
+  std::size_t boundary_edges = 0;        ///< edges with one triangle
+  std::size_t nonmanifold_edges = 0;     ///< edges with more than two triangles
+  std::size_t misoriented_edges = 0;     ///< edges that both triangles traverse alike
+  std::size_t degenerate_triangles = 0;  ///< triangles that name a vertex twice
+  std::vector<Index> nonmanifold_vertices;
+  std::vector<Index> unused_vertices;
 };
 
 /// One of the two sides that a triangle has at a vertex.
@@ -147,16 +152,16 @@ void examineSides(const Triangles& triangles, const CornerTable& corners, Index 
     if (v < other) {
       ++findings.edges;
       if (end - begin == 1)
-        findings.faults.boundary_edges.push_back({v, other});
+        ++findings.boundary_edges;
       else if (end - begin > 2)
-        findings.faults.nonmanifold_edges.push_back({v, other});
+        ++findings.nonmanifold_edges;
       else if (sides[begin].outgoing == sides[begin + 1].outgoing)
-        findings.faults.misoriented_edges.push_back({v, other});
+        ++findings.misoriented_edges;
     }
     begin = end;
   }
   if (fan_count > 1)
-    findings.faults.nonmanifold_vertices.push_back(v);
+    findings.nonmanifold_vertices.push_back(v);
 }
 
 /// Examines a vertex whose triangles are one closed fan.
@@ -189,7 +194,7 @@ void examineVertex(const Triangles& triangles, const CornerTable& corners, Index
                    Findings& findings) {
   const std::size_t count = corners.countAt(v);
   if (count == 0) {
-    findings.faults.unused_vertices.push_back(v);
+    findings.unused_vertices.push_back(v);
     return;
   }
   ++findings.vertices;
@@ -203,19 +208,14 @@ void examineVertex(const Triangles& triangles, const CornerTable& corners, Index
 void examineTriangle(const Triangles& triangles, Index t, ConcurrentSets& pieces,
                      Findings& findings) {
   if (isDegenerate(triangles.col(t)))
-    findings.faults.degenerate_triangles.push_back(t);
+    ++findings.degenerate_triangles;
   pieces.unite(triangles(0, t), triangles(1, t));
   pieces.unite(triangles(1, t), triangles(2, t));
 }
 
-template <typename Fault>
-void append(std::vector<Fault>& all, const std::vector<Fault>& more) {
-  all.insert(all.end(), more.begin(), more.end());
-}
-
 /// Adds up what examine(i, findings) finds for i in [0, count), in that order.
 template <typename Examine>
-void collect(std::size_t count, int threads, MeshTopology& result, const Examine& examine) {
+void collect(std::size_t count, int threads, Findings& all, const Examine& examine) {
   std::vector<Findings> of_blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
   internal::forEachBlock(count, threads,
                          [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -224,16 +224,18 @@ void collect(std::size_t count, int threads, MeshTopology& result, const Examine
                              examine(i, findings);
                            of_blocks[block] = std::move(findings);
                          });
-  TopologyFaults& faults = result.faults;
+  const auto append = [](std::vector<Index>& to, const std::vector<Index>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
   for (const Findings& findings : of_blocks) {
-    result.vertices += findings.vertices;
-    result.edges += findings.edges;
-    append(faults.boundary_edges, findings.faults.boundary_edges);
-    append(faults.nonmanifold_edges, findings.faults.nonmanifold_edges);
-    append(faults.misoriented_edges, findings.faults.misoriented_edges);
-    append(faults.nonmanifold_vertices, findings.faults.nonmanifold_vertices);
-    append(faults.unused_vertices, findings.faults.unused_vertices);
-    append(faults.degenerate_triangles, findings.faults.degenerate_triangles);
+    all.vertices += findings.vertices;
+    all.edges += findings.edges;
+    all.boundary_edges += findings.boundary_edges;
+    all.nonmanifold_edges += findings.nonmanifold_edges;
+    all.misoriented_edges += findings.misoriented_edges;
+    all.degenerate_triangles += findings.degenerate_triangles;
+    append(all.nonmanifold_vertices, findings.nonmanifold_vertices);
+    append(all.unused_vertices, findings.unused_vertices);
   }
 }
 
@@ -248,24 +250,28 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 
   const CornerTable corners(triangles, vertex_count, threads);
   ConcurrentSets pieces(vertex_count);
-  MeshTopology result;
-  result.triangles = static_cast<std::size_t>(m);
-  collect(static_cast<std::size_t>(m), threads, result, [&](std::size_t t, Findings& findings) {
+  Findings all;
+  collect(static_cast<std::size_t>(m), threads, all, [&](std::size_t t, Findings& findings) {
     examineTriangle(triangles, static_cast<Index>(t), pieces, findings);
   });
-  collect(vertex_count, threads, result, [&](std::size_t v, Findings& findings) {
+  collect(vertex_count, threads, all, [&](std::size_t v, Findings& findings) {
     examineVertex(triangles, corners, static_cast<Index>(v), findings);
   });
-  TopologyFaults& faults = result.faults;
+  MeshTopology result;
+  result.vertices = all.vertices;
+  result.edges = all.edges;
+  result.triangles = static_cast<std::size_t>(m);
   // Unused vertices are pieces by themselves.
   for (std::size_t v = 0; v < vertex_count; ++v)
     result.components += pieces.find(static_cast<Index>(v)) == static_cast<Index>(v) ? 1 : 0;
-  result.components -= faults.unused_vertices.size();
+  result.components -= all.unused_vertices.size();
 
-  result.closed = m > 0 && faults.boundary_edges.empty();
-  result.edge_manifold = faults.nonmanifold_edges.empty() && faults.degenerate_triangles.empty();
-  result.vertex_manifold = faults.nonmanifold_vertices.empty();
-  result.oriented = faults.misoriented_edges.empty() && faults.nonmanifold_edges.empty();
+  result.closed = m > 0 && all.boundary_edges == 0;
+  result.edge_manifold = all.nonmanifold_edges == 0 && all.degenerate_triangles == 0;
+  result.vertex_manifold = all.nonmanifold_vertices.empty();
+  result.oriented = all.misoriented_edges == 0 && all.nonmanifold_edges == 0;
+  result.nonmanifold_vertices = std::move(all.nonmanifold_vertices);
+  result.unused_vertices = std::move(all.unused_vertices);
   result.euler_characteristic = static_cast<long long>(result.vertices) -
                                 static_cast<long long>(result.edges) + static_cast<long long>(m);
   if (result.closed && result.manifold() && result.oriented)

@@ -37,7 +37,7 @@ std::vector<Index> spatialOrder(const Positions& points);
 /// the given doubles: a cloud that is flat but for rounding is not coplanar.
 ///
 /// \param points 3 x n, finite, of any magnitude.
-/// \return whether they do; so do fewer than four.
+/// \return true if they do, and for fewer than four points.
 /// \throw InvalidInput if a coordinate of four points and more is not finite.
 /// Cost: O(n); a hundred times as much where coordinates other than 0 are below 1e-80 or above 1e80
 /// and all points lie in one plane, or nearly all.

@@ -50,7 +50,7 @@ MeshOptimizer::MeshOptimizer(const Positions& points, const Triangles& triangles
 
 void MeshOptimizer::recomputeFacets(const FractionReport& report) {
   are_flips_settled_ = false;
-  has_usual_angles_ = false;
+  has_typical_angles_ = false;
   forEachBlock(facets_.size(), threads_, report,
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
@@ -391,7 +391,7 @@ void MeshOptimizer::begin() {
   open_.push_back({mesh_.record(), old_facets_.size(), energy_});
 }
 
-void MeshOptimizer::keep() {
+void MeshOptimizer::commit() {
   open_.pop_back();
   if (!open_.empty())
     return;
@@ -419,7 +419,7 @@ bool MeshOptimizer::relocate(Index v) {
   appendNeighbors(v, around_);
   begin();
   if (remove(v) && insert(v, around_) && isGain(change())) {
-    keep();
+    commit();
     return true;
   }
   rollBack();
@@ -452,7 +452,7 @@ bool MeshOptimizer::recreate(const std::vector<Index>& vertices,
     removed = std::move(waiting);
   }
   if (removed.empty() && accept(change())) {
-    keep();
+    commit();
     return true;
   }
   rollBack();
@@ -793,10 +793,10 @@ std::vector<double> MeshOptimizer::medianAngles() const {
 }
 
 void MeshOptimizer::updateUsualAngles(double factor, double least) {
-  const bool is_new = !has_usual_angles_ || factor != usual_factor_ || least != least_usual_;
-  usual_angles_.resize(seen_vertices_.size());
+  const bool is_new = !has_typical_angles_ || factor != typical_factor_ || least != min_typical_;
+  typical_angles_.resize(seen_vertices_.size());
   // A median depends on the triangles around the vertex and their neighbours alone.
-  std::vector<std::uint8_t> is_due(usual_angles_.size(), is_new ? 1 : 0);
+  std::vector<std::uint8_t> is_due(typical_angles_.size(), is_new ? 1 : 0);
   if (!is_new)
     for (const Index t :
          filter(facets_.size(), [&](Index i) { return isNearChange(i, kChangedSinceAngles); }))
@@ -817,9 +817,9 @@ void MeshOptimizer::updateUsualAngles(double factor, double least) {
       const double angle = bent <= cosines.size() / 2
                                ? least
                                : std::max(factor * fastAcos(medianOf(cosines)), least);
-      if (!is_new && angle != usual_angles_[i])
+      if (!is_new && angle != typical_angles_[i])
         changed[block].push_back(static_cast<Index>(i));
-      usual_angles_[i] = angle;
+      typical_angles_[i] = angle;
     }
   });
   for (const std::vector<Index>& part : changed)
@@ -828,9 +828,9 @@ void MeshOptimizer::updateUsualAngles(double factor, double least) {
   unmark(kChangedSinceAngles);
   if (is_new)
     are_flips_settled_ = false;
-  has_usual_angles_ = true;
-  usual_factor_ = factor;
-  least_usual_ = least;
+  has_typical_angles_ = true;
+  typical_factor_ = factor;
+  min_typical_ = least;
 }
 
 void MeshOptimizer::setExcessEnergy(double mu, double factor, double least) {
@@ -838,7 +838,7 @@ void MeshOptimizer::setExcessEnergy(double mu, double factor, double least) {
   SurfaceEnergy energy;
   energy.bend = SurfaceEnergy::Bend::Excess;
   energy.mu = mu;
-  energy.usual_angle = usual_angles_.data();
+  energy.typical_angle = typical_angles_.data();
   energy.flat_cosine = SurfaceEnergy::flatFrom(least);
   setEnergy(energy);
 }

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "graph.h"
 #include "local_intersections.h"
 #include "progress.h"
 #include "sphere_mesh.h"
-#include "graph.h"
 #include "spherical_param/types.h"
 #include "surface_energy.h"
 
@@ -37,9 +37,9 @@ public:
 
   /// Begins to work with another energy, or with other positions of the points.
   ///
-  /// \param energy its usual angles must not change; \see setExcessEnergy.
+  /// \param energy its typical angles must not change; \see setExcessEnergy.
   void setEnergy(const SurfaceEnergy& energy);
-  /// The same for Bend::Excess, with angles that are usual on the mesh as it is now: `factor` times
+  /// The same for Bend::Excess, with angles that are typical of the mesh as it is now: `factor` times
   /// the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks only at
   /// what has changed.
   void setExcessEnergy(double mu, double factor, double least);
@@ -197,7 +197,7 @@ private:
   void appendNeighbors(Index v, std::vector<Index>& neighbors) const;
 
   void begin();
-  void keep();
+  void commit();
   void rollBack();
   /// Change of the energy since begin() [mean length of the graph's edges].
   double change() const { return (energy_ - open_.back().energy) / unit_; }
@@ -218,7 +218,7 @@ private:
     Pairs pairs;
   };
   Checked checked_;
-  /// What was before each begin() that neither keep() nor rollBack() has ended yet.
+  /// What was before each begin() that neither commit() nor rollBack() has ended yet.
   struct Before {
     std::size_t changes;
     std::size_t facets;
@@ -230,14 +230,14 @@ private:
   static constexpr std::uint8_t kChangedSinceFlips = 1;
   static constexpr std::uint8_t kChangedSinceAngles = 2;
   /// Marks of triangles that may have changed since flipAll(), in settled_terms_, left no flip that
-  /// gains, and since usual_angles_ were found.
+  /// gains, and since typical_angles_ were found.
   std::vector<std::uint8_t> changes_;
   bool are_flips_settled_ = false;
   SurfaceEnergy settled_terms_;
-  bool has_usual_angles_ = false;
-  double usual_factor_ = 0.0;
-  double least_usual_ = 0.0;
-  std::vector<double> usual_angles_;
+  bool has_typical_angles_ = false;
+  double typical_factor_ = 0.0;
+  double min_typical_ = 0.0;
+  std::vector<double> typical_angles_;
 
   std::vector<Candidate> queue_;       ///< a heap
   std::vector<Index> refused_;         ///< triangles of flips that would have joined twice

@@ -15,22 +15,26 @@ constexpr int kNearSteps = 2;
 }  // namespace
 
 OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings)
-    : points_(points), is_near_(graph.size(), 0), spacing_(openings.spacing) {
+    : points_(points), is_near_(graph.size(), 0), nearest_(graph.size(), 0),
+      spacing_(openings.spacing) {
   std::vector<Index> ring;
-  const auto add = [&](Index v, std::uint8_t mark) {
+  const auto add = [&](Index v, std::uint8_t mark, Index opening) {
     std::uint8_t& is_near = is_near_[static_cast<std::size_t>(v)];
     if (is_near != 0)
       return;
     is_near = mark;
+    nearest_[static_cast<std::size_t>(v)] = opening;
     ring.push_back(v);
   };
-  for (const Opening& opening : openings.openings)
-    for (std::size_t i = 0; i < opening.loop.size(); ++i) {
-      const Index v = opening.loop[i];
-      const Index w = opening.loop[i + 1 < opening.loop.size() ? i + 1 : 0];
+  for (std::size_t o = 0; o < openings.openings.size(); ++o) {
+    const std::vector<Index>& loop = openings.openings[o].loop;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Index v = loop[i];
+      const Index w = loop[i + 1 < loop.size() ? i + 1 : 0];
       rim_edges_.push_back({std::min(v, w), std::max(v, w)});
-      add(v, kLoop);
+      add(v, kLoop, static_cast<Index>(o));
     }
+  }
   std::sort(rim_edges_.begin(), rim_edges_.end());
   rim_edges_.erase(std::unique(rim_edges_.begin(), rim_edges_.end()), rim_edges_.end());
   for (int step = 0; step < kNearSteps; ++step) {
@@ -39,9 +43,18 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
     for (const Index v : last) {
       const auto i = static_cast<std::size_t>(v);
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        add(graph.neighbors[e], kNear);
+        add(graph.neighbors[e], kNear, nearest_[i]);
     }
   }
+}
+
+std::optional<std::size_t> OpenPlaces::openingOver(Index a, Index b, Index c) const {
+  if (!isOpen(a, b, c))
+    return std::nullopt;
+  const Index of_a = nearest_[static_cast<std::size_t>(a)];
+  const Index of_b = nearest_[static_cast<std::size_t>(b)];
+  const Index of_c = nearest_[static_cast<std::size_t>(c)];
+  return static_cast<std::size_t>(of_b == of_c ? of_b : of_a);
 }
 
 bool OpenPlaces::isLong(Index a, Index b) const {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -20,6 +21,10 @@ public:
   OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings);
 
   bool areAny() const { return !rim_edges_.empty(); }
+
+  /// The opening that a triangle is over, by its place in `openings`: that whose loop is nearest to
+  /// most of its vertices. Empty if it is over none.
+  std::optional<std::size_t> openingOver(Index a, Index b, Index c) const;
 
   /// Whether a triangle is over an opening: its vertices are at loops, or at most two steps from
   /// them, and a side is longer than those of the surface; unless close() has excluded one of
@@ -45,6 +50,7 @@ private:
 
   const Positions& points_;
   std::vector<std::uint8_t> is_near_;  ///< kNear, kLoop for those in a loop, or 0
+  std::vector<Index> nearest_;         ///< of near vertices, the opening of the nearest loop
   std::vector<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
 };

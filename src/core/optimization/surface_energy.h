@@ -81,13 +81,13 @@ struct SurfaceEnergy {
   enum class Bend {
     Angle,   ///< the angle: together, the total absolute mean curvature
     Power,   ///< angle^1.5
-    Excess,  ///< what exceeds the angles that are usual at its two vertices
+    Excess,  ///< what exceeds the angles that are typical at its two vertices
   };
 
   Bend bend = Bend::Angle;
   double mu = 0.3;
-  /// Of Bend::Excess: n entries, the angle that is usual at each vertex; must outlive this.
-  const double* usual_angle = nullptr;
+  /// Of Bend::Excess: n entries, the angle that is typical at each vertex; must outlive this.
+  const double* typical_angle = nullptr;
 
   /// Of a surface with openings: where they are; must outlive this.
   const OpenPlaces* openings = nullptr;
@@ -96,14 +96,14 @@ struct SurfaceEnergy {
   /// flatFrom(), or above 1.
   double flat_cosine = 2.0;
 
-  /// The flat_cosine for usual angles of at least `least` [rad].
+  /// The flat_cosine for typical angles of at least `least` [rad].
   static double flatFrom(double least) {
     // acos falls at least as fast as its argument rises; the margin is that of fastAcos() and more.
     return std::cos(least) + 1e-6;
   }
 
   bool operator==(const SurfaceEnergy& other) const {
-    return bend == other.bend && mu == other.mu && usual_angle == other.usual_angle &&
+    return bend == other.bend && mu == other.mu && typical_angle == other.typical_angle &&
            openings == other.openings;
   }
 
@@ -128,7 +128,7 @@ struct SurfaceEnergy {
     case Bend::Excess:
       break;
     }
-    return length * std::max(0.0, angle - (usual_angle[v] + usual_angle[w]) / 2.0);
+    return length * std::max(0.0, angle - (typical_angle[v] + typical_angle[w]) / 2.0);
   }
 
 private:

@@ -147,7 +147,7 @@ void refine(const Mesh& mesh, Place* begin, Place* end) {
 }
 
 /// The typical size of a triangle: the median of a sample.
-double usualSize(const Mesh& mesh, const std::vector<Index>& subset) {
+double typicalSize(const Mesh& mesh, const std::vector<Index>& subset) {
   constexpr std::size_t sample = 1000;
   std::vector<double> sizes;
   for (std::size_t i = 0; i < subset.size(); i += 1 + subset.size() / sample)
@@ -158,8 +158,8 @@ double usualSize(const Mesh& mesh, const std::vector<Index>& subset) {
 /// The triangles by size, then along a space-filling curve (G. M. Morton, 1966). Large ones have a
 /// part of the tree for themselves: among small ones they would make large boxes of all above them.
 ///
-/// \param usual size of a triangle.
-std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subset, double usual,
+/// \param typical size of a triangle.
+std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subset, double typical,
                                int threads) {
   std::vector<Place> places(subset.size());
   // Coordinates are in [-1, 1].
@@ -169,7 +169,7 @@ std::vector<Index> orderedAnew(const Mesh& mesh, const std::vector<Index>& subse
         for (std::size_t i = begin; i < end; ++i) {
           const Box box = mesh.box(subset[i]);
           std::uint32_t size_class = 0;
-          for (double size = box.size() / kMinLarge; size > usual && size_class < kMaxSizeClass;
+          for (double size = box.size() / kMinLarge; size > typical && size_class < kMaxSizeClass;
                size /= kMinLarge)
             ++size_class;
           const Vector3d cell = (0.5 * (box.lower + box.upper) + Vector3d::Ones()) * scale;
@@ -268,7 +268,7 @@ void sortBlock(const BlockCenters& centers, const Index* block, std::size_t coun
 /// \param subset triangles, ascending; at least one.
 std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, int threads,
                            const FractionReport& report) {
-  const double usual = usualSize(mesh, subset);
+  const double typical = typicalSize(mesh, subset);
   // Most meshes come in blocks that are small, and of triangles of about one size: then it is
   // enough to sort within these.
   struct Blocks {
@@ -293,7 +293,7 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
           all.upper = all.upper.cwiseMax(box.upper);
           const Eigen::Vector3f center = (0.5 * (box.lower + box.upper)).cast<float>();
           centers[i - begin] = {center.x(), center.y(), center.z()};
-          block.large += box.size() > kMinLarge * usual ? 1 : 0;
+          block.large += box.size() > kMinLarge * typical ? 1 : 0;
         }
         block.size = all.size();
         sortBlock(centers, subset.data() + begin, end - begin, order.data() + begin);
@@ -301,9 +301,9 @@ std::vector<Index> ordered(const Mesh& mesh, const std::vector<Index>& subset, i
       },
       report);
   const std::size_t count = (subset.size() + internal::kBlockSize - 1) / internal::kBlockSize;
-  if (blocks.size > kMaxBlock * usual * static_cast<double>(count) ||
+  if (blocks.size > kMaxBlock * typical * static_cast<double>(count) ||
       blocks.large > kMaxLarge + subset.size() / kTypicalPerLarge)
-    return orderedAnew(mesh, subset, usual, threads);
+    return orderedAnew(mesh, subset, typical, threads);
   return order;
 }
 

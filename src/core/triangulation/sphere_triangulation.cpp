@@ -105,7 +105,7 @@ std::optional<Triangles> convexHull(const Positions& directions) {
   if (signedVolume(directions, triangles) < 0.0)
     flipOrientation(triangles);
   MeshTopology topology = checkTopology(triangles, static_cast<std::size_t>(directions.cols()));
-  topology.faults.unused_vertices.clear();  // they are put back later
+  topology.unused_vertices.clear();  // they are put back later
   if (!topology.isSphere())
     return std::nullopt;
   return triangles;

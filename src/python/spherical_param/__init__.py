@@ -23,6 +23,21 @@ KeyboardInterrupt at Ctrl-C. Errors are ``InvalidInput``, a ValueError, ``Comput
 
 from ._core import __version__
 from ._errors import Cancelled, ComputeError, InvalidInput
+from ._figures import (
+    Consolidation,
+    Diagnosis,
+    Embedding,
+    EmbeddingLevel,
+    Finding,
+    Handle,
+    History,
+    HistoryFrame,
+    Measures,
+    Opening,
+    PartBridge,
+    Smoothing,
+    Topology,
+)
 from ._maps import (
     Distortion,
     Remeshed,
@@ -36,42 +51,19 @@ from ._maps import (
     texture_coordinates,
 )
 from ._morph import ImpossiblePair, Morph, MorphFrame, morph
-from ._outliers import Outliers, find_outliers
-from ._parts import find_parts
+from ._outliers import Outliers, find_outliers, find_parts
 from ._reconstruct import reconstruct
-from ._results import (
-    Bridge,
-    Diagnosis,
-    Embedding,
-    EmbeddingLevel,
-    FilledHole,
-    Finding,
-    Graph,
-    Handle,
-    History,
-    HistoryFrame,
-    Measures,
-    Optimization,
-    OptimizationPhase,
-    PartBridge,
-    Result,
-    Smoothing,
-    Topology,
-    TriangleMark,
-    Triangulation,
-)
+from ._results import Result, TriangleMark
 
 __all__ = [
-    "Bridge",
     "Cancelled",
     "ComputeError",
+    "Consolidation",
     "Diagnosis",
     "Distortion",
     "Embedding",
     "EmbeddingLevel",
-    "FilledHole",
     "Finding",
-    "Graph",
     "Handle",
     "History",
     "HistoryFrame",
@@ -80,8 +72,7 @@ __all__ = [
     "Measures",
     "Morph",
     "MorphFrame",
-    "Optimization",
-    "OptimizationPhase",
+    "Opening",
     "Outliers",
     "PartBridge",
     "Remeshed",
@@ -93,7 +84,6 @@ __all__ = [
     "TextureCoordinates",
     "Topology",
     "TriangleMark",
-    "Triangulation",
     "__version__",
     "find_outliers",
     "find_parts",

@@ -9,9 +9,9 @@ __version__: str
 has_report: bool
 
 def option_table() -> list[dict[str, Any]]: ...
+def result_table() -> list[dict[str, Any]]: ...
 def reconstruct(
     points: NDArray[np.float64],
-    rows: Optional[NDArray[np.int32]],
     options: dict[str, object],
     *,
     details: bool,
@@ -33,11 +33,9 @@ def write_report(
     path: bytes,
     points: NDArray[np.float64],
     colors: Optional[NDArray[np.uint8]],
-    rows: Optional[NDArray[np.int32]],
-    outliers: Optional[NDArray[np.int32]],
-    left_out: Optional[NDArray[np.int32]],
-    keywords: dict[str, object],
+    options: dict[str, object],
     *,
+    part: int,
     input: str,
     command: str,
     progress: Optional[Callable[[str, float], object]],
@@ -56,19 +54,16 @@ def morph(
 ) -> dict[str, Any]: ...
 def find_outliers(
     points: NDArray[np.float64],
+    options: dict[str, object],
     *,
-    sigma: Optional[float],
-    k: int,
-    threads: int,
     progress: Optional[Callable[[str, float], object]],
-) -> dict[str, Any]: ...
+) -> NDArray[np.int32]: ...
 def find_parts(
     points: NDArray[np.float64],
+    options: dict[str, object],
     *,
-    min_points: int,
-    threads: int,
     progress: Optional[Callable[[str, float], object]],
-) -> list[NDArray[np.int32]]: ...
+) -> tuple[NDArray[np.int32], ...]: ...
 def sphere_map(
     points: NDArray[np.float64],
     triangles: NDArray[np.int32],

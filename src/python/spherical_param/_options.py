@@ -17,35 +17,13 @@ OTHERS = (
         "Fill ``Result.vertex_residuals`` and ``Diagnosis.triangle_marks``.",
     ),
     (
-        "parts",
-        'Literal["all", "largest", "each"]',
-        "all",
-        "all, largest or each",
-        """Surfaces of the cloud that are meshed: all as one, that of most points, or each by itself:
-        then a tuple of results is returned, the largest first. See find_parts.""",
-    ),
-    (
-        "min_points",
-        "SupportsIndex",
-        50,
-        "an integer from 4 up",
-        "Parts of fewer points are left out, unless all are meshed as one.",
-    ),
-    (
-        "outliers",
-        'Union[SupportsFloat, Literal["auto"], None]',
-        None,
-        '"auto" or a number from 0 to 1000',
-        "Leave out stray points, or those that find_outliers finds by this ``sigma``.",
-    ),
-    (
         "progress",
         "Progress",
         None,
         "True, or callable(stage, fraction)",
         """True: a bar on the standard error. A function is called from the calling thread during the
-        work. ``stage`` is "read", "consolidation", "neighbors", "graph", "outliers",
-        "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality";
+        work. ``stage`` is "read", "neighbors", "graph", "outliers", "parts",
+        "consolidation", "openings", "embedding", "triangulation", "optimization", "smoothing" or "quality";
         ``fraction``, in [0, 1], is that of the stage's current loop. If it returns False, the work
         ends with Cancelled; if it raises, with that exception.""",
     ),
@@ -56,9 +34,12 @@ def keywords(table: list[dict[str, Any]]) -> list[tuple[str, str, Any, str, str]
     """Name, type, default, range and help of each keyword."""
     rows = []
     for row in table:
-        kind = "SupportsIndex" if row["is_integer"] else "SupportsFloat"
+        kinds = []
         if row["choices"]:
-            kind = "Literal[" + ", ".join(f'"{name}"' for name in row["choices"]) + "]"
+            kinds.append("Literal[" + ", ".join(f'"{name}"' for name in row["choices"]) + "]")
+        if row["is_number"]:
+            kinds.append("SupportsIndex" if row["is_integer"] else "SupportsFloat")
+        kind = kinds[0] if len(kinds) == 1 else f"Union[{', '.join(kinds)}]"
         if row["optional"]:
             kind = f"Optional[{kind}]"
         rows.append((row["name"], kind, row["default"], row["range"], row["help"]))
@@ -88,10 +69,10 @@ def stub(table: list[dict[str, Any]]) -> str:
 
 from ._clouds import CloudLike
 from ._progress import Progress
-from ._results import Result
+from ._results import Result, Results
 
 {overload('parts: Literal["all", "largest"] = ...', "Result")}
-{overload('parts: Literal["each"]', "tuple[Result, ...]")}'''
+{overload('parts: Literal["each"]', "Results")}'''
 
 
 if __name__ == "__main__":

@@ -1,14 +1,15 @@
-"""Points to leave out."""
+"""Points to leave out, and surfaces of a cloud."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union
+from typing import Any, Literal, SupportsFloat, SupportsIndex, Union
 
 import numpy as np
+
 from . import _arguments as arguments
 from . import _clouds, _core
-from ._arguments import FloatArray, IndexArray
+from ._arguments import IndexArray
 from ._clouds import CloudLike
 from ._errors import InvalidInput
 from ._progress import Progress, listening
@@ -19,64 +20,34 @@ class Outliers:
     """Points that do not belong to the surface of the others."""
 
     indices: IndexArray  #: (o,) rows of the outliers, ascending, copies of them included
-    scores: FloatArray  #: (n,) how far each point is off its neighbours' surface; nan: not finite
-    threshold: float  #: scores above are outliers; 0 with "auto"
-    rounds: int  #: passes over the points
-
-    @property
-    def inliers(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """(n,) True for all other points: ``points[outliers.inliers]``."""
-        mask = np.ones(len(self.scores), dtype=np.bool_)
-        mask[self.indices] = False
-        return mask
+    inliers: np.ndarray[Any, np.dtype[np.bool_]]
+    """(n,) True for all other points: ``points[outliers.inliers]``"""
 
     def __repr__(self) -> str:
-        return (
-            f"<spherical_param.Outliers: {len(self.indices)} of {len(self.scores)} points, "
-            f"threshold {self.threshold:.4g}>"
-        )
-
-
-def deviations(name: str, sigma: Union[SupportsFloat, str]) -> Optional[float]:
-    """None: stray points."""
-    if not isinstance(sigma, str):
-        number = arguments.real(name, sigma)
-        if not 0 <= number <= 1000:
-            raise InvalidInput(f'{name} = {number} is out of range; use 0 to 1000, or "auto"')
-        return number
-    if sigma == "auto":
-        return None
-    raise InvalidInput(f'{name} = "{sigma}" is no number; use 0 to 1000, or "auto"')
+        return f"<spherical_param.Outliers: {len(self.indices)} of {len(self.inliers)} points>"
 
 
 def find_outliers(
     points: CloudLike,
     *,
     sigma: Union[SupportsFloat, Literal["auto"]] = 4.0,
-    k: SupportsIndex = 16,
     threads: SupportsIndex = 0,
     progress: Progress = None,
 ) -> Outliers:
-    """Find points that are off the surface of their neighbours (section 4.2 of the paper).
-
-    ``reconstruct`` makes a vertex of every point, outliers too: leave them out before, as in
-    ``reconstruct(points[find_outliers(points).inliers])``.
+    """Find the points that ``reconstruct(points, outliers=sigma)`` leaves out.
 
     Parameters
     ----------
     points : array-like (n, 3), path, or cloud of Open3D or trimesh
         As for ``reconstruct``.
     sigma : float, 0 to 1000, or "auto"
-        Outliers are farther off than the mean by this number of standard deviations. "auto": stray
-        points, small clusters of them, points between sheets and single points a little off a
-        surface, in spacings there; points of a surface are hardly ever among them.
-    k : int, 3 and up
-        Neighbours of each point that make its surface.
+        Outliers are farther off than the mean by this number of standard deviations (section 4.2 of
+        the paper). "auto": stray points, small clusters of them, points between sheets and single
+        points a little off a surface; points of a surface are hardly ever among them.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
     progress : True, or callable(stage, fraction)
-        As for ``reconstruct``; the stages are "neighbors" and "outliers", with "auto"
-        "neighbors", "graph" and "outliers".
+        As for ``reconstruct``; the stages are "neighbors", "graph" and "outliers".
 
     Raises
     ------
@@ -88,12 +59,52 @@ def find_outliers(
     the tip of a thin limb an outlier may be in the plane of its neighbours.
     """
     with listening(progress) as listener:
-        return Outliers(
-            **_core.find_outliers(
-                _clouds.read("points", points, listener).points,
-                sigma=deviations("sigma", sigma),
-                k=arguments.integer("k", k, 3),
-                threads=arguments.thread_count(threads),
-                progress=listener,
-            )
-        )
+        cloud = _clouds.read("points", points, listener)
+        values = {"outliers": sigma, "threads": arguments.thread_count(threads)}
+        try:
+            indices = _core.find_outliers(cloud.points, values, progress=listener)
+        except InvalidInput as error:  # which names the option of reconstruct()
+            raise InvalidInput(str(error).replace("outliers", "sigma", 1)) from None
+    inliers = np.ones(len(cloud.points), dtype=np.bool_)
+    inliers[indices] = False
+    return Outliers(indices, inliers)
+
+
+def find_parts(
+    points: CloudLike,
+    *,
+    min_points: SupportsIndex = 50,
+    threads: SupportsIndex = 0,
+    progress: Progress = None,
+) -> tuple[IndexArray, ...]:
+    """Find the surfaces of a cloud that ``reconstruct(points, parts="each")`` meshes.
+
+    Parameters
+    ----------
+    points : array-like (n, 3), path, or cloud of Open3D or trimesh
+        As for ``reconstruct``.
+    min_points : int, 4 and up
+        Minimum number of distinct points of a part.
+    threads : int, 0 (all) to 1024
+        The result does not depend on it.
+    progress : True, or callable(stage, fraction)
+        As for ``reconstruct``; the stages are "neighbors", "graph" and "parts".
+
+    Returns
+    -------
+    tuple of arrays of integers
+        Rows of each part, ascending; the part of most points first. Points of no part, such as
+        stray ones, are in none.
+
+    Raises
+    ------
+    InvalidInput, Cancelled, MemoryError, KeyboardInterrupt
+
+    Notes
+    -----
+    No guarantees: surfaces that touch are one part.
+    """
+    with listening(progress) as listener:
+        cloud = _clouds.read("points", points, listener)
+        values = {"min_points": min_points, "threads": arguments.thread_count(threads)}
+        return _core.find_parts(cloud.points, values, progress=listener)

@@ -3,31 +3,14 @@
 from __future__ import annotations
 
 import inspect
-import time
 import warnings
-from typing import (
-    Any,
-    Callable,
-    Literal,
-    Optional,
-    SupportsFloat,
-    SupportsIndex,
-    Union,
-    get_args,
-)
-
-import numpy as np
+from typing import Any, Literal, Optional, SupportsFloat, SupportsIndex, Union  # noqa: F401
 
 from . import _arguments as arguments
 from . import _core, _options
-from ._arguments import IndexArray
 from ._clouds import CloudLike, read
-from ._errors import ComputeError, InvalidInput
-from ._outliers import deviations
 from ._progress import Progress, listening
-from ._results import Result, Source, make_result
-
-PartsName = Literal["all", "largest", "each"]
+from ._results import Result, Results, make_results
 
 _TABLE = _core.option_table()
 _NAMES = [row["name"] for row in _TABLE]
@@ -37,12 +20,9 @@ def reconstruct(
     points: CloudLike,
     *,
     details: bool = False,
-    parts: PartsName = "all",
-    min_points: SupportsIndex = 50,
-    outliers: Union[SupportsFloat, Literal["auto"], None] = None,
     progress: Progress = None,
     **options: Any,
-) -> Union[Result, tuple[Result, ...]]:
+) -> Union[Result, Results]:
     """Mesh the points of an object without holes through it.
 
     The mesh is closed, manifold, oriented outward, of genus 0 and in one piece, and every distinct
@@ -55,7 +35,8 @@ def reconstruct(
         array has x, y, z, and may have normals (nx, ny, nz or normal_x ...) and colours (red,
         green, blue or r, g, b, or rgb as PCL packs them). A file is .pcd, .ply, .obj, .xyz or
         .txt. Of Open3D a point cloud or mesh, of trimesh a PointCloud or Trimesh, the normals
-        of which are not used. Colours and normals come along. At least 4 distinct finite points that are not all in one plane.
+        of which are not used. Colours and normals come along. At least 4 distinct finite points
+        that are not all in one plane.
         Points with a coordinate that is not finite (or masked) are ignored, and counted.
 OPTIONS
 
@@ -63,8 +44,8 @@ OPTIONS
     -------
     Result
         Mesh and map to the sphere; ``verdict``, ``findings`` and ``diagnosis`` say how far to trust
-        them. With ``parts="each"`` a tuple of results, the part of most points first; parts that
-        cannot be meshed are left out with a warning.
+        them. With ``parts="each"`` a tuple of results, the part of most points first, with a
+        verdict over all; parts that cannot be meshed are left out with a warning.
 
     Raises
     ------
@@ -92,80 +73,18 @@ OPTIONS
     for name in options:
         if name not in _NAMES:
             raise TypeError(
-                f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, details, "
-                "parts, min_points, outliers or progress"
+                f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, details or "
+                "progress"
             )
-    arguments.choice("parts", parts, get_args(PartsName))
-    least = arguments.integer("min_points", min_points, 4)
     has_details = arguments.truth("details", details)
-    threads = arguments.thread_count(options.get("threads", 0))
-    keywords = dict(options)
-    if outliers is not None:
-        keywords["outliers"] = outliers
-    if parts != "all":
-        keywords.update(parts=parts, min_points=least)
+    values = {**options, "threads": arguments.thread_count(options.get("threads", 0))}
     with listening(progress) as listener:
         cloud = read("points", points, listener)
-
-        def mesh(rows: Optional[IndexArray], time_limit: Any) -> Result:
-            values = {**options, "threads": threads, "time_limit": time_limit}
-            fields = _core.reconstruct(
-                cloud.points, rows, values, details=has_details, progress=listener
-            )
-            return make_result(fields, Source(cloud, keywords, rows, stray))
-
-        is_kept = np.isfinite(cloud.points).all(axis=1)
-        stray = None
-        if outliers is not None:
-            sigma = deviations("outliers", outliers)
-            stray = _core.find_outliers(
-                cloud.points, sigma=sigma, k=16, threads=threads, progress=listener
-            )["indices"]
-            is_kept[stray] = False
-        elif parts == "all":
-            return mesh(None, options.get("time_limit"))
-        rows = np.flatnonzero(is_kept).astype(np.int32)
-        if parts == "all":
-            return mesh(rows, options.get("time_limit"))
-        groups = _core.find_parts(
-            cloud.points[rows], min_points=least, threads=threads, progress=listener
-        )
-        if not groups:
-            raise InvalidInput(
-                f"no part has {least} points; give a lower min_points, or leave parts out"
-            )
-        if parts == "largest":
-            return mesh(rows[groups[0]], options.get("time_limit"))
-        return _each([rows[group] for group in groups], options.get("time_limit"), mesh)
-
-
-def _each(
-    parts: list[IndexArray], time_limit: Any, mesh: Callable[[IndexArray, Any], Result]
-) -> tuple[Result, ...]:
-    """A result of each part; one that cannot be meshed is a warning."""
-    end = None
-    if time_limit is not None:
-        end = time.monotonic() + arguments.real("time_limit", time_limit)
-    results = []
-    failures: list[Exception] = []
-    points_left = sum(map(len, parts))
-    for number, rows in enumerate(parts, 1):
-        # Each part has its share of the time.
-        share = None
-        if end is not None:
-            share = max(0.0, end - time.monotonic()) * len(rows) / points_left
-        points_left -= len(rows)
-        try:
-            results.append(mesh(rows, share))
-        except (InvalidInput, ComputeError) as error:
-            failures.append(error)
-            warnings.warn(
-                f"part {number} of {len(parts)} ({len(rows)} points) cannot be meshed: {error}",
-                stacklevel=3,
-            )
-    if not results:
-        raise failures[0]
-    return tuple(results)
+        fields = _core.reconstruct(cloud.points, values, details=has_details, progress=listener)
+    for failure in fields["failures"]:
+        warnings.warn(failure, stacklevel=2)
+    results = make_results(fields, cloud, options)
+    return results if options.get("parts") == "each" else results[0]
 
 
 def _describe() -> None:
@@ -180,10 +99,10 @@ def _describe() -> None:
     signature = inspect.signature(reconstruct)
     parameters = [signature.parameters["points"].replace(annotation=CloudLike)] + keywords
     reconstruct.__signature__ = signature.replace(  # type: ignore[attr-defined]
-        parameters=parameters, return_annotation=Union[Result, tuple[Result, ...]]
+        parameters=parameters, return_annotation=Union[Result, Results]
     )
     reconstruct.__annotations__ = {each.name: each.annotation for each in parameters}
-    reconstruct.__annotations__["return"] = Union[Result, tuple[Result, ...]]
+    reconstruct.__annotations__["return"] = Union[Result, Results]
     text = reconstruct.__doc__
     if text:  # not with python -OO
         reconstruct.__doc__ = text.replace("OPTIONS", _options.documentation(_TABLE))

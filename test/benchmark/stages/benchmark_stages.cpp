@@ -183,7 +183,7 @@ const std::vector<Entry> kEntries = {
      }},
     {"diagnosis", false,
      [](const Data& d, int) {
-       keep(diagnoseSurface(d.points, d.triangles, d.graph.graph, d.graph.report.bridges));
+       keep(diagnoseSurface(d.points, d.triangles, d.graph.graph, d.graph.report.bridges, {}));
      }},
     {"measures", false, [](const Data& d, int) { keep(measureMesh(d.points, d.triangles)); }},
     {"topology", false, [](const Data& d, int) { keep(checkTopology(d.triangles, d.all.size())); }},

@@ -65,7 +65,7 @@ def table1(context):
             report = json.loads(done[-1].output)
             row["points"] = report["points"]
             row[variant] = median_seconds(done)
-            row[f"{variant}_residual"] = report["residual"]
+            row[f"{variant}_residual"] = report["embedding"]["residual"]
             row[f"{variant}_intersections"] = report["self_intersections"]
         rows.append(row)
     context.report.facts["paper_options"] = " ".join(PAPER)
@@ -87,7 +87,7 @@ def figures6_and_7(context):
             limit = ("-max-iterations", iterations) if is_paper else ()
             report = context.programs.reconstruct(cloud, mesh, *options, *limit)[1]
             reports.append(report)
-            residuals = report["residuals"]
+            residuals = report["embedding"]["residuals"]
             count = len(residuals)
             seconds = stage_seconds(report)["embedding"]
             style = () if is_paper else ("--", "o")
@@ -98,15 +98,16 @@ def figures6_and_7(context):
                 times = [seconds * (i + 1) / count for i in range(count)]
                 plot.curve(1, times, residuals, label, color)
             else:  # of which only the end is known
-                plot.curve(1, [seconds], [report["residual"]], label, color, "", "o")
+                plot.curve(1, [seconds], [report["embedding"]["residual"]], label, color, "", "o")
         plot.label(0, "iteration + 1", "mean tangential Laplacian [radius]", f"{title}, {scan}")
         if len(plot.axes) > 1:
             plot.label(1, "seconds in the embedding", "", "the same over time")
         plot.save(context.out / f"{name}.svg")
         context.report.facts[f"{name}_cloud"] = scan
     # Of the last figure: the iteration with adaptive weights, and Newton's method.
-    context.report.facts.update(figure6_long_count=iterations, settled=reports[-2]["residual"],
-                                centroid=reports[-1]["embedding"]["centroid_norm"])  # fmt: skip
+    iteration, newton = (report["embedding"] for report in reports[-2:])
+    context.report.facts.update(figure6_long_count=iterations, settled=iteration["residual"],
+                                centroid=newton["centroid_norm"])  # fmt: skip
 
 
 def _measured(context, cloud, name, methods, columns):
@@ -117,8 +118,8 @@ def _measured(context, cloud, name, methods, columns):
         sphere = context.work / f"{name}_{index}_sphere.ply"
         report = context.programs.reconstruct(cloud, mesh, *options, sphere=sphere)[1]
         rows.append({"method": method, **context.programs.measure(mesh, cloud, sphere),
-                     "residual": f"{report['residual']:.1e}",
-                     "outside": 100.0 * report["edges_outside_graph"]})  # fmt: skip
+                     "residual": f"{report['embedding']['residual']:.1e}",
+                     "outside": 100.0 * report["diagnosis"]["edges_outside_graph"]})  # fmt: skip
         meshes.append(mesh)
         spheres.append(sphere)
     context.report.facts[f"{name}_cloud"] = cloud.name

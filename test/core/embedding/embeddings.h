@@ -3,6 +3,7 @@
 #include "embedding.h"
 #include "embedding_energy.h"
 #include "graph_hierarchy.h"
+#include "graphs.h"
 #include "helpers.h"
 #include "multilevel_embedding.h"
 #include "sphere_triangulation.h"

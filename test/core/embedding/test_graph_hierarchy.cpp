@@ -1,5 +1,6 @@
 #include "graph_hierarchy.h"
 
+#include "graphs.h"
 #include "helpers.h"
 #include "sphere_triangulation.h"
 

@@ -34,7 +34,7 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
     ASSERT_EQ(test::countReachable(graph), n);
     const bool had_cut_node = test::hasCutNode(graph);
     dangling += had_cut_node ? 1 : 0;
-    const std::vector<Bridge> bridges = danglingBridges(points, graph, 2);
+    const std::vector<Bridge> bridges = articulationBridges(points, graph, 2);
     EXPECT_EQ(bridges.empty(), !had_cut_node);
     const test::Edges before = test::edgesOf(graph);
     for (const Bridge& bridge : bridges) {
@@ -43,7 +43,7 @@ TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
     }
     // Of parts in a chain the ends are tied at first.
     for (Index k = 0; k < n; ++k)
-      graph = withEdges(graph, danglingBridges(points, graph, 2));
+      graph = withEdges(graph, articulationBridges(points, graph, 2));
     EXPECT_FALSE(test::hasCutNode(graph));
   }
   EXPECT_GT(dangling, 50);
@@ -62,7 +62,7 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
       for (Index j = i + 1; j < 40; ++j)
         if (i == 1 || j == 1 || is_inner(i) == is_inner(j))
           edges.push_back({i, j, 1.0});
-    const std::vector<Bridge> bridges = danglingBridges(points, withEdges(graph, edges), 3);
+    const std::vector<Bridge> bridges = articulationBridges(points, withEdges(graph, edges), 3);
     ASSERT_EQ(bridges.size(), 3U);
     std::set<Index> taken{1};
     for (const Bridge& bridge : bridges) {

@@ -1,5 +1,6 @@
 #include "graph_cycles.h"
 
+#include "graphs.h"
 #include "helpers.h"
 #include "sphere_triangulation.h"
 

@@ -77,9 +77,8 @@ TEST(MeshTopology, DamagedSurfacesAreNoSpheres) {
   EXPECT_FALSE(of(joined(tetrahedron(), tetrahedron(3)), 7).vertex_manifold);
   EXPECT_FALSE(of(joined(tetrahedron(), trianglesOf({{0, 1, 4}})), 5).edge_manifold);
   EXPECT_FALSE(of(joined(tetrahedron(), trianglesOf({{0, 2, 1}})), 4).edge_manifold);
-  EXPECT_EQ(of(joined(tetrahedron(), trianglesOf({{0, 0, 1}})), 4).faults.degenerate_triangles,
-            std::vector<Index>{4});
-  EXPECT_EQ(of(tetrahedron(1), 6).faults.unused_vertices, (std::vector<Index>{0, 5}));
+  EXPECT_FALSE(of(joined(tetrahedron(), trianglesOf({{0, 0, 1}})), 4).edge_manifold);
+  EXPECT_EQ(of(tetrahedron(1), 6).unused_vertices, (std::vector<Index>{0, 5}));
 }
 
 TEST(MeshTopology, EmptyMeshIsNotClosed) {
@@ -100,12 +99,11 @@ void expectSameTopology(const MeshTopology& topology, const MeshTopology& expect
   EXPECT_EQ(topology.triangles, expected.triangles);
   EXPECT_EQ(topology.components, expected.components);
   EXPECT_EQ(topology.euler_characteristic, expected.euler_characteristic);
-  EXPECT_EQ(topology.faults.boundary_edges, expected.faults.boundary_edges);
-  EXPECT_EQ(topology.faults.nonmanifold_edges, expected.faults.nonmanifold_edges);
-  EXPECT_EQ(topology.faults.misoriented_edges, expected.faults.misoriented_edges);
-  EXPECT_EQ(topology.faults.nonmanifold_vertices, expected.faults.nonmanifold_vertices);
-  EXPECT_EQ(topology.faults.unused_vertices, expected.faults.unused_vertices);
-  EXPECT_EQ(topology.faults.degenerate_triangles, expected.faults.degenerate_triangles);
+  EXPECT_EQ(topology.closed, expected.closed);
+  EXPECT_EQ(topology.edge_manifold, expected.edge_manifold);
+  EXPECT_EQ(topology.oriented, expected.oriented);
+  EXPECT_EQ(topology.nonmanifold_vertices, expected.nonmanifold_vertices);
+  EXPECT_EQ(topology.unused_vertices, expected.unused_vertices);
 }
 
 TEST(MeshTopology, AgreesWithItsDefinitionOnRandomTriangles) {

@@ -2,6 +2,7 @@
 
 #include "graph.h"
 #include "embedding_starts.h"
+#include "graphs.h"
 #include "helpers.h"
 #include "sphere_mesh.h"
 #include "sphere_triangulation.h"

@@ -1,5 +1,6 @@
 #include "mesh_optimization.h"
 
+#include "graphs.h"
 #include "helpers.h"
 #include "optimization_cases.h"
 #include "spherical_param/self_intersection.h"

@@ -26,11 +26,11 @@ MeshOptimizer optimizerOf(const Case& of) {
   return MeshOptimizer(of.points, of.triangles, of.graph, 1);
 }
 
-SurfaceEnergy energyWith(Bend bend, const double* usual_angle = nullptr) {
+SurfaceEnergy energyWith(Bend bend, const double* typical_angle = nullptr) {
   SurfaceEnergy energy;
   energy.bend = bend;
   energy.mu = 0.8;
-  energy.usual_angle = usual_angle;
+  energy.typical_angle = typical_angle;
   return energy;
 }
 

@@ -67,7 +67,7 @@ TEST(OpenMesh, IsAManifoldWhereTwoOpeningsMeet) {
   const MeshTopology topology = checkTopology(surface, 10);
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.oriented);
-  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+  EXPECT_TRUE(topology.unused_vertices.empty());
   EXPECT_EQ(surface.cols(), 15);
 }
 
@@ -82,7 +82,7 @@ TEST(OpenMesh, PutsAVertexIntoTheTriangleThatCoversIt) {
   EXPECT_TRUE(findSelfIntersections(pyramid.points, surface).empty());
   const MeshTopology topology = checkTopology(surface, 6);
   EXPECT_TRUE(topology.manifold());
-  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+  EXPECT_TRUE(topology.unused_vertices.empty());
 }
 
 TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
@@ -117,7 +117,7 @@ TEST(OpenMesh, KeepsAVertexAmongOpenTriangles) {
   const OpenMesh mesh = pyramid.open({{0, 1, 2, 3, 4, 5, 6, 7, 8}});
   const MeshTopology topology = checkTopology(internal::surfaceOf(mesh), 10);
   EXPECT_TRUE(topology.manifold());
-  EXPECT_TRUE(topology.faults.unused_vertices.empty());
+  EXPECT_TRUE(topology.unused_vertices.empty());
 }
 
 }  // namespace

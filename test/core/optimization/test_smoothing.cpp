@@ -1,5 +1,6 @@
 #include "smoothing.h"
 
+#include "graphs.h"
 #include "helpers.h"
 #include "sphere_triangulation.h"
 

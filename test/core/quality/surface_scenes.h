@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graphs.h"
 #include "helpers.h"
 #include "sphere_triangulation.h"
 

@@ -1,6 +1,8 @@
 #include "surface_diagnosis.h"
 
+#include "graphs.h"
 #include "helpers.h"
+#include "openings.h"
 #include "surface_scenes.h"
 
 #include <Eigen/Geometry>
@@ -18,9 +20,13 @@
 namespace spherical_param::test {
 namespace {
 
+/// The openings of the graph are filled.
 SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {}) {
+  std::vector<Opening> openings = findOpenings(scene.points, scene.graph.graph).openings;
+  for (Opening& opening : openings)
+    opening.is_filled = true;
   return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph,
-                         scene.graph.report.bridges, options, 1);
+                         scene.graph.report.bridges, openings, options, 1);
 }
 
 // --- Closed surfaces -----------------------------------------------------------------------------
@@ -30,8 +36,7 @@ void expectClosed(const char* what, const Scene& scene) {
   EXPECT_EQ(diagnosis.kind, SurfaceKind::ClosedGenus0) << what;
   EXPECT_TRUE(diagnosis.looksClosedGenus0());
   EXPECT_FALSE(diagnosis.isFolded());
-  EXPECT_TRUE(diagnosis.filled_holes.empty() && diagnosis.handles.empty() &&
-              diagnosis.bridges.empty());
+  EXPECT_TRUE(diagnosis.handles.empty() && diagnosis.bridges.empty());
 }
 
 TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
@@ -92,112 +97,28 @@ TEST(SurfaceDiagnosis, FalseNeighborsOfThinSheetsAreNoHandle) {
 
 // --- Openings ------------------------------------------------------------------------------------
 
-/// Whether the loops of a filled hole are closed paths along edges of the mesh, each from its
-/// lowest vertex, that have together the filled hole's boundary length and its rim.
-void expectLoopsOfBoundary(const Scene& scene, const FilledHole& hole) {
-  std::set<std::array<Index, 2>> edges;
-  for (Eigen::Index t = 0; t < scene.triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k)
-      edges.insert({scene.triangles(k, t), scene.triangles((k + 1) % 3, t)});
-  double total = 0.0;
-  double last = std::numeric_limits<double>::infinity();
-  std::set<Index> rim;
-  for (const std::vector<Index>& loop : hole.loops) {
-    ASSERT_GE(loop.size(), 3U);
-    EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
-    double length = 0.0;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Index a = loop[i];
-      const Index b = loop[(i + 1) % loop.size()];
-      EXPECT_EQ(edges.count({a, b}), 1U) << a << " " << b;
-      length += (scene.points.col(a) - scene.points.col(b)).norm();
-      rim.insert(a);
-    }
-    EXPECT_LE(length, last);
-    total += last = length;
-  }
-  EXPECT_NEAR(total, hole.boundary_length, 1e-12 * total);
-  EXPECT_EQ(std::vector<Index>(rim.begin(), rim.end()), hole.vertices);
-}
-
-/// Sum of the cross products along a loop: twice the area that it goes around, along the normal.
-Eigen::Vector3d doubledArea(const Positions& points, const std::vector<Index>& loop) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < loop.size(); ++i)
-    sum += Eigen::Vector3d(points.col(loop[i]))
-               .cross(Eigen::Vector3d(points.col(loop[(i + 1) % loop.size()])));
-  return sum;
-}
-
-TEST(SurfaceDiagnosis, OpeningIsFoundWithPlaceAndSize) {
-  for (const auto& [n, across] : {std::pair(800, 8.0), std::pair(2000, 10.0)}) {
-    SCOPED_TRACE(n);
-    const double spacing = sphereSpacing(n);
-    const double radius = across * spacing / 2.0;
-    const double height = std::sqrt(1.0 - radius * radius);
-    const Scene scene = openSphere(n, height);
-    const SurfaceDiagnosis diagnosis = diagnose(scene);
-    EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
-    ASSERT_EQ(diagnosis.filled_holes.size(), 1U);
-    EXPECT_EQ(diagnosis.openings(), 1U);
-    const FilledHole& hole = diagnosis.filled_holes.front();
-    EXPECT_EQ(hole.cause, SurfaceKind::Open);
-    // The rim is ragged by up to one spacing outward, and its flat triangles may stay out.
-    EXPECT_NEAR(hole.diameter, 2.0 * radius, 1.5 * spacing);
-    EXPECT_NEAR(std::sqrt(4.0 * hole.area / kPi), 2.0 * radius, 2.0 * spacing);
-    EXPECT_NEAR(hole.spacing, spacing, 0.3 * spacing);
-    EXPECT_LT((hole.center - height * Eigen::Vector3d::UnitX()).norm(), spacing);
-    EXPECT_GE(hole.triangles, hole.vertices.size() - 2);
-    expectLoopsOfBoundary(scene, hole);
-    ASSERT_EQ(hole.loops.size(), 1U);
-    // Seen from outside, the loop goes around counter-clockwise.
-    const Eigen::Vector3d doubled = doubledArea(scene.points, hole.loops.front());
-    EXPECT_GT(doubled.x(), 0.0);
-    EXPECT_NEAR(doubled.norm() / 2.0, hole.area, 0.1 * hole.area);
-    for (const Index v : hole.vertices)
-      EXPECT_LT(scene.points.col(v).tail<2>().norm(), radius + 1.5 * spacing);
-  }
-}
-
-TEST(SurfaceDiagnosis, OfManyNeighborsTheNearestAreUsed) {
-  for (const double height : {2.0, 0.8}) {
-    Scene scene = openSphere(1000, height);
-    scene.graph = graphOf(scene.points, bruteForceNeighbors(scene.points, 25), nearest());
-    const SurfaceDiagnosis diagnosis = diagnose(scene);
-    EXPECT_EQ(diagnosis.kind, height < 1.0 ? SurfaceKind::Open : SurfaceKind::ClosedGenus0);
-    EXPECT_EQ(diagnosis.filled_holes.size(), height < 1.0 ? 1U : 0U);
-  }
-}
-
-TEST(SurfaceDiagnosis, FilledHoleAroundAnIslandHasTwoLoops) {
-  // A wide ring without points around a cap: the mesh bridges it all around.
-  const Positions open = filtered(
-      spiralSphere(1600), [](const Eigen::Vector3d& p) { return p.x() < 0.7 || p.x() > 0.96; });
-  Scene scene = starShaped(open, open);
-  // As one part, as if a few points had joined the cap to the rest.
-  scene.graph.report.bridges.clear();
+TEST(SurfaceDiagnosis, OpeningMakesASurfaceOpenIfItIsCertainOrLeftOpen) {
+  const Scene scene = openSphere(1000, 2.0);
   DiagnosisOptions options;
-  options.max_vertices = 100000;
-  const SurfaceDiagnosis diagnosis = diagnose(scene, options);
-  ASSERT_EQ(diagnosis.filled_holes.size(), 1U);
-  const FilledHole& hole = diagnosis.filled_holes.front();
-  expectLoopsOfBoundary(scene, hole);
-  ASSERT_EQ(hole.loops.size(), 2U);
-  EXPECT_GT(doubledArea(open, hole.loops[0]).x(), 0.0);
-  EXPECT_LT(doubledArea(open, hole.loops[1]).x(), 0.0);
-}
-
-TEST(SurfaceDiagnosis, EveryOpeningIsCounted) {
-  const Positions open = filtered(spiralSphere(1600), [](const Eigen::Vector3d& p) {
-    return p.x() < 0.9 && p.y() > -0.85 && p.z() > -0.8;
-  });
-  const SurfaceDiagnosis diagnosis = diagnose(starShaped(open, open));
-  EXPECT_EQ(diagnosis.kind, SurfaceKind::Open);
-  ASSERT_EQ(diagnosis.openings(), 3U);
-  // By falling area.
-  EXPECT_LT(diagnosis.filled_holes[0].center.z(), -0.75);
-  EXPECT_LT(diagnosis.filled_holes[1].center.y(), -0.8);
-  EXPECT_GT(diagnosis.filled_holes[2].center.x(), 0.85);
+  options.mark_triangles = true;
+  for (const double certainty : {0.9, 1.0})
+    for (const bool is_flat : {false, true})
+      for (const bool is_filled : {false, true}) {
+        Opening opening;
+        opening.certainty = certainty;
+        opening.is_flat = is_flat;
+        opening.is_filled = is_filled;
+        if (is_filled)
+          opening.triangles = {3, 5};
+        const SurfaceDiagnosis diagnosis = diagnoseSurface(
+            scene.points, scene.triangles, scene.graph.graph, {}, {opening}, options, 1);
+        const bool is_fault = is_filled && opening.isCertain();
+        EXPECT_EQ(diagnosis.kind,
+                  !is_filled || is_fault ? SurfaceKind::Open : SurfaceKind::ClosedGenus0);
+        for (std::size_t t = 0; t < diagnosis.triangle_marks.size(); ++t)
+          EXPECT_EQ(diagnosis.triangle_marks[t],
+                    is_fault && (t == 3 || t == 5) ? triangle_mark::filled_hole : 0);
+      }
 }
 
 // --- Handles, parts and folds --------------------------------------------------------------------
@@ -211,7 +132,7 @@ TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
     EXPECT_EQ(diagnosis.kind, SurfaceKind::Handles);
     EXPECT_EQ(diagnosis.genus, 1);
     ASSERT_EQ(diagnosis.handles.size(), 1U);
-    const CollapsedHandle& handle = diagnosis.handles.front();
+    const Handle& handle = diagnosis.handles.front();
     EXPECT_EQ(handle.edges, static_cast<std::size_t>(2 * ring));
     const Eigen::Vector3d cut = (torus.points.leftCols(ring).rowwise().mean() +
                                  torus.points.rightCols(ring).rowwise().mean()) /
@@ -219,12 +140,6 @@ TEST(SurfaceDiagnosis, CutHandleIsFoundWithPlaceAndSize) {
     EXPECT_LT((handle.center - cut).norm(), 0.02);
     // The box around the two rims of the cut: square, and as thick as the step between them.
     EXPECT_NEAR(handle.size, std::sqrt(8.0) * tube_radius, 0.1);
-    // Those of the finer torus are wide enough to be seen.
-    EXPECT_EQ(diagnosis.filled_holes.size(), ring == 24 ? 2U : 0U);
-    for (const FilledHole& hole : diagnosis.filled_holes) {
-      EXPECT_EQ(hole.cause, SurfaceKind::Handles);
-      EXPECT_NEAR(hole.area, kPi * tube_radius * tube_radius, 0.1);
-    }
   }
 }
 
@@ -247,7 +162,7 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
     const SurfaceDiagnosis diagnosis = diagnose(scene);
     EXPECT_EQ(diagnosis.kind, kind);
     EXPECT_EQ(diagnosis.genus, genus);
-    EXPECT_TRUE(diagnosis.filled_holes.empty() && diagnosis.handles.empty());
+    EXPECT_TRUE(diagnosis.handles.empty());
     EXPECT_TRUE(diagnosis.isFolded());
     EXPECT_GT(diagnosis.edges_outside_graph, 0.5);
     EXPECT_DOUBLE_EQ(diagnosis.edges_outside_graph,
@@ -266,8 +181,7 @@ TEST(SurfaceDiagnosis, WithoutCyclesHandlesAreNotToldFromFolds) {
   DiagnosisOptions options;
   options.count_cycles = false;
   const auto expect = [&](const Scene& scene, SurfaceKind kind, std::optional<int> genus) {
-    const SurfaceDiagnosis diagnosis = diagnoseSurface(
-        scene.points, scene.triangles, scene.graph.graph, scene.graph.report.bridges, options);
+    const SurfaceDiagnosis diagnosis = diagnose(scene, options);
     EXPECT_EQ(diagnosis.kind, kind);
     EXPECT_EQ(diagnosis.genus, genus);
   };
@@ -303,8 +217,7 @@ TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
 }
 
 TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
-  for (const Scene& scene :
-       {openSphere(1000, 0.9), cutTorus(60, 24, 0.4), joinedSpheres(600, 400, 3.5)}) {
+  for (const Scene& scene : {cutTorus(60, 24, 0.4), joinedSpheres(600, 400, 3.5)}) {
     DiagnosisOptions options;
     options.max_vertices = 7;
     const SurfaceDiagnosis few = diagnose(scene, options);
@@ -327,29 +240,21 @@ TEST(SurfaceDiagnosis, ListsAreShortenedAndMarksAreComplete) {
         EXPECT_TRUE(std::includes(of.begin(), of.end(), some.begin(), some.end()));
         at.insert(of.begin(), of.end());
       }
-      if (mark != TriangleMarks::filled_hole)
-        expect_marked(mark, [&](Eigen::Index t) {
-          const auto corners = scene.triangles.col(t);
-          return at.count(corners[0]) + at.count(corners[1]) + at.count(corners[2]) > 0;
-        });
+      expect_marked(mark, [&](Eigen::Index t) {
+        const auto corners = scene.triangles.col(t);
+        return at.count(corners[0]) + at.count(corners[1]) + at.count(corners[2]) > 0;
+      });
     };
-    expect_listed(few.filled_holes, all.filled_holes, TriangleMarks::filled_hole);
-    expect_listed(few.handles, all.handles, TriangleMarks::handle);
-    expect_listed(few.bridges, all.bridges, TriangleMarks::part_bridge);
-    std::ptrdiff_t filled = 0;
-    for (const FilledHole& hole : all.filled_holes)
-      filled += static_cast<std::ptrdiff_t>(hole.triangles);
-    EXPECT_EQ(std::count_if(all.triangle_marks.begin(), all.triangle_marks.end(),
-                            [](int marks) { return (marks & TriangleMarks::filled_hole) != 0; }),
-              filled);
-    expect_marked(TriangleMarks::outside_graph, [&](Eigen::Index t) {
+    expect_listed(few.handles, all.handles, triangle_mark::handle);
+    expect_listed(few.bridges, all.bridges, triangle_mark::part_bridge);
+    expect_marked(triangle_mark::outside_graph, [&](Eigen::Index t) {
       return fractionBeyondTwoSteps(scene.graph.graph, scene.triangles.col(t)) > 0.0;
     });
   }
 }
 
 TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
-  const Scene scene = openSphere(1000, 0.9);
+  const Scene scene = cutTorus(60, 24, 0.4);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Eigen::Vector3d shift(5.0, 6.0, -7.0);
   const double scale = 1e-3;
@@ -357,13 +262,12 @@ TEST(SurfaceDiagnosis, MotionAndScaleChangeNothingButPlaceAndSize) {
   moved.points = (scale * turn * scene.points).colwise() + shift;
   for (double& length : moved.graph.graph.lengths)
     length *= scale;
-  const FilledHole a = diagnose(scene).filled_holes.at(0);
-  const FilledHole b = diagnose(moved).filled_holes.at(0);
-  EXPECT_EQ(a.triangles, b.triangles);
-  EXPECT_EQ(a.loops, b.loops);
-  // The shift costs a factor of 1e4 of the digits.
-  EXPECT_NEAR(b.area, scale * scale * a.area, 1e-16);
-  EXPECT_NEAR(b.diameter, scale * a.diameter, 1e-13);
+  const Handle a = diagnose(scene).handles.at(0);
+  const Handle b = diagnose(moved).handles.at(0);
+  EXPECT_EQ(a.edges, b.edges);
+  EXPECT_EQ(a.vertices, b.vertices);
+  // The shift costs a factor of 1e4 of the digits. The box turns, too.
+  EXPECT_NEAR(b.size, scale * a.size, 0.5 * scale * a.size);
   EXPECT_LT((b.center - (scale * turn * a.center + shift)).norm(), 1e-13);
 }
 

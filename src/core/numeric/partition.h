@@ -8,10 +8,10 @@
 namespace spherical_param::internal {
 
 /// The nodes of each part of a partition, ascending, one part after the other.
-class Members {
+class Partition {
 public:
   /// \param part  n entries, the part of each node, in [0, count).
-  Members(const std::vector<Index>& part, std::size_t count) : begin_(count + 1, 0) {
+  Partition(const std::vector<Index>& part, std::size_t count) : begin_(count + 1, 0) {
     for (const Index p : part)
       ++begin_[static_cast<std::size_t>(p) + 1];
     for (std::size_t p = 0; p < count; ++p)

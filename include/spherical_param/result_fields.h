@@ -1,0 +1,469 @@
+#pragma once
+
+#include "spherical_param/result.h"
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <type_traits>
+#include <vector>
+
+/// \file
+/// What the structs of a result consist of: units, JSON, Python classes and tables are made from
+/// these lists. A new figure is one more line.
+
+namespace spherical_param {
+
+/// \addtogroup pipeline
+/// @{
+
+/// What the values of a field are, where their type does not say it.
+enum class FieldKind {
+  Figure,        ///< a number, flag, choice or text, or structs of them
+  OfSolid,       ///< a figure without meaning unless Surface::hasVolume()
+  Vertices,      ///< vertices of the mesh, ascending
+  VertexList,    ///< vertices in an order of their own
+  Loops,         ///< vertices around something, in order, from the lowest on; or several such lists
+  TriangleList,  ///< triangles of the mesh, or pairs of them
+  Inputs,        ///< input points
+  PerVertex,     ///< an entry for each vertex
+  PerTriangle,   ///< an entry for each triangle
+  PerInput,      ///< an entry for each of Surface::inputs
+  CppOnly,       ///< for callers in C++ alone
+};
+
+/// One field of a struct, or a struct.
+struct ResultField {
+  const char* name;                    ///< the same in C++, JSON and Python
+  const char* help;                    ///< one line, without the unit
+  int power = 0;                       ///< of the unit of the input
+  FieldKind kind = FieldKind::Figure;  ///< what its values are
+};
+
+/// Names of an enumeration's values, in their order. \return them
+constexpr std::array<const char*, 5> namesOf(SurfaceKind) {
+  return {"closed_genus0", "open", "handles", "several_parts", "unclear"};
+}
+/// \copydoc namesOf(SurfaceKind)
+constexpr std::array<const char*, 5> namesOf(StopReason) {
+  return {"converged", "iteration_limit", "stagnated", "collapsed", "unfinished"};
+}
+/// \copydoc namesOf(SurfaceKind)
+constexpr std::array<const char*, 5> namesOf(EmbeddingStep) {
+  return {"start", "sweeps", "newton", "iteration", "end"};
+}
+
+/// The name of one value.
+///
+/// \param value of an enumeration of results.
+/// \return its name.
+template <typename Enum>
+constexpr const char* nameOf(Enum value) {
+  return namesOf(value).at(static_cast<std::size_t>(value));
+}
+
+/// Access to a field that is empty if it was not asked for.
+///
+/// \param member pointer to an array or list of a struct.
+/// \return what gives a pointer to it, null if it is empty.
+template <typename Member>
+constexpr auto unlessEmpty(Member member) {
+  return [member](auto& self) { return (self.*member).size() == 0 ? nullptr : &(self.*member); };
+}
+
+/// Name and help of a struct, by a pointer that is not followed. \return both
+constexpr ResultField describe(const MeshTopology*) {
+  return {"Topology", "Combinatorial properties of the mesh, counted on its triangles."};
+}
+/// Calls visit(field, access) for all fields of a struct, by a pointer that is not followed:
+/// std::invoke(access, struct) is the stored value, as a reference; or a pointer to it that is null
+/// where it has no meaning; or a value that follows from others.
+template <typename Visit>
+void visitFields(const MeshTopology*, const Visit& visit) {
+  using Of = MeshTopology;
+  visit({"vertices", "used by triangles"}, &Of::vertices);
+  visit({"edges", "undirected"}, &Of::edges);
+  visit({"triangles", "their number"}, &Of::triangles);
+  visit({"closed", "no edge has just one triangle"}, &Of::closed);
+  visit({"manifold", "manifold at edges and vertices"}, &Of::manifold);
+  visit({"edge_manifold", "no edge has more than two triangles"}, &Of::edge_manifold);
+  visit({"vertex_manifold", "the triangles around each vertex are one fan"}, &Of::vertex_manifold);
+  visit({"oriented", "the triangles of each edge traverse it in opposite directions"},
+        &Of::oriented);
+  visit({"components", "connected components of triangles"}, &Of::components);
+  visit({"euler_characteristic", "V - E + F"}, &Of::euler_characteristic);
+  visit({"genus", "of all components; none unless closed, manifold and oriented"}, &Of::genus);
+  visit({"nonmanifold_vertices", "whose triangles are not one fan", 0, FieldKind::CppOnly},
+        &Of::nonmanifold_vertices);
+  visit({"unused_vertices", "of no triangle", 0, FieldKind::CppOnly}, &Of::unused_vertices);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const MeshMeasures*) {
+  return {"Measures",
+          "Size, place and mass properties of the mesh and the solid that it encloses. It has no "
+          "volume, centroid and inertia where it is open or folded, or more than 1 % of its "
+          "triangles intersect."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const MeshMeasures*, const Visit& visit) {
+  using Of = MeshMeasures;
+  visit({"volume", "of the solid, positive if the mesh faces outward", 3, FieldKind::OfSolid},
+        &Of::volume);
+  visit({"area", "of the mesh", 2}, &Of::area);
+  visit({"mean_edge_length", "of the mesh", 1}, &Of::mean_edge_length);
+  visit({"box_min", "lower corner of the box along the axes", 1}, &Of::box_min);
+  visit({"box_max", "upper corner of that box", 1}, &Of::box_max);
+  visit({"centroid", "centre of mass of the solid", 1, FieldKind::OfSolid}, &Of::centroid);
+  visit({"inertia", "of the solid at unit density about the centroid", 5, FieldKind::OfSolid},
+        &Of::inertia);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const StageTime*) {
+  return {"StageTime", "Time of one stage."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const StageTime*, const Visit& visit) {
+  visit({"name", "of the stage"}, &StageTime::name);
+  visit({"seconds", "wall time [s]"}, &StageTime::seconds);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const Finding*) {
+  return {"Finding", "What to know of a mesh, and the option that deals with it."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const Finding*, const Visit& visit) {
+  using Of = Finding;
+  visit({"text", "a clause, e.g. '2 separate parts (395 and 5,633 points)'"}, &Of::text);
+  visit({"option", "name of the option that deals with it; empty if there is none"}, &Of::option);
+  visit({"value", "of that option"}, &Of::value);
+  visit({"is_fault", "a self-intersection, fold, filled opening, cut handle or joined part"},
+        &Of::is_fault);
+  visit({"is_consequence", "another finding names the option that deals with this fault, too"},
+        &Of::is_consequence);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const Opening*) {
+  return {"Opening", "An opening of the sampled surface: a wide face of its neighbour graph."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const Opening*, const Visit& visit) {
+  using Of = Opening;
+  visit({"is_filled", "the mesh has triangles there"}, &Of::is_filled);
+  visit({"certainty", "from 0 at 3 spacings of width to 1 at 9"}, &Of::certainty);
+  visit({"is_certain", "certainty is 1, and it is not flat"}, &Of::isCertain);
+  visit({"is_flat", "the loop lies in a plane: perhaps a flat face without points"}, &Of::is_flat);
+  visit({"center", "mean of the loop", 1}, &Of::center);
+  visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
+  visit({"spacing", "mean distance of the points at the loop", 1}, &Of::spacing);
+  visit({"area", "of a surface over it: length of its vector area", 2}, &Of::area);
+  visit({"boundary_length", "of the loop", 1}, &Of::boundary_length);
+  visit({"loop", "vertices around it, in order; a vertex that it passes twice is listed twice", 0,
+         FieldKind::Loops},
+        &Of::loop);
+  visit({"triangles", "of the mesh over it, if it is filled", 0, FieldKind::TriangleList},
+        &Of::triangles);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const Handle*) {
+  return {"Handle", "Neighbours along the surface that the mesh tears apart: probably a handle."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const Handle*, const Visit& visit) {
+  using Of = Handle;
+  visit({"edges", "of the neighbour graph that are torn"}, &Of::edges);
+  visit({"size", "diagonal of the box around them", 1}, &Of::size);
+  visit({"center", "mean of their ends", 1}, &Of::center);
+  visit({"vertices", "their ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const PartBridge*) {
+  return {"PartBridge", "Two parts of the cloud with a gap between them."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const PartBridge*, const Visit& visit) {
+  using Of = PartBridge;
+  visit({"points", "of the smaller part"}, &Of::points);
+  visit({"other_points", "of the larger part"}, &Of::other_points);
+  visit({"gap", "least distance that a bridge spans", 1}, &Of::gap);
+  visit({"spacing", "distance of the points at its ends", 1}, &Of::spacing);
+  visit({"center", "mean of the ends of all its bridges", 1}, &Of::center);
+  visit({"vertices", "the ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const SurfaceDiagnosis*) {
+  return {"Diagnosis", "What speaks against a closed surface without handles, and where."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
+  using Of = SurfaceDiagnosis;
+  visit({"kind", "the gravest of what was found"}, &Of::kind);
+  visit({"looks_closed_genus0", "nothing was found"}, &Of::looksClosedGenus0);
+  visit({"genus", "handles by the cycles of the graph; none where not needed or unknown"},
+        &Of::genus);
+  visit({"is_one_sided", "like a Moebius band; found with openings alone"}, &Of::is_one_sided);
+  visit({"edges_outside_graph", "fraction of edges between points more than two steps apart"},
+        &Of::edges_outside_graph);
+  visit({"handles", "by falling number of edges"}, &Of::handles);
+  visit({"bridges", "by falling number of points"}, &Of::bridges);
+  visit({"triangle_marks", "sum of the TriangleMark of all findings", 0, FieldKind::PerTriangle},
+        unlessEmpty(&Of::triangle_marks));
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const ConsolidationReport*) {
+  return {"Consolidation", "What consolidation found and did."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const ConsolidationReport*, const Visit& visit) {
+  using Of = ConsolidationReport;
+  visit({"noise", "median distance of the points from the surface", 1}, &Of::noise);
+  visit({"merged", "points that became one with others, without exact duplicates"}, &Of::merged);
+  visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
+  visit({"mean_displacement", "over the points", 1}, &Of::mean_displacement);
+  visit({"rms_displacement", "over the points", 1}, &Of::rms_displacement);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const LevelReport*) {
+  return {"EmbeddingLevel", "Work on one level of the multilevel embedding."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const LevelReport*, const Visit& visit) {
+  using Of = LevelReport;
+  visit({"nodes", "of the level's graph"}, &Of::nodes);
+  visit({"edges", "undirected"}, &Of::edges);
+  visit({"sweeps", "of smoothing"}, &Of::sweeps);
+  visit({"newton_iterations", "steps of Newton's method"}, &Of::newton_iterations);
+  visit({"linear_iterations", "conjugate gradient steps within these"}, &Of::linear_iterations);
+  visit({"residual", "mean length of the tangential Laplacian at the end [radius]"}, &Of::residual);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const EmbeddingReport*) {
+  return {"Embedding", "How the embedding on the sphere was reached."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const EmbeddingReport*, const Visit& visit) {
+  using Of = EmbeddingReport;
+  visit({"stop_reason", "why the work on it ended"}, &Of::stop_reason);
+  visit({"converged", "the residual came down to the tolerance"}, &Of::converged);
+  visit({"iterations", "steps; of Newton's method for the multilevel embedding"}, &Of::iterations);
+  visit({"residual", "mean length of the tangential Laplacian [radius]"}, &Of::residual);
+  visit({"residuals", "the same before each step and at the end [radius]"}, &Of::residuals);
+  visit({"centroid_norm", "length of the mean direction, in [0, 1]; 1: collapsed"},
+        &Of::centroid_norm);
+  visit({"fallback_start", "it collapsed, and a start that cannot was taken instead"},
+        &Of::fallback_start);
+  visit({"added_barrier", "a barrier holds it, which would collapse without"}, &Of::added_barrier);
+  visit({"levels", "of the multilevel embedding, the finest first"}, &Of::levels);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const HistoryFrame*) {
+  return {"HistoryFrame", "One state of the embedding on its way."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const HistoryFrame*, const Visit& visit) {
+  using Of = HistoryFrame;
+  visit({"level", "that was worked on: 0 is the graph itself, 1 the next coarser"}, &Of::level);
+  visit({"nodes", "of that level"}, &Of::nodes);
+  visit({"step", "kind of the work before it"}, &Of::step);
+  visit({"iteration", "steps of this kind that were made on this level"}, &Of::iteration);
+  visit({"residual", "mean tangential Laplacian, where it is known [radius]"}, &Of::residual);
+  visit({"sphere", "unit vectors, of the vertices of the history"}, &Of::sphere);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const EmbeddingHistory*) {
+  return {"History", "How the embedding unfolded, for some of the vertices."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const EmbeddingHistory*, const Visit& visit) {
+  using Of = EmbeddingHistory;
+  visit({"vertices", "whose paths these are", 0, FieldKind::VertexList}, &Of::vertices);
+  visit({"frames", "in the order of the work; the last is the embedding"}, &Of::frames);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const SmoothingReport*) {
+  return {"Smoothing", "How far the smoothed surface is from the one given."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const SmoothingReport*, const Visit& visit) {
+  using Of = SmoothingReport;
+  visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
+  visit({"mean_displacement", "over the points of triangles", 1}, &Of::mean_displacement);
+  visit({"rms_displacement", "over the points of triangles", 1}, &Of::rms_displacement);
+  visit({"volume_before", "signed volume enclosed", 3}, &Of::volume_before);
+  visit({"volume_after", "signed volume enclosed", 3}, &Of::volume_after);
+  visit({"self_intersections", "pairs of triangles, on the smoothed points"},
+        &Of::self_intersections);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const Surface*) {
+  return {"Surface", "A mesh through all points, the map to the sphere, and their quality."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const Surface*, const Visit& visit) {
+  using Of = Surface;
+  visit({"verdict", "a headline, e.g. 'A sound mesh with 2 openings.'"}, &Of::verdict);
+  visit({"findings", "what to know, and what to do; empty if all is well"}, &Of::findings);
+  visit({"usable", "at most 1 % of the triangles intersect"}, &Of::isUsable);
+  visit({"is_noisy", "the mesh is as rough as noise makes it"}, &Of::is_noisy);
+  visit({"is_out_of_time", "the time limit ended the optimisation early"}, &Of::is_out_of_time);
+  visit({"duplicates", "points that repeat an earlier one"}, &Of::duplicates);
+  visit({"topology", "checked on the triangles"}, &Of::topology);
+  visit({"intersecting_triangles", "that intersect another, after smoothing if there is any"},
+        &Of::intersecting_triangles);
+  visit({"self_intersections", "pairs of triangles that intersect, exactly found, ascending", 0,
+         FieldKind::TriangleList},
+        &Of::self_intersections);
+  visit({"measures", "of the mesh on the input's points, or the consolidated ones"}, &Of::measures);
+  visit({"diagnosis", "does the cloud look like a closed surface without handles?"},
+        &Of::diagnosis);
+  visit({"outliers", "that look like outliers, ascending; vertices even so", 0, FieldKind::Inputs},
+        &Of::outliers);
+  visit({"openings", "of the surface, open or filled"}, &Of::openings);
+  visit({"boundary", "closed loops of edges, the surface on the left; empty of a closed mesh", 0,
+         FieldKind::Loops},
+        &Of::boundary);
+  visit({"embedding", "how it was reached"}, &Of::embedding);
+  visit({"consolidation", "what it did; none without it"},
+        [](auto& s) { return s.consolidated.cols() > 0 ? &s.consolidation : nullptr; });
+  visit({"smoothing", "what it did; none without it"},
+        [](auto& s) { return s.smoothed.cols() > 0 ? &s.smoothing : nullptr; });
+  visit({"triangles", "vertices of each, counter-clockwise seen from outside", 0,
+         FieldKind::PerTriangle},
+        &Of::triangles);
+  visit({"sphere", "unit vectors: the embedding", 0, FieldKind::PerVertex}, &Of::sphere);
+  visit({"smoothed", "the points after smoothing", 1, FieldKind::PerVertex},
+        unlessEmpty(&Of::smoothed));
+  visit(
+      {"consolidated", "the points after consolidation, before smoothing", 1, FieldKind::PerVertex},
+      unlessEmpty(&Of::consolidated));
+  visit({"vertex_residuals", "length of the tangential Laplacian of the sphere [radius]", 0,
+         FieldKind::PerVertex},
+        unlessEmpty(&Of::vertex_residuals));
+  visit({"history", "how the embedding unfolded", 0, FieldKind::PerVertex},
+        [](auto& s) { return s.history.frames.empty() ? nullptr : &s.history; });
+  visit({"inputs", "the input points of the surface, ascending", 0, FieldKind::PerInput},
+        &Of::inputs);
+  visit({"vertex_of_input", "vertex of each of them", 0, FieldKind::PerInput},
+        &Of::vertex_of_input);
+  visit({"input_of_vertex", "first input point at that position", 0, FieldKind::PerVertex},
+        &Of::input_of_vertex);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const LeftOut*) {
+  return {"LeftOut", "Input points that are in no surface, and why."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const LeftOut*, const Visit& visit) {
+  using Of = LeftOut;
+  visit({"not_finite", "with a coordinate that is not finite", 0, FieldKind::Inputs},
+        &Of::not_finite);
+  visit({"outliers", "found by the option outliers", 0, FieldKind::Inputs}, &Of::outliers);
+  visit({"other_parts", "of parts that were not meshed, and of none", 0, FieldKind::Inputs},
+        &Of::other_parts);
+}
+
+/// \copydoc describe(const MeshTopology*)
+constexpr ResultField describe(const Result*) {
+  return {"Result", "What is made of a cloud."};
+}
+/// \copydoc visitFields(const MeshTopology*, const Visit&)
+template <typename Visit>
+void visitFields(const Result*, const Visit& visit) {
+  using Of = Result;
+  visit({"verdict", "a headline, e.g. '3 meshes, all sound.'"}, &Of::verdict);
+  visit({"findings", "of all surfaces; those of several parts name them"}, &Of::findings);
+  visit({"usable", "all surfaces are"}, &Of::isUsable);
+  visit({"failures", "why parts could not be meshed"}, &Of::failures);
+  visit({"left_out", "points in no surface"}, &Of::left_out);
+  visit({"surfaces", "of the parts that were meshed, that of most points first"}, &Of::surfaces);
+  visit({"stages", "in the order of the work, of all surfaces together"}, &Of::stages);
+}
+
+/// Whether describe() and visitFields() know a struct, by a pointer that is not followed.
+///
+/// \return true if they do.
+template <typename Struct>
+constexpr auto isDescribed(const Struct* self) -> decltype(describe(self), true) {
+  return true;
+}
+/// \copydoc isDescribed(const Struct*)
+constexpr bool isDescribed(const void*) {
+  return false;
+}
+
+/// The same of a list of structs.
+///
+/// \return true if they are known.
+template <typename Struct>
+constexpr bool isDescribedList(const std::vector<Struct>*) {
+  return isDescribed(static_cast<const Struct*>(nullptr));
+}
+/// \copydoc isDescribedList(const std::vector<Struct>*)
+constexpr bool isDescribedList(const void*) {
+  return false;
+}
+
+/// Calls visit(field, value) for all stored values of a struct and, in the place of structs and
+/// lists of structs in it, for those of these.
+///
+/// \param field of the value; \param value the struct, or what one of its fields has.
+/// \param visit takes a ResultField and a reference.
+template <typename Value, typename Visit>
+void visitValues(const ResultField& field, Value& value, const Visit& visit) {
+  constexpr const std::remove_const_t<Value>* type = nullptr;
+  if constexpr (isDescribed(type)) {
+    visitFields(type, [&](const ResultField& inner, auto access) {
+      using Got = std::invoke_result_t<decltype(access), Value&>;
+      if constexpr (std::is_pointer_v<Got>) {
+        if (auto* part = std::invoke(access, value))
+          visitValues(inner, *part, visit);
+      } else if constexpr (std::is_lvalue_reference_v<Got>) {
+        visitValues(inner, std::invoke(access, value), visit);
+      }
+    });
+  } else if constexpr (isDescribedList(type)) {
+    for (auto& item : value)
+      visitValues(field, item, visit);
+  } else {
+    visit(field, value);
+  }
+}
+
+/// \copydoc visitValues(const ResultField&, Value&, const Visit&)
+template <typename Struct, typename Visit>
+void visitValues(Struct& value, const Visit& visit) {
+  visitValues(describe(&value), value, visit);
+}
+
+/// @}
+
+}  // namespace spherical_param

@@ -1,0 +1,251 @@
+#include "spherical_param/result_fields.h"
+
+#include "reconstructions.h"
+#include "result_units.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// Becomes any struct or class.
+struct AnyClass {
+  template <typename T, std::enable_if_t<std::is_class_v<T>, int> = 0>
+  operator T() const;  // NOLINT(google-explicit-constructor): that is its purpose
+};
+
+/// Becomes any number, flag or enumerator.
+struct AnyScalar {
+  template <typename T, std::enable_if_t<std::is_scalar_v<T>, int> = 0>
+  operator T() const;  // NOLINT(google-explicit-constructor)
+};
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+template <typename Struct, typename... Fields>
+auto takes(int) -> decltype(Struct{Fields{}...}, std::true_type{});
+template <typename Struct, typename... Fields>
+std::false_type takes(long);
+#pragma GCC diagnostic pop
+
+/// How many values a struct can be made of.
+template <typename Struct, typename... Fields>
+constexpr std::size_t countFields() {
+  if constexpr (decltype(takes<Struct, Fields..., AnyClass>(0))::value)
+    return countFields<Struct, Fields..., AnyClass>();
+  else if constexpr (decltype(takes<Struct, Fields..., AnyScalar>(0))::value)
+    return countFields<Struct, Fields..., AnyScalar>();
+  else
+    return sizeof...(Fields);
+}
+
+template <typename Struct>
+void expectAllFieldsAreVisited() {
+  std::vector<std::string> names;
+  std::size_t stored = 0;
+  visitFields(static_cast<const Struct*>(nullptr), [&](const ResultField& field, auto access) {
+    using Got = std::invoke_result_t<decltype(access), Struct&>;
+    stored += std::is_reference_v<Got> || std::is_pointer_v<Got> ? 1 : 0;
+    names.emplace_back(field.name);
+  });
+  const char* of = describe(static_cast<const Struct*>(nullptr)).name;
+  EXPECT_EQ(stored, countFields<Struct>()) << of;
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(std::unique(names.begin(), names.end()), names.end()) << of;
+}
+
+TEST(ResultFields, EveryFieldOfEveryStructIsVisited) {
+  static_assert(countFields<StageTime>() == 2);
+  expectAllFieldsAreVisited<MeshTopology>();
+  expectAllFieldsAreVisited<MeshMeasures>();
+  expectAllFieldsAreVisited<StageTime>();
+  expectAllFieldsAreVisited<Finding>();
+  expectAllFieldsAreVisited<Opening>();
+  expectAllFieldsAreVisited<Handle>();
+  expectAllFieldsAreVisited<PartBridge>();
+  expectAllFieldsAreVisited<SurfaceDiagnosis>();
+  expectAllFieldsAreVisited<ConsolidationReport>();
+  expectAllFieldsAreVisited<LevelReport>();
+  expectAllFieldsAreVisited<EmbeddingReport>();
+  expectAllFieldsAreVisited<HistoryFrame>();
+  expectAllFieldsAreVisited<EmbeddingHistory>();
+  expectAllFieldsAreVisited<SmoothingReport>();
+  expectAllFieldsAreVisited<Surface>();
+  expectAllFieldsAreVisited<LeftOut>();
+  expectAllFieldsAreVisited<Result>();
+}
+
+TEST(ResultFields, EveryEnumeratorHasAName) {
+  EXPECT_STREQ(nameOf(SurfaceKind::ClosedGenus0), "closed_genus0");
+  EXPECT_STREQ(nameOf(SurfaceKind::Unclear), namesOf(SurfaceKind()).back());
+  EXPECT_STREQ(nameOf(StopReason::IterationLimit), "iteration_limit");
+  EXPECT_STREQ(nameOf(StopReason::Unfinished), namesOf(StopReason()).back());
+  EXPECT_STREQ(nameOf(EmbeddingStep::Newton), "newton");
+  EXPECT_STREQ(nameOf(EmbeddingStep::End), namesOf(EmbeddingStep()).back());
+}
+
+/// Calls visit(name, number, power of the unit) for every number of a result that has a unit.
+template <typename Struct, typename Visit>
+void visitQuantities(Struct& result, const Visit& visit) {
+  visitValues(result, [&](const ResultField& field, auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if (field.power == 0)
+      return;
+    if constexpr (std::is_same_v<Value, double>) {
+      visit(field.name, value, field.power);
+    } else if constexpr (std::is_base_of_v<Eigen::DenseBase<Value>, Value> &&
+                         !std::is_same_v<Value, Triangles>) {
+      for (Eigen::Index i = 0; i < value.size(); ++i)
+        visit(field.name, value.data()[i], field.power);
+    } else {
+      FAIL() << field.name << " has a unit, but is no number";
+    }
+  });
+}
+
+/// A result on four nodes with one of each finding, all quantities of which are 1.
+Surface onNodes() {
+  Surface r;
+  r.triangles = Triangles{{0, 0, 0, 1}, {1, 2, 3, 3}, {2, 3, 1, 2}};
+  r.sphere = Positions{{0, 1, 2, 3}, {0, 1, 2, 3}, {0, 1, 2, 3}};
+  r.smoothed = Positions::Constant(3, 4, 1.0);
+  r.vertex_residuals = {0.0, 1.0, 2.0, 3.0};
+  r.history.vertices = {3, 0};
+  r.history.frames.resize(1);
+  r.history.frames[0].sphere = Positions{{3, 0}, {3, 0}, {3, 0}};
+  r.outliers = {0, 1};
+  r.boundary = {{0, 1, 2}, {0, 3, 2}};
+  r.openings.resize(1);
+  r.openings[0].loop = {0, 1, 3};
+  r.diagnosis.handles.resize(1);
+  r.diagnosis.handles[0].vertices = {1, 3};
+  r.diagnosis.bridges.resize(1);
+  r.diagnosis.bridges[0].vertices = {2, 3};
+  visitQuantities(r, [](const char*, double& number, int) { number = 1.0; });
+  return r;
+}
+
+internal::OrderedPoints nodesOf(int exponent, const std::vector<Index>& vertex_of_node) {
+  internal::OrderedPoints nodes;
+  nodes.exponent = exponent;
+  nodes.vertex_of_node = vertex_of_node;
+  nodes.distinct.vertex_of_input = {0, 1, 2, 3, 3};
+  nodes.distinct.input_of_vertex = {0, 1, 2, 3};
+  return nodes;
+}
+
+/// Node i is vertex {2, 0, 3, 1}[i], and scaled by 2^-3.
+internal::OrderedPoints reorderedNodes() {
+  return nodesOf(3, {2, 0, 3, 1});
+}
+
+TEST(ResultFields, EveryQuantityIsScaledByItsPowerOfTheUnit) {
+  Surface result = onNodes();
+  internal::OrderedPoints nodes = reorderedNodes();
+  internal::toInput(nodes, result);
+  std::size_t quantities = 0;
+  visitQuantities(result, [&](const char* name, double number, int power) {
+    EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
+    ++quantities;
+  });
+  // 21 of measures, 5 of smoothing, 12 of smoothed points, 7, 4 and 5 of opening, handle and
+  // bridge.
+  EXPECT_EQ(quantities, 54U);
+}
+
+TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
+  Surface result = onNodes();
+  internal::OrderedPoints nodes = reorderedNodes();
+  internal::toInput(nodes, result);
+  using Indices = std::vector<Index>;
+  EXPECT_EQ(result.triangles, (Triangles{{2, 2, 2, 0}, {0, 3, 1, 1}, {3, 1, 0, 3}}));
+  EXPECT_EQ(Eigen::RowVectorXd(result.sphere.row(0)), (Eigen::RowVectorXd{{1, 3, 0, 2}}));
+  EXPECT_EQ(result.vertex_residuals, (std::vector<double>{1, 3, 0, 2}));
+  EXPECT_EQ(result.history.vertices, (Indices{1, 2}));
+  EXPECT_EQ(result.history.frames[0].sphere.col(0), Eigen::Vector3d::Constant(3.0));
+  EXPECT_EQ(result.outliers, (Indices{0, 2}));
+  EXPECT_EQ(result.boundary, (std::vector<Indices>{{0, 3, 2}, {1, 3, 2}}));  // turned, not sorted
+  EXPECT_EQ(result.openings[0].loop, (Indices{0, 1, 2}));
+  EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
+  EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
+  EXPECT_EQ(result.vertex_of_input, (Indices{0, 1, 2, 3, 3}));
+  EXPECT_EQ(result.duplicates(), 1U);
+}
+
+/// All values of a result as text.
+std::string textOf(const Surface& result) {
+  std::string text;
+  const auto add = [&](const auto& value) { text += std::to_string(value) + " "; };
+  visitValues(result, [&](const ResultField& field, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    text += field.name + std::string(" ");
+    if constexpr (std::is_base_of_v<Eigen::DenseBase<Value>, Value>)
+      std::for_each(value.data(), value.data() + value.size(), add);
+    else if constexpr (std::is_same_v<Value, std::vector<Index>>)
+      std::for_each(value.begin(), value.end(), add);
+    else if constexpr (std::is_same_v<Value, std::vector<std::vector<Index>>>)
+      for (const std::vector<Index>& loop : value)
+        std::for_each(loop.begin(), loop.end(), add);
+    else if constexpr (std::is_arithmetic_v<Value>)
+      add(value);
+  });
+  return text;
+}
+
+TEST(ResultFields, ThereAndBackIsTheIdentity) {
+  Surface result = onNodes();
+  internal::OrderedPoints same = nodesOf(0, {0, 1, 2, 3});
+  internal::toInput(same, result);
+  const std::string before = textOf(result);
+  internal::OrderedPoints there = reorderedNodes();
+  internal::toInput(there, result);
+  EXPECT_NE(textOf(result), before);
+  internal::OrderedPoints back = nodesOf(-3, {1, 3, 0, 2});
+  internal::toInput(back, result);
+  EXPECT_EQ(textOf(result), before);
+}
+
+void expectScaled(const Surface& result, const Surface& scaled, double scale) {
+  std::vector<double> expected;
+  visitQuantities(result, [&](const char*, double number, int power) {
+    expected.push_back(number * std::pow(scale, power));
+  });
+  std::size_t i = 0;
+  visitQuantities(scaled, [&](const char* name, double number, int power) {
+    const double size = std::max(std::abs(expected.at(i)), std::pow(scale, power));
+    EXPECT_NEAR(number, expected.at(i++), 1e-9 * size) << name;
+  });
+  EXPECT_EQ(i, expected.size());
+}
+
+TEST(ResultFields, ResultOfAScaledCloudIsTheScaledResult) {
+  // Open at one end, so that there is an opening to measure.
+  const Positions points = test::withNoise(test::spiralSphere(500), 0.003, 8).rightCols(400);
+  Options options;
+  options.smoothing = 2;
+  const Surface result = test::mesh(points, options);
+  ASSERT_EQ(result.openings.size(), 1U);
+  for (const double scale : {4.0, std::ldexp(1.0, -70), 1000.0, 1e50}) {
+    SCOPED_TRACE(scale);
+    const Surface scaled = test::mesh(scale * points, options);
+    expectScaled(result, scaled, scale);
+    EXPECT_EQ(scaled.verdict, result.verdict);
+    // Other factors round the coordinates, but no decision is so close.
+    EXPECT_EQ(test::canonical(scaled.triangles), test::canonical(result.triangles));
+    if (scale == 4.0 || scale < 1.0) {
+      EXPECT_EQ(scaled.triangles, result.triangles);
+      EXPECT_EQ(scaled.sphere, result.sphere);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param
