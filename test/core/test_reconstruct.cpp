@@ -2,6 +2,7 @@
 #include "reconstructions.h"
 
 #include "embedding.h"
+#include "graphs.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 

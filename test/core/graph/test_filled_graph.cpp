@@ -3,6 +3,7 @@
 
 #include "graph_cycles.h"
 #include "graph_helpers.h"
+#include "graphs.h"
 #include "open_shapes.h"
 
 namespace spherical_param {
