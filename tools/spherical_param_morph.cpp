@@ -565,9 +565,8 @@ void run(const std::vector<std::string>& words) {
     is_usable = is_usable && clouds[side].cloud.surface().isUsable();
   }
   for (const LostPair& lost : morph.lost) {
-    findings.add("", {{"the pair of line " + std::to_string(lost.pair.line) +
-                           " is impossible: " + lost.reason,
-                       "", "", true}});
+    findings.add("the pair of line " + std::to_string(lost.pair.line) +
+                 " is impossible: " + lost.reason);
   }
   findings.print();
   findings.requireSoundness(is_usable);

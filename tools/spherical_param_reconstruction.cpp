@@ -358,6 +358,9 @@ void run(const std::vector<std::string>& words) {
       },
       [&] { printSummary(settings, cloud, console); });
   Findings findings(settings.report.quiet, settings.reconstruction.strict, settings.page.empty());
+  for (const std::string& failure : cloud.result.failures) {
+    findings.add(failure);
+  }
   findings.add("", cloud.result.findings);
   findings.print();
   findings.requireSoundness(cloud.result.isUsable());

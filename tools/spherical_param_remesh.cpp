@@ -498,9 +498,9 @@ std::string verdictOf(const Output& output, const MappedCloud& mapped) {
     return "Points spread evenly over the surface.";
   }
   if (output.self_intersections.empty()) {
-    const spherical_param::Surface& result = mapped.cloud.surface();
-    return result.verdict.empty() || result.intersecting_triangles > 0 ? "A sound mesh."
-                                                                       : result.verdict;
+    const bool is_of_sound_mesh =
+        !mapped.cloud.result.surfaces.empty() && mapped.cloud.surface().intersecting_triangles == 0;
+    return is_of_sound_mesh ? mapped.cloud.surface().verdict : "A sound mesh.";
   }
   return "The mesh has faults: " + grouped(intersectingTriangles(output)) + " of " +
          counted(static_cast<std::size_t>(output.mesh.triangles.cols()), "triangle") +

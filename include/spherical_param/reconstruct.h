@@ -26,7 +26,8 @@ namespace spherical_param {
 ///               calling thread; their exceptions are passed on. Not used for consolidated points.
 /// \return the surfaces, and what was left out. Triangles index vertices of their surface.
 /// \throw InvalidInput for bad points or options; ComputeError; Cancelled. A part that cannot be
-///        meshed is left out and reported by a finding; if all parts fail, the error is thrown.
+///        meshed is left out and reported in Result::failures; if all parts fail, the first error
+///        is thrown.
 ///
 /// Guaranteed: each mesh is manifold, consistently oriented, of genus 0, in one piece, and closed
 /// unless openings stay open. Every distinct (or consolidated) point of its part is a vertex. The

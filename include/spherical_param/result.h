@@ -313,7 +313,7 @@ struct Result {
   /// One for each meshed part, the largest first; exactly one with PartsMode::All or Largest.
   std::vector<Surface> surfaces;
   LeftOut left_out;                   ///< points in no surface
-  std::vector<std::string> failures;  ///< for each part that could not be meshed, the reason
+  std::vector<std::string> failures;  ///< why parts could not be meshed: faults
   std::vector<StageTime> stages;      ///< in the order of the work, of all surfaces together
   std::string verdict;                ///< a headline, e.g. "3 meshes, all sound."
   std::vector<Finding> findings;      ///< of all surfaces; with several, each names its parts

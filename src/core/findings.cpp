@@ -197,10 +197,8 @@ std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& p
 }
 
 void summarize(Result& result) {
-  for (const std::string& failure : result.failures)
-    result.findings.push_back({failure, "", "", true});
   const std::vector<Surface>& surfaces = result.surfaces;
-  std::vector<std::string> parts(result.failures.size());  // of each finding
+  std::vector<std::string> parts;  // of each finding
   std::size_t faulty = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     faulty += hasFault(surfaces[i].findings) ? 1 : 0;

@@ -196,12 +196,13 @@ std::shared_ptr<const Mesh> makeMesh(const pcl::PCLPointCloud2& cloud,
 
 /// What is to be said of a result.
 void describe(const Result& result, Outcome& outcome) {
+  outcome.warnings = result.failures;
   for (const spherical_param::Finding& finding : result.findings)
     outcome.warnings.push_back(finding.option.empty() ? finding.text
                                                       : finding.text + ": try " + finding.option +
                                                             " = " + finding.value);
   outcome.message = result.verdict;
-  outcome.has_faults = spherical_param::hasFault(result.findings);
+  outcome.has_faults = !result.failures.empty() || spherical_param::hasFault(result.findings);
   outcome.parts = result.surfaces.size();
   outcome.ignored = result.left_out.not_finite.size();
   outcome.outliers = result.left_out.outliers.size();

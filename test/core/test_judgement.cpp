@@ -1,4 +1,5 @@
 #include "embedding.h"
+#include "graphs.h"
 #include "neighbor_graph.h"
 #include "reconstructions.h"
 

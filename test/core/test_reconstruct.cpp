@@ -1,6 +1,8 @@
+#include "graphs.h"
 #include "reconstructions.h"
 
 #include "embedding.h"
+#include "graphs.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
@@ -236,20 +238,6 @@ TEST(Reconstruct, RepeatedPointsBecomeOneVertexAndAreReported) {
     EXPECT_EQ(result.vertex_of_input[static_cast<std::size_t>(300 + i)], i);
   const Positions copies = randomSphere(4, 1).replicate(1, 1000);
   expectGuarantees(copies, surfaceOf(copies));
-}
-
-TEST(Reconstruct, FindsTheNeighboursThatTheCallerWouldFind) {
-  const Positions base = 5.0 * ellipsoid(400);
-  const Positions points = horizontally(base, base.leftCols(50));
-  for (const Options& options : bothMethods()) {
-    const Surface expected = mesh(base, options);
-    const Surface result = surfaceOf(base, options);
-    expectGuarantees(base, result);
-    EXPECT_EQ(result.triangles, expected.triangles);
-    EXPECT_EQ(result.sphere, expected.sphere);
-    // Repeated points are merged before neighbours are sought.
-    EXPECT_EQ(surfaceOf(points, options).triangles, expected.triangles);
-  }
 }
 
 TEST(Reconstruct, WrongAnswersAndExceptionsOfTheSearchComeOut) {

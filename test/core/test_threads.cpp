@@ -4,6 +4,7 @@
 #include "consolidation.h"
 #include "embedding.h"
 #include "graph_hierarchy.h"
+#include "graphs.h"
 #include "mesh_optimization.h"
 #include "neighbor_search.h"
 #include "open_shapes.h"

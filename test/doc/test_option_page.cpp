@@ -12,8 +12,11 @@ namespace {
 
 std::string conditionsOf(const OptionRow& row) {
   std::string text;
-  for (const auto& [option, value] : row.used_with)
-    text += (text.empty() ? "; with " : " and ") + option + " " + value;
+  for (const auto& [option, values] : row.used_with) {
+    text += (text.empty() ? "; with " : " and ") + option;
+    for (const std::string& value : values)
+      text += (value == values.front() ? " " : " or ") + value;
+  }
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include "fuzz_stages.h"
 #include "embedding.h"
 #include "embedding_starts.h"
+#include "graphs.h"
 #include "mesh_optimization.h"
 #include "neighbor_search.h"
 #include "openings.h"

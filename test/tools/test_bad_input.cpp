@@ -199,7 +199,7 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
        {mesh_tool, {"flat.xyz", "out.ply"}, "cannot mesh 'flat.xyz': all points lie in one plane"},
        {mesh_tool,
         {"outliers.xyz", "out.ply", "-outliers", "0"},
-        "(left out: 1 outlier): all points lie in one plane"},
+        "all points lie in one plane (left out: 1 outlier)"},
        {remesh_tool, {"no.xyz", "out.ply"}, "no.xyz"},
        {remesh_tool, {"no.tif", "out.ply"}, "no.tif"},
        {remesh_tool, {"in.tif", "out.ply"}, "in.tif"},

@@ -205,7 +205,7 @@ TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
   const Positions points = scanOf(GetParam().shape, n).points;
   const auto expect_sphere = [&](const char* name, const Options& options) {
     SCOPED_TRACE(name);
-    const Surface result = reconstruct(points, options);
+    const Surface result = reconstruct(points, options).surface();
     EXPECT_EQ(result.vertexCount(), static_cast<std::size_t>(n));
     EXPECT_TRUE(test::isSphereOverAll(result.triangles, n));
     EXPECT_GT(volumeOf(points, result.triangles), 0.0);

@@ -23,6 +23,10 @@ void Findings::add(const std::string& of, const std::vector<Finding>& findings) 
   }
 }
 
+void Findings::add(const std::string& failure) {
+  entries_.push_back({"", {failure, "", "", true}, true});
+}
+
 std::string Findings::textOf(const Entry& entry) const {
   const auto& [text, option, value, is_fault, is_consequence] = entry.finding;
   std::string line = (entry.of.empty() ? "" : entry.of + ": ") + text;
@@ -30,7 +34,7 @@ std::string Findings::textOf(const Entry& entry) const {
     std::string flag = option;
     std::replace(flag.begin(), flag.end(), '_', '-');
     line += ": try -" + flag + " " + value;
-  } else if (is_fault && suggests_page_) {
+  } else if (is_fault && suggests_page_ && !entry.is_failure) {
     line += ": try -report report.html to see where";
   }
   return oneLine(line);

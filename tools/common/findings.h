@@ -19,6 +19,8 @@ public:
 
   /// Adds those of an input, or of a part of it; `of` names it where there are several.
   void add(const std::string& of, const std::vector<Finding>& findings);
+  /// Adds a failure that is no finding of the library, and counts as a fault.
+  void add(const std::string& failure);
 
   /// Prints a line a finding; those that end the tool are left to that.
   void print() const;
@@ -30,6 +32,7 @@ private:
   struct Entry {
     std::string of;  ///< the inputs that it is true of; empty: the only one
     Finding finding;
+    bool is_failure = false;
   };
 
   std::string textOf(const Entry& entry) const;

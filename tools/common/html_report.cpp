@@ -368,7 +368,10 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
                   {"triangles", surface.triangles.cols()},
                   {"shown_vertices", mesh.positions.cols()},
                   {"shown_triangles", mesh.triangles.cols()}};
-  json["spacing"] = surface.measures.mean_edge_length;
+  // Where only some vertices are shown, they are farther from each other.
+  json["spacing"] =
+      surface.measures.mean_edge_length * std::sqrt(static_cast<double>(surface.vertexCount()) /
+                                                    static_cast<double>(mesh.positions.cols()));
   json["outliers"] = cloud.result.left_out.outliers.size();
   json["sphere_turn"] = Json::array();
   for (Eigen::Index i = 0; i < 9; ++i) {

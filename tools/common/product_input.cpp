@@ -115,7 +115,7 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
 }
 
 std::vector<Finding> findingsOf(const MappedCloud& mapped) {
-  std::vector<Finding> findings = mapped.cloud.surface().findings;
+  std::vector<Finding> findings = mapped.cloud.result.findings;
   for (Finding& finding : findings) {
     if (finding.option == "parts") {
       finding.value = "largest";

@@ -1,3 +1,4 @@
+#include "graphs.h"
 #include "planar_start.h"
 
 #include "embeddings.h"

@@ -1,7 +1,9 @@
 #include "filled_graph.h"
+#include "graphs.h"
 
 #include "graph_cycles.h"
 #include "graph_helpers.h"
+#include "graphs.h"
 #include "open_shapes.h"
 
 namespace spherical_param {

@@ -1,3 +1,4 @@
+#include "graphs.h"
 #include "local_delaunay_graph.h"
 
 #include "graph_helpers.h"

@@ -1,3 +1,4 @@
+#include "graphs.h"
 #include "nearest_neighbor_graph.h"
 
 #include "graph_helpers.h"

@@ -1,3 +1,4 @@
+#include "graphs.h"
 #include "openings.h"
 
 #include "graph_helpers.h"

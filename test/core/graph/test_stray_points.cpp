@@ -1,5 +1,6 @@
 #include "../reconstructions.h"
 #include "graph_helpers.h"
+#include "graphs.h"
 #include "stray_points.h"
 
 namespace spherical_param {

@@ -1,7 +1,8 @@
+#include "graphs.h"
 #include "open_places.h"
 
-#include "open_shapes.h"
 #include "neighbor_graph.h"
+#include "open_shapes.h"
 
 namespace spherical_param {
 namespace {

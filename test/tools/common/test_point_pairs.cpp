@@ -17,17 +17,17 @@ namespace {
 /// Points at x = 0, 1, ...; of these the second is not meshed, and the last repeats the first.
 CloudReconstruction cloudOf(int count) {
   CloudReconstruction cloud;
+  Surface& surface = cloud.result.surfaces.emplace_back();
   auto data = std::make_shared<PointData>();
   for (int i = 0; i < count; ++i) {
     data->points.push_back({i + 1 < count ? static_cast<double>(i) : 0.0, 0.0, 0.0});
     if (i == 1)
       continue;
-    cloud.meshed.push_back(i);
+    surface.inputs.push_back(i);
     const bool repeats = i + 1 == count;
-    cloud.result.vertex_of_input.push_back(
-        repeats ? 0 : static_cast<Index>(cloud.point_of_vertex.size()));
+    surface.vertex_of_input.push_back(repeats ? 0 : static_cast<Index>(surface.vertexCount()));
     if (!repeats)
-      cloud.point_of_vertex.push_back(i);
+      surface.input_of_vertex.push_back(i);
   }
   cloud.data = data;
   return cloud;
