@@ -135,7 +135,7 @@ inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
   }
 }
 
-/// For what is left after evidentlyApart(a, plane_a, b).
+/// For triangles that evidentlyApart(a, plane_a, b) does not separate.
 inline bool intersectCarefully(const Face& a, const Face& b) {
   return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
 }
