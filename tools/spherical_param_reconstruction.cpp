@@ -46,8 +46,9 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A mesh through all points of a scan", "scan.ply mesh.ply"},
     {"With its map to the sphere and a page to look at",
      "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
-    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers auto -consolidation auto"},
-    {"Of the largest object in a depth image, with the openings left open",
+    {"A mesh of a noisy scan with outliers",
+     "scan.ply mesh.ply -outliers auto -consolidation auto"},
+    {"The largest object of a depth image, with its openings",
      "scan.pcd mesh.ply -parts largest -surface open"},
 };
 
