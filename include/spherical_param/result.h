@@ -249,7 +249,7 @@ struct Surface {
   ConsolidationReport consolidation;  ///< all zero without consolidation
   EmbeddingReport embedding;          ///< how the embedding was reached
   SmoothingReport smoothing;          ///< all zero without smoothing
-  bool is_noisy = false;              ///< the mesh is rough as with noise
+  bool is_noisy = false;              ///< the points look noisy
   bool is_out_of_time = false;        ///< the time limit ended the optimisation early
 
   /// Triangles that intersect others, on the smoothed points if the mesh was smoothed.

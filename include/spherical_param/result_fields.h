@@ -333,7 +333,7 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"verdict", "a headline, e.g. 'A sound mesh with 2 openings.'"}, &Of::verdict);
   visit({"findings", "remarks and remedies; empty if all is well"}, &Of::findings);
   visit({"usable", "at most 1 % of the triangles intersect"}, &Of::isUsable);
-  visit({"is_noisy", "the mesh is rough as with noise"}, &Of::is_noisy);
+  visit({"is_noisy", "the points look noisy"}, &Of::is_noisy);
   visit({"is_out_of_time", "the time limit ended the optimisation early"}, &Of::is_out_of_time);
   visit({"duplicates", "points that repeat an earlier one"}, &Of::duplicates);
   visit({"topology", "checked on the triangles"}, &Of::topology);
