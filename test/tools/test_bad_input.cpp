@@ -218,7 +218,7 @@ TEST_F(BadInput, FilesThatCannotBeWrittenAreAFailureBeforeTheWork) {
       {{mesh_tool, {"in.xyz", "no/out.ply"}, "missing directory"},
        {mesh_tool, {"in.xyz", "in.xyz/out.ply"}, "out.ply"},
        {mesh_tool, {"in.xyz", "folder.ply"}, "is a directory"},
-       {mesh_tool, {"in.xyz", "link.ply"}, "missing directory"},
+       {mesh_tool, {"in.xyz", "dangling.ply"}, "missing directory"},
        {mesh_tool, {"in.xyz", "out.ply", "-json", "no/r.json"}, "missing directory"},
        {remesh_tool, {"in.xyz", "no/out.ply"}, "missing directory"},
        {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "no/c.json"}, "missing directory"},
