@@ -212,7 +212,7 @@ class Views(unittest.TestCase):
     def test_reports_of_other_names_or_changed_points_are_refused(self):
         points = shapes.bumpy(50)
         mesh = sp.reconstruct(points)
-        with self.assertRaisesRegex(sp.InvalidInput, "; give one with .html"):
+        with self.assertRaisesRegex(sp.InvalidInput, "; give a name that does"):
             mesh.report("page.txt")
         with self.assertRaises(OSError):
             mesh.report(self.page.parent / "missing" / "page.html")
