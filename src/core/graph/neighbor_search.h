@@ -14,7 +14,7 @@ namespace spherical_param {
 /// Builds a k-d tree of points, in double precision.
 ///
 /// \param points 3 x n, n >= 1, finite; copied. Those near in space should be near in memory:
-///               spatialOrder() is such an order. Squared distances must neither overflow nor
+///               mortonOrder() gives such an order. Squared distances must neither overflow nor
 ///               underflow: bring the points to an extent of about 1.
 /// \param execution threads, progress; its progress callback must outlive the search.
 /// \return a search among these points; copies of it share the tree. It throws InvalidInput for

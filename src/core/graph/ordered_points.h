@@ -21,7 +21,6 @@ struct OrderedPoints {
 };
 
 /// Finds the distinct points and puts them in the order of mortonOrder(), at the cost of one sort.
-/// The same as findDistinctPoints() with mortonOrder() of what it finds.
 ///
 /// \param points 3 x n, finite, n < 2^31.
 OrderedPoints orderPoints(const Positions& points, int threads);

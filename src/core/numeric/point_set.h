@@ -17,22 +17,6 @@ struct DistinctPoints {
   std::vector<Index> input_of_vertex;
 };
 
-/// Finds the points that share all three coordinates.
-///
-/// \param points 3 x n, finite.
-/// \return the vertex of each point, and the first point of each vertex.
-/// \throw InvalidInput if a coordinate is not finite or n exceeds 2^30. Cost: O(n log n).
-DistinctPoints findDistinctPoints(const Positions& points);
-
-/// An order of the points, 0 ... n - 1, in which those that are near in space are mostly near:
-/// along a space-filling curve (G. M. Morton, 1966). Work that visits points in it finds their
-/// neighbours in the processor's cache.
-///
-/// \param points 3 x n, finite.
-/// \return a permutation of 0 ... n - 1.
-/// \throw InvalidInput if a coordinate is not finite. Cost: O(n log n).
-std::vector<Index> spatialOrder(const Positions& points);
-
 /// Tells whether all points lie exactly in one plane (or line, or point), in exact arithmetic on
 /// the given doubles: a cloud that is flat but for rounding is not coplanar.
 ///

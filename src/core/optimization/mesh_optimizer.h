@@ -39,9 +39,9 @@ public:
   ///
   /// \param energy its typical angles must not change; \see setExcessEnergy.
   void setEnergy(const SurfaceEnergy& energy);
-  /// The same for Bend::Excess, with angles that are typical of the mesh as it is now: `factor` times
-  /// the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks only at
-  /// what has changed.
+  /// The same for Bend::Excess, with angles that are typical of the mesh as it is now: `factor`
+  /// times the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks
+  /// only at what has changed.
   void setExcessEnergy(double mu, double factor, double least);
   const SurfaceEnergy& terms() const { return terms_; }
   void setPoints(const Positions& points);
