@@ -47,7 +47,7 @@ Execution withThreads(int threads) {
 
 Positions scanOf(Index count) {
   tools::ScanOptions options;
-  options.shape = tools::Shape::Hand;
+  options.shape = "hand";
   options.points = static_cast<std::size_t>(count);
   // Rounded as by a file or a cloud of PCL.
   return tools::generateScan(options).points.cast<float>().cast<double>();
