@@ -68,11 +68,11 @@ const Names<SurfaceFit> fit_names = {
 };
 
 const std::vector<OptionInfo> own_options = {
-    {"frames", "N", "meshes, those of both ends among them, 2 to 10000 (20)"},
+    {"frames", "N", "number of meshes including both ends, 2 to 10000 (20)"},
     {"pairs", "FILE", "points that become one: two numbers from 0, or six coordinates a line"},
-    {"align", "NAME", "of the spheres: none, or the best of all rotations: rotation (rotation)"},
-    {"connectivity", "NAME", "all vertices of both meshes, or resampled (all)"},
-    {"samples", "N", "vertices of resampled, about, 12 to 16777216 (40962)"},
+    {"align", "NAME", "of the spheres: none, or rotation: the best of all (rotation)"},
+    {"connectivity", "NAME", "all: the vertices of both meshes, or resampled (all)"},
+    {"samples", "N", "approximate number of vertices of resampled, 12 to 16777216 (40962)"},
     {"fit", "NAME", "between vertices: linear or smooth (linear; resampled: smooth)"},
     {"match", "", "move and scale the second object to the place and the area of the first"},
     {"check", "", "count the self-intersections of all frames"},
@@ -88,9 +88,9 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " first second output [options]\n\n"
-         "Meshes the points of two objects without holes through them, and changes one into the\n"
-         "other by way of their maps to the sphere. morph.ply writes morph_000.ply and so on, and\n"
-         "so does morph_%03d.ply.\n"
+         "Meshes the points of two objects without holes through them and morphs the first into\n"
+         "the second by their maps to the sphere. The output morph.ply or morph_%03d.ply writes\n"
+         "morph_000.ply and so on.\n"
          "  inputs: " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets; those of\n"
@@ -130,7 +130,7 @@ std::string padded(int number, std::size_t digits) {
 }
 
 [[noreturn]] void refusePattern(const std::string& pattern) {
-  throw UsageError("the output " + inQuotes(pattern) + " has a % that is no number of a frame",
+  throw UsageError("the output " + inQuotes(pattern) + " has a % that is not a frame number",
                    "give one placeholder, as in frame_%03d.ply, or none");
 }
 
@@ -180,9 +180,9 @@ std::vector<std::string> frameNames(const std::string& pattern, int frames) {
 Settings parseSettings(const CommandLine& command_line) {
   const std::vector<std::string>& files = command_line.others();
   if (files.size() != 3) {
-    throw UsageError(files.size() > 3    ? "there is one file too many: " + inQuotes(files[3])
-                     : files.size() == 2 ? "there is no output file"
-                                         : "there are no two input files",
+    throw UsageError(files.size() > 3    ? "one file too many: " + inQuotes(files[3])
+                     : files.size() == 2 ? "the output file is missing"
+                                         : "two input files are needed",
                      "run '" + tool_name + " first second output [options]', -h shows the options");
   }
   Settings settings;

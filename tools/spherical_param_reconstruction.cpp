@@ -46,8 +46,9 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A mesh through all points of a scan", "scan.ply mesh.ply"},
     {"With its map to the sphere and a page to look at",
      "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
-    {"Of a noisy scan with outliers", "scan.ply mesh.ply -outliers auto -consolidation auto"},
-    {"Of the largest object in a depth image, with the openings left open",
+    {"A mesh of a noisy scan with outliers",
+     "scan.ply mesh.ply -outliers auto -consolidation auto"},
+    {"The largest object of a depth image, with its openings",
      "scan.pcd mesh.ply -parts largest -surface open"},
 };
 
@@ -55,7 +56,7 @@ std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
          "Meshes the points of an object without holes through it into a closed surface,\n"
-         "or one with the openings of the scan.\n"
+         "or a surface with the openings of the scan.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
@@ -112,14 +113,15 @@ Settings settingsOf(Settings settings, std::size_t part) {
 /// \throw UsageError for names without the numbers that they need, or with some that they do not.
 void checkNumbers(const Settings& settings) {
   if (isNumbered(settings.output) && !makesParts(settings)) {
-    throw UsageError(inQuotes(settings.output) + " is for several parts, but one mesh is made",
+    throw UsageError(inQuotes(settings.output) +
+                         " is a pattern for several parts, but the output is one mesh",
                      "give -parts each, or a name without " + number_mark);
   }
   const bool has_numbers = isNumbered(settings.output);
   for (const std::string& name : {settings.sphere, settings.page}) {
     if (makesParts(settings) && !name.empty() && !(isNumbered(name) && has_numbers)) {
-      throw UsageError(inQuotes(name) + " can show one part alone",
-                       "give names with " + number_mark + " to it and to the output");
+      throw UsageError(inQuotes(name) + " can hold only one part",
+                       "use " + number_mark + " in its name and in that of the output");
     }
   }
 }
@@ -255,8 +257,8 @@ std::string movedBy(const Settings& settings, const std::vector<Surface>& surfac
     mean += count * moved.mean_displacement;
     most = std::max(most, moved.max_displacement);
   }
-  return "by " + formatted(mean / points, 3) + " in the mean, " + formatted(most, 3) +
-         " at most; the noise is " + formatted(noise / points, 3);
+  return "by " + formatted(mean / points, 3) + " on average, at most " + formatted(most, 3) +
+         "; the noise is " + formatted(noise / points, 3);
 }
 
 /// Prints what was made of each surface, then the six lines of a run.

@@ -77,7 +77,7 @@ constexpr std::int64_t most_vertices = std::int64_t{1} << 28;
 
 const std::vector<OptionInfo> own_options = {
     {"grid", "NAME", "icosahedral or octahedral: meshes; even: a cloud (icosahedral)"},
-    {"points", "N", "number of points, of meshes the nearest possible (as the mesh of the cloud)"},
+    {"points", "N", "number of points; for meshes the nearest possible (as the mesh of the cloud)"},
     {"side", "N", "pixels along the sides of a geometry image, odd (as -points says)"},
     {"fit", "NAME", "surface between the points of the cloud: linear or smooth (smooth)"},
     {"sphere", "FILE", "write the points on the sphere with the same triangles"},
@@ -98,7 +98,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
-         "Meshes the points of an object without holes through it, and samples its surface anew.\n"
+         "Meshes the points of an object without holes through it and resamples its surface.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) +
          ", or a geometry image: .tif .tiff\n  output: a mesh: " +
@@ -169,7 +169,7 @@ void checkCombination(const CommandLine& command_line, const Settings& settings)
       refuse(command_line, "side", "-points", "-side alone");
     }
   } else {
-    refuse(command_line, "side", "that output, which is no geometry image", "one ending in .tif");
+    refuse(command_line, "side", "an output other than a geometry image", "one ending in .tif");
   }
   if (settings.sampling == Sampling::Even) {
     for (const char* option : {"sphere", "series"}) {
@@ -196,7 +196,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
   if (!settings.reads_image) {
     requireFormat(settings.input, FileUse::ReadCloud, image_extensions);
   } else if (settings.writes_image) {
-    throw UsageError("a geometry image is read to be written as a mesh",
+    throw UsageError("a geometry image can only be written as a mesh",
                      "give an output with one of " + extensionsFor(FileUse::WriteMesh));
   }
   if (!settings.writes_image) {
@@ -227,7 +227,7 @@ Settings parseSettings(const CommandLine& command_line) {
         static_cast<int>(parseInteger("side", command_line.value("side", ""), {3, longest_side}));
     if (*settings.side % 2 == 0) {
       throw UsageError("option -side: " + std::to_string(*settings.side) + " is even",
-                       "give an odd number, " + std::to_string(*settings.side + 1) + " say");
+                       "give an odd number such as " + std::to_string(*settings.side + 1));
     }
   }
   if (command_line.has("fit")) {
@@ -425,7 +425,7 @@ void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output
   output.stages.push_back({"surface", console.end("")});
   if (settings.writes_image && surface.isOpen()) {
     throw Failure("cannot write " + inQuotes(settings.output) +
-                      ": a geometry image has no openings, and the surface has",
+                      ": a geometry image has no openings, but the surface has some",
                   "give -surface closed, or the name of a mesh as output");
   }
   if (settings.needsHarmonics()) {

@@ -62,8 +62,8 @@ constexpr int usual_cells = 8;
 const std::vector<OptionInfo> own_options = {
     {"chart", "NAME", "equirectangular, octahedral or cube (octahedral)"},
     {"size", "N", "height of the image, 16 to 16384 pixels (1024)"},
-    {"gutter", "N", "pixels around the triangles that are painted too, up to 256 (8)"},
-    {"checker", "N", "a checkerboard of N squares to a quarter circle instead of colours"},
+    {"gutter", "N", "painted pixels around the triangles, up to 256 (8)"},
+    {"checker", "N", "checkerboard of N squares a quarter circle instead of colours"},
     {"image", "FILE", "image beside .obj and .ply, .png (as the output)"},
 };
 const std::vector<OptionInfo> option_table =
@@ -139,14 +139,14 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
       std::find_if(format_names.begin(), format_names.end(),
                    [&extension](const auto& entry) { return entry.first == extension; });
   if (format == format_names.end()) {
-    throw UsageError(inQuotes(settings.output) + " has an extension that no texture is written for",
+    throw UsageError(inQuotes(settings.output) + " has an extension without textures",
                      "use one of " + extensions);
   }
   settings.format = format->second;
 
   if (settings.format == TextureFormat::Glb) {
     if (command_line.has("image")) {
-      throw UsageError("option -image does nothing with .glb, which has the image in it",
+      throw UsageError("option -image does nothing with .glb, which contains the image",
                        "leave -image out, or write .obj or .ply");
     }
     return;

@@ -17,8 +17,8 @@ struct MeshMeasures {
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
   /// Upper corner of that box [unit of the input].
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
-  /// Centre of mass of the solid; without a volume that is more than rounding, that of the surface
-  /// [unit of the input].
+  /// Centre of mass of the solid, or of the surface if the volume is within rounding [unit of the
+  /// input].
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   /// Inertia tensor of the solid at unit density about `centroid`: symmetric, and positive definite
   /// if the volume is positive [unit of the input to the fifth].
@@ -29,8 +29,8 @@ struct MeshMeasures {
 /// 1996: Fast and accurate computation of polyhedral mass properties; in the closed form of Eberly
 /// 2002: Polyhedral mass properties (revisited)).
 ///
-/// The integrals are formed about a point of the mesh, so a far origin costs no digits. Where the
-/// mesh intersects itself, regions count as often as it winds around them.
+/// The integrals are taken about a point of the mesh, so a far origin costs no digits. If the mesh
+/// intersects itself, a region counts as often as the mesh winds around it.
 ///
 /// \param points    3 x n; \param triangles 3 x m, consistently oriented, each edge twice.
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
@@ -38,11 +38,11 @@ struct MeshMeasures {
 /// \throw InvalidInput for an index or threads out of range. Cost: O(m).
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles, int threads = 0);
 
-/// Normals of the vertices of a mesh, those of its triangles weighted by their areas.
+/// Vertex normals of a mesh: normals of the triangles, weighted by area.
 ///
 /// \param points    3 x n; \param triangles 3 x m, indices in [0, n).
-/// \return 3 x n: for each vertex the sum of its triangles' normals, each twice as long as the
-/// triangle's area; not of unit length [squared unit of the input]. Cost: O(n + m).
+/// \return 3 x n: for each vertex the sum of its triangles' normals, each of length twice the area;
+/// not unit vectors [squared unit of the input]. Cost: O(n + m).
 Positions areaWeightedNormals(const Positions& points, const Triangles& triangles);
 
 /// @}

@@ -16,16 +16,16 @@ struct MeshTopology {
   std::size_t vertices = 0;      ///< vertices used by triangles
   std::size_t edges = 0;         ///< undirected edges
   std::size_t triangles = 0;     ///< triangles
-  bool closed = false;           ///< there is a triangle, and no edge has just one
+  bool closed = false;           ///< not empty, and every edge has at least two triangles
   bool edge_manifold = false;    ///< no edge has more than two triangles, no triangle is degenerate
   bool vertex_manifold = false;  ///< the triangles around each vertex are one fan
   bool oriented = false;         ///< the triangles of each edge traverse it in opposite directions
   std::size_t components = 0;    ///< connected components of triangles (over shared vertices)
   long long euler_characteristic = 0;  ///< V - E + F over the used vertices
-  /// Sum of the genera of the components; none unless closed, manifold and oriented.
+  /// Sum of the genera of the components; unset unless closed, manifold and oriented.
   std::optional<long long> genus;
-  std::vector<Index> nonmanifold_vertices;  ///< vertices whose triangles are not one fan, ascending
-  std::vector<Index> unused_vertices;       ///< vertices of no triangle, ascending
+  std::vector<Index> nonmanifold_vertices;  ///< their triangles are not one fan; ascending
+  std::vector<Index> unused_vertices;       ///< they have no triangles; ascending
 
   /// Manifold at edges and vertices. \return whether it is
   bool manifold() const { return edge_manifold && vertex_manifold; }
@@ -43,14 +43,14 @@ struct MeshTopology {
   }
 };
 
-/// Examines a mesh by its indices alone.
+/// Checks the topology of a mesh from its indices.
 ///
 /// \param triangles    3 x m, any order, m at most 2^30.
 /// \param vertex_count vertices are [0, vertex_count).
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
 /// \return the same for any number of threads.
-/// \throw InvalidInput for an index out of range, more triangles than that, or threads out of
-/// range. Cost: O(m + n), and memory of 12 m + 8 n bytes.
+/// \throw InvalidInput for an index or threads out of range, or too many triangles. Cost: O(m + n),
+/// and memory of 12 m + 8 n bytes.
 MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count, int threads = 0);
 
 /// Signed volume enclosed by a closed mesh [cubed unit of the input], by the divergence theorem;
@@ -69,7 +69,7 @@ double signedVolume(const Positions& points, const Triangles& triangles);
 /// \throw InvalidInput for an index out of range.
 double surfaceArea(const Positions& points, const Triangles& triangles);
 
-/// Turns every triangle over.
+/// Reverses the orientation of every triangle.
 ///
 /// \param triangles 3 x m, changed in place.
 void flipOrientation(Triangles& triangles);

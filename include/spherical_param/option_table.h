@@ -22,41 +22,41 @@ struct OptionRow {
   std::string name;                  ///< the same in tools, Python and ROS
   std::string field;                 ///< of Options, such as "graph.k"
   std::string help;                  ///< one line
-  bool expert;                       ///< most users need not know it
+  bool expert;                       ///< most users do not need it
   bool optional;                     ///< may be unset
   std::vector<std::string> choices;  ///< names of values; empty for plain numbers
-  bool is_number;                    ///< takes numbers, whether there are choices or not
+  bool is_number;                    ///< takes numbers, perhaps besides choices
   bool is_integer;                   ///< of numbers
   double min;                        ///< of numbers
   double max;                        ///< of numbers
   bool min_excluded;                 ///< of numbers: `min` itself is out of range
-  /// Options and the values of which they must have one for this option to have an effect.
+  /// The option has an effect only if each of these options has one of the listed values.
   std::vector<std::pair<std::string, std::vector<std::string>>> used_with;
 
   std::function<OptionValue(const Options&)> get;  ///< the value
-  /// Sets a value that is in range; an integer is a number, too.
+  /// Sets a value, which must be in range; an integer is also a number.
   std::function<void(Options&, const OptionValue&)> set;
 };
 
-/// All options that have a name, in the order of the stages: what tools, the Python module, the ROS
-/// nodes and the reference page list. A new option is one more row.
+/// All named options in the order of the stages. Tools, the Python module, ROS nodes and the
+/// reference page are made from it. A new option is one more row.
 ///
-/// \return the rows; the same object in each call.
+/// \return the rows; always the same object.
 const std::vector<OptionRow>& optionTable();
 
 /// The row of an option.
 ///
 /// \param name of the option.
 /// \return its row.
-/// \throw InvalidInput if there is none.
+/// \throw InvalidInput for an unknown name.
 const OptionRow& findOption(const std::string& name);
 
 /// Sets an option.
 ///
 /// \param options to be changed.
 /// \param name    of the option.
-/// \param value   of the kind of the option; nothing unsets an optional one.
-/// \throw InvalidInput for a name that does not exist, or a value of another kind or out of range.
+/// \param value   of the kind of the option; std::monostate unsets an optional one.
+/// \throw InvalidInput for an unknown name, or a value of another kind or out of range.
 void setOption(Options& options, const std::string& name, const OptionValue& value);
 
 /// The range of an option in words, such as "an integer from 3 up" or "delaunay or knn".
@@ -68,7 +68,7 @@ std::string rangeOf(const OptionRow& row);
 /// A value in words.
 ///
 /// \param value of an option.
-/// \return the words; "unset" for nothing.
+/// \return the words; "unset" for std::monostate.
 std::string textOf(const OptionValue& value);
 
 /// @}

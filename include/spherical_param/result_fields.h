@@ -9,27 +9,27 @@
 #include <vector>
 
 /// \file
-/// What the structs of a result consist of: units, JSON, Python classes and tables are made from
-/// these lists. A new figure is one more line.
+/// The fields of a result's structs. Units, JSON, Python classes and tables are made from these
+/// lists. A new figure is one more line.
 
 namespace spherical_param {
 
 /// \addtogroup pipeline
 /// @{
 
-/// What the values of a field are, where their type does not say it.
+/// What the values of a field mean.
 enum class FieldKind {
   Figure,        ///< a number, flag, choice or text, or structs of them
-  OfSolid,       ///< a figure without meaning unless Surface::hasVolume()
+  OfSolid,       ///< a figure that needs Surface::hasVolume()
   Vertices,      ///< vertices of the mesh, ascending
-  VertexList,    ///< vertices in an order of their own
-  Loops,         ///< vertices around something, in order, from the lowest on; or several such lists
+  VertexList,    ///< vertices in any order
+  Loops,         ///< one or more loops of vertices, each from its lowest vertex on
   TriangleList,  ///< triangles of the mesh, or pairs of them
   Inputs,        ///< input points
   PerVertex,     ///< an entry for each vertex
   PerTriangle,   ///< an entry for each triangle
   PerInput,      ///< an entry for each of Surface::inputs
-  CppOnly,       ///< for callers in C++ alone
+  CppOnly,       ///< for callers in C++ only
 };
 
 /// One field of a struct, or a struct.
@@ -62,22 +62,22 @@ constexpr const char* nameOf(Enum value) {
   return namesOf(value).at(static_cast<std::size_t>(value));
 }
 
-/// Access to a field that is empty if it was not asked for.
+/// Access to a field that may be empty.
 ///
 /// \param member pointer to an array or list of a struct.
-/// \return what gives a pointer to it, null if it is empty.
+/// \return a function that returns a pointer to it, null if it is empty.
 template <typename Member>
 constexpr auto unlessEmpty(Member member) {
   return [member](auto& self) { return (self.*member).size() == 0 ? nullptr : &(self.*member); };
 }
 
-/// Name and help of a struct, by a pointer that is not followed. \return both
+/// Name and help of a struct, selected by the pointer's type. \return both
 constexpr ResultField describe(const MeshTopology*) {
   return {"Topology", "Combinatorial properties of the mesh, counted on its triangles."};
 }
-/// Calls visit(field, access) for all fields of a struct, by a pointer that is not followed:
-/// std::invoke(access, struct) is the stored value, as a reference; or a pointer to it that is null
-/// where it has no meaning; or a value that follows from others.
+/// Calls visit(field, access) for all fields of a struct, selected by the pointer's type.
+/// std::invoke(access, struct) is a reference to the stored value, a pointer to it (null if it has
+/// no meaning), or a derived value.
 template <typename Visit>
 void visitFields(const MeshTopology*, const Visit& visit) {
   using Of = MeshTopology;
@@ -92,17 +92,18 @@ void visitFields(const MeshTopology*, const Visit& visit) {
         &Of::oriented);
   visit({"components", "connected components of triangles"}, &Of::components);
   visit({"euler_characteristic", "V - E + F"}, &Of::euler_characteristic);
-  visit({"genus", "of all components; none unless closed, manifold and oriented"}, &Of::genus);
-  visit({"nonmanifold_vertices", "whose triangles are not one fan", 0, FieldKind::CppOnly},
+  visit({"genus", "sum over the components; none unless closed, manifold and oriented"},
+        &Of::genus);
+  visit({"nonmanifold_vertices", "their triangles are not one fan", 0, FieldKind::CppOnly},
         &Of::nonmanifold_vertices);
-  visit({"unused_vertices", "of no triangle", 0, FieldKind::CppOnly}, &Of::unused_vertices);
+  visit({"unused_vertices", "they have no triangles", 0, FieldKind::CppOnly}, &Of::unused_vertices);
 }
 
 /// \cond  the same for all other structs
 constexpr ResultField describe(const MeshMeasures*) {
   return {"Measures",
-          "Size, place and mass properties of the mesh and the solid that it encloses. It has no "
-          "volume, centroid and inertia where it is open or folded, or more than 1 % of its "
+          "Size, place and mass properties of the mesh and the solid that it encloses. Volume, "
+          "centroid and inertia are none if the mesh is open or folded, or more than 1 % of its "
           "triangles intersect."};
 }
 template <typename Visit>
@@ -129,17 +130,17 @@ void visitFields(const StageTime*, const Visit& visit) {
 }
 
 constexpr ResultField describe(const Finding*) {
-  return {"Finding", "What to know of a mesh, and the option that deals with it."};
+  return {"Finding", "A remark on a mesh, and the option that helps."};
 }
 template <typename Visit>
 void visitFields(const Finding*, const Visit& visit) {
   using Of = Finding;
   visit({"text", "a clause, e.g. '2 separate parts (395 and 5,633 points)'"}, &Of::text);
-  visit({"option", "name of the option that deals with it; empty if there is none"}, &Of::option);
+  visit({"option", "name of the option that helps; empty if none does"}, &Of::option);
   visit({"value", "of that option"}, &Of::value);
   visit({"is_fault", "a self-intersection, fold, filled opening, cut handle or joined part"},
         &Of::is_fault);
-  visit({"is_consequence", "another finding names the option that deals with this fault, too"},
+  visit({"is_consequence", "the option of another finding deals with this fault, too"},
         &Of::is_consequence);
 }
 
@@ -149,29 +150,29 @@ constexpr ResultField describe(const Opening*) {
 template <typename Visit>
 void visitFields(const Opening*, const Visit& visit) {
   using Of = Opening;
-  visit({"is_filled", "the mesh has triangles there"}, &Of::is_filled);
+  visit({"is_filled", "the mesh has triangles over it"}, &Of::is_filled);
   visit({"certainty", "from 0 at 3 spacings of width to 1 at 9"}, &Of::certainty);
-  visit({"is_certain", "certainty is 1, and it is not flat"}, &Of::isCertain);
+  visit({"is_certain", "certainty is 1 and it is not flat"}, &Of::isCertain);
   visit({"is_flat", "the loop lies in a plane: perhaps a flat face without points"}, &Of::is_flat);
   visit({"center", "mean of the loop", 1}, &Of::center);
   visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
-  visit({"spacing", "mean distance of the points at the loop", 1}, &Of::spacing);
-  visit({"area", "of a surface over it: length of its vector area", 2}, &Of::area);
+  visit({"spacing", "mean point spacing at the loop", 1}, &Of::spacing);
+  visit({"area", "length of the vector area of the loop", 2}, &Of::area);
   visit({"boundary_length", "of the loop", 1}, &Of::boundary_length);
-  visit({"loop", "vertices around it, in order; a vertex that it passes twice is listed twice", 0,
-         FieldKind::Loops},
+  visit({"loop", "vertices around it, in order; may list a vertex twice", 0, FieldKind::Loops},
         &Of::loop);
-  visit({"triangles", "of the mesh over it, if it is filled", 0, FieldKind::TriangleList},
+  visit({"triangles", "of the mesh over it if it is filled", 0, FieldKind::TriangleList},
         &Of::triangles);
 }
 
 constexpr ResultField describe(const Handle*) {
-  return {"Handle", "Neighbours along the surface that the mesh tears apart: probably a handle."};
+  return {"Handle",
+          "Neighbours along the surface that are far apart on the mesh: probably a handle."};
 }
 template <typename Visit>
 void visitFields(const Handle*, const Visit& visit) {
   using Of = Handle;
-  visit({"edges", "of the neighbour graph that are torn"}, &Of::edges);
+  visit({"edges", "torn edges of the neighbour graph"}, &Of::edges);
   visit({"size", "diagonal of the box around them", 1}, &Of::size);
   visit({"center", "mean of their ends", 1}, &Of::center);
   visit({"vertices", "their ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
@@ -185,27 +186,28 @@ void visitFields(const PartBridge*, const Visit& visit) {
   using Of = PartBridge;
   visit({"points", "of the smaller part"}, &Of::points);
   visit({"other_points", "of the larger part"}, &Of::other_points);
-  visit({"gap", "least distance that a bridge spans", 1}, &Of::gap);
-  visit({"spacing", "distance of the points at its ends", 1}, &Of::spacing);
+  visit({"gap", "length of the shortest bridge", 1}, &Of::gap);
+  visit({"spacing", "point spacing at its ends", 1}, &Of::spacing);
   visit({"center", "mean of the ends of all its bridges", 1}, &Of::center);
   visit({"vertices", "the ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
 }
 
 constexpr ResultField describe(const SurfaceDiagnosis*) {
-  return {"Diagnosis", "What speaks against a closed surface without handles, and where."};
+  return {"Diagnosis", "Evidence against a closed surface without handles, and its place."};
 }
 template <typename Visit>
 void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   using Of = SurfaceDiagnosis;
-  visit({"kind", "the gravest of what was found"}, &Of::kind);
+  visit({"kind", "the gravest finding"}, &Of::kind);
   visit({"looks_closed_genus0", "nothing was found"}, &Of::looksClosedGenus0);
-  visit({"genus", "handles by the cycles of the graph; none where not needed or unknown"},
+  visit({"genus", "handles by the cycles of the graph; none if not counted or unknown"},
         &Of::genus);
-  visit({"is_one_sided", "like a Moebius band; found with openings alone"}, &Of::is_one_sided);
-  visit({"edges_outside_graph", "fraction of edges between points more than two steps apart"},
+  visit({"is_one_sided", "like a Moebius strip; detected only with openings"}, &Of::is_one_sided);
+  visit({"edges_outside_graph",
+         "fraction of edges between points more than two steps apart in the graph"},
         &Of::edges_outside_graph);
-  visit({"handles", "by falling number of edges"}, &Of::handles);
-  visit({"bridges", "by falling number of points"}, &Of::bridges);
+  visit({"handles", "in descending number of edges"}, &Of::handles);
+  visit({"bridges", "in descending number of points"}, &Of::bridges);
   visit({"triangle_marks", "sum of the TriangleMark of all findings", 0, FieldKind::PerTriangle},
         unlessEmpty(&Of::triangle_marks));
 }
@@ -217,7 +219,7 @@ template <typename Visit>
 void visitFields(const ConsolidationReport*, const Visit& visit) {
   using Of = ConsolidationReport;
   visit({"noise", "median distance of the points from the surface", 1}, &Of::noise);
-  visit({"merged", "points that became one with others, without exact duplicates"}, &Of::merged);
+  visit({"merged", "points merged into others, exact duplicates not counted"}, &Of::merged);
   visit({"max_displacement", "of a point", 1}, &Of::max_displacement);
   visit({"mean_displacement", "over the points", 1}, &Of::mean_displacement);
   visit({"rms_displacement", "over the points", 1}, &Of::rms_displacement);
@@ -244,29 +246,29 @@ template <typename Visit>
 void visitFields(const EmbeddingReport*, const Visit& visit) {
   using Of = EmbeddingReport;
   visit({"stop_reason", "why the work on it ended"}, &Of::stop_reason);
-  visit({"converged", "the residual came down to the tolerance"}, &Of::converged);
+  visit({"converged", "the residual reached the tolerance"}, &Of::converged);
   visit({"iterations", "steps; of Newton's method for the multilevel embedding"}, &Of::iterations);
   visit({"residual", "mean length of the tangential Laplacian [radius]"}, &Of::residual);
   visit({"residuals", "the same before each step and at the end [radius]"}, &Of::residuals);
   visit({"centroid_norm", "length of the mean direction, in [0, 1]; 1: collapsed"},
         &Of::centroid_norm);
-  visit({"fallback_start", "it collapsed, and a start that cannot was taken instead"},
+  visit({"fallback_start", "it collapsed and was replaced by a start that cannot collapse"},
         &Of::fallback_start);
-  visit({"added_barrier", "a barrier holds it, which would collapse without"}, &Of::added_barrier);
+  visit({"added_barrier", "a barrier keeps it from collapsing"}, &Of::added_barrier);
   visit({"levels", "of the multilevel embedding, the finest first"}, &Of::levels);
 }
 
 constexpr ResultField describe(const HistoryFrame*) {
-  return {"HistoryFrame", "One state of the embedding on its way."};
+  return {"HistoryFrame", "One state of the embedding."};
 }
 template <typename Visit>
 void visitFields(const HistoryFrame*, const Visit& visit) {
   using Of = HistoryFrame;
-  visit({"level", "that was worked on: 0 is the graph itself, 1 the next coarser"}, &Of::level);
+  visit({"level", "0 is the graph itself, 1 the next coarser level"}, &Of::level);
   visit({"nodes", "of that level"}, &Of::nodes);
-  visit({"step", "kind of the work before it"}, &Of::step);
-  visit({"iteration", "steps of this kind that were made on this level"}, &Of::iteration);
-  visit({"residual", "mean tangential Laplacian, where it is known [radius]"}, &Of::residual);
+  visit({"step", "the work before it"}, &Of::step);
+  visit({"iteration", "number of these steps on this level so far"}, &Of::iteration);
+  visit({"residual", "mean tangential Laplacian, if known [radius]"}, &Of::residual);
   visit({"sphere", "unit vectors, of the vertices of the history"}, &Of::sphere);
 }
 
@@ -276,12 +278,12 @@ constexpr ResultField describe(const EmbeddingHistory*) {
 template <typename Visit>
 void visitFields(const EmbeddingHistory*, const Visit& visit) {
   using Of = EmbeddingHistory;
-  visit({"vertices", "whose paths these are", 0, FieldKind::VertexList}, &Of::vertices);
+  visit({"vertices", "the recorded vertices", 0, FieldKind::VertexList}, &Of::vertices);
   visit({"frames", "in the order of the work; the last is the embedding"}, &Of::frames);
 }
 
 constexpr ResultField describe(const SmoothingReport*) {
-  return {"Smoothing", "How far the smoothed surface is from the one given."};
+  return {"Smoothing", "Distance of the smoothed surface from the given one."};
 }
 template <typename Visit>
 void visitFields(const SmoothingReport*, const Visit& visit) {
@@ -296,36 +298,37 @@ void visitFields(const SmoothingReport*, const Visit& visit) {
 }
 
 constexpr ResultField describe(const Surface*) {
-  return {"Surface", "A mesh through all points, the map to the sphere, and their quality."};
+  return {"Surface", "A mesh through all points, its map to the sphere, and their quality."};
 }
 template <typename Visit>
 void visitFields(const Surface*, const Visit& visit) {
   using Of = Surface;
   visit({"verdict", "a headline, e.g. 'A sound mesh with 2 openings.'"}, &Of::verdict);
-  visit({"findings", "what to know, and what to do; empty if all is well"}, &Of::findings);
+  visit({"findings", "remarks and remedies; empty if all is well"}, &Of::findings);
   visit({"usable", "at most 1 % of the triangles intersect"}, &Of::isUsable);
-  visit({"is_noisy", "the mesh is as rough as noise makes it"}, &Of::is_noisy);
+  visit({"is_noisy", "the points look noisy"}, &Of::is_noisy);
   visit({"is_out_of_time", "the time limit ended the optimisation early"}, &Of::is_out_of_time);
   visit({"duplicates", "points that repeat an earlier one"}, &Of::duplicates);
   visit({"topology", "checked on the triangles"}, &Of::topology);
-  visit({"intersecting_triangles", "that intersect another, after smoothing if there is any"},
+  visit({"intersecting_triangles", "number of triangles that intersect others, after smoothing"},
         &Of::intersecting_triangles);
-  visit({"self_intersections", "pairs of triangles that intersect, exactly found, ascending", 0,
+  visit({"self_intersections", "pairs of triangles that intersect (exact), ascending", 0,
          FieldKind::TriangleList},
         &Of::self_intersections);
-  visit({"measures", "of the mesh on the input's points, or the consolidated ones"}, &Of::measures);
-  visit({"diagnosis", "does the cloud look like a closed surface without handles?"},
+  visit({"measures", "of the mesh on the input or consolidated points"}, &Of::measures);
+  visit({"diagnosis", "whether the cloud looks like a closed surface without handles"},
         &Of::diagnosis);
-  visit({"outliers", "that look like outliers, ascending; vertices even so", 0, FieldKind::Inputs},
+  visit({"outliers", "points that look like outliers, ascending; the mesh contains them", 0,
+         FieldKind::Inputs},
         &Of::outliers);
   visit({"openings", "of the surface, open or filled"}, &Of::openings);
-  visit({"boundary", "closed loops of edges, the surface on the left; empty of a closed mesh", 0,
+  visit({"boundary", "boundary loops, the surface on the left; empty for a closed mesh", 0,
          FieldKind::Loops},
         &Of::boundary);
   visit({"embedding", "how it was reached"}, &Of::embedding);
-  visit({"consolidation", "what it did; none without it"},
+  visit({"consolidation", "its report; none without consolidation"},
         [](auto& s) { return s.consolidated.cols() > 0 ? &s.consolidation : nullptr; });
-  visit({"smoothing", "what it did; none without it"},
+  visit({"smoothing", "its report; none without smoothing"},
         [](auto& s) { return s.smoothed.cols() > 0 ? &s.smoothing : nullptr; });
   visit({"triangles", "vertices of each, counter-clockwise seen from outside", 0,
          FieldKind::PerTriangle},
@@ -350,7 +353,7 @@ void visitFields(const Surface*, const Visit& visit) {
 }
 
 constexpr ResultField describe(const LeftOut*) {
-  return {"LeftOut", "Input points that are in no surface, and why."};
+  return {"LeftOut", "Input points that are in no surface, by reason."};
 }
 template <typename Visit>
 void visitFields(const LeftOut*, const Visit& visit) {
@@ -358,28 +361,28 @@ void visitFields(const LeftOut*, const Visit& visit) {
   visit({"not_finite", "with a coordinate that is not finite", 0, FieldKind::Inputs},
         &Of::not_finite);
   visit({"outliers", "found by the option outliers", 0, FieldKind::Inputs}, &Of::outliers);
-  visit({"other_parts", "of parts that were not meshed, and of none", 0, FieldKind::Inputs},
+  visit({"other_parts", "of parts that were not meshed, or of no part", 0, FieldKind::Inputs},
         &Of::other_parts);
 }
 
 constexpr ResultField describe(const Result*) {
-  return {"Result", "What is made of a cloud."};
+  return {"Result", "The result of reconstruct()."};
 }
 template <typename Visit>
 void visitFields(const Result*, const Visit& visit) {
   using Of = Result;
   visit({"verdict", "a headline, e.g. '3 meshes, all sound.'"}, &Of::verdict);
-  visit({"findings", "of all surfaces; those of several parts name them"}, &Of::findings);
-  visit({"usable", "all surfaces are"}, &Of::isUsable);
+  visit({"findings", "of all surfaces; with several, each names its parts"}, &Of::findings);
+  visit({"usable", "all surfaces are usable"}, &Of::isUsable);
   visit({"failures", "why parts could not be meshed"}, &Of::failures);
   visit({"left_out", "points in no surface"}, &Of::left_out);
-  visit({"surfaces", "of the parts that were meshed, that of most points first"}, &Of::surfaces);
+  visit({"surfaces", "one for each meshed part, the largest first"}, &Of::surfaces);
   visit({"stages", "in the order of the work, of all surfaces together"}, &Of::stages);
 }
 
 /// \endcond
 
-/// Whether describe() and visitFields() know a struct, by a pointer that is not followed.
+/// Whether describe() and visitFields() exist for a struct, selected by the pointer's type.
 ///
 /// \return true if they do.
 template <typename Struct>
@@ -391,9 +394,9 @@ constexpr bool isDescribed(const void*) {
   return false;
 }
 
-/// The same of a list of structs.
+/// The same for a list of structs.
 ///
-/// \return true if they are known.
+/// \return true if they do.
 template <typename Struct>
 constexpr bool isDescribedList(const std::vector<Struct>*) {
   return isDescribed(static_cast<const Struct*>(nullptr));
@@ -403,10 +406,10 @@ constexpr bool isDescribedList(const void*) {
   return false;
 }
 
-/// Calls visit(field, value) for all stored values of a struct and, in the place of structs and
-/// lists of structs in it, for those of these.
+/// Calls visit(field, value) for all stored values of a struct, also of structs and lists of
+/// structs within it.
 ///
-/// \param field of the value; \param value the struct, or what one of its fields has.
+/// \param field of the value; \param value the struct, or the value of one of its fields.
 /// \param visit takes a ResultField and a reference.
 template <typename Value, typename Visit>
 void visitValues(const ResultField& field, Value& value, const Visit& visit) {

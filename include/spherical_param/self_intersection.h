@@ -12,17 +12,16 @@ namespace spherical_param {
 /// \addtogroup checks
 /// @{
 
-/// Pairs of triangles of a mesh that intersect more than neighbours must.
+/// Finds the pairs of triangles of a mesh that intersect beyond shared vertices and edges.
 ///
 /// Vertices are the same if their coordinates are equal. Two triangles intersect if they
-///  - have no vertex in common, and a point in common: touching counts,
-///  - have one vertex in common, and the side opposite to it in one of them meets the other,
-///  - have two vertices in common, and are folded flat onto each other: coplanar, with both third
-///    vertices on the same side of the common side,
-///  - have three vertices in common.
-/// Triangles whose corners lie on one line, or that name a vertex twice, are left out: they have no
-/// area that could intersect. Decided in exact arithmetic on the given doubles, unless coordinates
-/// differ in their last digits by less than 1e-100 of the largest coordinate, where products
+///  - share no vertex but a point (touching counts),
+///  - share one vertex, and the side opposite to it in one of them meets the other,
+///  - share two vertices and are folded flat onto each other: coplanar, with both third vertices on
+///    the same side of the shared edge,
+///  - share three vertices.
+/// Degenerate triangles (collinear corners, repeated vertices) are skipped. Exact on the given
+/// doubles, unless coordinates differ by less than 1e-100 of the largest one, where products
 /// underflow.
 ///
 /// \param points    3 x n, finite, any unit.
@@ -35,25 +34,24 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution = {});
 
-/// The pairs of which at least one triangle is in a set: what has to be asked again after that set
-/// has changed.
+/// Finds the pairs with at least one triangle in a set, for updates after that set has changed.
 ///
 /// \param points    3 x n, finite, any unit.
 /// \param triangles 3 x m, indices in [0, n).
-/// \param of        triangles, in [0, m), any order; repetitions count once.
+/// \param of        the set: triangles in [0, m), in any order, perhaps repeated.
 /// \param execution threads, progress
 /// \return {lower, higher} indices of triangles, ascending, each pair once.
 /// \throw as findSelfIntersections().
-/// Cost: O(m) and that of the set.
+/// Cost: O(m), and the cost of the set.
 std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
                                                           const Triangles& triangles,
                                                           const std::vector<Index>& of,
                                                           const Execution& execution = {});
 
-/// The number of different triangles in some pairs.
+/// Number of different triangles in some pairs.
 ///
 /// \param pairs in any order.
-/// \return 0 if there are none.
+/// \return the number.
 std::size_t countTriangles(const std::vector<std::array<Index, 2>>& pairs);
 
 /// @}

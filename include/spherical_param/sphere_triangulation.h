@@ -8,11 +8,11 @@ namespace spherical_param {
 /// \addtogroup triangulation
 /// @{
 
-/// The Delaunay triangulation of points on the sphere, which is their convex hull: incremental,
-/// with exact predicates.
+/// Delaunay triangulation of points on the sphere (their convex hull): incremental, with exact
+/// predicates.
 ///
 /// \param directions 3 x n, unit vectors up to rounding, n >= 4; repetitions allowed.
-/// \param execution  progress; it works on one thread.
+/// \param execution  progress; the work runs on one thread.
 /// \return 3 x (2n - 4), outward on the sphere: closed, manifold, of genus 0, over all points.
 /// \throw InvalidInput for n < 4, too many points, or a vector that is not of unit length;
 /// Cancelled. Cost: O(n log n), typically.

@@ -8,8 +8,7 @@
 #include <vector>
 
 /// Core of the library: meshing of genus-0 point clouds by spherical parameterisation.
-/// Its headers need Eigen and the standard library only. It reads and writes no files and prints
-/// nothing.
+/// Its headers need only Eigen and the standard library. It does no file I/O and prints nothing.
 namespace spherical_param {
 
 /// \addtogroup types
@@ -18,7 +17,7 @@ namespace spherical_param {
 /// Index of a point, vertex or triangle. 32 bits: a cloud has fewer than 2^30 points.
 using Index = std::int32_t;
 
-/// 3 x n, column i = point i, in the unit of the input (or unit vectors, where said so).
+/// 3 x n, column i = point i, in the unit of the input, or unit vectors where stated.
 using Positions = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 /// 3 x m, column t = the three vertices of triangle t, counter-clockwise seen from outside.
@@ -36,11 +35,11 @@ struct NeighborLists {
 };
 
 /// Returns the `count` nearest neighbours of each of `points`, one list for each in their order.
-/// The point itself may be in its list; `count` should not include it. Lists may be shorter where
-/// there are no more.
+/// A list may contain the point itself, which does not count. Lists are shorter if there are too
+/// few points.
 using NeighborSearch = std::function<NeighborLists(const std::vector<Index>& points, int count)>;
 
-/// Makes a search among some points of a cloud, given by their numbers, ascending.
+/// Makes a search among some points of a cloud, given by their indices, ascending.
 using NeighborSearchFactory = std::function<NeighborSearch(const std::vector<Index>& points)>;
 
 /// @}

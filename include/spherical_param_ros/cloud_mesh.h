@@ -15,17 +15,16 @@
 
 namespace spherical_param_ros {
 
-/// A mesh without any middleware's types: one surface, or those of several parts after one another.
-/// All are in the order of the vertices, which is, in each part, that of the first points of the
-/// cloud at their positions.
+/// A mesh without types of ROS: one surface, or those of several parts one after the other.
+/// Vertices of a part have the order of their first points in the cloud.
 struct Mesh {
-  /// Header and every field of the cloud, one record a vertex; coordinates are the smoothed ones
-  /// where smoothing is asked for.
+  /// Header and every field of the cloud, one record a vertex; coordinates are moved ones after
+  /// consolidation or smoothing.
   pcl::PCLPointCloud2 cloud;
   std::vector<std::array<double, 3>> vertices;  ///< [unit of the cloud]
   /// Indices of vertices, counter-clockwise from outside, or from one side of an open surface.
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// Red, green, blue, alpha; alpha is 255 for clouds without. Empty for clouds without colours.
+  /// Red, green, blue, alpha (255 if the cloud has none). Empty for clouds without colours.
   std::vector<std::array<std::uint8_t, 4>> colors;
 };
 
@@ -33,9 +32,9 @@ struct Mesh {
 enum class Status {
   Done,       ///< there is a mesh
   Failed,     ///< the cloud cannot be meshed; `message` has cause and remedy
-  Cancelled,  ///< a newer cloud arrived, or the worker ended, while it was worked on
+  Cancelled,  ///< during the work a newer cloud arrived, or the worker ended
   Dropped,    ///< newer clouds pushed it out of the queue, or the worker ended
-  Refused,    ///< a request that found too many others waiting, or the worker ended
+  Refused,    ///< too many requests were waiting, or the worker ended
 };
 
 /// The name of a status, in lower case.
@@ -46,21 +45,21 @@ struct Outcome {
   Status status = Status::Failed;
   std::string message;               ///< the verdict on the mesh, or "cause; remedy"
   std::shared_ptr<const Mesh> mesh;  ///< of Status::Done
-  bool has_faults = false;           ///< a finding is a fault: see spherical_param::Finding
+  bool has_faults = false;           ///< a finding is a fault, see spherical_param::Finding
   std::vector<std::string> warnings;
-  std::size_t parts = 0;         ///< that were meshed; 1 where they are not told apart
+  std::size_t parts = 0;         ///< number of meshed parts
   std::size_t points = 0;        ///< of the cloud
   std::size_t ignored = 0;       ///< not finite
   std::size_t outliers = 0;      ///< left out
-  std::size_t other_points = 0;  ///< of parts that are not meshed, or of none
+  std::size_t other_points = 0;  ///< of parts that were not meshed, or of no part
   std::size_t duplicates = 0;    ///< merged into an earlier point
   std::size_t self_intersections = 0;
   double seconds = 0.0;  ///< of the reconstruction, wall time
 };
 
-/// Meshes a cloud, in double precision. Throws nothing: the outcome holds every failure.
+/// Meshes a cloud, in double precision. Throws nothing: failures are in the outcome.
 ///
-/// \param is_wanted asked every second or two at least; false ends the work with
+/// \param is_wanted called at least every two seconds; false ends the work with
 ///                  Status::Cancelled. May be empty.
 Outcome meshCloud(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                   const std::function<bool()>& is_wanted);

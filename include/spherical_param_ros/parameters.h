@@ -10,20 +10,20 @@
 
 namespace spherical_param_ros {
 
-/// How clouds are meshed, and how they wait for it.
+/// How clouds are meshed, and how they are queued.
 struct Settings {
   spherical_param::Options options;  ///< `progress` is ignored
-  /// Larger clouds are refused, so that no cloud takes all memory; 0: none is.
+  /// Larger clouds are refused, so that no cloud takes all memory; 0: no limit.
   std::size_t max_points = 5000000;
-  std::size_t queue_depth = 1;  ///< clouds that wait, at most; 1 and up
+  std::size_t queue_depth = 1;  ///< maximum number of waiting clouds; >= 1
   bool cancel_running = true;   ///< when a newer cloud arrives
-  int max_cancellations = 3;    ///< in a row; the next cloud is then meshed to its end
+  int max_cancellations = 3;    ///< in a row; then one cloud is meshed to its end
 };
 
-/// A value of a parameter. An integer will do for a number.
+/// A value of a parameter. An integer is also a number.
 using Value = std::variant<bool, std::int64_t, double, std::string>;
 
-/// The value of an optional parameter that is not set.
+/// The value of an unset optional parameter.
 inline constexpr int kUnset = -1;
 
 /// A parameter, for declarations and documentation.
@@ -41,8 +41,9 @@ const std::vector<ParameterInfo>& parameters();
 
 /// Changes one setting; the others stay.
 ///
-/// \throw spherical_param::InvalidInput for a name that does not exist, the wrong type or a value
-///        out of range: the message is "cause; remedy", and the settings are unchanged.
+/// \throw spherical_param::InvalidInput for an unknown name, the wrong type or a value out of
+/// range:
+///        the message is "cause; remedy", and the settings are unchanged.
 void setParameter(Settings& settings, const std::string& name, const Value& value);
 
 /// The value that setParameter() would take.

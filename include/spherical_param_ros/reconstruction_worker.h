@@ -16,41 +16,41 @@
 
 namespace spherical_param_ros {
 
-/// What a worker did so far. At any time
-///   received = done + failed + cancelled + dropped + queued + (is_working ? 1 : 0),
-/// where requests count from when they were let in.
+/// The work of a worker so far. At any time
+///   received = done + failed + cancelled + dropped + queued + (is_working ? 1 : 0).
+/// Refused requests count in `refused` only.
 struct Statistics {
   std::uint64_t received = 0;
   std::uint64_t done = 0;
   std::uint64_t failed = 0;
   std::uint64_t cancelled = 0;
   std::uint64_t dropped = 0;
-  std::uint64_t refused = 0;  ///< requests that were not let in
+  std::uint64_t refused = 0;  ///< requests beyond max_requests
   std::size_t queued = 0;
   bool is_working = false;
-  /// Of the last cloud that was done or failed, without its mesh; `has_last` false: none was.
+  /// Of the last cloud that was done or failed, without its mesh; valid if `has_last`.
   Outcome last;
   bool has_last = false;
 };
 
 /// Meshes clouds one after the other in a thread of its own.
 ///
-/// Clouds of a stream (submit()) wait in a queue of Settings::queue_depth, which pushes out its
-/// oldest and never grows: submitting never waits, and the newest is never lost. With
-/// Settings::cancel_running a newer cloud cancels the one that is worked on, but no more than
-/// Settings::max_cancellations times in a row: a stream that is faster than the work still gets
-/// every (max_cancellations + 1)th mesh at least. The last cloud of a stream is always answered.
+/// Clouds of a stream (submit()) wait in a queue of Settings::queue_depth. A full queue drops its
+/// oldest cloud, so that submit() never waits and the newest cloud is never lost. With
+/// Settings::cancel_running a newer cloud cancels the work on the current one, but at most
+/// Settings::max_cancellations times in a row: a fast stream still gets at least every
+/// (max_cancellations + 1)th mesh. The last cloud of a stream is always answered.
 ///
-/// Requests (process()) wait for their answer, which holds the caller back. They are neither
-/// dropped nor cancelled; not more than max_requests wait, others are refused at once. Requests and
-/// clouds of the stream take turns, so that neither starves.
+/// Requests (process()) block the caller until they are answered. They are neither dropped nor
+/// cancelled; beyond max_requests they are refused at once. Requests and clouds of the stream take
+/// turns, so that neither starves.
 class ReconstructionWorker {
 public:
   using Cloud = std::shared_ptr<const pcl::PCLPointCloud2>;
-  /// Called once for each cloud of the stream, from the worker's thread, or for one that is dropped
-  /// from the thread that submits the newer one. What it throws is lost.
+  /// Called once for each cloud of the stream, from the worker's thread; for a dropped cloud from
+  /// the thread that submits the newer one. Its exceptions are lost.
   using Handler = std::function<void(const Outcome&)>;
-  /// meshCloud(), or what stands for it in a test.
+  /// meshCloud(), or a stand-in for tests.
   using Mesher = std::function<Outcome(const pcl::PCLPointCloud2& cloud, const Settings& settings,
                                        const std::function<bool()>& is_wanted)>;
 
@@ -63,24 +63,24 @@ public:
   ReconstructionWorker(const ReconstructionWorker&) = delete;
   ReconstructionWorker& operator=(const ReconstructionWorker&) = delete;
 
-  /// Takes a cloud of a stream. \return false if another one was dropped for it, or the worker is
-  /// stopped: the stream is faster than the work.
+  /// Takes a cloud of a stream. \return false if it pushed out another one, as the stream is faster
+  /// than the work, or the worker is stopped
   bool submit(const Cloud& cloud, Handler handler);
 
   /// Meshes a cloud while the caller waits.
   Outcome process(const Cloud& cloud);
 
-  /// In force from the next cloud on; a smaller queue at once.
+  /// Takes effect with the next cloud; a smaller queue at once.
   void setSettings(const Settings& settings);
   Settings settings() const;
 
   Statistics statistics() const;
 
-  /// Waits until there is nothing left to do.
+  /// Waits until all work is done.
   void waitUntilIdle();
 
-  /// Cancels what is worked on and drops what waits. Later clouds are refused. Returns when no
-  /// handler runs any more.
+  /// Cancels the current work and drops waiting clouds. Later clouds are refused. Returns when all
+  /// handlers have returned.
   void stop();
 
 private:

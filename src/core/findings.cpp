@@ -14,12 +14,12 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Above this fraction of edges beyond the graph's 2-ring a mesh that nothing optimises is folded.
+/// Above this fraction of edges beyond the graph's 2-ring a mesh without optimisation is folded.
 /// Unfolded embeddings of closed surfaces have 0.0005 and less, folded limbs 0.003 and more, the
 /// filled opening of a bowl of some thousand points 0.002. Measured on local Delaunay
 /// neighbourhoods.
 constexpr double kMaxEdgesOutside = 0.001;
-/// Parts of this fraction of the largest are objects of their own, smaller ones what lies beside.
+/// Parts of at least this fraction of the largest count as objects of their own.
 constexpr double kMinFractionOfLargest = 0.25;
 
 /// A number as people write it: 49,996.
@@ -40,7 +40,7 @@ std::string percent(double fraction) {
   return text.data();
 }
 
-/// Whether the mesh is as rough as noise makes it, and nothing else is known that does.
+/// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
   return result.is_noisy && result.moved().cols() == 0 && result.outliers.empty() &&
          result.diagnosis.bridges.empty() && result.diagnosis.genus.value_or(0) == 0;
@@ -57,7 +57,7 @@ bool isFolded(const Options& options, const Surface& result) {
 
 Finding partsOf(const std::vector<PartBridge>& bridges) {
   const PartBridge& bridge = bridges.front();
-  // Many parts are a scene, of which the largest is mostly the object.
+  // Many parts are a scene, and the largest part is mostly the object.
   const bool are_alike =
       bridges.size() == 1 && static_cast<double>(bridge.points) >=
                                  kMinFractionOfLargest * static_cast<double>(bridge.other_points);
@@ -67,19 +67,19 @@ Finding partsOf(const std::vector<PartBridge>& bridges) {
           "parts", are_alike ? "each" : "largest", true};
 }
 
-/// How many handles the cloud has, or what may be some.
+/// The handles of the cloud, certain or possible.
 std::optional<Finding> handlesOf(const SurfaceDiagnosis& diagnosis) {
   const auto handles = static_cast<std::size_t>(diagnosis.genus.value_or(0));
   if (handles > 0)
     return Finding{counted(handles, "handle") + ", cut: the mesh is a sphere", "", "", true};
   if (!diagnosis.handles.empty())
-    return Finding{"perhaps a handle, which is cut, or a fold, in " +
+    return Finding{"a possible handle (cut) or fold in " +
                        counted(diagnosis.handles.size(), "place"),
                    "", "", true};
   return std::nullopt;
 }
 
-/// Certain openings that the mesh fills. Those that were to be filled are no fault.
+/// Certain openings that the mesh fills: a fault unless the options ask for it.
 Finding filledOf(const Surface& result, const Options& options) {
   std::size_t points = 0;
   for (const Opening& opening : result.openings)
@@ -94,7 +94,7 @@ Finding filledOf(const Surface& result, const Options& options) {
           options.fill_holes == 0 && options.fill_holes_area == 0.0};
 }
 
-/// At least the default, and a number.
+/// Twice as many, at least the default, without overflow.
 int moreIterations(int iterations) {
   return std::max(EmbeddingOptions().max_iterations,
                   iterations < std::numeric_limits<int>::max() / 2 ? 2 * iterations : iterations);
@@ -104,7 +104,7 @@ void addOfEmbedding(const Options& options, const Surface& result, std::vector<F
   const EmbeddingReport& embedding = result.embedding;
   const bool is_iterative = options.embedding.method == EmbeddingMethod::Iterative;
   if (embedding.fallback_start)
-    findings.push_back({"the embedding has collapsed, and another one of lesser quality was used",
+    findings.push_back({"the embedding collapsed and was replaced by one of lower quality",
                         is_iterative ? "embedding" : "", is_iterative ? "multilevel" : "", false});
   else if (embedding.stop_reason == StopReason::IterationLimit)
     findings.push_back({"the embedding has not converged", "max_iterations",
@@ -134,7 +134,7 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
     findings.push_back(*handles);
   if (diagnosis.is_one_sided)
     findings.push_back(
-        {"the surface has one side only, like a Moebius strip: the mesh tears it", "", "", true});
+        {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
   if (isFolded(options, result)) {
     const bool may_unfold =
         isRaw(options) && result.embedding.stop_reason == StopReason::Unfinished;
@@ -198,7 +198,7 @@ std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& p
 
 void summarize(Result& result) {
   const std::vector<Surface>& surfaces = result.surfaces;
-  std::vector<std::string> parts;  // that each finding is true of
+  std::vector<std::string> parts;  // of each finding
   std::size_t faulty = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     faulty += hasFault(surfaces[i].findings) ? 1 : 0;

@@ -9,21 +9,21 @@
 
 namespace spherical_param::internal {
 
-/// What a user should know of a result, the causes of other findings first.
+/// The findings of a result, causes before their consequences.
 std::vector<Finding> findingsOf(const Options& options, const Surface& result);
 
-/// What is to be said of a part that cannot be meshed.
+/// Message for a part that cannot be meshed.
 ///
-/// \param part  number of it among the parts.
+/// \param part  index among the parts.
 /// \param error message of the exception.
 std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
                       std::string error);
 
-/// Fills verdict and findings of a result: those of its surfaces, what is true of several said
-/// once.
+/// Fills verdict and findings of a result from its surfaces; equal findings of several surfaces
+/// become one.
 void summarize(Result& result);
 
-/// A headline: whether the mesh is sound, and what is left open, filled, cut or joined.
+/// A headline: whether the mesh is sound, and what it leaves open, fills, cuts or joins.
 std::string verdictOf(const Options& options, const Surface& result);
 
 }  // namespace spherical_param::internal

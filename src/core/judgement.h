@@ -9,7 +9,7 @@
 
 namespace spherical_param::internal {
 
-/// What the stages made of a cloud. Vertices are nodes, in units of the nodes.
+/// Results of the stages. Vertices are nodes, in the unit of the nodes.
 struct MeshedCloud {
   NeighborGraph graph;
   Embedding embedding;
@@ -20,8 +20,7 @@ struct MeshedCloud {
   Triangles& triangles() { return isSmoothed() ? smoothed.triangles : optimization.triangles; }
 };
 
-/// Measures, checks and diagnoses a mesh, and moves it and its reports to the result, which is on
-/// nodes and in their unit; \see toInput.
+/// Measures, checks and diagnoses a mesh. The result is on nodes and in their unit, \see toInput.
 Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
               const Options& options, const Execution& execution);
 

@@ -10,7 +10,7 @@
 
 namespace spherical_param::internal {
 
-/// Whether openings are sought: only local Delaunay neighbourhoods show them.
+/// Whether openings are sought: only the tangent Delaunay graph shows them.
 bool seeksOpenings(const Options& options);
 
 /// The openings of a cloud, and which of them the mesh leaves open.
@@ -18,20 +18,20 @@ class OpenSurface {
 public:
   /// \param points nodes, must outlive this.
   /// \param graph   of the nodes.
-  /// \param is_flat all points are in one plane: none of the openings can be filled.
+  /// \param is_flat all points are in one plane: openings cannot be filled.
   /// \param unit    of the nodes' coordinates [unit of the input].
   OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
               const Options& options, const Execution& execution);
 
-  OpenSurface() = default;  // of a closed surface
+  OpenSurface() = default;  // a closed surface
 
   bool isOpen() const { return places_.has_value(); }
   /// nullptr: the mesh is closed.
   const OpenPlaces* places() const { return places_ ? &*places_ : nullptr; }
   bool isOneSided() const { return embedded_.is_one_sided; }
-  /// All that were found, with the triangles over those that are filled.
+  /// All openings, with the triangles over filled ones.
   ///
-  /// \param points, graph those in which they were found.
+  /// \param points, graph as for the constructor.
   /// \param triangles of the mesh.
   std::vector<Opening> found(const Positions& points, const Graph& graph,
                              const Triangles& triangles) const;
@@ -42,7 +42,7 @@ public:
 
 private:
   std::vector<Opening> found_;
-  Openings embedded_;  ///< those that virtual nodes fill
+  Openings embedded_;  ///< filled by virtual nodes
   std::optional<OpenPlaces> places_;
 };
 

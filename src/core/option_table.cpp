@@ -15,10 +15,10 @@ namespace spherical_param {
 namespace {
 
 constexpr double kMaxInt = std::numeric_limits<int>::max();
-/// k of the paper, and the neighbours that certify most local Delaunay cells.
+/// k of the paper, and enough neighbours to certify most local Delaunay cells.
 constexpr int kTypicalNearestNeighbors = 25;
 constexpr int kTypicalDelaunayNeighbors = 12;
-/// Where numbers still count.
+/// Far above any sensible value.
 constexpr double kMaxArea = 1e15;
 constexpr double kMaxSeconds = 1e9;
 constexpr double kMaxSeed = std::numeric_limits<std::uint32_t>::max();
@@ -121,7 +121,7 @@ OptionRow usedWith(std::vector<std::pair<std::string, std::vector<std::string>>>
 OptionRow outlierRow() {
   OptionRow row = number(
       "outliers", "outliers",
-      "points that are left out: stray ones (auto), or those that deviate by this number of "
+      "outliers to leave out: stray points (auto), or points off the surface by this number of "
       "standard deviations",
       Everybody, 0, 1000, [](Options & o) -> auto& { return o.outlier_sigma; });
   row.choices = {"none", "auto"};
@@ -152,19 +152,19 @@ std::vector<OptionRow> pointRows() {
       outlierRow(),
       choice<PartsMode>(
           "parts", "parts",
-          "parts of the cloud that are meshed: all as one surface, that of most points, or each by "
-          "itself",
+          "parts of the cloud to mesh: all as one surface, the largest alone, or each by itself",
           Everybody,
           {{"all", PartsMode::All}, {"largest", PartsMode::Largest}, {"each", PartsMode::Each}},
           [](Options & o) -> auto& { return o.parts; }),
       usedWith({{"parts", {"largest", "each"}}},
                number(
-                   "min_points", "min_points", "parts of fewer points are left out", Expert, 4,
+                   "min_points", "min_points",
+                   "minimum number of points of a part; smaller parts are left out", Expert, 4,
                    kMaxInt, [](Options & o) -> auto& { return o.min_points; })),
       choice<ConsolidationMode>(
           "consolidation", "consolidation",
-          "auto: noisy points are moved to their surface, and merged below the noise", Everybody,
-          {{"none", ConsolidationMode::None}, {"auto", ConsolidationMode::Auto}},
+          "auto: move noisy points to the sampled surface and merge them within their noise",
+          Everybody, {{"none", ConsolidationMode::None}, {"auto", ConsolidationMode::Auto}},
           [](Options & o) -> auto& { return o.consolidation; }),
   };
 }
@@ -172,11 +172,11 @@ std::vector<OptionRow> pointRows() {
 std::vector<OptionRow> graphRows() {
   return {
       choice<GraphMethod>(
-          "graph", "graph", "how points become neighbours, in the paper knn", Expert,
+          "graph", "graph", "how points become neighbours; in the paper knn", Expert,
           {{"delaunay", GraphMethod::LocalDelaunay}, {"knn", GraphMethod::NearestNeighbors}},
           [](Options & o) -> auto& { return o.graph; }),
       number(
-          "k", "k", "nearest neighbours of each point, unset: 25 for knn, 12 for delaunay", Expert,
+          "k", "k", "nearest neighbours of each point; unset: 25 for knn, 12 for delaunay", Expert,
           3, kMaxInt, [](Options & o) -> auto& { return o.k; }),
   };
 }
@@ -184,7 +184,7 @@ std::vector<OptionRow> graphRows() {
 std::vector<OptionRow> embeddingRows() {
   return {
       choice<EmbeddingMethod>(
-          "embedding", "embedding.method", "how the graph is embedded, in the paper iterative",
+          "embedding", "embedding.method", "how the graph is embedded; in the paper iterative",
           Expert,
           {{"multilevel", EmbeddingMethod::Multilevel}, {"iterative", EmbeddingMethod::Iterative}},
           [](Options & o) -> auto& { return o.embedding.method; }),
@@ -203,7 +203,7 @@ std::vector<OptionRow> embeddingRows() {
           1, [](Options & o) -> auto& { return o.embedding.damping; })),
       number(
           "tolerance", "embedding.tolerance",
-          "mean tangential Laplacian at convergence, unset: 1e-8 for iterative, else none", Expert,
+          "mean tangential Laplacian at convergence; unset: 1e-8 for iterative, else none", Expert,
           0, 1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
       usedWith({{"embedding", {"iterative"}}},
                number(
@@ -213,15 +213,15 @@ std::vector<OptionRow> embeddingRows() {
       usedWith({{"embedding", {"iterative"}}},
                number(
                    "stagnation_window", "embedding.stagnation_window",
-                   "iterations over which stagnation is judged, 0 or 1: never", Expert, 0, kMaxInt,
+                   "iterations over which stagnation is judged; 0 or 1: never", Expert, 0, kMaxInt,
                    [](Options & o) -> auto& { return o.embedding.stagnation_window; })),
       usedWith({{"embedding", {"multilevel"}}},
                number(
-                   "starts", "embedding.starts", "starts of the embedding on the coarsest level",
-                   Expert, 1, 100, [](Options & o) -> auto& { return o.embedding.starts; })),
+                   "starts", "embedding.starts", "number of starts on the coarsest level", Expert,
+                   1, 100, [](Options & o) -> auto& { return o.embedding.starts; })),
       number(
           "history_vertices", "embedding.history_vertices",
-          "maximum number of vertices whose path to the sphere is kept", Expert, 0, 1 << 24,
+          "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
           [](Options & o) -> auto& { return o.embedding.history_vertices; }),
       number(
           "history_frames", "embedding.history_frames", "maximum number of states of these paths",
@@ -232,20 +232,20 @@ std::vector<OptionRow> embeddingRows() {
 std::vector<OptionRow> meshRows() {
   return {
       choice<TriangulationMethod>(
-          "triangulation", "triangulation", "how the sphere is triangulated, in the paper qhull",
+          "triangulation", "triangulation", "how the sphere is triangulated; in the paper qhull",
           Expert,
           {{"incremental", TriangulationMethod::Incremental},
            {"qhull", TriangulationMethod::Qhull}},
           [](Options & o) -> auto& { return o.triangulation; }),
       choice<OptimizationMethod>(
-          "optimization", "optimization", "how far the mesh is optimised on the points", Expert,
+          "optimization", "optimization", "how the mesh is optimised on the points", Expert,
           {{"full", OptimizationMethod::Full},
            {"flips", OptimizationMethod::Flips},
            {"none", OptimizationMethod::None}},
           [](Options & o) -> auto& { return o.optimization; }),
       number(
-          "smoothing", "smoothing", "steps of smoothing of the points, 0: none", Everybody, 0,
-          10000, [](Options & o) -> auto& { return o.smoothing; }),
+          "smoothing", "smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000,
+          [](Options & o) -> auto& { return o.smoothing; }),
   };
 }
 
@@ -254,8 +254,7 @@ std::vector<OptionRow> surfaceRows() {
       usedWith({{"graph", {"delaunay"}}},
                choice<SurfaceMode>(
                    "surface", "surface",
-                   "openings are filled, left open, or (auto) left open where they are certain",
-                   Everybody,
+                   "openings are filled, left open, or left open if certain (auto)", Everybody,
                    {{"closed", SurfaceMode::Closed},
                     {"open", SurfaceMode::Open},
                     {"auto", SurfaceMode::Auto}},
@@ -279,10 +278,10 @@ std::vector<OptionRow> runRows() {
       usedWith({{"optimization", {"full"}}},
                number(
                    "time_limit", "time_limit",
-                   "seconds until the work ends with the best mesh so far, unset: no limit",
+                   "seconds until the work ends with the best mesh so far; unset: no limit",
                    Everybody, 0, kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
       number(
-          "threads", "threads", "threads, 0: as many as OpenMP would use", Expert, 0, 1024,
+          "threads", "threads", "threads; 0: as many as OpenMP would use", Expert, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),
   };
 }
@@ -309,7 +308,8 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
   if (name != nullptr || !row.is_number) {
     if (name == nullptr ||
         std::find(row.choices.begin(), row.choices.end(), *name) == row.choices.end())
-      refuse(row, "= " + textOf(value) + (row.choices.empty() ? " is no number" : " is not known"));
+      refuse(row,
+             "= " + textOf(value) + (row.choices.empty() ? " is not a number" : " is not known"));
     return;
   }
   double number = 0.0;
@@ -318,7 +318,8 @@ void checkValue(const OptionRow& row, const OptionValue& value) {
   else if (const auto* real = std::get_if<double>(&value); real != nullptr && !row.is_integer)
     number = *real;
   else
-    refuse(row, "= " + textOf(value) + (row.is_integer ? " is no integer" : " is no number"));
+    refuse(row,
+           "= " + textOf(value) + (row.is_integer ? " is not an integer" : " is not a number"));
   if (!(number >= row.min && number <= row.max) || (row.min_excluded && number == row.min))
     refuse(row, "= " + textOf(value) + " is out of range");
 }
@@ -337,7 +338,7 @@ const OptionRow& findOption(const std::string& name) {
       return row;
     names += (names.empty() ? "" : ", ") + row.name;
   }
-  throw InvalidInput("there is no option '" + name + "'; there are " + names);
+  throw InvalidInput("unknown option '" + name + "'; use one of " + names);
 }
 
 void setOption(Options& options, const std::string& name, const OptionValue& value) {

@@ -59,10 +59,10 @@ bool mayBeOpen(const Options& options) {
 [[noreturn]] void refuseFlat(const Options& options) {
   if (mayBeOpen(options))
     throw InvalidInput(
-        "reconstruct: all points lie in one plane and form no patch there; give more "
-        "points, and not on a line");
-  throw InvalidInput("reconstruct: all points lie in one plane; a closed surface needs points "
-                     "outside of it, and an open one the surface mode 'open'");
+        "reconstruct: all points lie in one plane and form no patch there; add points "
+        "that are not on a line");
+  throw InvalidInput("reconstruct: all points lie in one plane; add points outside of it, or set "
+                     "surface = open");
 }
 
 NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& options,
@@ -177,8 +177,9 @@ Surface meshPart(Selection& selection, std::size_t part, Neighborhoods* neighbor
                         ? meshConsolidated(selection.pointsOf(part), options, clock)
                         : meshAsIs(selection, part, *neighborhoods, options, clock);
   if (!isAsPromised(surface))
-    throw ComputeError("reconstruct: the mesh is no manifold of genus 0; please report this cloud "
-                       "as a defect of the library");
+    throw ComputeError(
+        "reconstruct: the mesh is not a manifold of genus 0; please report this cloud "
+        "as a defect of the library");
   internal::toCloud(selection.parts()[part], surface);
   surface.findings = internal::findingsOf(options, surface);
   surface.verdict = internal::verdictOf(options, surface);

@@ -8,16 +8,16 @@
 
 namespace spherical_param::internal {
 
-/// Turns a result that was computed on nodes into one on vertices: scaled back to the unit of the
-/// input, and with the numbers of the vertices.
+/// Translates a result from nodes to vertices: to the unit of the input and the indices of
+/// vertices.
 void toInput(OrderedPoints& nodes, Surface& result);
 
-/// Turns a result of consolidated points into one of the points before.
+/// Translates a result from consolidated points to the points before.
 void toInput(Consolidation& consolidation, Surface& result);
 
-/// Turns a surface of some points of a cloud into one in the numbers of the cloud.
+/// Translates a surface of some points to the indices of the whole cloud.
 ///
-/// \param inputs the points of the cloud that these are, ascending.
+/// \param inputs the indices of these points in the cloud, ascending.
 void toCloud(const std::vector<Index>& inputs, Surface& surface);
 
 }  // namespace spherical_param::internal

@@ -10,24 +10,24 @@
 
 namespace spherical_param::internal {
 
-/// Which points of a cloud are meshed: those that are finite and no outliers, in parts. What is
-/// found of their neighbours on the way is kept for the graph.
+/// The points to mesh: finite points without outliers, in parts. Their neighbours are kept for the
+/// graph.
 class Selection {
 public:
-  /// \param points    3 x n; must outlive this, as the other arguments must.
+  /// \param points    3 x n. All arguments must outlive this.
   /// \param search_of makes the search for neighbours; may be empty.
-  /// \param left_out  of which all that is not meshed is listed.
+  /// \param left_out  receives the points that are not meshed.
   /// \throw InvalidInput if too few points are left.
   Selection(const Positions& points, const Options& options, const NeighborSearchFactory& search_of,
             StageClock& clock, LeftOut& left_out);
 
-  /// The points of each part, the one of most points first. None if all are too small.
+  /// The points of each part, the largest part first. Empty if all are too small.
   const std::vector<std::vector<Index>>& parts() const { return parts_; }
   /// The points of a part, 3 x m.
   Positions pointsOf(std::size_t part) const;
   /// The neighbours of the points of a part, valid until the next call.
   Neighborhoods& neighborhoodsOf(std::size_t part);
-  /// Frees what the graphs of the parts after this one do not need.
+  /// Frees memory that the graphs of later parts do not need.
   void release(std::size_t part);
 
 private:
@@ -40,7 +40,7 @@ private:
   const NeighborSearchFactory& search_of_;
   StageClock& clock_;
   LeftOut& left_out_;
-  std::vector<Index> inputs_;             ///< points of all parts and of none
+  std::vector<Index> inputs_;             ///< all finite points without outliers
   std::unique_ptr<Neighborhoods> cloud_;  ///< of the finite points
   std::unique_ptr<Neighborhoods> kept_;   ///< without outliers, if there were some
   std::unique_ptr<Neighborhoods> part_;   ///< of a part, if it is not the whole

@@ -28,8 +28,7 @@ public:
   StageClock(const StageClock& other) = delete;  // execution() points here
   StageClock& operator=(const StageClock& other) = delete;
 
-  /// How stages work: without a time limit, and with their progress as that of the stage that was
-  /// begun last, whichever functions it calls.
+  /// Execution for the stages: without a time limit; progress is reported for the current stage.
   const Execution& execution() const { return execution_; }
 
   /// Begins a stage; the one before ends.
@@ -40,8 +39,8 @@ public:
     report(0.0);
   }
 
-  /// Begins a part. \param fraction of the points that are left, by which it has its share of the
-  /// time. \param points_fraction of all points.
+  /// Begins a part. \param fraction of the remaining points, and so of the remaining time. \param
+  /// points_fraction of all points.
   void beginPart(std::size_t part, std::size_t parts, double fraction, double points_fraction) {
     part_ = part;
     parts_ = parts;
@@ -52,8 +51,8 @@ public:
     part_left_ = TimeLeft(limit);
   }
 
-  /// What is left of the time limit for the part, without what is kept for the check of the mesh:
-  /// half of the time until the embedding, which is more than it takes [s].
+  /// Time left for the part [s], minus a reserve for the check of the mesh: half of the time until
+  /// the embedding, more than it takes.
   std::optional<double> remaining() const {
     double kept = 0.0;
     for (const StageTime& time : times_)

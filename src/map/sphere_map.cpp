@@ -79,14 +79,14 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
     if (topology.isSphere())
       return capped;
   }
-  std::string fault = "it is no topological sphere";
+  std::string fault = "it is not a topological sphere";
   if (!topology.manifold())
     fault = "it is not manifold";
   else if (!topology.oriented)
     fault = "its triangles are not oriented consistently";
   else if (!topology.unused_vertices.empty())
-    fault = "vertex " + std::to_string(topology.unused_vertices.front()) +
-            " belongs to no triangle";
+    fault =
+        "vertex " + std::to_string(topology.unused_vertices.front()) + " belongs to no triangle";
   else if (topology.components != 1)
     fault = "it has " + std::to_string(topology.components) + " pieces";
   else if (topology.genus)

@@ -193,7 +193,7 @@ SphereSurface::SphereSurface(const Positions& points, const Triangles& triangles
   internal::checkTriangles("SphereSurface", triangles, points.cols());
   if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), options.threads)
            .isOpenSurface())
-    throw InvalidInput("SphereSurface: there are caps, but the triangles are no consistently "
+    throw InvalidInput("SphereSurface: there are caps, but the triangles are not a consistently "
                        "oriented manifold with boundary over all points; give the mesh of the map");
   internal::CappedMesh capped = internal::capOpenings(points, triangles);
   Positions all(3, sphere.cols() + options.caps.cols());

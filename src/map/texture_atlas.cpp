@@ -326,7 +326,7 @@ void checkMesh(const Triangles& triangles, const Positions& sphere) {
   const MeshTopology topology = checkTopology(triangles, static_cast<std::size_t>(sphere.cols()));
   if (!topology.isSphere() && !topology.isOpenSurface())
     throw InvalidInput(function +
-                       ": the triangles are no oriented manifold of genus 0 over all vertices; "
+                       ": the triangles are not an oriented manifold of genus 0 over all vertices; "
                        "give a mesh as reconstruct() makes it");
   constexpr double tolerance = 1e-6;  // that of single precision, and no more
   for (Eigen::Index v = 0; v < sphere.cols(); ++v)

@@ -121,7 +121,7 @@ Parameter integer(const std::string& name, const std::string& description, int m
 Parameter cancelRunning() {
   const std::string name = "cancel_running";
   return {{name,
-           "a newer cloud cancels the one that is being meshed; true or false",
+           "a newer cloud cancels the work on the current one; true or false",
            Settings().cancel_running,
            0.0,
            0.0,
@@ -139,15 +139,16 @@ std::vector<Parameter> makeParameters() {
   for (const OptionRow& row : spherical_param::optionTable())
     all.push_back(option(row));
   all.push_back(integer(
-      "max_points", "larger clouds are refused; 0: none is", 0,
+      "max_points", "larger clouds are refused; 0: no limit", 0,
       [](Settings & s) -> auto& { return s.max_points; }));
   all.push_back(integer(
-      "queue_depth", "clouds that wait, at most; the oldest is dropped", 1,
+      "queue_depth", "maximum number of waiting clouds; the oldest is dropped", 1,
       [](Settings & s) -> auto& { return s.queue_depth; }));
   all.push_back(cancelRunning());
   all.push_back(integer(
-      "max_cancellations", "cancellations in a row, at most; the next cloud is meshed to its end",
-      0, [](Settings & s) -> auto& { return s.max_cancellations; }));
+      "max_cancellations",
+      "maximum number of cancellations in a row; then a cloud is meshed to its end", 0,
+      [](Settings & s) -> auto& { return s.max_cancellations; }));
   return all;
 }
 
@@ -163,7 +164,7 @@ const Parameter& find(const std::string& name) {
       return parameter;
     names += (names.empty() ? "" : ", ") + parameter.info.name;
   }
-  throw InvalidInput("there is no parameter '" + name + "'; there are " + names);
+  throw InvalidInput("unknown parameter '" + name + "'; use one of " + names);
 }
 
 }  // namespace

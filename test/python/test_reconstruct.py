@@ -254,7 +254,7 @@ class Input(unittest.TestCase):
             (points.astype(str), r"<U\d+; give"),
             (points > 0, r"bool; give"),
             (record, r"fields x, y, w; give one with x, y and z"),
-            (Unknown(), r"a Unknown, which is not known; pass np.asarray\(pcd.points\)"),
+            (Unknown(), r"has the unknown type Unknown; pass np.asarray\(pcd.points\)"),
             ([[1.0, 2.0, 3.0], [1.0]], r"cannot be made an array.*; give"),
             (None, r"; give"),
             (points[:0], r"4 distinct finite points are needed, but there are 0"),

@@ -127,9 +127,9 @@ TEST_F(PartsOption, MistakesEndTheToolWithoutAFile) {
       {{"out.ply", "-parts", "some"}, "'some' is not allowed"},
       {{"out.ply", "-min-points", "60"}, "does nothing with -parts all"},
       {{"out.ply", "-parts", "each", "-min-points", "3"}, "-min-points"},
-      {{"out_%03d.ply"}, "is for several parts"},
-      {{"out.ply", "-parts", "each", "-sphere", "s.ply"}, "can show one part alone"},
-      {{"out.ply", "-parts", "each", "-sphere", "s%03d.ply"}, "can show one part alone"},
+      {{"out_%03d.ply"}, "is a pattern for several parts"},
+      {{"out.ply", "-parts", "each", "-sphere", "s.ply"}, "can hold only one part"},
+      {{"out.ply", "-parts", "each", "-sphere", "s%03d.ply"}, "can hold only one part"},
       {{"out.ply", "-parts", "largest", "-min-points", "301"}, "no part has min_points = 301"},
   };
   for (const auto& [words, message] : mistakes) {

@@ -29,7 +29,7 @@ public:
   bool nextLine(std::string_view& line);
 
 private:
-  /// Adds a block to what is not taken yet. \return false at the end of the file.
+  /// Reads another block. \return false at the end of the file
   bool refill();
 
   std::string path_;
@@ -38,7 +38,7 @@ private:
   std::uint64_t file_size_ = 0;
   std::uint64_t position_ = 0;  // of the end of the buffer in the file
   std::string buffer_;
-  std::size_t begin_ = 0;  // of what is not taken yet
+  std::size_t begin_ = 0;  // of the rest of the block
 };
 
 }  // namespace spherical_param::tools

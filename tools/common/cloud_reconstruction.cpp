@@ -63,7 +63,7 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   if (options.time_limit) {
     *options.time_limit = std::max(0.0, *options.time_limit - seconds);
   }
-  runLibrary("cannot mesh " + inQuotes(path), "check that the file holds the cloud you mean",
+  runLibrary("cannot mesh " + inQuotes(path), "check that the file is the right cloud",
              [&] { cloud.result = reconstruct(positionsOf(*cloud.data), options); });
   progress.finish();
   cloud.stages = cloud.result.stages;

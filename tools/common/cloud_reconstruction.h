@@ -35,7 +35,7 @@ std::string leftOut(const CloudReconstruction& cloud);
 /// [unit of the file].
 Positions vertexPositions(const CloudReconstruction& cloud, const Surface& surface);
 
-/// The mesh that is written of a surface. Points that are no vertices are left out. Cloud and
+/// The mesh of a surface to write, without points that are not vertices. Cloud and
 /// surface must outlive it.
 MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface);
 

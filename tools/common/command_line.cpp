@@ -126,9 +126,9 @@ std::pair<std::string, std::string> inputAndOutput(const CommandLine& command_li
                                                    const std::string& tool) {
   const std::vector<std::string>& files = command_line.others();
   if (files.size() != 2) {
-    throw UsageError(files.empty()       ? "there is no input file"
-                     : files.size() == 1 ? "there is no output file"
-                                         : "there is one file too many: " + inQuotes(files[2]),
+    throw UsageError(files.empty()       ? "the input file is missing"
+                     : files.size() == 1 ? "the output file is missing"
+                                         : "one file too many: " + inQuotes(files[2]),
                      "run '" + tool + " input output [options]', -h shows the options");
   }
   return {files[0], files[1]};

@@ -67,7 +67,7 @@ void Findings::requireSoundness(bool is_usable) const {
     throw ToolError(
         ExitCode::NotUsable,
         "the mesh was written but is not usable: more than 1 % of its triangles intersect",
-        "try what the warnings say, or leave out what is not of the object");
+        "follow the warnings, or crop the cloud to the object");
   }
 }
 

@@ -22,7 +22,7 @@ public:
   /// Adds a failure that is no finding of the library, and counts as a fault.
   void add(const std::string& failure);
 
-  /// Prints a line a finding; those that end the tool are left to that.
+  /// Prints a line a finding, except those that end the tool.
   void print() const;
   /// Ends the tool with exit code 3 if a mesh is not usable, and with -strict with 1 if there is a
   /// fault. To be called when all files are written. \throw ToolError

@@ -178,7 +178,7 @@ public:
     const std::string_view mark(header.data(), 2);
     swapped_ = mark != byteOrderMark();
     if ((mark != "II" && mark != "MM") || integer(header.data() + 2, 2) != 42) {
-      failContent(path_, "it is no TIFF file");
+      failContent(path_, "it is not a TIFF file");
     }
     const std::uint64_t offset = integer(header.data() + 4, 4);
     std::array<char, 2> count{};
@@ -259,8 +259,8 @@ private:
 /// Refuses what is a TIFF file, but of another kind. \return the side.
 std::uint64_t checkKind(TiffReader& tiff, const std::string& path) {
   const auto refuse = [&path](const std::string& reason) {
-    failReading(path, "it is no geometry image: " + reason,
-                "give one that was written by this tool, or three 32-bit floats a pixel without "
+    failReading(path, "it is not a geometry image: " + reason,
+                "give an image of this tool, or three 32-bit floats a pixel without "
                 "compression");
   };
   const std::uint64_t width = tiff.value(ImageWidth, 0);
@@ -368,7 +368,7 @@ GeometryImage readGeometryImage(const std::string& path, const FileProgress& pro
     const auto read = Eigen::Map<const Eigen::Matrix<float, 3, Eigen::Dynamic>>(
         floats.data(), 3, static_cast<Eigen::Index>(pixels));
     if (!read.allFinite()) {
-      failContent(path, "there are positions that are not finite");
+      failContent(path, "it has positions that are not finite");
     }
     image.positions.middleCols(static_cast<Eigen::Index>(first_row * side),
                                static_cast<Eigen::Index>(pixels)) = read.cast<double>();

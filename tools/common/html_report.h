@@ -19,37 +19,37 @@ inline constexpr std::size_t kMaxReportTriangles = 1000000;
 /// The line of -report.
 std::vector<OptionInfo> htmlReportOptions();
 
-/// The file of -report, empty: not wanted. \throw UsageError for a name that is none of a page, or
-/// a program that was built without one.
+/// The file of -report; empty: none. \throw UsageError for a name without .html, or a program built
+/// without the page
 std::string parseHtmlReport(const CommandLine& command_line);
 
-/// Has a reconstruction keep what a page shows.
+/// Makes a reconstruction keep the data of a page.
 void keepForHtmlReport(ReconstructionSettings& settings);
 
-/// A command line that does the same again, for a POSIX shell: the program, the options that were
-/// given, and the seed where it has a say.
+/// A command line that repeats the run, for a POSIX shell: the program, its options, and the seed
+/// if it matters.
 ///
-/// \param files    of that run, which the command line may have in another order.
-/// \param settings what was made of the command line.
+/// \param files    of the run, in any order.
+/// \param settings parsed from the command line.
 std::string repeatedCommand(const std::string& tool, const CommandLine& command_line,
                             const std::vector<OptionInfo>& options,
                             const std::vector<std::string>& files,
                             const ReconstructionSettings& settings);
 
-/// What a page is made of.
+/// The data of a page.
 struct HtmlReportInput {
   std::string tool;                            ///< its name
   std::string command;                         ///< \see repeatedCommand
-  Json report;                                 ///< that of -json
+  Json report;                                 ///< of -json
   const CloudReconstruction* cloud = nullptr;  ///< made after keepForHtmlReport()
-  const Surface* surface = nullptr;            ///< of the cloud, that is shown
+  const Surface* surface = nullptr;            ///< to be shown
   int threads = 0;
 };
 
-/// Writes a page with all it needs: it opens in a browser, without any other file or the network.
+/// Writes a page that opens in a browser without other files or a network.
 ///
 /// \param page           the page without its data. \see reportPage()
-/// \param max_triangles of the mesh that is shown.
+/// \param max_triangles of the shown mesh.
 /// \throw Failure if it cannot be stored.
 void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportInput& input,
                      std::size_t max_triangles = kMaxReportTriangles);

@@ -12,7 +12,7 @@ namespace spherical_param::tools {
 /// infinite; none if anything but the number is in the text.
 std::optional<double> toReal(std::string_view text);
 
-/// The integer that a text consists of, none if it is no integer or does not fit.
+/// The integer of a text; none if it is not an integer or does not fit.
 std::optional<std::int64_t> toInteger(std::string_view text);
 
 /// Range of an option's value, both ends included.

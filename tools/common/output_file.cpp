@@ -94,7 +94,7 @@ void checkOutputPath(const std::string& path) {
   }
   const std::string directory = directoryOf(target);
   if (stat(directory.c_str(), &status) != 0) {
-    failPath(path, "there is no directory " + inQuotes(directory), another_place);
+    failPath(path, "missing directory " + inQuotes(directory), another_place);
   }
   if (!S_ISDIR(status.st_mode)) {
     failPath(path, inQuotes(directory) + " is not a directory", another_place);

@@ -30,7 +30,7 @@ public:
 
   /// Adds bytes. \throw Failure if they cannot be stored, e.g. for a full disk.
   void write(std::string_view bytes);
-  /// Stores what is still in memory, closes the file and checks its size. \throw Failure.
+  /// Flushes and closes the file and checks its size. \throw Failure.
   void finish();
   /// finish() if that was not done, then gives the file its name. \throw Failure.
   void commit();

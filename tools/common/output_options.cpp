@@ -8,9 +8,10 @@ namespace spherical_param::tools {
 
 std::vector<OptionInfo> outputOptions() {
   return {
-      {"json", "FILE", "write a report, - for the standard output and nothing else there", false},
+      {"json", "FILE", "write a report; -: to the standard output, which has nothing else then",
+       false},
       {"verbose", "", "print options, stages and tables before the summary", false},
-      {"quiet", "", "print nothing but errors", true},
+      {"quiet", "", "print only errors", true},
       {"ascii", "", "write PLY, STL and VTK as text", true},
   };
 }
@@ -49,7 +50,7 @@ void checkOutputs(const std::vector<std::string>& inputs, const std::vector<std:
     for (const std::string& file : files) {
       if (isSameFile(file, output)) {
         throw UsageError(inQuotes(output) + " would overwrite " + inQuotes(file),
-                         "give every file a name of its own");
+                         "give each file its own name");
       }
     }
     files.push_back(output);

@@ -38,7 +38,7 @@ OutputSettings parseOutputOptions(const CommandLine& command_line);
 /// Adds the members `json`, `ascii`, `quiet` and `verbose`.
 void addToJson(const OutputSettings& settings, Json& json);
 
-/// Adds the file of the report, if there is one, to the names of those that will be written.
+/// Adds the file of the report, if any, to the names of output files.
 void addReport(const OutputSettings& settings, std::vector<std::string>& outputs);
 
 /// Looks for what would fail or do harm only after the work: an output that is an input or another

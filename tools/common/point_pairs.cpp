@@ -51,7 +51,7 @@ private:
     }
     const std::size_t count = cloud.data->points.size();
     if (*number < 0 || static_cast<std::uint64_t>(*number) >= count) {
-      throw Failure(inQuotes(path_) + ", line " + std::to_string(line) + ": there is no point " +
+      throw Failure(inQuotes(path_) + ", line " + std::to_string(line) + ": unknown point " +
                         inQuotes(word) + " in a cloud of " + std::to_string(count),
                     "give numbers from 0 to " + std::to_string(count - 1));
     }

@@ -48,10 +48,10 @@ std::vector<OptionInfo> productOptions(const SphereMapOptions& defaults) {
   std::vector<OptionInfo> options = reconstructionOptions();
   options.push_back(
       {"area-weight", "X",
-       "map: areas against angles, 0 (angles) to 1 (" + formatted(defaults.area_weight, 3) + ")"});
-  options.push_back(
-      {"map-sweeps", "N",
-       "map: sweeps of each level at most, up to 1000 (" + std::to_string(defaults.sweeps) + ")"});
+       "map: weight of areas, 0 (angles) to 1 (" + formatted(defaults.area_weight, 3) + ")"});
+  options.push_back({"map-sweeps", "N",
+                     "map: maximum number of sweeps a level, up to 1000 (" +
+                         std::to_string(defaults.sweeps) + ")"});
   return options;
 }
 
@@ -62,7 +62,7 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
   settings.reconstruction = parseReconstructionOptions(command_line);
   if (settings.reconstruction.options.parts == PartsMode::Each) {
     throw UsageError("option -parts: this tool makes one surface",
-                     "give -parts largest, or mesh each part to a file of its own before");
+                     "give -parts largest, or write each part to its own file first");
   }
   settings.map.threads = settings.reconstruction.options.threads;
   if (command_line.has("area-weight")) {

@@ -28,7 +28,7 @@ std::vector<OptionInfo> productOptions(const SphereMapOptions& defaults = {});
 ProductSettings parseProductOptions(const CommandLine& command_line,
                                     const SphereMapOptions& defaults = {});
 
-/// Prints what is in force.
+/// Prints the settings.
 void printProductOptions(const ProductSettings& settings, Console& console);
 
 /// What is in force; what has no say with the chosen methods is null.
@@ -52,7 +52,7 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
 /// What the library found, with options that tools of one surface take.
 std::vector<Finding> findingsOf(const MappedCloud& mapped);
 
-/// Adds the size of the mesh and what is wrong with the map: `input_points`, `vertices`,
+/// Adds the size of the mesh and the faults of the map: `input_points`, `vertices`,
 /// `mesh_triangles`, `mesh_self_intersections`, `flipped_triangles`, `angle_distortion`,
 /// `area_distortion`, `mean_angle_difference_degrees`, `stretch_efficiency`, and the same of the
 /// embedding as `embedding_distortion`.

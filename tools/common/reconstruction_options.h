@@ -25,7 +25,7 @@ ReconstructionSettings parseReconstructionOptions(const CommandLine& command_lin
 /// Prints the values in force.
 void printReconstructionOptions(const ReconstructionSettings& settings, Console& console);
 
-/// The values in force; null for options without effect, and for those that are unset.
+/// The values of the options; null if unset or without effect.
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings);
 
 /// The value in force of an option of the library's table, as text.

@@ -8,15 +8,15 @@
 
 namespace spherical_param::tools {
 
-/// The figures of a surface by the names of its fields; those of its topology stand among them.
-/// Vertices are rows of the cloud, lists of triangles their number, and arrays with an entry for
-/// each vertex or triangle are left out. Of the triangles that intersect, the first 1,000 pairs.
+/// The figures of a surface by the names of its fields, with the fields of its topology among them.
+/// Vertices are rows of the cloud. Lists of triangles become their number, except for the first
+/// 1,000 intersecting pairs. Arrays by vertex or triangle are omitted.
 Json toJson(const Surface& surface);
 
 Json toJson(const LeftOut& left_out);
 Json toJson(const std::vector<Finding>& findings);
 
-/// Prints the levels of the embedding, and the size of the mesh; what it encloses, if anything.
+/// Prints the levels of the embedding, the size of the mesh and its solid.
 void printTables(const Surface& surface, Console& console);
 
 }  // namespace spherical_param::tools

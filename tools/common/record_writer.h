@@ -129,7 +129,7 @@ public:
     sendIfFull();
   }
 
-  /// Hands over what is left.
+  /// Writes the rest.
   void finish() {
     file_.write(block_);
     block_.clear();

@@ -95,7 +95,7 @@ PointData readObj(const std::string& path, const FileProgress& progress) {
       }
     } else if (words[0].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
                                           "0123456789/.-\\") != std::string_view::npos) {
-      failLine(path, line, "is no statement of an OBJ file");
+      failLine(path, line, "is not a statement of an OBJ file");
     }
   });
   if (content.data.points.empty()) {

@@ -11,16 +11,16 @@
 
 namespace pcl {
 
-/** \brief Mesh a cloud and map the mesh to the unit sphere, one to one and with low distortion:
- * what texturing, remeshing and morphing begin with.
+/** \brief Mesh a cloud and map the mesh to the unit sphere, one to one and with low distortion,
+ * for texturing, remeshing and morphing.
  *
  * The vertices of the mesh are those of reconstruction.getResult(), which stays there, with its
  * triangles; reconstruction.getVertexIndices() has their indices in the cloud.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called
- * \param[out] points 3 x v, the vertices: consolidated and smoothed, if that was asked for
+ * \param[out] points 3 x v, the vertices: consolidated and smoothed if the options say so
  * \param[out] map the map of these vertices
- * \param[in] options where no threads are given, those of the reconstruction are used
+ * \param[in] options without a number of threads, that of the reconstruction is used
  * \return false after a failure, which PCL_ERROR reports; points and map are empty then. No
  * exception leaves the function, except one that a progress callback throws. \ingroup surface
  */
@@ -38,8 +38,7 @@ struct MappedMesh {
   spherical_param::SphereMap map;        ///< of the points
 };
 
-/** \brief The vertices of the last mesh, consolidated and smoothed if that was asked for. \return 3
- * x v */
+/** \brief The vertices of the last mesh, consolidated and smoothed. \return 3 x v */
 template <typename PointInT>
 spherical_param::Positions
 verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
@@ -56,8 +55,8 @@ verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
   return points;
 }
 
-/** \brief Meshes a cloud, maps the mesh, and makes an output of it, of which only the header is
- * left after a failure. \param[in] function the name that messages begin with \param[in] options of
+/** \brief Meshes a cloud, maps the mesh, and makes an output of it; only its header is left after a
+ * failure. \param[in] function the name that messages begin with \param[in] options of
  * the map \param[in] threads of `make`; 0: those of the reconstruction \param[in] make called with
  * the mesh and the threads; returns the output without its header \return false after a failure */
 template <typename PointInT, typename Output, typename Make>

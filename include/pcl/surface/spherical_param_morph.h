@@ -22,27 +22,27 @@ struct SphericalParamMorphOptions {
   spherical_param::SurfaceFit fit = spherical_param::SurfaceFit::Linear;
   /** \brief Points that become one: the index of each in the input cloud of its reconstruction. */
   std::vector<std::pair<pcl::index_t, pcl::index_t>> pairs;
-  /** \brief Alignment and connectivity. Its pairs are those of vertices of the two results: they
-   * come after `pairs`. Where no threads are given, those of the first reconstruction are used. */
+  /** \brief Alignment and connectivity. Its pairs are vertices of the two results and come after
+   * `pairs`. Without a number of threads, those of the first reconstruction are used. */
   spherical_param::MorphOptions morph = {};
-  /** \brief Parameters of both maps to the sphere. Where no threads are given, those of each
+  /** \brief Parameters of both maps to the sphere. Without a number of threads, those of each
    * reconstruction are used. */
   spherical_param::SphereMapOptions map = {};
 };
 
 /** \brief Mesh two clouds and change one shape into the other, as a sequence of meshes:
- * manifold, oriented outward, of genus 0, with the same polygons in each; closed, but for the
- * openings that setSurface() leaves open in either one.
+ * manifold, oriented outward, of genus 0, with the same polygons in each; closed, except for
+ * openings that setSurface() leaves open in either surface.
  *
  * \param[in,out] first with its input cloud set; its reconstruct() is called, and its results stay
  * there
  * \param[in,out] second likewise; another object
- * \param[in] frames meshes, those of both ends among them; 2 to 10000
+ * \param[in] frames number of meshes including both ends; 2 to 10000
  * \param[out] output the frames; their clouds have points of type pcl::PointXYZ, their header is
  * that of the first input
  * \param[in] options the defaults need no tuning
- * \param[out] impossible if it is given: the pairs that could not be honoured, by their place in
- * `pairs` and behind these in `morph.pairs`
+ * \param[out] impossible if it is given: the pairs that could not be honoured, by their index in
+ * `pairs`, continued in `morph.pairs`
  * \return false after a failure, which PCL_ERROR reports; the output is empty then. No exception
  * leaves the function, except one that a progress callback throws. \ingroup surface
  */

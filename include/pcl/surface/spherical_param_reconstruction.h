@@ -26,7 +26,7 @@ namespace pcl {
  * the embedded points, which is their convex hull, gives a first connectivity; its decisions are
  * exact. It is then optimised on the points themselves, by moves that keep a sphere a sphere, until
  * no triangles intersect, if possible (getSelfIntersections()); the points are never moved.
- * getDiagnosis() lists what speaks against a closed surface without handles, and where.
+ * getDiagnosis() lists evidence against a closed surface without handles, and its place.
  *
  * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
  * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
@@ -37,22 +37,21 @@ namespace pcl {
  *
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
- * are skipped, exact duplicates become one vertex (that of the first of them); both are counted.
+ * are left out; exact duplicates become one vertex, at the first of them; both are counted.
  *
  * Failure (null or empty cloud, an index out of range, fewer than 4 distinct finite points, all
- * points in one plane, an option out of range, cancellation) leaves an empty mesh, prints one line
- * with PCL_ERROR, which getErrorMessage() returns as well; no exception leaves the class, except
- * one that the progress callback throws.
+ * points in one plane, an option out of range, cancellation) leaves an empty mesh and prints one
+ * line with PCL_ERROR, which getErrorMessage() also returns. The class passes on exceptions of the
+ * progress callback and throws no others.
  *
  * \note Two objects may work in two threads at the same time, unless they share a search object
  * (setSearchMethod()) whose setInputCloud() or queries would race. An object itself must not be
  * used from two threads at once.
- * \note The core finds the neighbours, in double precision. A search object that is set by
- * setSearchMethod() is used instead, from the calling thread alone.
- * \note The memory is below 2 KB a point, besides that of the process itself; 3 KB where the
- * multilevel embedding has a tolerance on the graph of 25 nearest neighbours. The time is
- * O(n log n), typically, and with the iterative embedding iterations times O(n k) more.
- * \ingroup surface
+ * \note The core finds the neighbours in double precision, unless setSearchMethod() sets a search
+ * object, which is used from the calling thread only.
+ * \note Memory: below 2 KB a point; 3 KB for the multilevel embedding with a tolerance on 25
+ * nearest neighbours. Time: O(n log n), typically; the iterative embedding adds iterations * O(n
+ * k). \ingroup surface
  */
 template <typename PointInT>
 class SphericalParamReconstruction : public MeshConstruction<PointInT> {
@@ -77,11 +76,11 @@ public:
   using TriangulationMethod = spherical_param::TriangulationMethod;
   /** \brief Weights of the Laplacian. */
   using EdgeWeights = spherical_param::EdgeWeights;
-  /** \brief How far the mesh is optimised on the points. */
+  /** \brief How the mesh is optimised on the points. */
   using OptimizationMethod = spherical_param::OptimizationMethod;
-  /** \brief Whether points are consolidated before they are meshed. */
+  /** \brief Whether points are consolidated before meshing. */
   using ConsolidationMode = spherical_param::ConsolidationMode;
-  /** \brief What becomes of openings of the surface. */
+  /** \brief Whether openings of the surface are filled. */
   using SurfaceMode = spherical_param::SurfaceMode;
   /** \brief Which points are left out. */
   using OutlierMode = spherical_param::OutlierMode;
@@ -93,66 +92,63 @@ public:
   SphericalParamReconstruction();
   ~SphericalParamReconstruction() override = default;
 
-  /** \brief Set whether the points are moved to the surface that they sample, and merged below
-   * their noise, before they are meshed: for noisy scans, and several that were merged. \param[in]
-   * mode default ConsolidationMode::None \note The polygons then join the first input points of the
-   * merged ones; their places are those of getMovedPoints(). Neighbours are found in double
-   * precision then, not by the search object. How many points were merged, and how far they moved,
-   * is in Surface::consolidation of getResult(). */
+  /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
+   * before meshing: for noisy and for merged scans.
+   * \param[in] mode default ConsolidationMode::None
+   * \note Polygons then index the first of merged points; getMovedPoints() has the new positions,
+   * and Surface::consolidation of getResult() the figures. The search object is not used. */
   inline void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
   /** \brief Get whether the points are consolidated.
    * \return the mode */
   inline ConsolidationMode getConsolidation() const { return options_.consolidation; }
 
-  /** \brief Set what becomes of openings of the surface.
-   * \param[in] mode default SurfaceMode::Closed: they are filled. Open leaves them open; Auto those
-   * alone that are certain.
-   * \note The openings, and how certain they are, are in getResult(), and so is the boundary of a
-   * mesh that is left open. */
+  /** \brief Set whether openings of the surface are filled.
+   * \param[in] mode default SurfaceMode::Closed: all are filled. Open leaves them open; Auto leaves
+   * certain ones open.
+   * \note getResult() has the openings with their certainty, and the boundary of an open mesh. */
   inline void setSurface(SurfaceMode mode) { options_.surface = mode; }
-  /** \brief Get what becomes of openings of the surface.
+  /** \brief Get whether openings of the surface are filled.
    * \return the mode */
   inline SurfaceMode getSurface() const { return options_.surface; }
 
-  /** \brief Set up to which size openings are filled although the surface is left open.
-   * \param[in] edges of the loop around an opening; default 0, none */
+  /** \brief Set up to which size openings are filled in any case.
+   * \param[in] edges of the loop around an opening; default 0: none */
   inline void setFillHoles(int edges) { options_.fill_holes = edges; }
   /** \brief Get up to which size openings are filled.
    * \return the number of edges around them */
   inline int getFillHoles() const { return options_.fill_holes; }
 
-  /** \brief Set which points are left out before all else, as they belong to no surface.
-   * \param[in] mode default OutlierMode::None. Auto: stray points, small clusters of them and
-   * single points near a surface. Deviation: points too far from the average of their neighbours.
-   * \note Which they are is in getResult().left_out. */
+  /** \brief Set which points are left out first because they belong to no surface.
+   * \param[in] mode default OutlierMode::None. Auto: stray points, small clusters and isolated
+   * points near a surface. Deviation: points too far from the average of their neighbours. \note
+   * getResult().left_out lists them. */
   inline void setOutliers(OutlierMode mode) { options_.outliers = mode; }
   /** \brief Get which points are left out.
    * \return the mode */
   inline OutlierMode getOutliers() const { return options_.outliers; }
 
-  /** \brief Set how far off outliers are with OutlierMode::Deviation.
+  /** \brief Set the threshold of OutlierMode::Deviation.
    * \param[in] sigma number of standard deviations, 0 to 1000; default 4 */
   inline void setOutlierSigma(double sigma) { options_.outlier_sigma = sigma; }
-  /** \brief Get how far off outliers are with OutlierMode::Deviation.
+  /** \brief Get the threshold of OutlierMode::Deviation.
    * \return number of standard deviations */
   inline double getOutlierSigma() const { return options_.outlier_sigma; }
 
-  /** \brief Set which parts of the cloud are meshed. A part is a surface of its own: points that
-   * neighbours join.
-   * \param[in] mode default PartsMode::All: all together, as one surface. Largest meshes that of
-   * most points; Each meshes all, each as if it were alone, to polygons of one mesh.
-   * \note With Each, a part that cannot be meshed, as its points are in one plane, say, is left out
-   * with a warning (PCL_WARN). */
+  /** \brief Set which parts of the cloud are meshed. A part is a set of points that neighbours
+   * connect.
+   * \param[in] mode default PartsMode::All: all together, as one surface. Largest meshes the part
+   * with the most points; Each meshes every part by itself, into polygons of one mesh. \note With
+   * Each, a part that cannot be meshed (all points in one plane, for example) is left out with a
+   * warning (PCL_WARN). */
   inline void setParts(PartsMode mode) { options_.parts = mode; }
   /** \brief Get which parts of the cloud are meshed.
    * \return the mode */
   inline PartsMode getParts() const { return options_.parts; }
 
-  /** \brief Set how many distinct points a part has at least; smaller ones are left out. With
-   * PartsMode::All it has no effect.
-   * \param[in] points 4 and up; default 50 */
+  /** \brief Set the minimum number of distinct points of a part; smaller parts are left out. No
+   * effect with PartsMode::All. \param[in] points 4 and up; default 50 */
   inline void setMinPartSize(int points) { options_.min_points = points; }
-  /** \brief Get how many distinct points a part has at least.
+  /** \brief Get the minimum number of distinct points of a part.
    * \return their number */
   inline int getMinPartSize() const { return options_.min_points; }
 
@@ -165,15 +161,14 @@ public:
    * \return the method */
   inline GraphMethod getGraphMethod() const { return options_.graph; }
 
-  /** \brief Set the number of nearest neighbours of each point that are searched for.
-   * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Unless it is set,
-   * 25 (the paper's) for GraphMethod::NearestNeighbors and 12 for GraphMethod::LocalDelaunay, which
-   * asks for more where it needs them.
-   * \note For nearest neighbours, raise it for clouds with noise or uneven density along scan
-   * lines, and lower it where sheets of the surface come close to each other. Local Delaunay
-   * neighbourhoods hardly depend on it, and use no more than 32. */
+  /** \brief Set the number of nearest neighbours of each point to search for.
+   * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default: 25 (as in
+   * the paper) for GraphMethod::NearestNeighbors; 12 for GraphMethod::LocalDelaunay, which searches
+   * for up to 32 where needed and hardly depends on it. \note For nearest neighbours, raise it for
+   * clouds with noise or uneven density along scan lines, and lower it where sheets of the surface
+   * come close to each other. */
   inline void setKSearch(int k) { options_.k = k; }
-  /** \brief Get the number of nearest neighbours of each point that are searched for.
+  /** \brief Get the number of nearest neighbours of each point to search for.
    * \return that of setKSearch(), or the default of the graph method */
   inline int getKSearch() const { return spherical_param::neighborsToSearch(options_); }
 
@@ -187,9 +182,9 @@ public:
 
   /** \brief Set the weights of the Laplacian (equations 2 to 4 of the paper).
    * \param[in] weights default EdgeWeights::Adaptive
-   * \note Only adaptive weights keep the embedding from collapsing by themselves. The other two are
-   * for comparison: with them, the multilevel embedding has to hold the centroid, and their
-   * tangential Laplacian vanishes only together with that pull. */
+   * \note Only adaptive weights keep the embedding from collapsing by themselves. The others are
+   * for comparison: with them, the multilevel embedding holds the centroid by a barrier, and the
+   * tangential Laplacian vanishes only together with its pull. */
   inline void setWeights(EdgeWeights weights) { options_.embedding.weights = weights; }
   /** \brief Get the weights of the Laplacian.
    * \return the weights */
@@ -199,9 +194,9 @@ public:
    * \param[in] tolerance in radii of the sphere, 0 to 1. Unset (std::nullopt, the default), the
    * iterative embedding aims at 1e-8; the multilevel embedding ends with its smoothing sweeps and
    * does not converge.
-   * \note Set it, 1e-8 say, for a map that hardly depends on how it was reached, and where
-   * smoothing alone leaves folds (getDiagnosis().edges_outside_graph), as it may on long
-   * thin limbs. The mesh hardly gains otherwise. */
+   * \note Set it, to 1e-8 for example, for a map that hardly depends on its start, and where
+   * smoothing sweeps leave folds (getDiagnosis().edges_outside_graph), as on long thin limbs.
+   * Otherwise the mesh hardly gains. */
   inline void setTolerance(std::optional<double> tolerance) {
     options_.embedding.tolerance = tolerance;
   }
@@ -211,8 +206,8 @@ public:
 
   /** \brief Set how the points on the sphere are triangulated.
    * \param[in] method default TriangulationMethod::Incremental
-   * \note Set TriangulationMethod::Qhull to compare with the paper; it is slower, and has to
-   * reinsert points where they are dense. */
+   * \note Set TriangulationMethod::Qhull to compare with the paper; it is slower and must reinsert
+   * points in dense places. */
   inline void setTriangulationMethod(TriangulationMethod method) {
     options_.triangulation = method;
   }
@@ -220,39 +215,38 @@ public:
    * \return the method */
   inline TriangulationMethod getTriangulationMethod() const { return options_.triangulation; }
 
-  /** \brief Set how far the mesh is optimised on the points.
+  /** \brief Set how the mesh is optimised on the points.
    * \param[in] method default OptimizationMethod::Full
-   * \note Set OptimizationMethod::None for the mesh that the sphere gives, and
-   * OptimizationMethod::Flips where time matters more than the last self-intersections. */
+   * \note Set OptimizationMethod::None for the plain mesh of the sphere, and
+   * OptimizationMethod::Flips if time matters more than the last self-intersections. */
   inline void setOptimizationMethod(OptimizationMethod method) { options_.optimization = method; }
-  /** \brief Get how far the mesh is optimised on the points.
+  /** \brief Get how the mesh is optimised on the points.
    * \return the method */
   inline OptimizationMethod getOptimizationMethod() const { return options_.optimization; }
 
-  /** \brief Set the strength of the smoothing that takes noise off the points.
-   * \param[in] steps 0 (default) to 10000; 0: none. The strength is about that of as many steps of
-   * the paper's section 4.2.
-   * \note The mesh keeps the points of the input; the smoothed ones are those of
-   * getMovedPoints(), for which the same polygons hold. */
+  /** \brief Set the strength of smoothing.
+   * \param[in] steps 0 (default) to 10000; 0: none. About as strong as this number of steps of the
+   * paper's section 4.2.
+   * \note The mesh keeps the points of the input; getMovedPoints() has the smoothed points for the
+   * same polygons. */
   inline void setSmoothing(int steps) { options_.smoothing = steps; }
   /** \brief Get the strength of the smoothing.
    * \return the steps; 0: none */
   inline int getSmoothing() const { return options_.smoothing; }
 
-  /** \brief Set the seed of all random choices: the order in which the multilevel embedding
-   * coarsens the graph, and the parts of the mesh that OptimizationMethod::Full takes out.
-   * \param[in] seed any number; default 1. The same seed gives the same result.
-   * \note Change it to see how much the result depends on it. */
+  /** \brief Set the seed of all random choices: the order of coarsening in the multilevel
+   * embedding, and the parts of the mesh that OptimizationMethod::Full rebuilds. \param[in] seed
+   * any number; default 1. The same seed gives the same result. \note Change it to see how much the
+   * result depends on it. */
   inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
   /** \brief Get the seed of all random choices.
    * \return the seed */
   inline std::uint32_t getSeed() const { return options_.seed; }
 
-  /** \brief Set the time after which the work ends with the best mesh so far.
+  /** \brief Set the time after which the work ends with the best mesh so far, over all parts.
    * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit. A first mesh is made in any case;
    * Surface::is_out_of_time of getResult() says whether the limit ended the work.
-   * \note Set it where a scan must not hold up what comes after it. The same limit may give another
-   * mesh on another machine. */
+   * \note Set it if a scan must not delay the next one. The mesh then depends on the machine. */
   inline void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
   /** \brief Get the time after which the work ends.
    * \return that of setTimeLimit() [s]; unset by default */
@@ -279,9 +273,8 @@ public:
    * \return the function; may be empty */
   inline const ProgressCallback& getProgressCallback() const { return options_.progress; }
 
-  /** \brief Set all options at once, the progress callback among them, in place of what was set.
-   * The options that have no setter of their own are set here: change a copy of getOptions().
-   * \param[in] options checked by reconstruct() */
+  /** \brief Set all options at once, also the progress callback. For options without a setter,
+   * change a copy of getOptions(). \param[in] options checked by reconstruct() */
   inline void setOptions(const spherical_param::Options& options) { options_ = options; }
   /** \brief Get all options at once.
    * \return those in force */
@@ -296,23 +289,23 @@ public:
    * \param[out] polygons the triangles, indices into the input cloud; cleared first. */
   void reconstruct(std::vector<pcl::Vertices>& polygons) override;
 
-  /** \brief Mesh the points given in setInputCloud() and setIndices(), for getResult() alone: its
-   * triangles take 24 bytes a point, polygons 112 and more. */
+  /** \brief Mesh the points given in setInputCloud() and setIndices() for getResult() only: its
+   * triangles take 24 bytes a point, polygons at least 112. */
   void reconstruct();
 
   /** \brief Get the number of parts that the last reconstruct() meshed.
-   * \return 1, or with PartsMode::Each their number; 1 after a failure as well */
+   * \return the number with PartsMode::Each, else 1; 1 after a failure */
   inline std::size_t getPartCount() const { return parts_.size(); }
 
   /** \brief Get the result of the last reconstruct(): the surface of each part, what was left out,
-   * verdict and findings. Empty after a failure. Its input points are those of setIndices() without
-   * repetitions, in their order, or all points; getUsedIndices() and getVertexIndices() list their
-   * indices in the cloud.
-   * \return the result, which the next reconstruct() replaces */
+   * verdict and findings. Empty after a failure. Its input points are those of setIndices(), in
+   * their order and without repetitions, or all points; getUsedIndices() and getVertexIndices() map
+   * them to the cloud. getResult().surface() is the largest mesh, and fails after a failure.
+   * \return the result, valid until the next reconstruct() */
   inline const spherical_param::Result& getResult() const { return result_; }
 
-  /** \brief Get the indices into the input cloud of the points that were meshed: those of
-   * setIndices() (or all), without repetitions and without points that are not finite, of the part.
+  /** \brief Get the indices into the input cloud of the points of a part: finite, without
+   * repetitions.
    * \param[in] part below getPartCount()
    * \return their indices, in the order of the input */
   inline const pcl::Indices& getUsedIndices(std::size_t part = 0) const {
@@ -326,43 +319,40 @@ public:
     return parts_.at(part).vertex_indices;
   }
 
-  /** \brief Get the number of points that were skipped because they are not finite.
+  /** \brief Get the number of points left out because they are not finite.
    * \return their number */
   inline std::size_t getIgnoredPointCount() const { return result_.left_out.not_finite.size(); }
 
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
-   * that the polygons fit it as well. Duplicates have the place of their vertex; points that were
-   * skipped or not in the indices are NaN. Empty after a failure.
-   * \note Where the optimisation moved vertices, as it does on noise, some polygons are inverted on
-   * the sphere; with OptimizationMethod::None none are, but for rounding.
-   * \return a new cloud of the size of the input */
+   * that the polygons fit. Duplicates have the place of their vertex; points that were not meshed
+   * are NaN. Empty after a failure. \note Where the optimisation moved vertices, as on noise, some
+   * polygons are inverted on the sphere; with OptimizationMethod::None only by rounding. \return a
+   * new cloud of the size of the input */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
 
   /** \brief Get the points after setConsolidation() and setSmoothing(), one for each point of the
-   * input cloud, so that the polygons fit them as well. Duplicates and merged points have the place
-   * of their vertex; points that were skipped or not in the indices are NaN. Empty without both and
-   * after a failure.
-   * \note In double precision, by vertex, they are Surface::moved() of getResult(); how far they
-   * moved is in Surface::consolidation and Surface::smoothing. \return a new cloud of the size of
-   * the input, or an empty one */
+   * input cloud, so that the polygons fit. Duplicates and merged points have the place of their
+   * vertex; points that were not meshed are NaN. Empty without both and after a failure.
+   * \note Surface::moved() of getResult() has them by vertex in double precision;
+   * Surface::consolidation and Surface::smoothing say how far they moved.
+   * \return a new cloud of the size of the input, or an empty one */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getMovedPoints() const;
 
-  /** \brief Get the pairs of triangles of the mesh that intersect, as indices of triangles of
-   * getResult(), with one part those of the polygons, {lower, higher}, ascending. Measured on the
-   * points of the input, in exact arithmetic.
-   * \note On noisy points some are often left; see setSmoothing().
-   * \param[in] part below getPartCount()
-   * \return the pairs; none is what a clean scan should give */
+  /** \brief Get the pairs of triangles of the mesh that intersect, {lower, higher}, ascending. They
+   * are indices of triangles of the part's surface in getResult(), with one part those of the
+   * polygons. Exact on the points of the input. \note Noisy points often leave some; see
+   * setSmoothing(). \param[in] part below getPartCount() \return the pairs; empty for a clean scan
+   */
   inline const std::vector<std::array<spherical_param::Index, 2>>&
   getSelfIntersections(std::size_t part = 0) const {
     return getSurfaceOf(part).self_intersections;
   }
 
-  /** \brief Get what speaks against a closed surface without handles, in one piece, and where. Its
-   * indices are vertices, which getVertexIndices() maps to the cloud.
+  /** \brief Get the evidence against a closed surface without handles, in one piece, and its place.
+   * Indices are vertices, which getVertexIndices() maps to the cloud.
    * \param[in] part below getPartCount()
-   * \note The mesh is a sphere whatever the cloud shows; the diagnosis says whether it should be.
-   * \return what was found; getResult().verdict and getResult().findings say it in words */
+   * \note The mesh is always a sphere; the diagnosis says whether it should be.
+   * \return the diagnosis; getResult().verdict and getResult().findings put it in words */
   inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
     return getSurfaceOf(part).diagnosis;
   }

@@ -16,20 +16,20 @@ namespace pcl {
 struct SphericalParamRemeshOptions {
   /** \brief The regular mesh of the sphere that gives the new mesh its triangles. */
   spherical_param::SphereGrid grid = spherical_param::SphereGrid::Icosahedral;
-  /** \brief Number of vertices, of which the nearest possible is used; 0: as many as the mesh of
-   * the cloud has. Up to 2^29. */
+  /** \brief Number of vertices, up to 2^29; the nearest possible number is used. 0: as many as the
+   * mesh of the cloud. */
   std::size_t points = 0;
   /** \brief How the surface is continued between the points of the cloud. */
   spherical_param::SurfaceFit fit = spherical_param::SurfaceFit::Smooth;
-  /** \brief Parameters of the map to the sphere, which by default keeps angles more than for other
-   * uses: long thin triangles cut across folds of the surface. Where no threads are given, those of
-   * the reconstruction are used, in all steps. */
+  /** \brief Parameters of the map to the sphere. The default favours angles: long thin triangles
+   * cut across folds of the surface. Without a number of threads, those of the reconstruction are
+   * used, in all steps. */
   spherical_param::SphereMapOptions map = spherical_param::mapOptionsForResampling();
 };
 
 /** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere:
- * manifold, oriented outward, of genus 0, with as many vertices as one likes. It is closed, but for
- * the openings that setSurface() leaves open. Vertices are slid along the surface where triangles
+ * manifold, oriented outward, of genus 0, with any number of vertices. It is closed, except for
+ * openings that setSurface() leaves open. Vertices are slid along the surface where triangles
  * would intersect (see spherical_param::untangle()).
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
@@ -38,8 +38,8 @@ struct SphericalParamRemeshOptions {
  * \param[in] options the defaults need no tuning
  * \return false after a failure, which PCL_ERROR reports; the output has nothing but its header
  * then. No exception leaves the function, except one that a progress callback throws. \note The
- * triangles are even on the sphere, and less so on the surface, the more its map had to distort
- * areas (see spherical_param::SphereMap::distortion). \ingroup surface
+ * triangles are even on the sphere, and on the surface as far as its map keeps areas (see
+ * spherical_param::SphereMap::distortion). \ingroup surface
  */
 template <typename PointInT>
 bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,

@@ -20,7 +20,7 @@ namespace pcl {
 struct SphericalParamTextureOptions {
   /** \brief The layout of the image. */
   spherical_param::TextureAtlasOptions atlas = {};
-  /** \brief Size and gutter of the image. Where no threads are given, those of the reconstruction
+  /** \brief Size and gutter of the image. Without a number of threads, those of the reconstruction
    * are used. */
   spherical_param::BakeOptions bake = {};
   /** \brief Paint a checkerboard although the points have colours. */
@@ -29,7 +29,7 @@ struct SphericalParamTextureOptions {
   int checkerboard_cells = 8;
   /** \brief The name under which the caller will store the image: the mesh mentions it. */
   std::string image_file = "texture.png";
-  /** \brief Parameters of the map to the sphere. Where no threads are given, those of the
+  /** \brief Parameters of the map to the sphere. Without a number of threads, those of the
    * reconstruction are used. */
   spherical_param::SphereMapOptions map = {};
 };

@@ -14,7 +14,7 @@ namespace spherical_param {
 /// \addtogroup morphing
 /// @{
 
-/// A pair of vertices, one of each of two meshes, that are to be the same place.
+/// A pair of corresponding vertices of two meshes.
 struct PointPair {
   Index first = 0;   ///< vertex of the first mesh
   Index second = 0;  ///< vertex of the second mesh
@@ -26,18 +26,17 @@ enum class MorphConnectivity {
   /// edges cross. Each in-between is exact at both ends: every triangle is part of one of the first
   /// mesh, and of one of the second.
   AllVertices,
-  /// A geodesic sphere of MorphOptions::samples vertices, of which the nearest to each pair is put
-  /// there.
+  /// A geodesic sphere of MorphOptions::samples vertices; the nearest vertex moves to each pair.
   Resampled,
 };
 
 /// Parameters of Morph.
 struct MorphOptions : Execution {
-  /// Look for the best of all rotations of one sphere against the other: the least mean squared
-  /// distance between both surfaces, each centred and scaled to the same area; with pairs, the mean
-  /// squared distance of their places on the sphere is added. false: the maps as they are.
+  /// Find the best rotation of one sphere against the other: the least mean squared distance
+  /// between both surfaces, each centred and scaled to the same area; with pairs, plus the mean
+  /// squared distance of their places on the sphere. false: the maps as they are.
   bool align = true;
-  std::vector<PointPair> pairs;  ///< honoured exactly, or said to be impossible; at most 4096
+  std::vector<PointPair> pairs;  ///< honoured exactly or reported as impossible; at most 4096
   MorphConnectivity connectivity = MorphConnectivity::AllVertices;  ///< of the in-betweens
   std::size_t samples = 40962;  ///< of MorphConnectivity::Resampled, about; [12, 2^24]
 };
@@ -61,26 +60,26 @@ struct MorphResult {
   /// Mean squared distance of both surfaces, each centred and scaled to area 1, as rotated.
   double alignment_error = 0.0;
   std::vector<ImpossiblePair> impossible;  ///< left out; empty if all pairs are honoured
-  /// Largest distance on the sphere between the places of a pair that is honoured, where the motion
-  /// ended; they are one from then on [rad].
+  /// Largest distance on the sphere between the places of an honoured pair at the end of the
+  /// motion, before they become one [rad].
   double worst_pair = 0.0;
 };
 
 /// Puts two genus-0 surfaces on one mesh, by their maps to the sphere (Zwicker and Gotsman 2004,
-/// section 5). What is an opening of either one is an opening of the mesh.
+/// section 5). Openings of either surface are openings of the mesh.
 ///
-/// Pairs are honoured by a smooth one-to-one motion of the sphere: landmarks move along arcs,
-/// carrying their surroundings with them. A pair is impossible if its vertices are out of range,
-/// or one of them stands in an earlier pair with a different partner, or no motion was found that
-/// takes it to its place while others stay apart. With SurfaceFit::Linear the first and the second
-/// shape are the two meshes, cut along each other's edges.
+/// Pairs are honoured by a smooth one-to-one motion of the sphere: landmarks move along arcs with
+/// their surroundings. A pair is impossible if its vertices are out of range, if one of them has
+/// another partner in an earlier pair, or if no motion takes it to its place while others stay
+/// apart. With SurfaceFit::Linear the first and the second shape are the two meshes, cut along each
+/// other's edges.
 ///
 /// \param first surface at the beginning, with its map.
 /// \param second surface at the end, with its map.
 /// \param options alignment, pairs, connectivity, threads, progress
 /// \return both shapes on the triangles of one sphere, and how well they fit.
-/// \throw InvalidInput for options out of range; ComputeError if a map is so near to not being one
-/// to one that a rotation's rounding makes the difference; Cancelled.
+/// \throw InvalidInput for options out of range; ComputeError if the rounding of a rotation makes a
+/// map lose its one-to-one property; Cancelled.
 /// The same, bit by bit, for any number of threads.
 MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& second,
                           const MorphOptions& options = {});

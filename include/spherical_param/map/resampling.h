@@ -77,53 +77,53 @@ SphereMapOptions mapOptionsForResampling();
 /// The surface at the vertices of a triangulated sphere: manifold, genus 0, and a map to the sphere
 /// that is one to one.
 ///
-/// Openings of the surface stay open: vertices of the grid next to a boundary are moved to it, and
-/// others in openings are left out.
+/// Openings of the surface stay open: vertices of the grid next to a boundary move to it, and the
+/// others in openings are dropped.
 ///
 /// \param surface with its map.
 /// \param grid    that of makeGridSphere(), or any other.
 /// \return the mesh, with the triangles of the grid; of a closed surface with all of them.
 ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& grid);
 
-/// What untangle() did.
+/// Report of untangle().
 struct UntanglingReport {
   std::size_t before = 0;  ///< pairs of triangles that intersected
-  std::size_t after = 0;   ///< pairs that are left
-  int rounds = 0;          ///< that were made
-  Index moved = 0;         ///< vertices that were slid
+  std::size_t after = 0;   ///< pairs that still do
+  int rounds = 0;          ///< number of rounds
+  Index moved = 0;         ///< number of moved vertices
 };
 
-/// Slides vertices along the surface, until triangles do not intersect: where they are long and
-/// thin, they cut across folds of the surface. The mesh keeps its triangles, and its map to the
-/// sphere stays one to one; where nothing intersects, nothing changes. Vertices of a boundary stay.
+/// Slides vertices along the surface until triangles do not intersect: long thin triangles cut
+/// across its folds. The mesh keeps its triangles and its one-to-one map. Vertices away from
+/// intersections and on a boundary stay.
 ///
 /// \param surface that the mesh was sampled from.
-/// \param mesh    of resampleSurface(); changed in place. The best that was found is kept.
+/// \param mesh    of resampleSurface(); changed in place. The best result is kept.
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-/// \return what was done.
+/// \return the report.
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
 UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int threads = 0);
 
-/// What removeIntersections() did.
+/// Report of removeIntersections().
 struct IntersectionRemoval {
   std::size_t found = 0;  ///< pairs of triangles that intersected
   std::size_t left = 0;   ///< pairs that still do
-  std::size_t flips = 0;  ///< edges that were flipped
+  std::size_t flips = 0;  ///< number of flipped edges
 };
 
-/// Flips edges around triangles that intersect, until none do: where a map is stretched, the edges
-/// of a grid may run across a valley of the surface instead of along it, and its triangles fold.
+/// Flips edges until no triangles intersect: where a map is stretched, the edges of a grid may run
+/// across a valley of the surface instead of along it, and its triangles fold.
 ///
 /// An edge is flipped if the opposite angles become smaller in space (C. L. Lawson, 1977) and the
 /// new triangles are not flipped on the sphere: the mesh stays closed, manifold, of genus 0, and
-/// its map one to one. Vertices stay, and so do all triangles elsewhere. Normals stay. A mesh with
-/// openings is left as it is.
+/// its map one to one. Vertices, normals and all other triangles stay. A mesh with openings does
+/// not change.
 ///
 /// \param mesh of resampleSurface(); changed in place.
 /// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
-/// \return what was done.
-/// \throw InvalidInput for a mesh that is not as resampleSurface() makes it.
+/// \return the report.
+/// \throw InvalidInput for a mesh unlike those of resampleSurface().
 /// The same for any number of threads.
 IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads = 0);
 
@@ -134,9 +134,8 @@ struct SurfacePoints {
   std::vector<SphereLocation> locations;  ///< n: where they are in the mesh
 };
 
-/// Spreads points evenly over a surface: random ones by area, of which those that are closest to
-/// others are taken away (Yuksel 2015, "Sample elimination for generating Poisson disk sample
-/// sets").
+/// Spreads points evenly over a surface: random points by area, from which the most crowded are
+/// eliminated (Yuksel 2015, "Sample elimination for generating Poisson disk sample sets").
 ///
 /// \param surface with its map.
 /// \param count   number of points, 1 and up, up to 2^24.
@@ -147,9 +146,9 @@ struct SurfacePoints {
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed = 1);
 
 /// A surface as an image of positions (Gu, Gortler and Hoppe 2002; the octahedral map of Praun and
-/// Hoppe 2003): side x side pixels, side = 2 f + 1, that cover a square into which an octahedron is
-/// unfolded. Pixels on the border come in pairs that are the same place: (0, j) and (0, side - 1 -
-/// j), likewise on the other sides; all four corners are one.
+/// Hoppe 2003): side x side pixels, side = 2 f + 1, on the square of an unfolded octahedron. Pixels
+/// on the border coincide in pairs: (0, j) and (0, side - 1 - j), likewise on the other sides; the
+/// four corners coincide.
 struct GeometryImage {
   int side = 0;         ///< pixels along each side; odd, 3 and up
   Positions positions;  ///< 3 x side^2, row by row, pixel (row, column) at row * side + column
@@ -170,16 +169,16 @@ Positions geometryImageDirections(int side);
 /// \throw InvalidInput as geometryImageDirections().
 GeometryImage makeGeometryImage(const SphereSurface& surface, int side);
 
-/// The geometry image of a mesh that has the vertices and triangles of makeGridSphere() for
-/// SphereGrid::Octahedral, such as that of resampleSurface() or untangle().
+/// The geometry image of a mesh with the grid of makeGridSphere() for SphereGrid::Octahedral, from
+/// resampleSurface() or untangle().
 ///
 /// \param mesh with such vertices, which may have slid.
 /// \return the image, whose pixels are the vertices.
 /// \throw InvalidInput for another number of vertices.
 GeometryImage geometryImageOfMesh(const ResampledMesh& mesh);
 
-/// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Where pixels of the
-/// border that are the same place differ, their mean counts.
+/// The mesh of a geometry image: closed, genus 0, (side - 1)^2 + 2 vertices. Coinciding pixels of
+/// the border are averaged.
 ///
 /// \param image of any origin.
 /// \return the mesh, with normals.

@@ -18,15 +18,15 @@ struct DistortionStatistics {
   double max = 0.0;   ///< over all triangles
 };
 
-/// How far a map from a mesh to the unit sphere is from an isometry. For the angles, triangles are
-/// compared with the flat ones between their corners on the sphere: sigma_1 >= sigma_2 are the
-/// singular values of that linear map. For the areas, r is the fraction of the sphere that a
-/// spherical triangle covers, over the fraction of the surface in space that the triangle has.
+/// Distortion of a map from a mesh to the unit sphere. For angles, sigma_1 >= sigma_2 are the
+/// singular values of the linear map from a triangle to the flat triangle between its corners on
+/// the sphere. For areas, r is the triangle's fraction of the sphere over its fraction of the
+/// surface in space.
 struct MapDistortion {
   /// Triangles whose corners are not counter-clockwise seen from outside the sphere: det(a, b, c)
   /// <= 0, by an exact predicate. 0: the map is one to one.
   Index flipped_triangles = 0;
-  /// Triangles without an area in space, to within rounding: no part of the statistics.
+  /// Triangles without area in space, within rounding; not in the statistics.
   Index degenerate_triangles = 0;
   DistortionStatistics angle;  ///< sigma_1 / sigma_2; 1: conformal
   DistortionStatistics area;   ///< max(r, 1 / r); 1: equal areas
@@ -34,7 +34,7 @@ struct MapDistortion {
   /// all corners, unweighted [degree].
   double mean_angle_difference = 0.0;
   /// L2 stretch efficiency of Praun and Hoppe 2003 (after Sander et al. 2001), in (0, 1]; 1: no
-  /// stretch. Computed with the triangles as they are, without their subdivision.
+  /// stretch. Computed without their subdivision of triangles.
   double stretch_efficiency = 0.0;
 };
 
@@ -50,10 +50,10 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
 
 /// Parameters of computeSphereMap().
 struct SphereMapOptions : Execution {
-  /// Weight of area against angle in the energy, in [0, 1]: 0 is as conformal as can be, 1 cares
-  /// for areas as much as a map that stays one to one can.
+  /// Weight of area against angle in the energy, in [0, 1]; 0: as conformal as possible, 1: as
+  /// area-preserving as a one-to-one map can be.
   double area_weight = 0.85;
-  /// Sweeps over the vertices at most of each level; [0, 1000]. 0: the map is only made valid.
+  /// Maximum number of sweeps over the vertices of each level; [0, 1000]. 0: only a valid map.
   int sweeps = 15;
 };
 
@@ -67,7 +67,7 @@ struct SphereMapLevel {
 /// A map from a genus-0 mesh to the unit sphere that is one to one.
 struct SphereMap {
   Positions sphere;  ///< 3 x v, unit vectors
-  Positions caps;    ///< 3 x c, unit vectors: vertices inside the openings; none of a closed mesh
+  Positions caps;    ///< 3 x c, unit vectors: vertices inside the openings; empty for a closed mesh
   MapDistortion distortion;            ///< of `sphere`
   MapDistortion before;                ///< of the start that was given
   std::vector<SphereMapLevel> levels;  ///< finest first
@@ -83,10 +83,10 @@ struct SphereMap {
 ///                  and may have flipped triangles.
 /// \param options areas against angles, sweeps, threads, progress
 /// \return the map, and how good it is.
-/// \throw InvalidInput for a mesh or start that is not as said; ComputeError; Cancelled.
+/// \throw InvalidInput for an invalid mesh or start; ComputeError; Cancelled.
 ///
 /// The openings of a mesh are closed by caps, discs in rings whose vertices are between the loop
-/// and its centroid, and so they stay open on the sphere. The distortion is that of the mesh alone.
+/// and its centroid, and so they stay open on the sphere. The distortion is that of the mesh only.
 ///
 /// Coarse to fine over a hierarchy of the mesh, after E. Praun and H. Hoppe (2003): vertices are
 /// taken out one by one until a tetrahedron is left, and put back into the kernels of their rings

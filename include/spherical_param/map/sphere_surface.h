@@ -12,7 +12,7 @@ namespace spherical_param {
 
 /// Where a direction meets a map to the sphere.
 struct SphereLocation {
-  Index triangle = 0;  ///< the triangle that holds the direction
+  Index triangle = 0;  ///< the triangle that contains the direction
   /// Barycentric coordinates in the flat triangle between its corners on the sphere: >= 0, sum 1.
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();
 };
@@ -48,21 +48,21 @@ struct SurfaceSamples {
 };
 
 /// The surface of an object as a function on the sphere (Zwicker and Gotsman 2004, section 5):
-/// every direction has a position and a normal. In the openings of a mesh these are of a cap, not
-/// of the surface. Immutable: may be used by many threads.
+/// every direction has a position and a normal; in openings of the mesh, those of a cap. Immutable:
+/// many threads may use it.
 class SphereSurface {
 public:
   /// \param points    3 x v, finite; \param sphere 3 x v, unit vectors.
   /// \param triangles as computeSphereMap() takes them; none flipped on the sphere.
   /// \param options   fit, threads, caps
-  /// \throw InvalidInput for a mesh that is not as said, or with a flipped triangle on the sphere.
+  /// \throw InvalidInput for an invalid mesh, or with a flipped triangle on the sphere.
   /// Cost: O(v log v).
   SphereSurface(const Positions& points, const Triangles& triangles, const Positions& sphere,
                 const SphereSurfaceOptions& options = {});
   ~SphereSurface();
-  /// Takes a surface over. \param other is left without one
+  /// Moves a surface. \param other is empty afterwards
   SphereSurface(SphereSurface&& other) noexcept;
-  /// Takes a surface over. \param other is left without one \return this one
+  /// Moves a surface. \param other is empty afterwards \return this
   SphereSurface& operator=(SphereSurface&& other) noexcept;
   SphereSurface(const SphereSurface& other) = delete;
   SphereSurface& operator=(const SphereSurface& other) = delete;
@@ -77,17 +77,15 @@ public:
   double area() const;
   /// Fraction of the sphere that the mesh covers. \return 1 for a closed one, (0, 1]
   double coverage() const;
-  /// Whether the mesh has openings. \return that
+  /// Whether the mesh has openings. \return true if it has
   bool isOpen() const;
-  /// Whether a triangle is over an opening. \param triangle of triangles() \return that it is of a
-  /// cap
+  /// Whether a triangle belongs to a cap. \param triangle of triangles() \return true if it does
   bool isCap(Index triangle) const;
 
-  /// The triangle that holds a direction, the same for directions of any length > 0. On an edge or
-  /// at a corner one of the triangles that share it. O(log v), typically.
-  /// \param direction of any length > 0; coordinates below 1e-100 of the largest count as 0.
-  /// \return the triangle, and where in it.
-  /// \throw InvalidInput for a direction that is zero or not finite.
+  /// The triangle that contains a direction; on an edge or at a corner one of the triangles that
+  /// share it. O(log v), typically. \param direction of any length > 0; coordinates below 1e-100 of
+  /// the largest count as 0. \return the triangle, and where in it. \throw InvalidInput for a
+  /// direction that is zero or not finite.
   SphereLocation locate(const Eigen::Vector3d& direction) const;
 
   /// Position and normal at a direction.

@@ -54,7 +54,7 @@ struct TextureAtlasOptions {
 /// \param sphere    3 x v, unit vectors; no triangle is flipped.
 /// \param options   chart and margin
 /// \return the mesh, cut where the chart is, with its texture coordinates.
-/// \throw InvalidInput for a mesh that is not as said, or a triangle flipped on the sphere.
+/// \throw InvalidInput for an invalid mesh, or a triangle flipped on the sphere.
 TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& sphere,
                               const TextureAtlasOptions& options = {});
 

@@ -11,13 +11,13 @@ namespace spherical_param::internal {
 
 /// Sparse Cholesky factorisation L D L^T of a symmetric block matrix, up-looking (T. A. Davis,
 /// "Algorithm 849: A concise sparse Cholesky factorization package", 2005), in blocks: one index
-/// for four entries, and an order by minimum degree of the nodes instead of twice as many unknowns.
-/// The diagonal is raised by a fraction beyond rounding, since the matrix is singular, or nearly
-/// so, for rotations.
+/// for four entries, and a minimum-degree order of nodes, not of unknowns. The diagonal is raised
+/// slightly because the matrix is (nearly) singular for rotations.
 class BlockCholesky {
 public:
-  /// \param matrix symmetric, with all diagonal blocks. The order and the pattern of L are found
-  ///               for the first matrix and kept: all others must have its pattern.
+  /// \param matrix symmetric, with all diagonal blocks. Order and pattern of L are found for the
+  /// first
+  ///               matrix; later ones must have the same pattern.
   void compute(const BlockMatrix& matrix);
 
   /// x = matrix^-1 b

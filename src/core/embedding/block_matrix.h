@@ -15,7 +15,7 @@ using TangentVector = Eigen::VectorXd;
 /// Square matrix of 2 x 2 blocks in compressed rows, on tangent vectors.
 struct BlockMatrix {
   std::vector<std::size_t> offsets{0};  ///< n + 1
-  std::vector<Index> columns;           ///< ascending in each row; the diagonal is always there
+  std::vector<Index> columns;           ///< ascending in each row; includes the diagonal
   std::vector<Eigen::Matrix2d> blocks;
 
   std::size_t size() const { return offsets.size() - 1; }  ///< number of rows of blocks, n

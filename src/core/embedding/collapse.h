@@ -4,9 +4,9 @@
 
 namespace spherical_param::internal {
 
-/// An embedding with a longer mean of its directions has collapsed. Unfolded embeddings have means
-/// below 0.5, those that slipped along a tube towards one of its ends up to 0.9.
-/// Without a bound the springer on nearest neighbours has 160,719 self-intersections instead of 0.
+/// Above this length of the mean direction an embedding has collapsed. Unfolded embeddings have
+/// means below 0.5, or up to 0.9 after slipping along a tube towards one end. Without a bound the
+/// springer on nearest neighbours has 160,719 self-intersections instead of 0.
 inline constexpr double kMaxCentroid = 0.95;
 
 /// The centroid of the nodes.
@@ -17,7 +17,7 @@ inline Eigen::Vector3d centroidOf(const Positions& directions, const Eigen::Vect
                            : Eigen::Vector3d(directions.rowwise().mean());
 }
 
-/// Whether nearly all nodes are around one place of the sphere.
+/// Whether nearly all nodes are at one place of the sphere.
 ///
 /// \param directions 3 x n, unit vectors; NaN counts as collapsed.
 inline bool isCollapsed(const Positions& directions, const Eigen::VectorXd& masses = {}) {

@@ -6,16 +6,16 @@
 
 namespace spherical_param::internal {
 
-/// Shorter edges count as this long, so that sums of weights stay finite.
+/// Minimum edge length, so that sums of weights stay finite.
 inline constexpr double kMinLength = 1e-150;
 
 /// Weights of the edges of a graph of points p that is embedded at u,
 ///
 ///   w_ij = (f(|p_i - p_j|) |u_i - u_j|)^q,   or f(|p_i - p_j|) for q = 0,
 ///
-/// which are those of an energy of degree q + 2 in the lengths on the sphere. For q > 0 the energy
-/// itself keeps the embedding from collapsing; for q = 0 it needs a barrier. A new kind of weights
-/// is one more case of the constructor.
+/// of an energy of degree q + 2 in the lengths on the sphere. For q > 0 the energy itself keeps the
+/// embedding from collapsing; q = 0 needs a barrier. A new kind of weights is one more case of the
+/// constructor.
 class EdgeWeightLaw {
 public:
   /// \param exponent p of the energy of adaptive weights; > 2.

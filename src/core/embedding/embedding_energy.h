@@ -15,25 +15,23 @@ namespace spherical_param::internal {
 /// \param directions 3 x n, unit vectors.
 std::vector<TangentBasis> tangentBases(const Positions& directions);
 
-/// What a solver lowers: the energy of an embedding u of a graph with edge weights w,
+/// The energy of an embedding u of a graph with edge weights w,
 ///
 ///   E(u) = sum over edges  w_ij |u_i - u_j|^2 / p   +   barrier,
 ///
 /// of degree p in the lengths on the sphere. Its gradient in the tangent plane of u_i is minus the
 /// tangential Laplacian of Zwicker and Gotsman 2004, equation 2, times the sum of the weights at i.
 ///
-/// For p = 2 the energy is (up to discretisation) invariant under conformal maps of the sphere,
-/// among them those that draw all points to one place. A barrier -b log(1 - |c|^2) in the centroid
-/// c = sum m_i u_i of masses then keeps it from collapsing.
+/// For p = 2 a barrier -b log(1 - |c|^2) in the centroid c = sum m_i u_i of masses keeps it from
+/// collapsing, \see embed.
 class EmbeddingEnergy {
 public:
   /// \param graph    must outlive the energy.
   /// \param threads  that share the work.
   EmbeddingEnergy(const Graph& graph, const EdgeWeightLaw& weights, int threads);
 
-  /// Adds the barrier, b and the masses from an embedding u: b is its energy, the mass of a node
-  /// its mean squared edge. Masses by area, because a limb of tiny area on the sphere would be
-  /// folded by a pull that is the same for all nodes.
+  /// Adds the barrier: b is the energy of u, the mass of a node its mean squared edge in u. Equal
+  /// masses would fold limbs of tiny area on the sphere.
   void addBarrier(const Positions& u);
 
   bool hasBarrier() const { return masses_.size() > 0; }
@@ -42,10 +40,10 @@ public:
 
   /// How far an embedding is from a critical point: means over the nodes.
   struct Residual {
-    /// Length of the tangential Laplacian, with the barrier's share, if any [radius].
+    /// Length of the tangential Laplacian, including the barrier [radius].
     double absolute = 0.0;
-    /// The same in units of the node's mean edge on the sphere, in [0, 1]: shows the smallest
-    /// parts of the embedding as well as of the largest.
+    /// The same in units of the node's mean edge on the sphere, in [0, 1]: shows small parts of the
+    /// embedding as well as large ones.
     double relative = 0.0;
 
     Residual& operator+=(const Residual& other) {

@@ -13,10 +13,9 @@ struct NewtonOptions {
   int max_iterations = 100;
   double tolerance = 0.0;           ///< mean length of the tangential Laplacian [radius]
   double relative_tolerance = 1.0;  ///< the same in units of each node's mean edge
-  /// Where the centroid is farther from the origin, nothing keeps the rest from collapsing: the
-  /// work ends. 1: never.
+  /// The work ends if the centroid is farther from the origin: the rest would collapse. 1: never.
   double longest_mean = 1.0;
-  Eigen::VectorXd masses;  ///< of that centroid, \see centroidOf(); empty: all alike
+  Eigen::VectorXd masses;  ///< of that centroid, \see centroidOf(); empty: equal
   /// Called with (iteration, residual) before each step; throws to end the work.
   std::function<void(int, double)> progress;
 };
@@ -28,9 +27,9 @@ struct NewtonReport {
 };
 
 /// Lowers the energy of an embedding by Newton's method on the product of spheres, with a line
-/// search: steps in the tangent planes, then back to the sphere. Ends where both residuals are at
-/// most their tolerances, where rounding leaves no step that lowers energy or residual, or where
-/// the embedding collapses.
+/// search: steps in the tangent planes, then back to the sphere. Ends if both residuals reach their
+/// tolerances, if rounding leaves no step that lowers energy or residual, or if the embedding
+/// collapses.
 NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
                               MultigridPreconditioner& preconditioner, const NewtonOptions& options,
                               Positions& directions);

@@ -16,17 +16,17 @@ void multiply(const BlockMatrix& matrix, const TangentVector& x, TangentVector& 
 
 /// A symmetric multigrid V-cycle for the positive semi-definite part of the Hessian: Galerkin
 /// operators on the levels of a hierarchy, one block Gauss-Seidel sweep before (forward) and after
-/// (backward) each correction, sparse Cholesky on the coarsest level. With no coarser level it is a
-/// direct solver. As a preconditioner of conjugate gradients its matrix need not be exact.
+/// (backward) each correction, sparse Cholesky on the coarsest level. Without coarser levels it is
+/// a direct solver. Its matrix need not be exact.
 class MultigridPreconditioner {
 public:
-  /// \param first the levels hierarchy.levels[first] and coarser are those below the matrix; must
-  ///              outlive this.
+  /// \param hierarchy must outlive this. \param first index of the next coarser level than the
+  /// matrix.
   MultigridPreconditioner(const GraphHierarchy& hierarchy, std::size_t first, int threads);
 
   int threads() const { return threads_; }
 
-  /// All patterns are found for the first matrix and kept: the others must have its pattern.
+  /// Patterns are found for the first matrix; later ones must have the same pattern.
   ///
   /// \param matrix must outlive the next calls of apply().
   /// \param bases  tangent bases of the nodes of the finest level.
@@ -41,7 +41,7 @@ private:
     BlockMatrix galerkin;               ///< storage of *matrix below the finest level
     std::vector<std::size_t> diagonal;  ///< places of the diagonal blocks
     std::vector<Eigen::Matrix2d> inverse_diagonal;
-    BlockMatrix prolongation;  ///< this level's nodes x those of the next; not square
+    BlockMatrix prolongation;  ///< nodes of this level x nodes of the next
     BlockMatrix product;       ///< pattern of *matrix * prolongation, without blocks; rows unsorted
     /// The transpose of the prolongation: for each node of the next level the rows and the places
     /// of its blocks.
@@ -75,10 +75,10 @@ private:
   bool has_patterns_ = false;
 };
 
-/// When conjugateGradients() end.
+/// Stopping rules of conjugateGradients().
 struct LinearTolerance {
   double reduction = 0.1;  ///< of the residual, in the norm of the preconditioner
-  int refinements = 0;     ///< V-cycles afterwards, each for what is left
+  int refinements = 0;     ///< V-cycles afterwards, each on the remaining residual
   int max_iterations = 200;
 };
 
@@ -88,9 +88,9 @@ struct LinearSolution {
   int iterations = 0;
 };
 
-/// Solves (H - diag(curvature) + barrier) x = -gradient by preconditioned conjugate gradients to a
-/// tolerance; ends early at a direction
-/// of negative curvature (T. Steihaug, 1983), with a descent direction in any case.
+/// Solves (H - diag(curvature) + barrier) x = -gradient by preconditioned conjugate gradients. Ends
+/// early at a direction of negative curvature (T. Steihaug, 1983). The result is always a descent
+/// direction.
 LinearSolution conjugateGradients(const EmbeddingEnergy::Hessian& hessian,
                                   const std::vector<TangentBasis>& bases,
                                   MultigridPreconditioner& preconditioner,

@@ -18,7 +18,7 @@ namespace spherical_param::internal {
 
 /// Entries of a row that are evaluated together.
 inline constexpr int kLanes = 4;
-/// Four doubles a point, so that no point is split between cache lines; the last is 0.
+/// Four doubles a point, so that cache lines do not split points; the last is 0.
 using PaddedPositions = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 
 /// How a weight depends on its factor f and the length d on the sphere. \see EdgeWeightLaw
@@ -28,10 +28,10 @@ enum class WeightRule {
   Power,   ///< (f d)^q
 };
 
-/// The rows of a graph in an order of their own, so that neighbours are near in memory. Rows are
-/// padded to whole groups of kLanes entries with the node itself.
+/// The rows of a graph in an order in which neighbours are near in memory. Rows are padded to
+/// groups of kLanes entries with the node itself.
 struct Rows {
-  std::vector<Index> node_of_row;    ///< original node; empty if that is the row itself
+  std::vector<Index> node_of_row;    ///< original node; empty: the row itself
   std::vector<std::size_t> offsets;  ///< multiples of kLanes
   std::vector<Index> neighbors;      ///< as rows
   std::vector<double> factors;       ///< of EdgeWeightLaw; padding has 0

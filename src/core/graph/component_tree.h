@@ -10,13 +10,12 @@
 
 namespace spherical_param::internal {
 
-/// A k-d tree that finds the nearest point of ANOTHER component. Subtrees within one component are
-/// skipped whole, which a general neighbour search cannot do: it would visit every point of the
-/// query's own component that is nearer than the answer.
+/// A k-d tree that finds the nearest point of ANOTHER component. It skips subtrees within the
+/// query's own component, whose points a general search would visit.
 class ComponentTree {
 public:
   /// Two points of different components; ordered by distance, then by indices, so that ties are
-  /// broken in the same way everywhere.
+  /// broken consistently.
   struct Pair {
     double squared_distance = std::numeric_limits<double>::infinity();
     Index from = -1;
@@ -34,16 +33,16 @@ public:
   /// \param component n entries, the component of each point.
   void setComponents(const std::vector<Index>& component);
 
-  /// Lowers `best` to the pair of point i and its nearest point in another component, those in
-  /// `excluded` left out, if that is less than `best` is already.
+  /// Lowers `best` to point i and its nearest point in another component, except those in
+  /// `excluded`, if that pair is less.
   void nearestOther(Index i, const std::vector<Index>& excluded, Pair& best) const;
 
-  /// Lowers `best` to the pair of point i and its nearest point in `component`, those in `excluded`
-  /// left out, if that is less than `best` is already.
+  /// Lowers `best` to point i and its nearest point in `component`, except those in `excluded`, if
+  /// that pair is less.
   void nearestIn(Index component, Index i, const std::vector<Index>& excluded, Pair& best) const;
 
-  /// Lowers `best` to the pair of point i and its nearest point that is neither i nor in
-  /// `excluded`, if that is less than `best` is already.
+  /// Lowers `best` to point i and its nearest other point, except those in `excluded`, if that pair
+  /// is less.
   void nearestExcept(Index i, const std::vector<Index>& excluded, Pair& best) const;
 
 private:

@@ -7,16 +7,14 @@
 
 namespace spherical_param::internal {
 
-/// A neighbour graph whose openings are filled by virtual nodes, so that it is that of a closed
-/// surface.
+/// A neighbour graph whose openings are filled by virtual nodes: that of a closed surface.
 struct FilledGraph {
   Graph graph;       ///< n nodes and the virtual ones
   Positions points;  ///< 3 x graph.size(), those of the nodes first
 };
 
-/// Fills each opening by a ringed disc as large as the opening, whose rim is the loop:
-/// up to 2.4 times as many virtual nodes as the loop has. False edges of the graph are left out,
-/// but for those that keep it connected.
+/// Fills each opening by a ringed disc whose rim is the loop, with up to 2.4 times as many virtual
+/// nodes as the loop. Drops false edges of the graph unless they keep it connected.
 ///
 /// \param points   3 x n.
 /// \param graph    n nodes.

@@ -12,8 +12,7 @@ namespace spherical_param {
 struct Graph {
   std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `neighbors` and `lengths`
   std::vector<Index> neighbors;         ///< 2 x edges entries
-  /// Euclidean length of each entry's edge [unit of the input]: finite and > 0, or 0 where that is
-  /// what it is rounded to. What needs a graph throws InvalidInput for others.
+  /// Euclidean length of each entry's edge [unit of the input]: finite and > 0, or 0 by rounding.
   std::vector<double> lengths;
 
   /// Number of nodes. \return n

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-/// What both ways of making a neighbour graph share.
+/// Common functions of both neighbour graphs.
 namespace spherical_param::internal {
 
 /// Length of an edge; positive for distinct points even where the squares underflow.
@@ -31,30 +31,28 @@ std::vector<std::size_t> setSizes(const std::vector<Index>& representative);
 ///
 /// \param points            3 x n.
 /// \param parts             the components of n nodes; one set afterwards.
-/// \param bridges_per_joint each two components that are joined get up to this number of bridges; 1
-/// and up.
+/// \param bridges_per_joint maximum number of bridges between two joined components; >= 1.
 std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
                                     int bridges_per_joint);
 
-/// Up to `count` more bridges for each of `joints`: the closest pairs of the two components, with
-/// ends that no other bridge of the joint has.
+/// Up to `count` more bridges for each of `joints`: the closest pairs of the two components; all
+/// bridges of a joint have different ends.
 ///
 /// \param points 3 x n.
-/// \param part   n entries, the component of each point before it was joined: a node of it.
-/// \param joints one bridge for each two components that were joined.
+/// \param part   n entries: a node that represents the component of each point before joining.
+/// \param joints one bridge for each two joined components.
 std::vector<Bridge> furtherBridges(const Positions& points, const std::vector<Index>& part,
                                    const std::vector<Bridge>& joints, int count);
 
-/// Up to `count` bridges for each part of the graph that a single node joins to the others and that
-/// holds no such part itself: its closest pairs with points outside, that node left out, with ends
-/// that are all different. Empty if and only if no node alone joins two parts, or a part has no
-/// points to join.
+/// Up to `count` bridges for each leaf of the block-cut tree, a biconnected component that hangs by
+/// one articulation point: its closest pairs with points outside, without that node, with different
+/// ends. Empty if and only if the graph is biconnected, or components have no points to join.
 ///
 /// \param points 3 x n.
 /// \param graph  n nodes, connected.
 std::vector<Bridge> articulationBridges(const Positions& points, const Graph& graph, int count);
 
-/// The graph with further edges; repetitions, also of edges that it holds already, do no harm.
+/// The graph with further edges, which may repeat each other or edges of the graph.
 Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges);
 
 }  // namespace spherical_param::internal

@@ -5,30 +5,30 @@
 
 namespace spherical_param::internal {
 
-/// The graph of the pairs of nodes that are in each other's star, before anything is repaired or
-/// joined. Its components are the surfaces of a cloud, and what belongs to none.
+/// The agreed graph: its edges join nodes that are in each other's star, without repairs and
+/// bridges. Its components are surfaces, or stray points.
 Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& execution);
 
-/// Whether stray points are looked for.
+/// Whether to look for stray points.
 enum class StraySearch { No, Yes };
 
-/// The graph of local Delaunay neighbourhoods (GraphMethod::LocalDelaunay), connected.
+/// The tangent Delaunay graph (GraphMethod::LocalDelaunay), connected.
 ///
 /// The nearest neighbours of a point are laid into its tangent plane at their true distances; its
 /// star is the set of its Voronoi neighbours there. Points i and j are joined if both stars agree.
-/// Points with fewer than three neighbours get their whole star and their three nearest. Components
-/// are joined by the shortest edges of stars, then along their closest pairs; each two that are
-/// joined get up to three bridges with different ends, and so do biconnected components: one that
-/// hangs by an articulation point collapses in the embedding.
+/// Points with fewer than three neighbours get their whole star and their three nearest points.
+/// Components are joined by the shortest edges of stars, then along their closest pairs, with up to
+/// three bridges with different ends. So are biconnected components: one that hangs by an
+/// articulation point would collapse in the embedding.
 ///
 /// Cost: O(p log p log n) for the bridges of p components, typically.
-/// Guaranteed: the graph is connected; of four points and more, each has at least three neighbours.
-/// Not guaranteed: that no edge is a shortcut where sheets are closer to each other than their
-/// points, nor that a chain of parts that hang by one node each (a needle) is tied everywhere.
+/// Guaranteed: the graph is connected; with four points and more, each has at least three
+/// neighbours. Not guaranteed: no shortcuts between sheets that are closer than their points; no
+/// articulation points in a chain of them (a needle).
 ///
 /// \param points 3 x n, finite, distinct.
 /// \param stars  of these points.
-/// \param strays whether GraphReport::stray_points are looked for.
+/// \param strays whether to fill GraphReport::stray_points.
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
                                       StraySearch strays, const Execution& execution);
 

@@ -6,10 +6,10 @@
 
 namespace spherical_param::internal {
 
-/// Nearest neighbours through which nearOutliers() lays a surface.
+/// Nearest neighbours to which nearOutliers() fits a surface.
 constexpr int kFittedNeighbors = 20;
 
-/// How far points near a surface are off it.
+/// Distances of outliers near a surface.
 ///
 /// \param points  3 x n, finite, distinct.
 /// \param lists   n lists of the kFittedNeighbors nearest others of each point, with or without the

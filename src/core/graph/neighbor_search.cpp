@@ -79,7 +79,7 @@ NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int c
                      const Execution& execution) {
   if (std::any_of(points.begin(), points.end(),
                   [n = static_cast<Index>(tree.size())](Index i) { return i < 0 || i >= n; }))
-    throw InvalidInput("makeNeighborSearch: a query is no index of a point; use 0 to n - 1");
+    throw InvalidInput("makeNeighborSearch: a query is out of range; use 0 to n - 1");
   // One more, since a point is its own neighbour.
   const std::size_t size =
       std::min(static_cast<std::size_t>(std::max(count, 0)), tree.size() - 1) + 1;

@@ -13,9 +13,8 @@ namespace spherical_param {
 
 /// Builds a k-d tree of points, in double precision.
 ///
-/// \param points 3 x n, n >= 1, finite; copied. Those near in space should be near in memory:
-///               mortonOrder() gives such an order. Squared distances must neither overflow nor
-///               underflow: bring the points to an extent of about 1.
+/// \param points 3 x n, n >= 1, finite; copied. Sort them by mortonOrder() and scale them to an
+///               extent of about 1, so that squared distances neither overflow nor underflow.
 /// \param execution threads, progress; its progress callback must outlive the search.
 /// \return a search among these points; copies of it share the tree. It throws InvalidInput for
 ///         queries out of [0, n) and for lists of more than 2^31 entries in all; Cancelled.

@@ -50,9 +50,9 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const std::vector<Inde
         for (std::size_t e = found.offsets[i]; e < found.offsets[i + 1]; ++e) {
           const Index node = node_of_input[slotOf(found.indices[e])];
           if (node < 0)
-            throw InvalidInput("reconstruct: the search answers with point " +
+            throw InvalidInput("reconstruct: the search returned point " +
                                std::to_string(found.indices[e]) +
-                               ", which is none of those it was made of");
+                               ", which it was not given; return indices of its points");
           lists.indices.push_back(node);
         }
         lists.offsets.push_back(lists.indices.size());

@@ -9,22 +9,22 @@
 
 namespace spherical_param::internal {
 
-/// The distinct points of a cloud, or of some of its points, with their neighbours. What was found
-/// for all points is kept for some of them: there is one search structure, and only nodes beside
-/// points that were taken out are looked at again.
+/// The distinct points of a cloud, or of a subset, with their neighbours. A subset reuses the
+/// search structure and the results of the cloud; only nodes beside removed points are processed
+/// again.
 class Neighborhoods {
 public:
   /// Finds the neighbours of a cloud's points.
   ///
   /// \param cloud     3 x n.
-  /// \param inputs    the points of the cloud that are meant, ascending, finite.
-  /// \param options   neighborsToSearch() tells how many neighbours.
+  /// \param inputs    indices of the points to use, ascending, finite.
+  /// \param options   for neighborsToSearch().
   /// \param search_of makes the search; empty: a k-d tree is built.
   /// \throw InvalidInput for too many points, too large coordinates, or fewer than four distinct
   ///        points.
   Neighborhoods(const Positions& cloud, std::vector<Index> inputs, const Options& options,
                 const NeighborSearchFactory& search_of, const Execution& execution);
-  /// Those of some of the points of `all`, which must outlive this.
+  /// A subset of `all`, which must outlive this.
   Neighborhoods(const Positions& cloud, std::vector<Index> inputs, const Options& options,
                 const Neighborhoods& all, const Execution& execution);
   Neighborhoods(const Neighborhoods& other) = delete;  // searches point here
@@ -32,20 +32,20 @@ public:
 
   /// Finds the stars of all nodes.
   void findStars(const Execution& execution);
-  /// Forgets all but the points: neighbours and stars are not needed once there is a graph.
+  /// Frees neighbours and stars, which are not needed once there is a graph.
   void release();
 
   const Positions& points() const { return nodes_.points; }  ///< 3 x v, of the nodes
-  /// The nodes; their input points are numbered by their places in inputs().
+  /// The nodes; their input points are positions in inputs().
   OrderedPoints& nodes() { return nodes_; }
   const std::vector<Index>& inputs() const { return inputs_; }
   const Neighbors& neighbors() const { return neighbors_; }
   const Stars& stars() const { return stars_; }
 
-  /// The inputs whose nodes have a mark. \param marked one entry for each node.
+  /// The inputs of marked nodes. \param marked one entry for each node.
   std::vector<Index> inputsOf(const std::vector<char>& marked) const;
-  /// The inputs of each group of nodes, that of most inputs first; of two, that of the lowest.
-  /// \param group of each node: a number below the number of nodes; -1: none.
+  /// The inputs of each group of nodes, the largest group first, ties by the lowest input.
+  /// \param group of each node, in [0, number of nodes); -1: none.
   std::vector<std::vector<Index>> groupInputs(const std::vector<Index>& group) const;
 
 private:

@@ -13,7 +13,7 @@ inline std::size_t slotOf(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Neighbour lists of all nodes, and a search for longer ones of some.
+/// Neighbour lists of all nodes, and a search for longer lists.
 struct Neighbors {
   NeighborLists lists;
   NeighborSearch search;  ///< may be empty
@@ -22,17 +22,15 @@ struct Neighbors {
 /// Some of the nodes of a cloud, numbered anew.
 struct NodeSubset {
   std::vector<Index> old_of_new;  ///< m entries: the node among all
-  std::vector<Index> new_of_old;  ///< n entries: the node of the subset; -1: taken out
-  /// m entries: whether a node that was taken out is in the list of this one. Filled by
-  /// neighborsOf().
+  std::vector<Index> new_of_old;  ///< n entries: the node of the subset; -1: removed
+  /// m entries: whether a removed node is in the list of this node. Filled by neighborsOf().
   std::vector<char> has_lost;
 };
 
 /// The `count` nearest neighbours of all of n nodes.
 Neighbors findNeighbors(NeighborSearch search, std::size_t n, int count);
 
-/// The neighbours of a subset: the lists of nodes beside others that were taken out are searched
-/// for anew, all others kept.
+/// The neighbours of a subset: lists with removed nodes are searched again, others are kept.
 ///
 /// \param points 3 x m, of the subset.
 /// \param all    of all nodes; its search must outlive the result.
@@ -40,13 +38,13 @@ Neighbors findNeighbors(NeighborSearch search, std::size_t n, int count);
 /// \param subset must outlive the result.
 Neighbors neighborsOf(const Positions& points, const Neighbors& all, int count, NodeSubset& subset);
 
-/// A search for neighbours within a subset: asks for as many among all that enough are left.
+/// A search within a subset: it asks for enough neighbours among all nodes.
 ///
 /// \param points, search, subset must outlive the result.
 NeighborSearch searchWithin(const Positions& points, const NeighborSearch& search,
                             const NodeSubset& subset);
 
-/// Refuses an answer of a caller's search that is not `count` lists of indices in [0, n).
+/// Checks the answer of a caller's search: `count` lists of indices in [0, n).
 /// \throw InvalidInput
 void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n);
 

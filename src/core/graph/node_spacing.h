@@ -10,8 +10,8 @@
 
 namespace spherical_param::internal {
 
-/// Distance of the points around a node: the median length of its edges, which a few long ones
-/// across an opening do not change; 0 without edges.
+/// Point spacing at a node: the median length of its edges, robust against long edges across an
+/// opening; 0 without edges.
 ///
 /// \param lengths working memory.
 inline double nodeSpacing(const Graph& graph, std::size_t node, std::vector<double>& lengths) {

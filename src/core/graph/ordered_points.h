@@ -11,8 +11,8 @@ namespace spherical_param::internal {
 /// The distinct points of a cloud, called nodes, in the order of a space-filling curve, so that
 /// neighbours are close in memory.
 struct OrderedPoints {
-  /// 3 x v, column i = node i, scaled by 2^-exponent to an extent of about 1: exact, so distinct
-  /// points stay distinct, and no product in later stages overflows.
+  /// 3 x v, column i = node i, scaled by 2^-exponent to an extent of about 1. Exact: distinct
+  /// points stay distinct, and later products do not overflow.
   Positions points;
   int exponent = 0;
   std::vector<Index> input_of_node;   ///< v entries, the first input point there
@@ -25,13 +25,13 @@ struct OrderedPoints {
 /// \param points 3 x n, finite, n < 2^31.
 OrderedPoints orderPoints(const Positions& points, int threads);
 
-/// The same for points that a mesh can be made of.
+/// orderPoints() with checks for meshing.
 ///
 /// \throw InvalidInput for a coordinate that is not finite or too large, or fewer than four
 /// distinct points.
 OrderedPoints orderCheckedPoints(const Positions& points, int threads);
 
-/// \throw InvalidInput in the name of a function for a point that is not finite.
+/// Checks that all points are finite. \throw InvalidInput in the name of a function
 void checkFinite(const std::string& function, const Positions& points);
 
 /// The node of each input point.

@@ -8,25 +8,24 @@
 
 namespace spherical_param::internal {
 
-/// Distances to the points that are on surfaces, of those that are on none.
+/// Distances of other points to the points on surfaces.
 class SurfaceDistance {
 public:
   /// \param points 3 x n, n >= 1.
-  /// \param agreed n nodes: the edges on which both stars agree. Both must outlive it.
+  /// \param agreed see agreedGraph(). Both must outlive this.
   SurfaceDistance(const Positions& points, const Graph& agreed)
       : points_(points), agreed_(agreed), tree_(points) {}
 
   /// \param on_surface n entries; not all 0.
   void setSurfaces(const std::vector<char>& on_surface);
 
-  /// The point on a surface that is nearest to point i, which is on none.
+  /// The nearest point on a surface. \param i not on a surface
   Index nearest(Index i) const;
 
-  /// The distance of point i to the surface in mean lengths of edges there, if that is too far for
-  /// noise; or 0.
+  /// Distance of point i to the surface in mean lengths of edges there; 0 if noise may explain it.
   double beyondNoise(Index i) const;
 
-  /// How many times longer the edges are at point i than at the nearest surface.
+  /// Length of edges at point i relative to those at the nearest surface.
   double coarseness(Index i) const;
 
 private:

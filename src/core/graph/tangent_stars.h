@@ -12,15 +12,15 @@ namespace spherical_param::internal {
 
 /// How the star of a point was found.
 struct StarKind {
-  Index candidates = -1;        ///< nearest points that are known; -1: not looked at yet
-  bool tangent_plane = false;   ///< there is one that can be trusted
+  Index candidates = -1;        ///< number of known nearest points; -1: not processed
+  bool tangent_plane = false;   ///< the tangent plane is reliable
   bool certified = false;       ///< no further point can change the star
   bool wants_more = false;      ///< more candidates may help
-  bool is_beyond_list = false;  ///< more neighbours than those of its list were searched for
+  bool is_beyond_list = false;  ///< neighbours beyond its list were searched
 };
 
-/// The star of each node: its Voronoi neighbours in its tangent plane, or, where the nearest points
-/// span no plane, its neighbours in the Gabriel graph. Those of node i are nodes[begin[i]] ...
+/// The star of each node: its Voronoi neighbours in its tangent plane, or its neighbours in the
+/// Gabriel graph if the nearest points span no plane. The star of node i is nodes[begin[i]] ...
 /// nodes[begin[i] + count[i] - 1], ascending.
 struct Stars {
   explicit Stars(std::size_t n = 0) : begin(n), count(n), kind(n), nearest(n) {}
@@ -36,15 +36,15 @@ struct Stars {
   std::size_t endOf(std::size_t i) const { return begin[i] + static_cast<std::size_t>(count[i]); }
   /// Whether j is in the star of i.
   bool holds(Index i, Index j) const;
-  /// For each node whether it is in the star of one of the given ones (n entries each).
+  /// Marks nodes in the star of a given node (n entries each).
   std::vector<char> inStarsOf(const std::vector<char>& given) const;
 };
 
-/// Finds the stars of all nodes. A star is certified if no point outside of the list can change it:
-/// twice the radius of the Voronoi cell is within the list. More neighbours are searched for where
-/// it is not, once a round for all such points together. Where the nearest neighbours span no plane
-/// (a line, all directions alike, too few points), the star is that of the Gabriel graph of the
-/// list (Gabriel and Sokal 1969).
+/// Finds the stars of all nodes. A star is certified if no point beyond the list can change it: the
+/// list reaches twice the radius of the Voronoi cell. For uncertified stars more neighbours are
+/// searched, once a round for all of them. If the nearest neighbours span no plane (a line, all
+/// directions alike, too few points), the star is that of the Gabriel graph of the list (Gabriel
+/// and Sokal 1969).
 ///
 /// \param points    3 x n, finite, distinct.
 /// \param neighbors of the nodes.
@@ -53,13 +53,13 @@ struct Stars {
 /// Cost: O(n c log c) for lists of c points.
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution);
 
-/// The stars of some nodes when the others are taken out: those that none of these can have changed
-/// are kept, the others found anew.
+/// The stars of a subset: stars that removed nodes may have changed are found again, others are
+/// kept.
 ///
-/// \param points    3 x m, the nodes that stay.
-/// \param neighbors of these.
-/// \param all       the stars before.
-/// \param subset    which these are.
+/// \param points    3 x m, the nodes of the subset.
+/// \param neighbors of these nodes.
+/// \param all       the stars of all nodes.
+/// \param subset    the nodes among all.
 /// \param execution threads, progress
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Stars& all,
                 const NodeSubset& subset, const Execution& execution);

@@ -7,8 +7,8 @@
 
 namespace spherical_param::internal {
 
-/// The boundary of a manifold: closed loops of vertices, with the surface on the left; the one of
-/// most vertices first, each from its lowest vertex.
+/// The boundary loops of a manifold, with the surface on the left; the longest first, each from its
+/// lowest vertex.
 ///
 /// \param triangles    3 x m, a consistently oriented manifold with boundary.
 /// \param vertex_count vertices are [0, vertex_count).

@@ -13,7 +13,7 @@
 
 namespace spherical_param::internal {
 
-/// Refuses a mesh with an index out of range, or with more triangles than a CornerTable can number.
+/// Checks that indices are in range and that a CornerTable can number the triangles.
 inline void checkTriangles(const char* caller, const Triangles& triangles, Eigen::Index n) {
   constexpr Eigen::Index most_triangles = Eigen::Index{1} << 30;
   if (triangles.cols() > most_triangles)
@@ -29,8 +29,8 @@ inline void checkTriangles(const char* caller, const Triangles& triangles, Eigen
                      std::to_string(n) + "; indices start at 0");
 }
 
-/// The corners of a triangle after and before corner k. A table is faster than a remainder, or a
-/// branch that the processor cannot predict.
+/// The corners of a triangle after and before corner k. A table is faster than a remainder or a
+/// branch.
 inline Index nextCorner(Index k) {
   constexpr Index next[] = {1, 2, 0};
   return next[k];
@@ -40,8 +40,8 @@ inline Index previousCorner(Index k) {
   return previous[k];
 }
 
-/// Adjacency of arbitrary triangles, which SphereMesh is not for: the corners of the triangles,
-/// those of each vertex together; 24 bytes for each vertex of a closed mesh, and 4 more.
+/// Adjacency of arbitrary triangles: their corners, grouped by vertex; 28 bytes for each vertex of
+/// a closed mesh.
 class CornerTable {
 public:
   /// \param triangles indices in [0, vertex_count), see checkTriangles().
@@ -78,9 +78,8 @@ public:
   }
 
 private:
-  /// Calls work(vertex, corner) for all corners. Each thread has a range of the vertices, goes
-  /// through all corners and takes those of its vertices, which so have the order that one thread
-  /// gives them.
+  /// Calls work(vertex, corner) for all corners. Each thread visits all corners and works on those
+  /// of its range of vertices, so that the order is that of one thread.
   template <typename Work>
   static void forEachCornerOfRange(const Triangles& triangles, int threads,
                                    std::size_t vertex_count, const Work& work) {

@@ -6,10 +6,9 @@
 
 namespace spherical_param::internal {
 
-/// A flat disc of radius 1, triangulated in rings. Each ring has 0.7 times as many vertices as
-/// the one around it, and is as far inside as half of its own and half of the outer ring's edges;
-/// inside the last one, of 9 or fewer, is a pole: up to 2.4 times as many vertices inside as on
-/// the rim.
+/// A flat disc of radius 1, triangulated in rings. Each ring has 0.7 times as many vertices as the
+/// next outer ring; their distance is the mean of their edge lengths. Inside the last ring, of at
+/// most 9 vertices, is a pole. In all, up to 2.4 times as many vertices inside as on the rim.
 struct RingedDisc {
   std::vector<double> angles;  ///< of the vertices [rad]: the rim, ring by ring, the pole
   std::vector<double> radii;   ///< of the vertices, 1 at the rim

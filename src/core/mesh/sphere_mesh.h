@@ -10,21 +10,20 @@
 
 namespace spherical_param::internal {
 
-/// A closed genus-0 triangle mesh with its adjacency, changed only by moves that keep it one: a
-/// triangle is split in three by a new vertex, three triangles around a vertex are merged to one,
-/// or an edge is flipped whose opposite vertices are not yet joined. Moves can be rolled back
-/// exactly.
+/// A closed genus-0 triangle mesh with its adjacency. Three moves keep it so: split a triangle in
+/// three by a new vertex, merge the three triangles around a vertex, flip an edge whose opposite
+/// vertices are not joined. Moves can be rolled back exactly.
 class SphereMesh {
 public:
-  /// \param triangles closed, manifold, consistently oriented, genus 0, on at least 4 vertices,
-  /// with
-  ///                  indices in range; see isSphere().
+  /// \param triangles closed, manifold, consistently oriented, genus 0, at least 4 vertices,
+  /// indices
+  ///                  in range; see isSphere().
   SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
 
-  /// Whether the mesh is as it should be, right after it was made.
+  /// Whether the mesh is a sphere, right after construction.
   bool isSphere(int threads = 1) const;
 
-  /// Places for triangles; those that merge() freed are no triangles.
+  /// Number of slots for triangles, used or freed by merge().
   Index size() const { return static_cast<Index>(vertices_.size()); }
   bool isTriangle(Index t) const { return vertex(t, 0) >= 0; }
   Index vertex(Index triangle, int corner) const {
@@ -41,11 +40,11 @@ public:
   /// The corner of neighbor(triangle, corner) that is opposite to the common side.
   int oppositeCorner(Index triangle, int corner) const {
     // The common side runs the other way round in the neighbour, from corner + 2 to corner + 1; the
-    // vertex behind its end is the opposite one.
+    // opposite vertex follows its end.
     const Index end = vertex(triangle, (corner + 1) % 3);
     return (cornerOf(neighbor(triangle, corner), end) + 1) % 3;
   }
-  /// A triangle that has the vertex; -1 if none has.
+  /// A triangle at the vertex; -1 if the vertex is not in the mesh.
   Index triangleAt(Index vertex) const { return triangle_at_[static_cast<std::size_t>(vertex)]; }
   Index degree(Index vertex) const { return degree_[static_cast<std::size_t>(vertex)]; }
 
@@ -70,17 +69,17 @@ public:
   /// itself and two new ones; the new vertex is corner 0 of each.
   std::array<Index, 3> split(Index triangle, Index new_vertex);
 
-  /// Takes out a vertex of degree 3, unless the mesh is a tetrahedron: returns the triangle that
-  /// takes the place of its three, or -1.
+  /// Removes a vertex of degree 3, unless the mesh is a tetrahedron. Returns the triangle that
+  /// replaces its three, or -1.
   Index merge(Index vertex);
 
-  /// Replaces the side opposite to `corner` by the other diagonal of the two triangles, unless
-  /// its ends are joined already: returns whether it did. The triangle keeps the vertex of
-  /// `corner`, as corner 0; the neighbour has it as corner 0 too.
+  /// Replaces the side opposite to `corner` by the other diagonal of the two triangles, unless its
+  /// ends are joined already. Returns whether it did. Corner 0 of both triangles is then the vertex
+  /// that was at `corner`.
   bool flip(Index triangle, int corner);
 
-  /// Begins to write down all changes, or goes on with it, until commit() or rollBack(). There must
-  /// be room for all splits: places that merge() freed. Returns the number of changes so far.
+  /// Begins or continues to record changes, until commit() or rollBack(). Splits need slots freed
+  /// by merge(). Returns the number of changes so far.
   std::size_t record() {
     is_recording_ = true;
     return changes_.size();
@@ -89,13 +88,13 @@ public:
     is_recording_ = false;
     changes_.clear();
   }
-  /// Undoes the changes from a number on; with 0 it ends writing them down.
+  /// Undoes the changes from a number on; 0 also ends the recording.
   void rollBack(std::size_t first = 0);
 
   Triangles triangles() const;
 
 private:
-  /// Whether the triangles around a vertex are one fan, in which each vertex is but once.
+  /// Whether the triangles around a vertex are one fan without repeated vertices.
   bool isFan(Index v) const;
 
   void set(Index& entry, Index value) {
@@ -118,19 +117,19 @@ private:
     auto& around = neighbors_[static_cast<std::size_t>(triangle)];
     set(*std::find(around.begin(), around.end(), old_neighbor), new_neighbor);
   }
-  /// A free place for a triangle, the last that was freed first.
+  /// A free slot for a triangle, the last freed one first.
   Index takePlace();
   void freePlace(Index t);
 
-  std::vector<std::array<Index, 3>> vertices_;   ///< -1 and the next free place, if it is free
+  std::vector<std::array<Index, 3>> vertices_;   ///< -1 and the next free slot, if free
   std::vector<std::array<Index, 3>> neighbors_;  ///< across the side opposite to each corner
   std::vector<Index> triangle_at_;
   std::vector<Index> degree_;
-  Index free_ = -1;  ///< first free place
+  Index free_ = -1;  ///< first free slot
   Index triangle_count_ = 0;
-  bool is_paired_ = true;  ///< each side has another triangle, from the beginning
+  bool is_paired_ = true;  ///< at the beginning, each side had another triangle
   bool is_recording_ = false;
-  std::vector<std::pair<Index*, Index>> changes_;  ///< entries and what they were
+  std::vector<std::pair<Index*, Index>> changes_;  ///< entries and their old values
 };
 
 }  // namespace spherical_param::internal

@@ -11,11 +11,10 @@
 
 namespace spherical_param::internal {
 
-/// Unit normals of the vertices of a closed mesh, outward: those of the triangles, weighted by
-/// their angles, so that it does not matter how the surface is cut (G. Thuermer and C. A.
-/// Wuethrich, 1998).
+/// Outward unit normals of the vertices of a closed mesh: normals of the triangles, weighted by
+/// angle, so that the triangulation does not matter (G. Thuermer and C. A. Wuethrich, 1998).
 ///
-/// \param sphere 3 x v, unit vectors: for vertices whose triangles have no area.
+/// \param sphere 3 x v, unit vectors: normals of vertices whose triangles have no area.
 inline Positions vertexNormals(const Positions& points, const Triangles& triangles,
                                const Positions& sphere, const CornerTable& corners, int threads) {
   const auto count = static_cast<std::size_t>(points.cols());

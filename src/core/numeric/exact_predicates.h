@@ -28,8 +28,7 @@ int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                           const Eigen::Vector3d& c, const Eigen::Vector3d& d);
 
 /// The sign of the volume that a closed mesh encloses, exact: 1 if its triangles face outward.
-/// Plain arithmetic decides nearly always; where it cannot, in integers, some 20 us for each
-/// triangle.
+/// Plain arithmetic decides nearly always, else integers at some 20 us for each triangle.
 ///
 /// \param points    3 x n, finite.
 /// \param triangles 3 x m, closed.

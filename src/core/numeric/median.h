@@ -6,7 +6,7 @@
 
 namespace spherical_param::internal {
 
-/// The median; the upper one, if there are two. Changes their order.
+/// The median; the upper one of two. Changes the order of the values.
 ///
 /// \param values not empty.
 inline double medianOf(std::vector<double>& values) {

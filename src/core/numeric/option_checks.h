@@ -6,8 +6,7 @@
 
 namespace spherical_param::internal {
 
-/// Throws InvalidInput for a value that was cast to an enumeration and is none of its values, which
-/// count from 0.
+/// Throws InvalidInput for a value outside an enumeration whose values count from 0.
 ///
 /// \param what the public function and its option, for the message.
 template <typename Enum>

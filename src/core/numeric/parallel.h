@@ -17,19 +17,18 @@
 
 namespace spherical_param::internal {
 
-/// More would exhaust the system before they could work.
+/// Maximum number of threads: more would exhaust the system.
 inline constexpr int kMaxThreads = 1024;
-/// Items of a block. Work is handed out, and sums are formed, block by block: the same bits for any
-/// number of threads.
+/// Items of a block. Work is distributed and summed by block: the same bits for any number of
+/// threads.
 inline constexpr std::size_t kBlockSize = 512;
 /// Below this many items a parallel region for much work costs more than it gains.
 inline constexpr std::size_t kParallelThreshold = 4096;
-/// The same for one short pass over the items: on a busy machine a region may have to wait for a
-/// thread that does not run, which takes as long as many such passes.
+/// The same for one short pass over the items: on a busy machine a region may wait for a
+/// descheduled thread longer than many passes take.
 inline constexpr std::size_t kShortPassThreshold = 50000;
 
-/// Least number of items between reports: regions that follow each other wait for their slowest
-/// thread once more each.
+/// Minimum number of items between reports: each parallel region waits for its slowest thread.
 inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
 /// Approximate maximum of reports of a loop.
 inline constexpr std::size_t kMaxReports = 32;
@@ -41,28 +40,28 @@ inline void checkThreads(int requested) {
                        " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
 }
 
-/// The threads that are worth having for this number of items.
+/// Number of threads that pays for a number of items.
 ///
 /// \param requested 0: as many as OpenMP would use.
-/// \param threshold the least number of items for several threads.
+/// \param threshold minimum number of items for several threads.
 /// \throw InvalidInput if `requested` is out of range.
 inline int threadCount(int requested, [[maybe_unused]] std::size_t items,
                        [[maybe_unused]] std::size_t threshold) {
   checkThreads(requested);
 #ifdef _OPENMP
   if (items >= threshold)
-    // OpenMP ends the process if it cannot start a thread; more than this gain nothing anyway.
+    // OpenMP ends the process if it cannot start a thread; more threads than this gain nothing.
     return std::min({requested > 0 ? requested : omp_get_max_threads(), 4 * omp_get_num_procs(),
                      static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMaxThreads))});
 #endif
   return 1;
 }
 
-/// Carries an exception, such as that there is no memory, out of a parallel region: one that left
-/// it by itself would end the program, even where there is but one thread.
+/// Carries an exception, such as std::bad_alloc, out of a parallel region: leaving the region by
+/// itself would end the program, even on one thread.
 class ExceptionCarrier {
 public:
-  /// Does a part of the work, unless another part has thrown.
+  /// Runs a part of the work, unless another part has thrown.
   template <typename Work>
   void run(const Work& work) {
     if (has_failed_.load(std::memory_order_relaxed))
@@ -75,7 +74,7 @@ public:
     }
   }
 
-  /// Throws what one of the parts has thrown. To be called after the region.
+  /// Rethrows the exception of a part. Call it after the region.
   void rethrow() const {
     if (error_)
       std::rethrow_exception(error_);
@@ -86,8 +85,8 @@ private:
   std::exception_ptr error_;
 };
 
-/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. What one of them
-/// throws ends the work; blocks that others have begun are done.
+/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. An exception
+/// ends the work; blocks already begun are finished.
 template <typename Work>
 void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
   const auto blocks = static_cast<std::ptrdiff_t>((count + kBlockSize - 1) / kBlockSize);
@@ -103,10 +102,9 @@ void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& w
   carrier.rethrow();
 }
 
-/// The same in a few dozen parallel regions, if there is a report to make
-/// after each: the blocks and their numbers are those of one region.
+/// The same with reports: in a few dozen parallel regions, with the same blocks.
 ///
-/// \param items_per_report at least: fewer where an item takes long.
+/// \param items_per_report minimum; lower for items that take long.
 template <typename Work>
 void forEachBlock(std::size_t count, int threads, const FractionReport& report, const Work& work,
                   std::size_t items_per_report = kReportedItems) {
@@ -123,7 +121,7 @@ void forEachBlock(std::size_t count, int threads, const FractionReport& report, 
 
 /// Calls work(thread, i) for each i in [0, count), where thread < threads.
 ///
-/// \param report called with the fraction that is done, as by forEachBlock().
+/// \param report receives the fraction done, as in forEachBlock().
 template <typename Work>
 void forEachItem(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -142,9 +140,9 @@ void forEachItem(std::size_t count, int threads, const Work& work) {
   forEachItem(count, threads, {}, work);
 }
 
-/// Calls work(thread, i) for each i in [0, count), where thread < threads, each a long task of its
-/// own. The calling thread is number 0 and has the first task. What one throws ends the work; tasks
-/// that others have begun are done.
+/// Calls work(thread, i) for each i in [0, count), where thread < threads: long tasks. The calling
+/// thread is number 0 and runs the first task. An exception ends the work; tasks already begun are
+/// finished.
 template <typename Work>
 void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
   ExceptionCarrier carrier;

@@ -7,13 +7,13 @@
 
 namespace spherical_param::internal {
 
-/// Multiplies by 2^exponent, exactly where the result is not denormal.
+/// Multiplies by 2^exponent; exact unless the result is denormal.
 class PowerOfTwo {
 public:
   explicit PowerOfTwo(int exponent) : exponent_(exponent), factor_(std::ldexp(1.0, exponent)) {}
 
   double operator()(double x) const {
-    // Beyond, the factor itself is no normal number.
+    // Beyond, the factor itself is not a normal number.
     return std::abs(exponent_) < 1000 ? x * factor_ : std::ldexp(x, exponent_);
   }
   Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {

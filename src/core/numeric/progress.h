@@ -8,12 +8,12 @@
 
 namespace spherical_param::internal {
 
-/// Receives the fraction of a loop that is done, in [0, 1], from the calling thread, which may
-/// be inside of a parallel region. It may throw to end the work. May be empty.
+/// Receives the fraction of a loop done so far, in [0, 1], from the calling thread, perhaps inside
+/// a parallel region. It may throw to end the work. May be empty.
 using FractionReport = std::function<void(double)>;
 
-/// The report of a stage: it passes the fraction to the progress callback and throws Cancelled if
-/// that returns false.
+/// The report of a stage: passes the fraction to the progress callback; throws Cancelled if that
+/// returns false.
 ///
 /// \param execution must outlive the report.
 inline FractionReport reportOf(const Execution& execution, const char* stage) {

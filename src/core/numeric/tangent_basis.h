@@ -7,7 +7,7 @@
 namespace spherical_param::internal {
 
 /// Two orthonormal tangent vectors at a point of the sphere; with the second as x and the first as
-/// y axis, right-handed for who looks at the point from inside.
+/// y axis, right-handed seen from inside.
 using TangentBasis = Eigen::Matrix<double, 3, 2>;
 
 /// J. R. Frisvad: "Building an Orthonormal Basis from a 3D Unit Vector Without Normalization",

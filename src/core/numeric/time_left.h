@@ -6,14 +6,14 @@
 
 namespace spherical_param::internal {
 
-/// What is left of a time limit since this was made.
+/// Time left of a limit that begins at construction.
 class TimeLeft {
 public:
-  /// \param limit [s]; unset: there is none.
+  /// \param limit [s]; unset: no limit.
   explicit TimeLeft(std::optional<double> limit) : limit_(limit) {}
 
-  /// \param kept for what comes later [s].
-  /// \return [s], at least 0; unset: there is no limit.
+  /// \param kept reserve for later work [s].
+  /// \return [s], at least 0; unset: no limit.
   std::optional<double> operator()(double kept = 0.0) const {
     if (!limit_)
       return std::nullopt;

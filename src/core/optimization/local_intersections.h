@@ -9,14 +9,14 @@
 
 namespace spherical_param::internal {
 
-/// Some triangles of a mesh that changes, to count which of them another one intersects.
+/// A changing set of triangles of a mesh, for counts of intersections.
 class LocalIntersections {
 public:
-  /// Begins without any. Most meshes never ask: until then there is nothing as long as the mesh.
+  /// Begins with an empty set. Memory in proportion to the mesh is allocated only here.
   ///
-  /// \param triangles of the mesh; their numbers are below that.
+  /// \param triangles number of triangles of the mesh.
   void begin(std::size_t triangles);
-  /// Adds a triangle, or changes it.
+  /// Adds or changes a triangle.
   void set(const Face& face);
   void remove(Index triangle);
   bool contains(Index triangle) const { return places_[static_cast<std::size_t>(triangle)] >= 0; }
@@ -24,8 +24,8 @@ public:
   const Face& face(Index triangle) const {
     return faces_[static_cast<std::size_t>(places_[static_cast<std::size_t>(triangle)])];
   }
-  /// Calls with each triangle whose box overlaps another one, and perhaps with a few more, until
-  /// that returns false.
+  /// Calls work(face) for each triangle whose box overlaps a box, and perhaps a few more, until it
+  /// returns false.
   template <typename Work>
   void forEachIn(const Box& box, const Work& work) const {
     const WideBox wide(box);
@@ -34,19 +34,20 @@ public:
         if (!work(faces_[group * kGroupSize + lane]))
           return;
   }
-  /// How many others intersect one of the triangles. Once asked, the number is kept up to date.
+  /// Number of others that intersect one of the triangles. From the first call on, it is kept up to
+  /// date.
   int countOf(Index triangle);
-  /// Appends the triangles that intersect another one, but for that itself.
+  /// Appends the triangles that intersect a triangle, without itself.
   void appendIntersecting(const Face& face, std::vector<Index>& triangles) const;
-  /// How many triangles intersect another one, without that itself and one more; beyond `most` it
-  /// need not count on.
+  /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
+  /// beyond `most`.
   int count(const Face& face, Index without, int most) const;
   bool intersects(const Face& face) const { return count(face, face.triangle, 0) > 0; }
 
 private:
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  /// Calls with each triangle that intersects another one, without that itself and one more, until
-  /// that returns false.
+  /// Calls work(face) for each triangle that intersects `face`, without itself and `without`, until
+  /// it returns false.
   template <typename Work>
   void forEachIntersecting(const Face& face, Index without, const Work& work) const {
     const Plane plane(face);
@@ -56,8 +57,8 @@ private:
     });
   }
 
-  /// Adds to the known numbers of those that a triangle intersects; returns how many these are, if
-  /// numbers are kept.
+  /// Adds `change` to the known counts of triangles that intersect `face`; returns their number, if
+  /// counts are kept.
   int addToCounts(const Face& face, int change);
 
   static constexpr int kUnknown = -1;

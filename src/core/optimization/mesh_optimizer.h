@@ -16,16 +16,16 @@
 
 namespace spherical_param::internal {
 
-/// Moves that lower the energy of a closed genus-0 mesh on fixed points. Other moves are
-/// rolled back, to the last index and bit. The running total of the energy is kept.
+/// Moves that lower the energy of a closed genus-0 mesh on fixed points. Other moves are rolled
+/// back bit by bit. Keeps a running total of the energy.
 class MeshOptimizer {
 public:
   using Pairs = std::vector<std::array<Index, 2>>;
 
-  /// \param openings of the surface; nullptr: it is closed.
+  /// Call setEnergy() first. All arguments but the triangles must outlive this.
   ///
-  /// All but the triangles and the report, which is called with the fraction that is done, must
-  /// outlive this. setEnergy() must come first.
+  /// \param report   receives the fraction done; used only here.
+  /// \param openings of the surface; nullptr: it is closed.
   MeshOptimizer(const Positions& points, const Triangles& triangles, const Graph& graph,
                 int threads, const FractionReport& report = {},
                 const OpenPlaces* openings = nullptr);
@@ -35,13 +35,12 @@ public:
   /// Begins anew with as many triangles.
   void reset(const Triangles& triangles);
 
-  /// Begins to work with another energy, or with other positions of the points.
+  /// Changes the energy.
   ///
   /// \param energy its typical angles must not change; \see setExcessEnergy.
   void setEnergy(const SurfaceEnergy& energy);
-  /// The same for Bend::Excess, with angles that are typical of the mesh as it is now: `factor`
-  /// times the median of medianAngles(), or `least` [rad] if that is more. Asked again, it looks
-  /// only at what has changed.
+  /// The same for Bend::Excess, with the typical angles of the current mesh: `factor` times the
+  /// median of medianAngles(), at least `least` [rad]. Later calls process only changes.
   void setExcessEnergy(double mu, double factor, double least);
   const SurfaceEnergy& terms() const { return terms_; }
   void setPoints(const Positions& points);
@@ -49,39 +48,39 @@ public:
   double energy() const { return energy_; }  ///< running total
   double recomputedEnergy() const;           ///< the same from the mesh
 
-  /// Flips edges, the one that gains most first, until none gains. Returns the number of flips.
-  /// Asked again with the same energy, it looks only at what has changed.
+  /// Flips edges, the largest gain first, until none gains. Returns the number of flips. Later
+  /// calls with the same energy process only changes.
   ///
-  /// \param report called with the fraction that is done: an estimate, for a flip may make others
-  /// gain. What it throws leaves a sound mesh of which the energy is as it should be.
+  /// \param report receives an estimate of the fraction done. If it throws, mesh and energy stay
+  ///               consistent.
   std::size_t flipAll(const FractionReport& report = {});
 
   /// Takes a vertex out and puts it back where it costs least, among the triangles around its
-  /// neighbours in mesh and graph; keeps that if the energy falls: returns whether it did.
+  /// neighbours in mesh and graph. Commits if the energy falls; returns whether it did.
   bool relocate(Index v);
 
-  /// Takes vertices out and puts them back in random order; keeps that if `accept` says so of the
-  /// change of the energy [mean length of the graph's edges].
+  /// Ruin and recreate: takes vertices out and puts them back in random order. Commits if `accept`
+  /// returns true for the change of the energy [mean length of the graph's edges].
   bool recreate(const std::vector<Index>& vertices, const std::function<bool(double)>& accept,
                 std::uint64_t& random);
 
-  /// Work of recreate(), flipApart() and flipChangedApart() so far [vertices that are taken out and
-  /// put back]: what time it takes is about proportional to that.
+  /// Work of recreate(), flipApart() and flipChangedApart() so far [vertices taken out and put
+  /// back], about proportional to the time.
   std::size_t work() const { return work_; }
 
   /// Whether a change of the energy is a gain beyond rounding [mean length of the graph's edges].
   static bool isGain(double change);
 
-  /// `count` vertices, or all there are, that spread from the seeds at random, over the edges of
-  /// mesh and graph.
+  /// `count` vertices, or all, that spread randomly from the seeds over the edges of mesh and
+  /// graph.
   std::vector<Index> spread(const std::vector<Index>& seeds, std::size_t count,
                             std::uint64_t& random);
 
   /// Edges whose triangles' normals have a cosine below the bound.
   std::vector<std::pair<Index, Index>> edgesBelow(double cosine) const;
 
-  /// Tells whether a vertex has an edge whose triangles' normals have a cosine below the bound, or
-  /// is more than two edges away from a near neighbour in the graph.
+  /// Whether a vertex has an edge whose triangles' normals have a cosine below the bound, or is
+  /// more than two edges away from a near neighbour in the graph.
   bool isRough(Index v, double cosine) const;
   /// All such vertices, ascending.
   std::vector<Index> roughVertices(double cosine, const FractionReport& report = {}) const;
@@ -89,28 +88,23 @@ public:
   /// n entries: the median of the angles at a vertex's edges and those opposite to it [rad].
   std::vector<double> medianAngles() const;
 
-  /// All pairs of triangles that intersect, by their places in the mesh; none may be free. Open
-  /// triangles do not count.
-  ///
-  /// Of a mesh that has changed little since it was asked last, only triangles that are new are
-  /// looked at.
+  /// All pairs of triangles that intersect, by their slots in the mesh, without free slots. Open
+  /// triangles do not count. After few changes, only new triangles are tested.
   Pairs intersections(const FractionReport& report = {});
-  /// For each vertex, 1 if the triangles around it are evidently such that no two of them
-  /// intersect: seen along an axis, they go around it once.
+  /// For each vertex, 1 if its triangles evidently do not intersect each other: seen along an axis,
+  /// they go around it once.
   std::vector<std::uint8_t> plainFans(const FractionReport& report = {}) const;
-  /// Watches the triangles around some vertices, other than open ones.
+  /// Watches the triangles around some vertices, except open ones.
   void watch(const std::vector<Index>& vertices);
-  /// Flips edges of the triangles that are watched so that fewer of them intersect: one edge or two
-  /// at a time, and of equally good flips those that cost least. Returns how many pairs fewer there
-  /// are.
+  /// Flips one or two edges of watched triangles at a time so that fewer triangles intersect; ties
+  /// by the least cost. Returns by how many pairs the number falls.
   std::size_t flipApart();
-  /// For `accept` of recreate(): the same where triangles intersect that it has changed since
-  /// watch(). Returns how many pairs more there are than before that. Of triangles that were not
-  /// watched, no pairs were known before.
+  /// The same for triangles changed since watch(), for `accept` of recreate(). Returns by how many
+  /// pairs the number has risen; pairs of unwatched triangles count as new.
   int flipChangedApart();
 
 private:
-  /// A flip that gains. Void if its side has another stamp by now.
+  /// A flip that gains. Void if the stamp of its side has changed.
   struct Candidate {
     double gain;
     Index triangle;
@@ -140,7 +134,7 @@ private:
   bool isPlainFan(Index v) const;
   Pairs allIntersections(const Triangles& triangles, const FractionReport& report) const;
   Triangles trianglesAt(const std::vector<Index>& places) const;
-  /// Of the angles of medianAngles().
+  /// Cosines of the angles of medianAngles().
   void gatherCosines(Index v, std::vector<double>& cosines) const;
   void updateUsualAngles(double factor, double least);
   void recomputeFacets(const FractionReport& report = {});
@@ -152,11 +146,11 @@ private:
     return terms_.edge(v, w, points_->col(v), points_->col(w), f, g);
   }
 
-  /// What the energy falls by if a side is flipped, or no more than `floor` if that is so.
+  /// Gain of a flip, or any value up to `floor` if the gain is at most that.
   double flipGain(Index t, int k, double floor) const;
   bool flip(Index t, int k, double gain);
   std::size_t flipApart(std::vector<Index> bad);
-  /// A flip by what it changes: intersections among local_, and the energy.
+  /// A flip and its effect: change of intersections among local_, and of the energy.
   struct Repair {
     int intersections;
     double cost;
@@ -172,25 +166,25 @@ private:
   Face face(Index t) const {
     return face(t, mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2));
   }
-  /// Those of local_ that two flips near a triangle may make or end intersections with, to near_.
+  /// Fills near_ with those of local_ that two flips near a triangle may affect.
   void gatherNear(Index t);
   bool intersects(Index t) const { return local_.contains(t) && local_.intersects(face(t)); }
-  /// What a flip changes, without its cost. \return false if the side may not be flipped, or if
-  /// more than `most` intersections come.
+  /// The effect of a flip, without its cost. \return false if the flip is impossible, or if it adds
+  /// more than `most` intersections
   bool findRepair(Index t, int k, int most, Repair& repair);
   double costOf(const Repair& repair) const;
   void flipLocally(const Repair& repair);
   void updateLocally(Index t, Index o);
-  /// The best flip of a triangle that intersects others, or the best two. Returns their number.
+  /// The best one or two flips of a triangle that intersects others. Returns their number.
   int findRepairs(Index t, std::array<Repair, 2>& repairs);
-  /// Puts the flips of a triangle's sides in the queue, and declares void what was there of them.
+  /// Queues the flips of a triangle's sides and voids older entries.
   void queueSides(Index t);
   void queueFlip(Index t, int k);
   /// Flips around some triangles until none gains.
   void flipAround(const std::vector<Index>& triangles);
   std::size_t flipQueued(const FractionReport& report = {});
 
-  /// What the energy rises by if a triangle is split, or no less than `ceiling` if that is so.
+  /// Cost of a split, or any value from `ceiling` on if the cost is at least that.
   double splitCost(Index t, Index v, double ceiling) const;
   bool remove(Index v);
   bool insert(Index v, const std::vector<Index>& neighbors);
@@ -212,13 +206,13 @@ private:
   double scale_ = 1.0;  ///< brings the coordinates to at most 1
   double energy_ = 0.0;
   std::vector<Facet> facets_;
-  /// The mesh when intersections() was asked last, and what it answered.
+  /// The mesh and the result of the last intersections().
   struct Checked {
     Triangles triangles;
     Pairs pairs;
   };
   Checked checked_;
-  /// What was before each begin() that neither commit() nor rollBack() has ended yet.
+  /// The state before each open begin().
   struct Before {
     std::size_t changes;
     std::size_t facets;
@@ -229,8 +223,8 @@ private:
 
   static constexpr std::uint8_t kChangedSinceFlips = 1;
   static constexpr std::uint8_t kChangedSinceAngles = 2;
-  /// Marks of triangles that may have changed since flipAll(), in settled_terms_, left no flip that
-  /// gains, and since typical_angles_ were found.
+  /// Marks of triangles that may have changed since flipAll() with settled_terms_, and since
+  /// typical_angles_ were computed.
   std::vector<std::uint8_t> changes_;
   bool are_flips_settled_ = false;
   SurfaceEnergy settled_terms_;
@@ -240,9 +234,9 @@ private:
   std::vector<double> typical_angles_;
 
   std::vector<Candidate> queue_;       ///< a heap
-  std::vector<Index> refused_;         ///< triangles of flips that would have joined twice
+  std::vector<Index> refused_;         ///< triangles of flips whose new edge existed
   std::vector<std::uint32_t> stamps_;  ///< of each side of each triangle
-  /// Marks of what a pass has seen: those equal to `pass_`.
+  /// A pass has seen the entries equal to `pass_`.
   std::vector<std::uint32_t> seen_triangles_;
   std::vector<std::uint32_t> seen_vertices_;
   std::uint32_t pass_ = 0;

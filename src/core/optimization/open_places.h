@@ -11,24 +11,22 @@
 
 namespace spherical_param::internal {
 
-/// Where a mesh of all points is over an opening of the surface: a question of three vertices
-/// alone, whatever the rest of the mesh.
+/// Decides whether a triangle is over an opening of the surface, from its three vertices only.
 class OpenPlaces {
 public:
   /// \param points   3 x n, must outlive this.
-  /// \param graph    n nodes, in which the openings were found.
-  /// \param openings those over which the mesh is open.
+  /// \param graph    n nodes, of the openings.
+  /// \param openings to be left open.
   OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings);
 
   bool areAny() const { return !rim_edges_.empty(); }
 
-  /// The opening that a triangle is over, by its place in `openings`: that whose loop is nearest to
-  /// most of its vertices. Empty if it is over none.
+  /// The opening under a triangle, as an index of `openings`: its loop is nearest to most of the
+  /// vertices. Empty: no opening.
   std::optional<std::size_t> openingOver(Index a, Index b, Index c) const;
 
-  /// Whether a triangle is over an opening: its vertices are at loops, or at most two steps from
-  /// them, and a side is longer than those of the surface; unless close() has excluded one of
-  /// them.
+  /// Whether a triangle is over an opening: its vertices are within two steps of loops, and a side
+  /// is longer than edges of the surface; close() excludes vertices.
   bool isOpen(Index a, Index b, Index c) const {
     return is_near_[static_cast<std::size_t>(a)] != 0 &&
            is_near_[static_cast<std::size_t>(b)] != 0 &&
@@ -36,8 +34,8 @@ public:
            (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
-  /// No triangle of some vertices is over an opening any more, unless these are in a loop. Returns
-  /// whether that changes anything.
+  /// Excludes some vertices that are not in a loop: their triangles are surface. Returns whether
+  /// that changes anything.
   bool close(const std::vector<Index>& vertices);
 
   /// Whether an edge is in a loop around an opening.
@@ -49,7 +47,7 @@ private:
   bool isLong(Index a, Index b) const;
 
   const Positions& points_;
-  std::vector<std::uint8_t> is_near_;  ///< kNear, kLoop for those in a loop, or 0
+  std::vector<std::uint8_t> is_near_;  ///< kNear, kLoop (in a loop) or 0
   std::vector<Index> nearest_;         ///< of near vertices, the opening of the nearest loop
   std::vector<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending

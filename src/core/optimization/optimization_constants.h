@@ -22,16 +22,16 @@ constexpr double kMu = 0.3;
 constexpr double kPolishMu = 0.8;
 constexpr double kEvenPolishMu = 4.0;
 
-/// Up to this alignment and unevenness the sampling is even, and angles count only beyond what is
-/// typical. Simplified and designed models have an alignment of 0.19 to 0.63, scans and even or
+/// Up to this alignment and unevenness the sampling is even, and angles count only beyond typical
+/// angles. Simplified and designed models have an alignment of 0.19 to 0.63, scans and even or
 /// random samplings -0.01 to 0.13; scans and even samplings have an unevenness of 0.03 to 0.22,
 /// random samplings 0.33 to 0.39. All samplings taken as uneven: true edges of the fandisk fall
 /// from 0.9605 to 0.9560, of the bunny from 0.9994 to 0.9990. Without the first bound the models'
 /// fall to 0.9269; without the second the energy of random samples rises by 1 to 8 %.
 constexpr double kMaxUnalignedSampling = 0.16;
 constexpr double kMaxEvenSampling = 0.3;
-/// Of an even sampling, angles up to this factor times the median around a vertex are typical, and
-/// those up to the least one [rad], 10 degrees. With a factor of 3 or 8 the elephant as a raw scan
+/// In an even sampling, angles up to this factor times the median around a vertex are typical, and
+/// all up to the minimum [rad], 10 degrees. With a factor of 3 or 8 the elephant as a raw scan
 /// has 3 % more self-intersections; 0 and 20 degrees change 2 and 3 models, without
 /// self-intersections before and after.
 constexpr double kTypicalAngleFactor = 5.0;
@@ -42,15 +42,15 @@ constexpr double kMinTypicalAngle = 0.17453292519943295;
 /// A triangle near a loop is over the opening if a side is longer than this [larger spacing of its
 /// ends].
 constexpr double kMaxSurfaceEdge = 1.6;
-/// Of open triangles: part of mu R, and of the price of an edge between two of them.
+/// Open triangles: fraction of mu R, and of the price of an edge between two of them.
 constexpr double kOpenTriangle = 0.5;
 constexpr double kOpenEdge = 0.5;
-/// Price of an edge between an open triangle and the surface that is in no loop [length of the
-/// edge]: the first, and the second times mu. Too low makes holes, too high folds ears.
+/// Price of an edge between an open triangle and the surface outside of loops [length of the edge]:
+/// the first, plus the second times mu. Too low makes holes, too high folds ears.
 constexpr double kRimPrice = 0.8;
 constexpr double kRimPriceOfMu = 2.0;
-/// Untangling may leave other open triangles to which no loop leads: rounds of closing them.
-/// Without any, 1 of 56 open clouds keeps an intersection.
+/// Rounds of closing open triangles without a loop, of which untangling may leave more. Without
+/// any, 1 of 56 open clouds keeps an intersection.
 constexpr int kMaxClosingRounds = 4;
 
 // --- Gains ---------------------------------------------------------------------------------------
@@ -89,9 +89,9 @@ constexpr int kMaxRelocateRounds = 4;
 /// gained nothing: 22082 instead of 21433 self-intersections on all clouds.
 constexpr double kMaxRough = 0.5;
 constexpr int kNoiseSteps = 3;
-/// Untangling on the given points takes long, and is in vain, above this number of intersections
-/// for each triangle; numbers up to the other one are tried anyway. Without either, 8 of 10 noisy
-/// clouds keep 9 to 122 intersections instead of 0; the first matters above 150,000 points only.
+/// Untangling on the given points is slow and fails above this number of intersections for each
+/// triangle; up to the other number it is tried in any case. Without either, 8 of 10 noisy clouds
+/// keep 9 to 122 intersections instead of 0; the first matters only above 150,000 points.
 constexpr double kMaxFewIntersectionsPerTriangle = 0.005;
 constexpr double kMaxFewIntersections = 1500.0;
 
@@ -104,12 +104,12 @@ constexpr int kMaxRecreateRounds = 5;
 /// cheburashka keeps 9 intersections, up to 16 the noisy sphere 9.
 constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
-/// Work of all repairs, in vertices that are taken out and put back: the sum of the first and of
-/// the second for each point. A search for two flips that take triangles apart counts as the other
-/// one, because it takes as long. A vertex takes 10 to 16 us, a point of the first mesh some 20: on
-/// 112 clouds repairs took at most 9 times as long as all the rest. With a first of 2,000 a tube
-/// from a bad start keeps its spikes. 49 of the 56 runs below end without intersections, with 5 for
-/// each point 44, in 0.9 times as long, with 5,000 and 5, 40.
+/// Maximum work of all repairs [vertices taken out and put back]: the first, plus the second for
+/// each point. A search for two flips counts as the third, because it takes as long. A vertex takes
+/// 10 to 16 us, a point of the first mesh some 20: on 112 clouds repairs took at most 9 times as
+/// long as all the rest. With a first of 2,000 a tube from a bad start keeps its spikes. 49 of the
+/// 56 runs below end without intersections, with 5 for each point 44, in 0.9 times as long, with
+/// 5,000 and 5, 40.
 constexpr std::size_t kMaxWork = 10000;
 constexpr std::size_t kMaxWorkOfPoint = 10;
 constexpr std::size_t kWorkOfTwoFlips = 8;
@@ -118,10 +118,10 @@ constexpr std::size_t kWorkOfTwoFlips = 8;
 
 // "56 runs" are those with 4 seeds on 14 clouds that keep intersections easily.
 
-/// Rounds of untangling, and those in which the energy alone decides: it knows the way out better
-/// than the number of intersections does, but may be stuck with the last ones. With more
-/// work than above, 51 of the runs end without intersections, with 1 of the latter 48, with 5, 49.
-/// Where the points are noisy the energy decides in none.
+/// Rounds of untangling, and rounds by energy only: the energy resolves more than the number of
+/// intersections, but may get stuck with the last ones. With more work than above, 51 of the runs
+/// end without intersections, with 1 of the latter 48, with 5, 49. Noisy points have no rounds by
+/// energy.
 constexpr int kMaxUntangleRounds = 40;
 constexpr int kMaxRoundsByEnergy = 2;
 /// Rounds by number in a row without a gain. With 20, and 80 rounds in all, as many of the runs end
@@ -136,17 +136,17 @@ constexpr std::size_t kMinUntangled = 6;
 constexpr std::size_t kMaxFirstUntangled = 24;
 constexpr std::size_t kMaxUntangled = 96;
 constexpr std::size_t kMaxUntangledByEnergy = 48;
-/// Vertices around whose triangles flips take two triangles apart that intersect; parts up to
+/// Vertices around two intersecting triangles whose edges are flipped; parts up to
 /// kMaxFirstUntangled are then ruined and recreated there. Without such parts, or up to 12
 /// vertices, a cube of 8 points keeps a corner cut off.
 constexpr std::size_t kFlipRegion = 64;
-/// Intersections are counted among twice as many vertices as the part has, and these. With none of
-/// these the springer keeps 32 intersections.
+/// Intersections are counted among twice the vertices of the part plus this number. With 0 the
+/// springer keeps 32 intersections.
 constexpr std::size_t kWatchedVertices = 200;
 
 // --- Analysis of the sampling --------------------------------------------------------------------
 
-/// Number of points that are looked at, about: the standard error of the mean is then below 0.02.
+/// Approximate number of analysed points: the standard error of the mean is then below 0.02.
 /// With 500 one model of 26 clouds changes.
 constexpr std::size_t kTypicalSamples = 2500;
 /// With fewer points a quadric, of six coefficients, is not determined well enough. 5 changes one

@@ -18,10 +18,10 @@ struct SmoothedMesh {
   bool is_out_of_time = false;             ///< the time limit ended the optimisation early
 };
 
-/// Smooths the points and, with OptimizationMethod::Full, optimises the mesh on the smoothed ones
-/// where triangles intersect. To smooth anew with the better mesh gains nothing: of 26 clouds and
-/// 26 noisy ones, three rounds leave 55,682 self-intersections after 10 steps of smoothing, one
-/// 49,997.
+/// Smooths the points and, with OptimizationMethod::Full, optimises the mesh on the smoothed points
+/// if triangles intersect. Smoothing again with the better mesh gains nothing: on 26 clouds and 26
+/// noisy clouds, three rounds leave 55,682 self-intersections after 10 steps of smoothing, one
+/// round 49,997.
 ///
 /// \param graph     of the points.
 /// \param openings  of the surface; nullptr: it is closed.

@@ -13,7 +13,7 @@
 
 namespace spherical_param::internal {
 
-/// What the energy needs to know of a triangle.
+/// Data of a triangle for the energy.
 struct Facet {
   Eigen::Vector3d normal;  ///< of unit length; 0 for a triangle without area
   double radius;           ///< min(R, 4 * longest side), with the circumradius R; < 0: open
@@ -21,13 +21,13 @@ struct Facet {
   /// Whether the triangle is over an opening of the surface.
   bool isOpen() const { return radius < 0.0; }
 
-  /// Cosine of the angle between two normals; at an open triangle nothing is bent.
+  /// Cosine of the angle between two normals; 1 at an open triangle, which does not bend.
   static double cosine(const Facet& a, const Facet& b) {
     return a.isOpen() || b.isOpen() ? 1.0 : a.normal.dot(b.normal);
   }
 };
 
-/// A facet whose normal is not yet brought to unit length: often its radius is all that is asked.
+/// A facet before its normal is normalised: often only the radius is needed.
 struct RawFacet {
   Eigen::Vector3d normal;
   double twice_area;
@@ -46,7 +46,7 @@ struct RawFacet {
       radius = std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), radius);
   }
 
-  /// Takes it for an open triangle.
+  /// Makes it an open triangle.
   void open() { radius *= -optimization_constants::kOpenTriangle; }
 
   Facet facet() const {
@@ -74,26 +74,26 @@ inline double fastAcos(double x) {
 /// Energy of a triangle mesh on points: the sum over its edges of length * bend, and over its
 /// triangles of mu * min(R, 4 * longest side), with the circumradius R. No term is negative.
 ///
-/// A triangle over an opening counts half of that and does not bend; its edges have a price, unless
-/// they are in the loop around the opening.
+/// A triangle over an opening costs half and does not bend; its edges have a price, except those in
+/// the loop around the opening.
 struct SurfaceEnergy {
-  /// What an edge counts by the angle between the normals of its triangles [rad].
+  /// Cost of an edge by the angle between the normals of its triangles [rad].
   enum class Bend {
     Angle,   ///< the angle: together, the total absolute mean curvature
     Power,   ///< angle^1.5
-    Excess,  ///< what exceeds the angles that are typical at its two vertices
+    Excess,  ///< the excess over the mean of the typical angles at its two vertices
   };
 
   Bend bend = Bend::Angle;
   double mu = 0.3;
-  /// Of Bend::Excess: n entries, the angle that is typical at each vertex; must outlive this.
+  /// Of Bend::Excess: n entries, the typical angle at each vertex; must outlive this.
   const double* typical_angle = nullptr;
 
-  /// Of a surface with openings: where they are; must outlive this.
+  /// The openings of the surface, if any; must outlive this.
   const OpenPlaces* openings = nullptr;
 
-  /// Of Bend::Excess: an edge whose normals have at least this cosine adds nothing for sure. From
-  /// flatFrom(), or above 1.
+  /// Of Bend::Excess: edges whose normals have at least this cosine cost nothing. From flatFrom(),
+  /// or above 1.
   double flat_cosine = 2.0;
 
   /// The flat_cosine for typical angles of at least `least` [rad].
@@ -107,10 +107,10 @@ struct SurfaceEnergy {
            openings == other.openings;
   }
 
-  /// What a triangle adds.
+  /// Cost of a triangle.
   double cost(double radius) const { return mu * std::abs(radius); }
 
-  /// What the edge from vertex v at p to vertex w at q adds, with its triangles.
+  /// Cost of the edge from vertex v at p to vertex w at q, with its triangles.
   double edge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
               const Facet& facet, const Facet& other) const {
     if (facet.isOpen() || other.isOpen())
@@ -132,7 +132,7 @@ struct SurfaceEnergy {
   }
 
 private:
-  /// What an edge of an open triangle adds.
+  /// Cost of an edge of an open triangle.
   double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                   bool are_both_open) const {
     namespace tuned = optimization_constants;

@@ -12,11 +12,11 @@
 
 namespace spherical_param::internal {
 
-/// Boxes of a group: as wide as several processors' registers.
+/// Boxes of a group: fills the vector registers.
 inline constexpr std::size_t kGroupSize = 8;
 inline constexpr unsigned kGroupBits = 3;
 
-/// A box that contains one of doubles: half the memory, and twice as many in a register.
+/// A box of floats that contains a box of doubles: half the memory, twice as many in a register.
 struct WideBox {
   std::array<float, 3> lower;
   std::array<float, 3> upper;
@@ -38,11 +38,11 @@ struct WideBox {
   }
 
 private:
-  /// More than what rounding to a float has taken, and that of adding the margin.
+  /// More than the rounding to a float and that of adding the margin.
   static float margin(float value) { return std::abs(value) * 3e-7F + 1e-37F; }
 };
 
-/// Boxes side by side, so that one is compared with all of them at once.
+/// Boxes side by side, to compare a box with all of them at once.
 struct BoxGroup {
   std::array<std::array<float, kGroupSize>, 3> lower;
   std::array<std::array<float, kGroupSize>, 3> upper;
@@ -83,7 +83,7 @@ struct BoxGroup {
 class Overlaps {
 public:
   Overlaps(const BoxGroup& group, const WideBox& box) {
-    // Lanes of one width, and no branches: a few instructions for all of them.
+    // No branches: a few instructions for all lanes.
     std::array<float, kGroupSize> gaps;
     for (std::size_t lane = 0; lane < kGroupSize; ++lane) {
       const float x =
@@ -94,8 +94,8 @@ public:
           std::max(group.lower[2][lane] - box.upper[2], box.lower[2] - group.upper[2][lane]);
       gaps[lane] = std::max(std::max(x, y), z);
     }
-    // Boxes are wider than what they contain: where it touches, gaps are below 0. Their signs to
-    // places of their own, and these together, half by half.
+    // Boxes are wider than their contents: touching contents have gaps below 0. Collect the signs
+    // as bits, half by half.
     std::array<std::int32_t, kGroupSize> signs;
     static_assert(sizeof(signs) == sizeof(gaps), "a sign for each gap");
     std::memcpy(signs.data(), gaps.data(), sizeof(gaps));

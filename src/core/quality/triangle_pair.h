@@ -10,13 +10,13 @@
 #include <array>
 #include <cstddef>
 
-/// Whether two triangles intersect: few operations, and a bound of their error, show of nearly all
-/// that a plane separates them. Exact arithmetic decides about the rest.
+/// Whether two triangles intersect. For nearly all pairs a few operations and an error bound find a
+/// separating plane; exact arithmetic decides about the rest.
 namespace spherical_param::internal {
 
 using Eigen::Vector3d;
 
-/// A triangle with all that the tests need, in one place of the memory.
+/// A triangle with the data of all tests.
 struct Face {
   std::array<Vector3d, 3> corners;  ///< scaled, see checkedScale()
   double size;                      ///< at least the longest side of the bounding box
@@ -43,7 +43,7 @@ inline Box boxOf(const std::array<Vector3d, 3>& corners) {
 /// The definition of self_intersection.h, in exact arithmetic.
 bool intersectExactly(const Face& a, const Face& b);
 
-// --- Quick tests that only ever say that two triangles do not intersect
+// --- Quick tests: true means that two triangles do not intersect
 
 inline double largest(const Vector3d& v) {
   return v.cwiseAbs().maxCoeff();
@@ -66,7 +66,7 @@ struct Plane {
   }
   /// Distance of p from the plane, times the length of the normal.
   double value(const Vector3d& p) const { return normal.dot(p - origin); }
-  /// Whether all of some values are on one side for sure.
+  /// Whether all values are certainly on one side.
   /// \param reach bound of the coordinates of p - origin.
   template <typename... Values>
   bool isBeside(double reach, Values... values) const {
@@ -80,7 +80,7 @@ struct Plane {
 /// \param reach bound of the coordinates of differences of corners.
 inline bool separatedAt(const Vector3d& v, const Vector3d& a1, const Vector3d& a2,
                         const Vector3d& b1, const Vector3d& b2, double reach) {
-  // Any direction will do: it has no error. This one is mostly normal to such a plane.
+  // Any direction is valid, without error. This one is mostly normal to such a plane.
   const Vector3d direction = (a1 - b1) + (a2 - b2);
   // 4 roundings in each of three products of a coordinate of the direction, up to 2 reach, with a
   // distance.
@@ -105,7 +105,7 @@ inline bool separated(const Face& a, const Face& b, double reach) {
 ///
 /// \param plane_a of a.
 inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
-  // How many corners they have in common, and the sums of the numbers of these in either.
+  // The number of common corners, and the sums of their indices in either triangle.
   unsigned common = 0;
   for (unsigned i = 0; i < 3; ++i)
     for (unsigned j = 0; j < 3; ++j)
@@ -135,7 +135,7 @@ inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
   }
 }
 
-/// For what is left after evidentlyApart(a, plane_a, b).
+/// For triangles that evidentlyApart(a, plane_a, b) does not separate.
 inline bool intersectCarefully(const Face& a, const Face& b) {
   return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
 }

@@ -62,7 +62,7 @@ def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) ->
     for attribute in ("points", "vertices"):
         if array.dtype.kind == "O" and hasattr(value, attribute):
             raise InvalidInput(
-                f"{name} is a {type(value).__name__}, which is not known; pass "
+                f"{name} has the unknown type {type(value).__name__}; pass "
                 f"np.asarray(pcd.{attribute})"
             )
     if array.dtype.kind not in kinds:
@@ -98,35 +98,35 @@ def triangle_indices(name: str, value: ArrayLike) -> IndexArray:
 def integer(
     name: str, value: SupportsIndex, least: int = -(2**31), most: int = 2**31 - 1
 ) -> int:
-    """An integer of a range; without one, of those that the core can take and judge."""
+    """An integer of a range, or of the range that the core can check."""
     try:
         number = operator.index(value)
     except TypeError:
-        raise InvalidInput(f"{name} = {value!r} is no integer; give one") from None
+        raise InvalidInput(f"{name} = {value!r} is not an integer; give one") from None
     if not least <= number <= most:
         raise InvalidInput(f"{name} = {number} is out of range; use {least} to {most}")
     return number
 
 
 def real(name: str, value: SupportsFloat) -> float:
-    """A number; the core judges its range."""
+    """A number; the core checks its range."""
     if isinstance(value, (str, bytes)):
-        raise InvalidInput(f"{name} = {value!r} is no number; give one")
+        raise InvalidInput(f"{name} = {value!r} is not a number; give one")
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
-        raise InvalidInput(f"{name} = {value!r} is no number; give one") from None
+        raise InvalidInput(f"{name} = {value!r} is not a number; give one") from None
 
 
 def text(name: str, value: str) -> str:
-    """The name of a choice; the core knows which there are."""
+    """The name of a choice; the core checks it."""
     if not isinstance(value, str):
-        raise InvalidInput(f"{name} = {value!r} is no text; give the name of a choice")
+        raise InvalidInput(f"{name} = {value!r} is not a text; give the name of a choice")
     return value
 
 
 def truth(name: str, value: bool) -> bool:
-    """A flag; what only counts as true, such as a text, is mostly a mistake."""
+    """A flag; other values that count as true, such as a text, are mostly mistakes."""
     if not isinstance(value, (bool, np.bool_)):
         raise InvalidInput(f"{name} = {value!r} is neither True nor False; give one of them")
     return bool(value)

@@ -41,9 +41,9 @@ def find_outliers(
     points : array-like (n, 3), path, or cloud of Open3D or trimesh
         As for ``reconstruct``.
     sigma : float, 0 to 1000, or "auto"
-        Outliers are farther off than the mean by this number of standard deviations (section 4.2 of
-        the paper). "auto": stray points, small clusters of them, points between sheets and single
-        points a little off a surface; points of a surface are hardly ever among them.
+        Outliers deviate by more than the mean and this number of standard deviations (section 4.2
+        of the paper). "auto": stray points, small clusters, points between sheets and isolated
+        points a little off a surface; hardly ever points of a surface.
     threads : int, 0 (all) to 1024
         The result does not depend on it.
     progress : True, or callable(stage, fraction)
@@ -93,8 +93,7 @@ def find_parts(
     Returns
     -------
     tuple of arrays of integers
-        Rows of each part, ascending; the part of most points first. Points of no part, such as
-        stray ones, are in none.
+        Rows of each part, ascending; the largest part first. Stray points are in no part.
 
     Raises
     ------

@@ -37,22 +37,22 @@ def reconstruct(
         .txt. Of Open3D a point cloud or mesh, of trimesh a PointCloud or Trimesh, the normals
         of which are not used. Colours and normals come along. At least 4 distinct finite points
         that are not all in one plane.
-        Points with a coordinate that is not finite (or masked) are ignored, and counted.
+        Points with a coordinate that is not finite (or masked) are left out and listed.
 OPTIONS
 
     Returns
     -------
     Result
         Mesh and map to the sphere; ``verdict``, ``findings`` and ``diagnosis`` say how far to trust
-        them. With ``parts="each"`` a tuple of results, the part of most points first, with a
-        verdict over all; parts that cannot be meshed are left out with a warning.
+        them. With ``parts="each"`` a tuple of results, the largest part first, with a verdict over
+        all; parts that cannot be meshed are left out with a warning.
 
     Raises
     ------
     InvalidInput
-        Points or an option are not as described. A subclass of ValueError.
+        Invalid points or option. A subclass of ValueError.
     TypeError
-        There is no such option.
+        Unknown option.
     OSError
         A file cannot be read.
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt

@@ -1,4 +1,4 @@
-"""What reconstruct() returns."""
+"""The results of reconstruct()."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from ._progress import Progress, listening
 
 
 class TriangleMark(IntFlag):
-    """What is wrong at a triangle: ``Diagnosis.triangle_marks`` has the sum for each of them.
+    """Faults at a triangle: ``Diagnosis.triangle_marks`` has the sum for each triangle.
 
     ========================================  ==================================================
     ``TriangleMark.SELF_INTERSECTION`` (1)    it intersects another triangle
     ``TriangleMark.FILLED_HOLE`` (2)          it is over an opening that is filled
     ``TriangleMark.HANDLE`` (4)               it is at the torn edges of a handle
     ``TriangleMark.PART_BRIDGE`` (8)          it is at a bridge between parts
-    ``TriangleMark.OUTSIDE_GRAPH`` (16)       an edge joins points that are no near neighbours
+    ``TriangleMark.OUTSIDE_GRAPH`` (16)       an edge joins points that are not neighbours
     ========================================  ==================================================
 
     ``mesh.triangles[mesh.diagnosis.triangle_marks & TriangleMark.FILLED_HOLE > 0]`` are those over
@@ -48,7 +48,7 @@ class TriangleMark(IntFlag):
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """What a result was made of, for its report."""
+    """The input of a result, for its report."""
 
     cloud: Cloud
     options: dict[str, Any]
@@ -75,14 +75,14 @@ class Result(Surface, MeshExport):
 
     vertices: FloatArray  #: (v, 3) the points[input_of_vertex] [unit of the input]
     vertex_of_input: IndexArray  #: (n,) vertex of each point of the cloud; -1: left out
-    left_out: LeftOut  #: rows of the cloud that are in no surface, and why
+    left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
     colors: Optional[ByteArray]  #: (v, 3) of the points; None if they have none
     _source: Source
 
     @cached_property
     def normals(self) -> FloatArray:
-        """(v, 3) of the points; if they have none, those of the mesh, weighted by angles."""
+        """(v, 3) of the points, or else of the mesh, weighted by angles."""
         given = self._source.cloud.normals
         if given is not None:
             return given[self.input_of_vertex]
@@ -97,8 +97,8 @@ class Result(Surface, MeshExport):
     def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
         """Write a page to look at: mesh, sphere, unfolding and findings, in one file.
 
-        It opens in a browser without a network. The points are meshed once more, with what the page
-        shows: until then nothing of that takes memory.
+        It opens in a browser without a network. The points are meshed once more for the data of the
+        page, which take no memory before.
 
         Parameters
         ----------
@@ -117,7 +117,7 @@ class Result(Surface, MeshExport):
         Cancelled, MemoryError, KeyboardInterrupt
         """
         if not os.fspath(path).lower().endswith(".html"):
-            raise InvalidInput(f"{os.fspath(path)!r} is no name of a page; give one with .html")
+            raise InvalidInput(f"{os.fspath(path)!r} does not end in .html; give a name that does")
         if not _core.has_report:
             raise InvalidInput(
                 "this package was built without the page; install three.js (libjs-three) and build "
@@ -167,12 +167,12 @@ if Result.__doc__:  # not with python -OO
 
 
 class Results(tuple[Result, ...]):
-    """The results of the parts of a cloud, that of most points first, and what is true of all."""
+    """The results of the parts of a cloud, the largest first, with a common verdict."""
 
     verdict: str  #: a headline: "3 meshes, all sound."
-    findings: tuple[Finding, ...]  #: of all results; those of several parts name them
+    findings: tuple[Finding, ...]  #: of all results; with several, each names its parts
     failures: tuple[str, ...]  #: why parts could not be meshed
-    left_out: LeftOut  #: rows of the cloud that are in no surface, and why
+    left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, over all parts [s]
 
     def __repr__(self) -> str:

@@ -19,8 +19,7 @@
 namespace pcl {
 namespace detail {
 
-/** \brief Throws InvalidInput for a cloud without points, or with a width and a height of another
- * number of points. */
+/** \brief Throws InvalidInput for an empty cloud, or one whose width and height do not fit. */
 PCL_EXPORTS void checkCloud(std::size_t points, std::size_t width, std::size_t height);
 
 /** \brief Throws InvalidInput for an entry of the indices that is out of range. */
@@ -46,7 +45,7 @@ PCL_EXPORTS void appendPolygons(const spherical_param::Triangles& triangles,
 
 template <typename PointInT>
 SphericalParamReconstruction<PointInT>::SphericalParamReconstruction() {
-  // The base class would give all points to the search, those that are not finite included.
+  // The base class would give all points to the search, also those that are not finite.
   check_tree_ = false;
 }
 
@@ -159,7 +158,7 @@ void SphericalParamReconstruction<PointInT>::run(const std::function<void()>& wo
   const auto whole_work = [&] {
     checkInput();
     initialized = initCompute();
-    // initCompute() ignores that it had no memory for the indices.
+    // initCompute() does not report a lack of memory for the indices.
     if (!initialized || (fake_indices_ && indices_->size() != input_->size()))
       throw std::bad_alloc();
     work();

@@ -11,19 +11,19 @@
 namespace pcl {
 namespace detail {
 
-/** \brief A progress callback for the core: what that of the user throws passes the core and
- * reaches the user, instead of becoming an error message. Needs failureOf() around the core. */
+/** \brief A progress callback for the core that passes exceptions of the user's callback on to the
+ * user, instead of turning them into error messages. Needs failureOf() around the core. */
 PCL_EXPORTS std::function<bool(const spherical_param::Progress&)>
 guardProgress(const std::function<bool(const spherical_param::Progress&)>& progress);
 
 /** \brief Calls work that may throw anything.
- * \param[out] callback_error what a progress callback of guardProgress() threw, if it did
+ * \param[out] callback_error exception of a progress callback of guardProgress(), if any
  * \return why the work failed, with a remedy; empty after a success */
 PCL_EXPORTS std::string failureOf(const std::function<void()>& work,
                                   std::exception_ptr& callback_error);
 
-/** \brief Calls work that uses the core, and reports a failure by PCL_ERROR. Throws nothing except
- * what the user's progress callback throws.
+/** \brief Calls work that uses the core, and reports a failure by PCL_ERROR. Throws only exceptions
+ * of the user's progress callback.
  * \param[in] function the name that the message begins with
  * \param[in] execution of the user
  * \param[in] threads used if `execution` gives none

@@ -22,12 +22,12 @@
 namespace pcl {
 namespace detail {
 
-/** \brief Which numbers a search object returns that was filled with a subset of a cloud: PCL 1.13
- * has both, e.g. KdTree the one and FlannSearch the other. */
+/** \brief Numbering of a search object on a subset of a cloud: PCL 1.13 has both kinds, in KdTree
+ * and FlannSearch. */
 enum class SearchIndexSpace { Cloud, Subset };
 
-/** \brief Finds out which numbers `search` returns for a subset. Points are distinguished by asking
- * for the one neighbour of a point of the subset, which is the point itself. */
+/** \brief Finds the numbering of `search` on a subset, by queries for the nearest neighbour of
+ * points of the subset: themselves. */
 template <typename PointInT>
 SearchIndexSpace findSearchIndexSpace(const pcl::search::Search<PointInT>& search,
                                       const pcl::PointCloud<PointInT>& cloud,
@@ -92,7 +92,7 @@ void checkCameraModel(const pcl::search::OrganizedNeighbor<PointInT>& search,
 }
 
 /** \brief Gives some points of a cloud to a search object.
- * \return the meshed point of each number that the search object may answer with; -1: of none */
+ * \return the meshed point of each possible answer of the search object; -1: none */
 template <typename PointInT>
 std::vector<spherical_param::Index>
 fillUserSearch(pcl::search::Search<PointInT>& search,
@@ -122,13 +122,12 @@ fillUserSearch(pcl::search::Search<PointInT>& search,
   return point_of_index;
 }
 
-/** \brief Gives some points to the search object of the user. It is asked for one point after the
- * other: it need not be ready for concurrent queries.
+/** \brief Gives some points to the search object of the user. Queries come one after the other: it
+ * need not support concurrent queries.
  * \param[in] search must outlive the result
- * \param[in] used_indices the index in the cloud of each of the points that are meshed; they must
- * outlive the result
- * \param[in] points that are searched for, among those that are meshed
- * \return a search in the numbers of the points that are meshed */
+ * \param[in] used_indices index in the cloud of each meshed point; must outlive the result
+ * \param[in] points to search among, as positions in used_indices
+ * \return a search that numbers points by their position in used_indices */
 template <typename PointInT>
 spherical_param::NeighborSearch useSearch(pcl::search::Search<PointInT>& search,
                                           const typename pcl::PointCloud<PointInT>::ConstPtr& cloud,
