@@ -63,8 +63,8 @@ protected:
 TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
   ASSERT_EQ(symlink("in.ply", directory.file("link.ply").c_str()), 0);
   expectAllRefused(
-      {{mesh_tool, {}, "no input file"},
-       {mesh_tool, {"in.xyz"}, "no output file"},
+      {{mesh_tool, {}, "the input file is missing"},
+       {mesh_tool, {"in.xyz"}, "the output file"},
        {mesh_tool, {"in.xyz", "a.ply", "b.ply"}, "too many: 'b.ply'"},
        {mesh_tool, {"in.las", "out.ply"}, "'in.las' has an extension"},
        {mesh_tool, {"in.vtk", "out.ply"}, "'in.vtk' has an extension"},
@@ -76,12 +76,12 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {mesh_tool, {"in.xyz", "./a.obj", "-sphere", "a.obj"}, "would overwrite"},
        {mesh_tool, {"in.xyz", "out.ply", "-json", "in.xyz"}, "would overwrite"},
        {mesh_tool, {"in.ply", "link.ply"}, "would overwrite"},
-       {scan_tool, {}, "no shape"},
-       {scan_tool, {"sphere"}, "no output file"},
-       {scan_tool, {"cube", "out.pcd"}, "no shape 'cube'"},
+       {scan_tool, {}, "the shape is missing"},
+       {scan_tool, {"sphere"}, "the output file"},
+       {scan_tool, {"cube", "out.pcd"}, "unknown shape 'cube'"},
        {scan_tool, {"sphere", "out.stl"}, "extension"},
        {scan_tool, {"sphere", "out.ply", "-truth", "./out.ply"}, "would overwrite"},
-       {remesh_tool, {}, "no input file"},
+       {remesh_tool, {}, "the input file is missing"},
        {remesh_tool, {"in.xyz", "a.ply", "b.ply"}, "one file too many"},
        {remesh_tool, {"in.xyz", "out.png"}, "out.png"},
        {remesh_tool, {"in.xyz", "out.stl", "-grid", "even"}, "out.stl"},
@@ -89,8 +89,8 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {remesh_tool, {"in.tif", "out.tif"}, "geometry image"},
        {remesh_tool, {"in.xyz", "out.ply", "-harmonics", ""}, "-harmonics"},
        {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "out.ply"}, "would overwrite"},
-       {morph_tool, {}, "no two input files"},
-       {morph_tool, {"in.ply", "in.xyz"}, "no output file"},
+       {morph_tool, {}, "two input files are needed"},
+       {morph_tool, {"in.ply", "in.xyz"}, "the output file"},
        {morph_tool, {"in.ply", "in.xyz", "m.ply", "n.ply"}, "one file too many"},
        {morph_tool, {"in.ply", "in.xyz", "m.xyz"}, "m.xyz"},
        {morph_tool, {"in.ply", "in.foo", "m.ply"}, "in.foo"},
@@ -101,7 +101,7 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {morph_tool, {"in.ply", "in.xyz", "m.ply", "-pairs", ""}, "-pairs"},
        {morph_tool, {"in.ply", "in.xyz", "m.ply", "-json", "m_001.ply"}, "would overwrite"},
        {morph_tool, {"in.ply", "m_001.ply", "m.ply"}, "would overwrite"},
-       {texture_tool, {}, "no input file"},
+       {texture_tool, {}, "the input file is missing"},
        {texture_tool, {"in.ply", "out.stl"}, "out.stl"},
        {texture_tool, {"in.glb", "out.glb"}, "in.glb"},
        {texture_tool, {"in.ply", "in.ply"}, "would overwrite"},
@@ -214,17 +214,18 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
 TEST_F(BadInput, FilesThatCannotBeWrittenAreAFailureBeforeTheWork) {
   ASSERT_EQ(mkdir(directory.file("folder.ply").c_str(), 0755), 0);
   ASSERT_EQ(symlink("missing/out.ply", directory.file("dangling.ply").c_str()), 0);
-  expectAllRefused({{mesh_tool, {"in.xyz", "no/out.ply"}, "no directory"},
-                    {mesh_tool, {"in.xyz", "in.xyz/out.ply"}, "out.ply"},
-                    {mesh_tool, {"in.xyz", "folder.ply"}, "is a directory"},
-                    {mesh_tool, {"in.xyz", "dangling.ply"}, "no directory"},
-                    {mesh_tool, {"in.xyz", "out.ply", "-json", "no/r.json"}, "no directory"},
-                    {remesh_tool, {"in.xyz", "no/out.ply"}, "no directory"},
-                    {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "no/c.json"}, "no directory"},
-                    {morph_tool, {"in.ply", "in.xyz", "no/m.ply"}, "no directory"},
-                    {texture_tool, {"in.ply", "no/out.glb"}, "no directory"},
-                    {texture_tool, {"in.ply", "out.ply", "-image", "no/out.png"}, "no directory"}},
-                   failed);
+  expectAllRefused(
+      {{mesh_tool, {"in.xyz", "no/out.ply"}, "missing directory"},
+       {mesh_tool, {"in.xyz", "in.xyz/out.ply"}, "out.ply"},
+       {mesh_tool, {"in.xyz", "folder.ply"}, "is a directory"},
+       {mesh_tool, {"in.xyz", "dangling.ply"}, "missing directory"},
+       {mesh_tool, {"in.xyz", "out.ply", "-json", "no/r.json"}, "missing directory"},
+       {remesh_tool, {"in.xyz", "no/out.ply"}, "missing directory"},
+       {remesh_tool, {"in.xyz", "out.ply", "-harmonics", "no/c.json"}, "missing directory"},
+       {morph_tool, {"in.ply", "in.xyz", "no/m.ply"}, "missing directory"},
+       {texture_tool, {"in.ply", "no/out.glb"}, "missing directory"},
+       {texture_tool, {"in.ply", "out.ply", "-image", "no/out.png"}, "missing directory"}},
+      failed);
 }
 
 TEST_F(BadInput, FilesWithoutRightsAreAFailure) {

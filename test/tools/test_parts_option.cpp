@@ -99,7 +99,7 @@ TEST_F(PartsOption, APartThatCannotBeMeshedIsNamedBesideFindingsOfOthers) {
   EXPECT_NE(result.errors.find(": try -surface open\n"), std::string::npos);
   const RunResult strict = tool({"scene.xyz", "out.ply", "-parts", "each", "-strict"});
   EXPECT_EQ(strict.exit_code, 1);
-  EXPECT_NE(strict.errors.find("'open'; opening"), std::string::npos) << strict.errors;
+  EXPECT_NE(strict.errors.find("surface = open; opening"), std::string::npos) << strict.errors;
 }
 
 TEST_F(PartsOption, LargestLeavesOutTheOthersInEveryTool) {

@@ -51,7 +51,7 @@ TEST_F(ReportOption, WhatIsNoPageIsRefused) {
     expectRefused(RECONSTRUCTION_TOOL, {"in.ply", "out.ply", "-report=" + name}, 2, "-report");
   }
   expectRefused(RECONSTRUCTION_TOOL, {"in.ply", "out.ply", "-report", "no/page.html"}, 1,
-                "no directory");
+                "missing directory");
   expectRefused(RECONSTRUCTION_TOOL, {"in.ply", "out.ply", "-report", "r.html", "-json", "r.html"},
                 2, "would overwrite");
 }

@@ -296,8 +296,8 @@ std::string parseHtmlReport(const CommandLine& command_line) {
   const std::string extension = ".html";
   if (file.size() <= extension.size() ||
       lowerCase(file.substr(file.size() - extension.size())) != extension) {
-    throw UsageError("option -report: " + inQuotes(file) + " does not end in .html",
-                     "give a name that does; -json writes numbers");
+    throw UsageError("option -report: " + inQuotes(file) + " is not the name of a .html file",
+                     "give a name such as page.html; -json writes numbers");
   }
   if (reportPage().empty()) {
     throw UsageError("option -report: this program was built without the page of the report",

@@ -168,7 +168,7 @@ TEST_F(GeometryImageFile, WhatIsNoGeometryImageIsRefused) {
   const Tiff tiff = written(makeImage(9));
   const std::string& good = tiff.bytes();
   expectRefused("", "empty");
-  expectRefused("no image at all", "no TIFF file");
+  expectRefused("no image at all", "not a TIFF file");
   expectRefused(good.substr(0, 100), "ends too early");
   expectRefused(good.substr(0, good.size() - 1), "ends too early");
   expectRefused(tiff.with(256, 8), "8 x 9 pixels");

@@ -70,8 +70,8 @@ TEST_F(PointPairs, WrongOnesAreRefusedWithTheirLine) {
       {"1 2 3 4 5 6 7", "line 1"},
       {"\n\n1 two", "line 3: words like 'two'"},
       {"1.5 2", "line 1"},
-      {"10 2", "no point '10' in a cloud of 10"},
-      {"2 -1", "no point '-1' in a cloud of 20"},
+      {"10 2", "unknown point '10' in a cloud of 10"},
+      {"2 -1", "unknown point '-1' in a cloud of 20"},
       {"1 2 3 4 5 nan", "line 1"},
   };
   for (const auto& [text, cause] : cases) {
