@@ -4,65 +4,34 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <string_view>
+#include <string>
 #include <vector>
 
 /// Parts of the command line tools that do not belong to the library.
 namespace spherical_param::tools {
 
-/// Surfaces that can be scanned, each about 1 unit long and centred near the origin.
-enum class Shape {
-  Sphere,
-  Ellipsoid,
-  Head,
-  Bird,
-  Hand,
-  Animal,
-  Dumbbell,
-  Star,
-  Snake,
-  Plate,
-  Torus,
-  Bowl,
-  Pair,
-  DoubleTorus,
-  Holed,
-  Room
-};
-
-/// One entry of the list of shapes.
+/// A surface that can be scanned, about 1 unit long and centred near the origin.
 struct ShapeInfo {
-  Shape shape = Shape::Sphere;
-  std::string_view name;         ///< as typed by a user, lower case
-  std::string_view description;  ///< one line without a full stop
-  bool genus_zero = true;        ///< closed, in one piece and without handles
+  std::string name;         ///< lower case
+  std::string description;  ///< one line without a full stop
 };
 
 /// A shape and a number of points that stand for a scan of Table 1 of the paper.
 struct ScanPreset {
-  std::string_view name;         ///< name of the paper's scan, lower case
-  Shape shape = Shape::Head;     ///< the generated stand-in
-  std::size_t points = 0;        ///< number of points in the paper
-  std::string_view description;  ///< one line without a full stop
+  std::string name;        ///< name of the paper's scan, lower case
+  std::string shape;       ///< the generated stand-in
+  std::size_t points = 0;  ///< number of points in the paper
 };
 
-/// Every shape once, those of genus 0 first.
 const std::vector<ShapeInfo>& allShapes();
 
-/// Every preset once, by ascending number of points.
+/// By ascending number of points.
 const std::vector<ScanPreset>& allPresets();
-
-/// The shape of that exact name, if there is one.
-std::optional<ShapeInfo> findShape(std::string_view name);
-
-/// The preset of that exact name, if there is one.
-std::optional<ScanPreset> findPreset(std::string_view name);
 
 /// What to scan, and how.
 struct ScanOptions {
-  Shape shape = Shape::Head;  ///< surface to sample
-  std::size_t points = 5000;  ///< number of points; 4 ... 100,000,000
+  std::string shape = "head";  ///< name of a shape
+  std::size_t points = 5000;   ///< number of points; 4 ... 100,000,000
   /// Half the width of the uniform noise along the normal, relative to a point's mean distance to
   /// its 25 nearest neighbours (section 4.2 of the paper); 0 ... 100, 0 = points on the surface.
   double noise = 0.0;
@@ -88,16 +57,15 @@ struct TruthMesh {
 /// The arithmetic uses nothing but the operations that IEEE 754 rounds correctly, so the scan is
 /// the same on every platform that does not contract products and sums.
 ///
-/// \throw InvalidInput if an option is out of its range. Cost: O(n).
+/// \throw InvalidInput if an option is out of its range. Cost: O(n), with noise O(n log n).
 Scan generateScan(const ScanOptions& options);
 
-/// Triangulates a shape finely. The mesh is manifold and oriented; it is closed, in one piece and
-/// of genus 0 for the shapes of genus 0, and has a boundary loop for each opening: one for the
-/// bowl, four for the holed shape, two for the room.
+/// Triangulates a shape finely. The mesh is manifold and oriented, with the handles, pieces and
+/// openings of the shape.
 ///
 /// \param triangle_count about how many triangles are wanted, 1 ... 20,000,000. A shape with fine
 ///        features gets as many as it needs to be meshed correctly, if that is more.
-/// \throw InvalidInput if triangle_count is out of its range. Cost: O(triangles).
-TruthMesh referenceMesh(Shape shape, std::size_t triangle_count);
+/// \throw InvalidInput if an argument is out of its range. Cost: O(triangles).
+TruthMesh referenceMesh(const std::string& shape, std::size_t triangle_count);
 
 }  // namespace spherical_param::tools

@@ -12,12 +12,9 @@
 #include "common/text.h"
 #include "scan_shapes.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,14 +39,14 @@ const std::vector<OptionInfo> option_table = {
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
     {"A scan of a hand to try the other tools on", "hand scan.ply"},
-    {"A noisy scan of another size, and its true surface",
+    {"A noisy one of another size, and the surface that it comes from",
      "bird other.ply -points 3000 -noise 0.2 -truth truth.ply"},
 };
 
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " SHAPE output [options]\n\n"
-         "Writes points spread evenly over a generated surface.\n"
+         "Writes points that are spread evenly over a generated surface.\n"
          "  SHAPE:  a shape or preset, see -list\n  output: " +
          extensionsFor(FileUse::WriteCloud) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
@@ -59,122 +56,98 @@ std::string helpText(bool with_experts) {
 }
 
 std::string listText() {
-  const auto line = [](std::string_view name, const std::string& text) {
-    constexpr std::size_t name_width = 14;
-    return "  " + std::string(name) + std::string(name_width - name.size(), ' ') + text + "\n";
+  const auto line = [](const std::string& name, const std::string& text) {
+    return "  " + name + std::string(14 - name.size(), ' ') + text + "\n";
   };
   std::string text = "Shapes:\n";
-  for (const ShapeInfo& shape : allShapes()) {
-    text += line(shape.name, std::string(shape.description));
-  }
+  for (const ShapeInfo& shape : allShapes())
+    text += line(shape.name, shape.description);
   text += "Presets:\n";
-  for (const ScanPreset& preset : allPresets()) {
-    text += line(preset.name, std::string(preset.description) + " (" +
+  for (const ScanPreset& preset : allPresets())
+    text += line(preset.name, "the shape " + preset.shape + " in place of the paper's scan (" +
                                   std::to_string(preset.points) + " points)");
-  }
   return text;
 }
 
-/// What the user asked for.
-struct Settings {
-  std::string output;
-  FileFormat output_format = nullptr;
-  std::string truth;  ///< empty: not wanted
-  FileFormat truth_format = nullptr;
-  bool normals = false;
-  ScanOptions scan;
-};
-
 /// Sets shape and number of points from a name. \throw UsageError for an unknown one.
 void applyShape(const std::string& name, ScanOptions& scan) {
-  const std::string lower = lowerCase(name);
-  if (const std::optional<ShapeInfo> shape = findShape(lower)) {
-    scan.shape = shape->shape;
-  } else if (const std::optional<ScanPreset> preset = findPreset(lower)) {
-    scan.shape = preset->shape;
-    scan.points = preset->points;
-  } else {
-    throw UsageError("unknown shape " + inQuotes(name),
+  scan.shape.clear();
+  for (const ShapeInfo& shape : allShapes())
+    if (shape.name == lowerCase(name))
+      scan.shape = shape.name;
+  for (const ScanPreset& preset : allPresets())
+    if (preset.name == lowerCase(name)) {
+      scan.shape = preset.shape;
+      scan.points = preset.points;
+    }
+  if (scan.shape.empty())
+    throw UsageError("there is no shape " + inQuotes(name),
                      "run '" + tool_name + " -list' for the shapes");
-  }
 }
 
-Settings parseSettings(const CommandLine& command_line) {
-  std::vector<std::string> words = command_line.others();
-  if (words.size() != 2) {
-    throw UsageError(words.empty()       ? "the shape is missing"
-                     : words.size() == 1 ? "the output file or the shape is missing"
-                                         : "one word too many: " + inQuotes(words[2]),
+/// Shape and output, in either order.
+std::pair<std::string, std::string> shapeAndOutput(const CommandLine& command_line) {
+  const std::vector<std::string>& words = command_line.others();
+  if (words.size() != 2)
+    throw UsageError(words.empty()       ? "there is no shape"
+                     : words.size() == 1 ? "there is no output file, or no shape"
+                                         : "there is one word too many: " + inQuotes(words[2]),
                      "run '" + tool_name + " SHAPE output [options]', -h shows the options");
-  }
-  if (formatOf(words[0]) && !formatOf(words[1])) {
-    std::swap(words[0], words[1]);
-  }
+  const bool output_first = formatOf(words[0]) && !formatOf(words[1]);
+  return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};
+}
 
-  Settings settings;
-  applyShape(words[0], settings.scan);
-  settings.output = words[1];
-  settings.output_format = requireFormat(settings.output, FileUse::WriteCloud);
-  settings.truth = command_line.value("truth", "");
-  if (command_line.has("truth")) {
-    settings.truth_format = requireFormat(settings.truth, FileUse::WriteMesh);
-  }
-  settings.normals = command_line.has("normals");
-  if (command_line.has("points")) {
-    settings.scan.points = static_cast<std::size_t>(
+ScanOptions parseScanOptions(const std::string& shape, const CommandLine& command_line) {
+  ScanOptions scan;
+  applyShape(shape, scan);
+  if (command_line.has("points"))
+    scan.points = static_cast<std::size_t>(
         parseInteger("points", command_line.value("points", ""), {4, 100000000}));
-  }
-  if (command_line.has("noise")) {
-    settings.scan.noise = parseReal("noise", command_line.value("noise", ""), {0.0, 1000.0, true});
-  }
-  if (command_line.has("seed")) {
-    settings.scan.seed = parseUnsigned("seed", command_line.value("seed", ""));
-  }
-  return settings;
+  scan.noise = parseReal("noise", command_line.value("noise", "0"), {0.0, 100.0, true});
+  scan.seed = parseUnsigned("seed", command_line.value("seed", "1"));
+  return scan;
 }
 
 void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
-  if (answerHelpOrVersion(command_line, tool_name, helpText)) {
+  if (answerHelpOrVersion(command_line, tool_name, helpText))
     return;
-  }
   if (command_line.has("list")) {
     printAll(listText());
     return;
   }
-  const Settings settings = parseSettings(command_line);
-  std::vector<std::string> outputs = {settings.output};
-  if (!settings.truth.empty()) {
-    outputs.push_back(settings.truth);
-  }
+  const auto [shape, output] = shapeAndOutput(command_line);
+  const ScanOptions options = parseScanOptions(shape, command_line);
+  const FileFormat format = requireFormat(output, FileUse::WriteCloud);
+  std::vector<std::string> outputs = {output};
+  if (command_line.has("truth"))
+    outputs.push_back(command_line.value("truth", ""));
+  const FileFormat truth_format =
+      outputs.size() > 1 ? requireFormat(outputs[1], FileUse::WriteMesh) : nullptr;
   checkOutputs({}, outputs);
 
-  const Scan scan = generateScan(settings.scan);
+  std::vector<std::unique_ptr<OutputFile>> files;
+  const auto write = [&](const PointData& points, const spherical_param::Triangles& triangles,
+                         FileFormat as) {
+    files.push_back(std::make_unique<OutputFile>(outputs[files.size()]));
+    writeMesh(*files.back(), MeshView(points, triangles), as, Encoding::Binary);
+    files.back()->finish();
+  };
+  const Scan scan = generateScan(options);
   PointData cloud;
   cloud.points = toPoints(scan.points);
-  if (settings.normals) {
+  if (command_line.has("normals"))
     cloud.normals = toNormals(scan.normals);
-  }
-  std::vector<std::unique_ptr<OutputFile>> files;
-  files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), MeshView(cloud, spherical_param::Triangles()), settings.output_format,
-            Encoding::Binary);
-  if (!settings.truth.empty()) {
-    const TruthMesh truth = referenceMesh(settings.scan.shape, truth_triangles);
+  write(cloud, {}, format);
+  if (truth_format) {
+    const TruthMesh truth = referenceMesh(options.shape, truth_triangles);
     PointData vertices;
     vertices.points = toPoints(truth.vertices);
-    files.push_back(std::make_unique<OutputFile>(settings.truth));
-    writeMesh(*files.back(), MeshView(vertices, truth.triangles), settings.truth_format,
-              Encoding::Binary);
+    write(vertices, truth.triangles, truth_format);
   }
-  for (const auto& file : files) {
-    file->finish();
-  }
-  printAll(std::to_string(cloud.points.size()) + " points written to " + oneLine(settings.output) +
-           "\n");
-  for (const auto& file : files) {
+  printAll(std::to_string(options.points) + " points written to " + oneLine(output) + "\n");
+  for (const auto& file : files)
     file->commit();
-  }
 }
 
 }  // namespace

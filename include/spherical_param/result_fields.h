@@ -99,14 +99,13 @@ void visitFields(const MeshTopology*, const Visit& visit) {
   visit({"unused_vertices", "they have no triangles", 0, FieldKind::CppOnly}, &Of::unused_vertices);
 }
 
-/// \copydoc describe(const MeshTopology*)
+/// \cond  the same for all other structs
 constexpr ResultField describe(const MeshMeasures*) {
   return {"Measures",
           "Size, place and mass properties of the mesh and the solid that it encloses. Volume, "
           "centroid and inertia are none if the mesh is open or folded, or more than 1 % of its "
           "triangles intersect."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const MeshMeasures*, const Visit& visit) {
   using Of = MeshMeasures;
@@ -121,22 +120,18 @@ void visitFields(const MeshMeasures*, const Visit& visit) {
         &Of::inertia);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const StageTime*) {
   return {"StageTime", "Time of one stage."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const StageTime*, const Visit& visit) {
   visit({"name", "of the stage"}, &StageTime::name);
   visit({"seconds", "wall time [s]"}, &StageTime::seconds);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Finding*) {
   return {"Finding", "A remark on a mesh, and the option that helps."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Finding*, const Visit& visit) {
   using Of = Finding;
@@ -149,11 +144,9 @@ void visitFields(const Finding*, const Visit& visit) {
         &Of::is_consequence);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Opening*) {
   return {"Opening", "An opening of the sampled surface: a wide face of its neighbour graph."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Opening*, const Visit& visit) {
   using Of = Opening;
@@ -172,12 +165,10 @@ void visitFields(const Opening*, const Visit& visit) {
         &Of::triangles);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Handle*) {
   return {"Handle",
           "Neighbours along the surface that are far apart on the mesh: probably a handle."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Handle*, const Visit& visit) {
   using Of = Handle;
@@ -187,11 +178,9 @@ void visitFields(const Handle*, const Visit& visit) {
   visit({"vertices", "their ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const PartBridge*) {
   return {"PartBridge", "Two parts of the cloud with a gap between them."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const PartBridge*, const Visit& visit) {
   using Of = PartBridge;
@@ -203,11 +192,9 @@ void visitFields(const PartBridge*, const Visit& visit) {
   visit({"vertices", "the ends, ascending, at most 64", 0, FieldKind::Vertices}, &Of::vertices);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const SurfaceDiagnosis*) {
   return {"Diagnosis", "Evidence against a closed surface without handles, and its place."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   using Of = SurfaceDiagnosis;
@@ -225,11 +212,9 @@ void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
         unlessEmpty(&Of::triangle_marks));
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const ConsolidationReport*) {
   return {"Consolidation", "What consolidation found and did."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const ConsolidationReport*, const Visit& visit) {
   using Of = ConsolidationReport;
@@ -240,11 +225,9 @@ void visitFields(const ConsolidationReport*, const Visit& visit) {
   visit({"rms_displacement", "over the points", 1}, &Of::rms_displacement);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const LevelReport*) {
   return {"EmbeddingLevel", "Work on one level of the multilevel embedding."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const LevelReport*, const Visit& visit) {
   using Of = LevelReport;
@@ -256,11 +239,9 @@ void visitFields(const LevelReport*, const Visit& visit) {
   visit({"residual", "mean length of the tangential Laplacian at the end [radius]"}, &Of::residual);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const EmbeddingReport*) {
   return {"Embedding", "How the embedding on the sphere was reached."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const EmbeddingReport*, const Visit& visit) {
   using Of = EmbeddingReport;
@@ -277,11 +258,9 @@ void visitFields(const EmbeddingReport*, const Visit& visit) {
   visit({"levels", "of the multilevel embedding, the finest first"}, &Of::levels);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const HistoryFrame*) {
   return {"HistoryFrame", "One state of the embedding."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const HistoryFrame*, const Visit& visit) {
   using Of = HistoryFrame;
@@ -293,11 +272,9 @@ void visitFields(const HistoryFrame*, const Visit& visit) {
   visit({"sphere", "unit vectors, of the vertices of the history"}, &Of::sphere);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const EmbeddingHistory*) {
   return {"History", "How the embedding unfolded, for some of the vertices."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const EmbeddingHistory*, const Visit& visit) {
   using Of = EmbeddingHistory;
@@ -305,11 +282,9 @@ void visitFields(const EmbeddingHistory*, const Visit& visit) {
   visit({"frames", "in the order of the work; the last is the embedding"}, &Of::frames);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const SmoothingReport*) {
   return {"Smoothing", "Distance of the smoothed surface from the given one."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const SmoothingReport*, const Visit& visit) {
   using Of = SmoothingReport;
@@ -322,11 +297,9 @@ void visitFields(const SmoothingReport*, const Visit& visit) {
         &Of::self_intersections);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Surface*) {
   return {"Surface", "A mesh through all points, its map to the sphere, and their quality."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Surface*, const Visit& visit) {
   using Of = Surface;
@@ -379,11 +352,9 @@ void visitFields(const Surface*, const Visit& visit) {
         &Of::input_of_vertex);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const LeftOut*) {
   return {"LeftOut", "Input points that are in no surface, by reason."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const LeftOut*, const Visit& visit) {
   using Of = LeftOut;
@@ -394,11 +365,9 @@ void visitFields(const LeftOut*, const Visit& visit) {
         &Of::other_parts);
 }
 
-/// \copydoc describe(const MeshTopology*)
 constexpr ResultField describe(const Result*) {
   return {"Result", "The result of reconstruct()."};
 }
-/// \copydoc visitFields(const MeshTopology*, const Visit&)
 template <typename Visit>
 void visitFields(const Result*, const Visit& visit) {
   using Of = Result;
@@ -410,6 +379,8 @@ void visitFields(const Result*, const Visit& visit) {
   visit({"surfaces", "one for each meshed part, the largest first"}, &Of::surfaces);
   visit({"stages", "in the order of the work, of all surfaces together"}, &Of::stages);
 }
+
+/// \endcond
 
 /// Whether describe() and visitFields() exist for a struct, selected by the pointer's type.
 ///

@@ -164,7 +164,8 @@ Surface meshConsolidated(const Positions& points, const Options& options, StageC
   as_is.outliers = OutlierMode::None;
   as_is.parts = PartsMode::All;
   LeftOut none;
-  Selection selection(consolidation.points, as_is, {}, clock, none);
+  const NeighborSearchFactory by_tree;
+  Selection selection(consolidation.points, as_is, by_tree, clock, none);
   Surface surface = meshAsIs(selection, 0, selection.neighborhoodsOf(0), options, clock);
   internal::toInput(consolidation, surface);
   return surface;

@@ -13,7 +13,7 @@ namespace spherical_param {
 
 /// Builds a k-d tree of points, in double precision.
 ///
-/// \param points 3 x n, n >= 1, finite; copied. Sort them by spatialOrder() and scale them to an
+/// \param points 3 x n, n >= 1, finite; copied. Sort them by mortonOrder() and scale them to an
 ///               extent of about 1, so that squared distances neither overflow nor underflow.
 /// \param execution threads, progress; its progress callback must outlive the search.
 /// \return a search among these points; copies of it share the tree. It throws InvalidInput for

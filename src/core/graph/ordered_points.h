@@ -20,7 +20,7 @@ struct OrderedPoints {
   DistinctPoints distinct;            ///< the same points, numbered by the first input point
 };
 
-/// findDistinctPoints() and mortonOrder() of its points, at the cost of one sort.
+/// Finds the distinct points and puts them in the order of mortonOrder(), at the cost of one sort.
 ///
 /// \param points 3 x n, finite, n < 2^31.
 OrderedPoints orderPoints(const Positions& points, int threads);

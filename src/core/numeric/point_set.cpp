@@ -1,27 +1,14 @@
 #include "point_set.h"
 
-#include "bit_mixing.h"
 #include "exact_predicates.h"
-#include "space_filling_curve.h"
 #include "spherical_param/errors.h"
 
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <string>
 
 namespace spherical_param {
 namespace {
-
-/// Mixes the bits of a coordinate into a hash.
-std::uint64_t mix(std::uint64_t hash, double coordinate) {
-  const double value = coordinate == 0.0 ? 0.0 : coordinate;  // -0 equals +0
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return internal::splitmix64(hash ^ bits);
-}
 
 /// Whether products of three differences of such coordinates, and their rounding errors, are
 /// numbers of full precision.
@@ -64,44 +51,6 @@ private:
 };
 
 }  // namespace
-
-DistinctPoints findDistinctPoints(const Positions& points) {
-  constexpr Eigen::Index max_points = Eigen::Index{1} << 30;
-  if (points.cols() > max_points)
-    throw InvalidInput("findDistinctPoints: " + std::to_string(points.cols()) +
-                       " points are more than 2^30; split or downsample the cloud");
-  const auto n = static_cast<Index>(points.cols());
-  std::size_t capacity = 16;
-  while (capacity < 2 * static_cast<std::size_t>(n))
-    capacity *= 2;
-
-  DistinctPoints result;
-  result.vertex_of_input.resize(static_cast<std::size_t>(n));
-  result.input_of_vertex.reserve(static_cast<std::size_t>(n));
-  std::vector<Index> table(capacity, -1);  // open addressing, holds vertices
-  for (Index i = 0; i < n; ++i) {
-    const auto point = points.col(i);
-    if (!point.allFinite())
-      throw InvalidInput("findDistinctPoints: point " + std::to_string(i) +
-                         " is not finite; remove such points first");
-    std::size_t slot = mix(mix(mix(0, point.x()), point.y()), point.z()) & (capacity - 1);
-    while (table[slot] >= 0 &&
-           points.col(result.input_of_vertex[static_cast<std::size_t>(table[slot])]) != point)
-      slot = (slot + 1) & (capacity - 1);
-    if (table[slot] < 0) {
-      table[slot] = static_cast<Index>(result.input_of_vertex.size());
-      result.input_of_vertex.push_back(i);
-    }
-    result.vertex_of_input[static_cast<std::size_t>(i)] = table[slot];
-  }
-  return result;
-}
-
-std::vector<Index> spatialOrder(const Positions& points) {
-  if (!points.allFinite())
-    throw InvalidInput("spatialOrder: a coordinate is not finite; remove such points first");
-  return internal::mortonOrder(points);
-}
 
 bool areCoplanar(const Positions& points) {
   const Eigen::Index n = points.cols();

@@ -17,29 +17,14 @@ struct DistinctPoints {
   std::vector<Index> input_of_vertex;
 };
 
-/// Finds the points that share all three coordinates.
-///
-/// \param points 3 x n, finite.
-/// \return the vertex of each point, and the first point of each vertex.
-/// \throw InvalidInput if a coordinate is not finite or n exceeds 2^30. Cost: O(n log n).
-DistinctPoints findDistinctPoints(const Positions& points);
-
-/// An order of the points, 0 ... n - 1, along a space-filling curve (G. M. Morton, 1966), so that
-/// near points are mostly near in memory.
-///
-/// \param points 3 x n, finite.
-/// \return a permutation of 0 ... n - 1.
-/// \throw InvalidInput if a coordinate is not finite. Cost: O(n log n).
-std::vector<Index> spatialOrder(const Positions& points);
-
-/// Whether all points lie exactly in one plane (or line, or point), on the given doubles: a cloud
-/// that is flat except for rounding is not coplanar.
+/// Tells whether all points lie exactly in one plane (or line, or point), in exact arithmetic on
+/// the given doubles: a cloud that is flat but for rounding is not coplanar.
 ///
 /// \param points 3 x n, finite, of any magnitude.
 /// \return true if they do, and for fewer than four points.
 /// \throw InvalidInput if a coordinate of four points and more is not finite.
-/// Cost: O(n); a hundred times as much for (nearly) coplanar points with nonzero coordinates below
-/// 1e-80 or above 1e80.
+/// Cost: O(n); a hundred times as much where coordinates other than 0 are below 1e-80 or above 1e80
+/// and all points lie in one plane, or nearly all.
 bool areCoplanar(const Positions& points);
 
 /// @}

@@ -2,7 +2,6 @@
 
 #include "incremental_delaunay.h"
 #include "parallel.h"
-#include "point_set.h"
 #include "progress.h"
 #include "space_filling_curve.h"
 #include "sphere_mesh.h"
@@ -18,8 +17,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -287,16 +288,36 @@ void checkInput(const Positions& directions) {
                          " is not of unit length; normalise the points first");
 }
 
+/// The points by their places: each is given the number of its place, in any order.
+std::vector<std::size_t> placesOf(const Positions& directions, std::size_t& count) {
+  const auto coordinates = [&](Index i) {
+    return std::tuple(directions(0, i), directions(1, i), directions(2, i));
+  };
+  std::vector<Index> sorted(static_cast<std::size_t>(directions.cols()));
+  std::iota(sorted.begin(), sorted.end(), Index{0});
+  std::sort(sorted.begin(), sorted.end(),
+            [&](Index a, Index b) { return coordinates(a) < coordinates(b); });
+  std::vector<std::size_t> places(sorted.size());
+  count = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    if (i == 0 || coordinates(sorted[i]) != coordinates(sorted[i - 1]))
+      ++count;
+    places[static_cast<std::size_t>(sorted[i])] = count - 1;
+  }
+  return places;
+}
+
 SphereTriangulation triangulateByQhull(const Positions& directions,
                                        const internal::FractionReport& report) {
   SphereTriangulation result;
   const auto n = static_cast<std::size_t>(directions.cols());
-  const DistinctPoints distinct = findDistinctPoints(directions);
+  std::size_t place_count = 0;
+  const std::vector<std::size_t> places = placesOf(directions, place_count);
   internal::reportFraction(report, 0.0);
-  result.report.coincident = static_cast<Index>(n - distinct.input_of_vertex.size());
+  result.report.coincident = static_cast<Index>(n - place_count);
 
   std::optional<Triangles> hull;
-  if (distinct.input_of_vertex.size() >= 4)
+  if (place_count >= 4)
     hull = convexHull(directions);
   internal::reportFraction(report, 0.0);
   result.report.hull_rejected = !hull.has_value();
@@ -304,13 +325,13 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
 
   // One representative of each place is located first; the others go beside it, so that no walk has
   // to find its way among empty triangles.
-  std::vector<Index> anchor(distinct.input_of_vertex.size(), -1);
+  std::vector<Index> anchor(place_count, -1);
   std::vector<bool> inserted(n, false);
   for (Eigen::Index t = 0; t < start.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto vertex = static_cast<std::size_t>(start(k, t));
       inserted[vertex] = true;
-      anchor[static_cast<std::size_t>(distinct.vertex_of_input[vertex])] = start(k, t);
+      anchor[places[vertex]] = start(k, t);
     }
   const auto start_vertices =
       static_cast<Index>(std::count(inserted.begin(), inserted.end(), true));
@@ -326,8 +347,7 @@ SphereTriangulation triangulateByQhull(const Positions& directions,
   for (const Index p : internal::mortonOrder(directions)) {
     if (inserted[static_cast<std::size_t>(p)])
       continue;
-    Index& place =
-        anchor[static_cast<std::size_t>(distinct.vertex_of_input[static_cast<std::size_t>(p)])];
+    Index& place = anchor[places[static_cast<std::size_t>(p)]];
     if (place < 0) {
       place = p;
       missing.push_back(p);

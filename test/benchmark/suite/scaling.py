@@ -1,13 +1,12 @@
-"""Time and memory over the number of points and of threads, and the stages one by one."""
+"""Time and memory over the number of points and of threads."""
 
-import json
 import math
 import os
 import statistics
 import time
 
 from .machine import available_memory
-from .programs import require, stage_seconds
+from .programs import stage_seconds
 
 # What a stage cannot do without, for each point: bytes that it moves if everything is at hand, and
 # steps of some ten arithmetic operations with a comparison (a distance, an orientation, the side of
@@ -38,8 +37,6 @@ THREADS = [("threads", "threads"), ("seconds", "time [s]", 2), ("speedup", "spee
 BUDGET = [("stage", "stage"), ("one", "one thread [ns a point]", 0),
           ("all", "all threads [ns a point]", 0), ("least", "least, one thread [ns a point]", 0),
           ("times", "one thread / least", 1), ("what", "what each point needs")]  # fmt: skip
-SINGLE = [("name", "stage, points, threads"), ("milliseconds", "time [ms]", 3),
-          ("nanoseconds", "a point [ns]", 0)]  # fmt: skip
 
 
 def _measure(context, cloud, repeats, threads=None):
@@ -130,23 +127,6 @@ def budget(report, single, full):
     report.add("budget", BUDGET, rows)
 
 
-def stages(context):
-    """The stages one by one, by Google Benchmark."""
-    program = context.programs.find("benchmark_stages", required=False)
-    if not program:
-        context.say("benchmark_stages is not built: Google Benchmark was not found")
-        return
-    context.say("stages, one by one")
-    output = context.work / "stages.json"
-    require([program, f"--benchmark_out={output}", "--benchmark_out_format=json",
-             *context.choose(["--benchmark_filter=/10000/", "--benchmark_min_time=0.01"], [])])  # fmt: skip
-    context.report.add("stages", SINGLE, [
-        {"name": one["name"].removesuffix("/real_time"), "milliseconds": one["real_time"],
-         "nanoseconds": 1e9 / one["items_per_second"]}
-        for one in json.loads(output.read_text())["benchmarks"]])  # fmt: skip
-
-
 def section(context):
     growth(context)
     threads(context)
-    stages(context)

@@ -7,32 +7,12 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <set>
+#include <random>
 
 namespace spherical_param {
 namespace {
 
 using test::randomSphere;
-
-TEST(PointSet, EachPlaceIsItsFirstPoint) {
-  // A grid of repetitions; rounding makes zeros of both signs, which are equal.
-  const Positions points = (randomSphere(400, 1) * 3.0).array().round();
-  const DistinctPoints distinct = findDistinctPoints(points);
-  std::vector<Index> first;
-  for (Index i = 0; i < points.cols(); ++i) {
-    Index j = 0;
-    while (points.col(j) != points.col(i))
-      ++j;
-    if (j == i)
-      first.push_back(i);
-    EXPECT_EQ(distinct.input_of_vertex[static_cast<std::size_t>(
-                  distinct.vertex_of_input[static_cast<std::size_t>(i)])],
-              j);
-  }
-  EXPECT_EQ(distinct.input_of_vertex, first);
-  EXPECT_LT(first.size(), 200U);
-  EXPECT_TRUE(findDistinctPoints(Positions(3, 0)).input_of_vertex.empty());
-}
 
 TEST(PointSet, OneBitOffAPlaneIsNotCoplanar) {
   Positions points = randomSphere(200, 3);
@@ -109,19 +89,6 @@ TEST(PointSet, PlanesOfTinyDifferencesBesideLargeOnesAreFoundExactly) {
   }
   EXPECT_FALSE(are_coplanar({{m, m, m}, {-m, -m, -m}, {m, -m, m}, {m, -m, -m}}));
   EXPECT_TRUE(are_coplanar({{m, m, m}, {-m, m, -m}, {m, -m, m}, {-m, -m, -m}}));
-}
-
-TEST(SpatialOrder, HoldsEveryPointOnceAndNeighborsNearEachOther) {
-  const Positions points = randomSphere(5000, 3);
-  const std::vector<Index> order = spatialOrder(points);
-  ASSERT_EQ(order.size(), 5000U);
-  EXPECT_EQ(std::set<Index>(order.begin(), order.end()).size(), 5000U);
-  double length = 0.0;
-  for (std::size_t i = 1; i < order.size(); ++i)
-    length += (points.col(order[i]) - points.col(order[i - 1])).norm();
-  // Points are 0.05 apart; from one to any other it is 1.3 on average.
-  EXPECT_LT(length / 5000.0, 0.15);
-  EXPECT_TRUE(spatialOrder(Positions(3, 0)).empty());
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ namespace {
 
 using tool_test::Page;
 
-Positions scanned(Shape shape, std::size_t points) {
+Positions scanned(const std::string& shape, std::size_t points) {
   ScanOptions options;
   options.shape = shape;
   options.points = points;
@@ -151,7 +151,7 @@ Eigen::ArrayXd areasAround(const ReportMesh& mesh) {
 }
 
 TEST(HtmlReport, HoldsTheMeshItsMarksAndDistortionUpToRounding) {
-  const Shown shown = show(scanned(Shape::Bowl, 2000));
+  const Shown shown = show(scanned("bowl", 2000));
   expectShown(shown);
   const Surface& result = shown.cloud->surface();
   // The same triangles in another order, each with its marks.
@@ -186,7 +186,7 @@ TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
   for (const auto method : {EmbeddingMethod::Multilevel, EmbeddingMethod::Iterative}) {
     ReconstructionSettings settings = flipsAlone();
     settings.options.embedding.method = method;
-    const Shown shown = show(scanned(Shape::Hand, 1500), settings);
+    const Shown shown = show(scanned("hand", 1500), settings);
     expectShown(shown);
     const Eigen::MatrixXd& positions = shown.page["history_positions"];
     const Eigen::MatrixXd& frames = shown.page["history_frames"];
@@ -211,7 +211,7 @@ TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
   Positions far(3, 6);
   for (Eigen::Index i = 0; i < 6; ++i)
     far.col(i) << (i == 0 ? 0.9 : 3.0), 0.1 * static_cast<double>(i), -2.0;
-  const Shown shown = show(test::horizontally(scanned(Shape::Head, 1500), far), settings, 6);
+  const Shown shown = show(test::horizontally(scanned("head", 1500), far), settings, 6);
   expectShown(shown);
   const Page& page = shown.page;
   const PointData& data = *shown.cloud->data;
@@ -241,7 +241,7 @@ TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
     ReconstructionSettings settings = flipsAlone();
     settings.options.threads = threads;
     settings.options.smoothing = 2;
-    const Shown shown = show(scanned(Shape::Animal, 2000), settings, 0, 2000);
+    const Shown shown = show(scanned("animal", 2000), settings, 0, 2000);
     if (threads == 1)
       first = shown.page.texts;
     EXPECT_TRUE(shown.page.texts == first) << threads;
@@ -258,8 +258,8 @@ TEST(HtmlReport, HasAboutTwelveBytesForATriangle) {
 }
 
 TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
-  const Shown whole = show(scanned(Shape::Bowl, 2400));
-  const Shown shown = show(scanned(Shape::Bowl, 2400), flipsAlone(), 0, 1200);
+  const Shown whole = show(scanned("bowl", 2400));
+  const Shown shown = show(scanned("bowl", 2400), flipsAlone(), 0, 1200);
   expectShown(shown);
   EXPECT_EQ(shown.mesh.triangles.cols(), 1200);
   EXPECT_EQ(std::set<Index>(shown.mesh.vertices.begin(), shown.mesh.vertices.end()).size(), 602U);
@@ -277,7 +277,7 @@ TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
 TEST(HtmlReport, HasTheSpacingOfTheShownPointsOfTheInput) {
   ReconstructionSettings smoothed = flipsAlone();
   smoothed.options.smoothing = 5;
-  const Positions points = 1e6 * scanned(Shape::Bird, 1500);
+  const Positions points = 1e6 * scanned("bird", 1500);
   for (const std::size_t max_triangles : {kMaxReportTriangles, std::size_t{800}}) {
     const Shown shown = show(points, smoothed, 0, max_triangles);
     const Positions cloud = picked(points, shown.mesh.vertices);
@@ -296,7 +296,7 @@ TEST(HtmlReport, HasTheSpacingOfTheShownPointsOfTheInput) {
 
 TEST(HtmlReport, TinyCloudsHaveAPage) {
   for (const std::size_t points : {4U, 5U, 12U})
-    expectShown(show(scanned(Shape::Sphere, points)));
+    expectShown(show(scanned("sphere", points)));
 }
 
 }  // namespace
