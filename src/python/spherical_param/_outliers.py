@@ -60,7 +60,10 @@ def find_outliers(
     """
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
-        values = {"outliers": sigma, "threads": arguments.thread_count(threads)}
+        values: dict[str, object] = {
+            "outliers": sigma,
+            "threads": arguments.thread_count(threads),
+        }
         try:
             indices = _core.find_outliers(cloud.points, values, progress=listener)
         except InvalidInput as error:  # which names the option of reconstruct()
@@ -105,5 +108,8 @@ def find_parts(
     """
     with listening(progress) as listener:
         cloud = _clouds.read("points", points, listener)
-        values = {"min_points": min_points, "threads": arguments.thread_count(threads)}
+        values: dict[str, object] = {
+            "min_points": min_points,
+            "threads": arguments.thread_count(threads),
+        }
         return _core.find_parts(cloud.points, values, progress=listener)

@@ -191,9 +191,11 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)
         vertex_of_input[surface["inputs"]] = surface["vertex_of_input"]
         vertices = surface["input_of_vertex"]
+        figures = make("Surface", surface)
+        figures["vertex_of_input"] = vertex_of_input
         results.append(
             Result(
-                **{**make("Surface", surface), "vertex_of_input": vertex_of_input},
+                **figures,
                 vertices=cloud.points[vertices],
                 left_out=left_out,
                 stages=fields["stages"],
