@@ -26,7 +26,7 @@ import spherical_param
 spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
 mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]])
 mesh.polygons
-text: str = mesh.volume
+text: str = mesh.measures.volume
 both = spherical_param.reconstruct("scan.ply", parts="each")
 both.vertices
 good: spherical_param.Result = spherical_param.reconstruct("scan.ply", parts="largest")
