@@ -257,7 +257,10 @@ struct Surface {
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< remarks and remedies; empty if all is well
 
-  /// The vertex of an input point. \return -1 if the point is not in this surface
+  /// The vertex of an input point.
+  ///
+  /// \param input index of the point in the cloud.
+  /// \return the vertex; -1 if the point is not in this surface.
   Index vertexOf(Index input) const {
     const auto found = std::lower_bound(inputs.begin(), inputs.end(), input);
     return found == inputs.end() || *found != input

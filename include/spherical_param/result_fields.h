@@ -78,6 +78,8 @@ constexpr ResultField describe(const MeshTopology*) {
 /// Calls visit(field, access) for all fields of a struct, selected by the pointer's type.
 /// std::invoke(access, struct) is a reference to the stored value, a pointer to it (null if it has
 /// no meaning), or a derived value.
+///
+/// \param visit function that takes a ResultField and the access to its value.
 template <typename Visit>
 void visitFields(const MeshTopology*, const Visit& visit) {
   using Of = MeshTopology;
@@ -384,12 +386,13 @@ void visitFields(const Result*, const Visit& visit) {
 
 /// Whether describe() and visitFields() exist for a struct, selected by the pointer's type.
 ///
+/// \param self pointer to the struct; may be null.
 /// \return true if they do.
 template <typename Struct>
 constexpr auto isDescribed(const Struct* self) -> decltype(describe(self), true) {
   return true;
 }
-/// \copydoc isDescribed(const Struct*)
+/// No other type is described. \return false
 constexpr bool isDescribed(const void*) {
   return false;
 }
@@ -401,7 +404,7 @@ template <typename Struct>
 constexpr bool isDescribedList(const std::vector<Struct>*) {
   return isDescribed(static_cast<const Struct*>(nullptr));
 }
-/// \copydoc isDescribedList(const std::vector<Struct>*)
+/// No other type is a list of structs. \return false
 constexpr bool isDescribedList(const void*) {
   return false;
 }
@@ -432,7 +435,10 @@ void visitValues(const ResultField& field, Value& value, const Visit& visit) {
   }
 }
 
-/// \copydoc visitValues(const ResultField&, Value&, const Visit&)
+/// The same for a whole result.
+///
+/// \param value described struct.
+/// \param visit takes a ResultField and a reference.
 template <typename Struct, typename Visit>
 void visitValues(Struct& value, const Visit& visit) {
   visitValues(describe(&value), value, visit);
