@@ -81,7 +81,7 @@ void applyShape(const std::string& name, ScanOptions& scan) {
       scan.points = preset.points;
     }
   if (scan.shape.empty())
-    throw UsageError("there is no shape " + inQuotes(name),
+    throw UsageError("unknown shape " + inQuotes(name),
                      "run '" + tool_name + " -list' for the shapes");
 }
 
@@ -89,9 +89,9 @@ void applyShape(const std::string& name, ScanOptions& scan) {
 std::pair<std::string, std::string> shapeAndOutput(const CommandLine& command_line) {
   const std::vector<std::string>& words = command_line.others();
   if (words.size() != 2)
-    throw UsageError(words.empty()       ? "there is no shape"
-                     : words.size() == 1 ? "there is no output file, or no shape"
-                                         : "there is one word too many: " + inQuotes(words[2]),
+    throw UsageError(words.empty()       ? "the shape is missing"
+                     : words.size() == 1 ? "the shape or the output file is missing"
+                                         : "one word too many: " + inQuotes(words[2]),
                      "run '" + tool_name + " SHAPE output [options]', -h shows the options");
   const bool output_first = formatOf(words[0]) && !formatOf(words[1]);
   return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};

@@ -33,9 +33,9 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 /// The landmarks move along arcs, with detours where they would come too near each other, and carry
 /// the sphere with them: in each of many steps every point moves along a smooth tangential field
 /// that takes the landmarks on their way. It is the field of least norm of Wendland's kernel (1995)
-/// of the chord. Each step is short enough to be one to one; see kMaxWarpSlope. Between its vertices
-/// the mesh only follows the field about: where one of its triangles is flipped after a step even
-/// so, vertices beside it are moved between their neighbours.
+/// of the chord. Each step is short enough to be one to one; see kMaxWarpSlope. Between its
+/// vertices the mesh only follows the field about: where one of its triangles is flipped after a
+/// step even so, vertices beside it are moved between their neighbours.
 ///
 /// \param sphere 3 x v, unit vectors; \param triangles closed, manifold, of genus 0.
 /// \param landmarks different vertices, different targets.

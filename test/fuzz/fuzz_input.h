@@ -1,7 +1,7 @@
 #pragma once
 
-#include "guarantees.h"
 #include "graphs.h"
+#include "guarantees.h"
 #include "helpers.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/execution.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "graph.h"
 #include "embedding_starts.h"
+#include "graph.h"
 #include "graphs.h"
 #include "helpers.h"
 #include "sphere_mesh.h"
