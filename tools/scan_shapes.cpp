@@ -262,20 +262,20 @@ class Solid {
 public:
   /// Joins a primitive, with a fillet of about the size `blend`.
   Solid& add(const Primitive& primitive, double blend = 0.0) {
-    parts_.push_back(
+    parts_.emplace_back(
         [=](const Field& field, const Vec& p) { return smoothUnion(field, primitive(p), blend); });
     return *this;
   }
   /// Takes a primitive away, with an edge rounded by about `blend`.
   Solid& carve(const Primitive& primitive, double blend) {
     const auto negated = [](const Field& a) { return Field{-a.value, -1.0 * a.gradient}; };
-    parts_.push_back([=](const Field& field, const Vec& p) {
+    parts_.emplace_back([=](const Field& field, const Vec& p) {
       return negated(smoothUnion(negated(field), primitive(p), blend));
     });
     return *this;
   }
   Solid& raise(const Primitive& height) {
-    parts_.push_back([=](const Field& field, const Vec& p) {
+    parts_.emplace_back([=](const Field& field, const Vec& p) {
       const Field by = height(p);
       return Field{field.value - by.value, field.gradient - by.gradient};
     });
@@ -745,7 +745,7 @@ std::vector<Vec> chooseSamples(const std::vector<Vec>& candidates, double area, 
   std::vector<std::uint32_t> first(slots, none);
   std::vector<std::uint32_t> next;
   std::vector<Vec> samples;
-  const auto slotOf = [&](const Cell& cell) {
+  const auto slot_of = [&](const Cell& cell) {
     return static_cast<std::size_t>(Random::mix(keyOf(cell))) & (slots - 1);
   };
   // Lower bound of the radius at which a candidate may be tried again.
@@ -759,7 +759,7 @@ std::vector<Vec> chooseSamples(const std::vector<Vec>& candidates, double area, 
       double squared = radius * radius;
       bool free = true;
       for (unsigned bits = 0; bits < 8 && free; ++bits)
-        for (std::uint32_t j = first[slotOf(corner(low, bits))]; j != none && free; j = next[j]) {
+        for (std::uint32_t j = first[slot_of(corner(low, bits))]; j != none && free; j = next[j]) {
           const double distance = dot(p - samples[j], p - samples[j]);
           free = distance >= squared;
           squared = std::min(squared, distance);
@@ -767,7 +767,7 @@ std::vector<Vec> chooseSamples(const std::vector<Vec>& candidates, double area, 
       retry_at[i] = free ? 0.0f : static_cast<float>(std::sqrt(squared));
       if (!free)
         continue;
-      std::uint32_t& slot = first[slotOf(cellAt(inverse_cell * p))];
+      std::uint32_t& slot = first[slot_of(cellAt(inverse_cell * p))];
       next.push_back(slot);
       slot = static_cast<std::uint32_t>(samples.size());
       samples.push_back(p);

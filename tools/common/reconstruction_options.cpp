@@ -44,9 +44,9 @@ OptionValue parseValue(const OptionRow& row, const std::string& text) {
   };
   const bool is_choice =
       std::find(row.choices.begin(), row.choices.end(), text) != row.choices.end();
-  const OptionValue value = is_choice || !row.is_number ? OptionValue(text)
-                            : row.is_integer            ? value_of(toInteger(text))
-                                                        : value_of(toReal(text));
+  OptionValue value = is_choice || !row.is_number ? OptionValue(text)
+                      : row.is_integer            ? value_of(toInteger(text))
+                                                  : value_of(toReal(text));
   if (value.index() != 0) {
     try {
       Options scratch;

@@ -84,6 +84,7 @@ NeighborSearch searchWithin(const Positions& points, const NeighborSearch& searc
     std::vector<std::pair<double, Index>> kept;
     for (int asked = count; !open.empty(); asked = std::min(2 * asked, all)) {
       std::vector<Index> nodes;
+      nodes.reserve(open.size());
       for (const std::size_t q : open)
         nodes.push_back(subset.old_of_new[slotOf(queries[q])]);
       const NeighborLists found = search(nodes, asked);
