@@ -290,7 +290,7 @@ class Ros1(unittest.TestCase):
             client.update_configuration({name: value})
             self.assertNotEqual(client.get_configuration(TIMEOUT)[name], value)
         client.update_configuration({"outliers": "auto", "parts": "each", "min_points": 1000})
-        self.assertIn("min_points, 1000, points; ", reconstruct(cloud).message)
+        self.assertIn("min_points = 1000 points; ", reconstruct(cloud).message)
         client.update_configuration({"max_points": 100})
         self.assertIn("max_points", reconstruct(cloud).message)
 
