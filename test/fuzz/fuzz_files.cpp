@@ -124,7 +124,7 @@ void readAsPointPairs(const std::string& path) {
                   pair.points[side] < static_cast<int>(cloud.data->points.size()),
               "a pair is of points");
       require(pair.vertices[side] >= -1 &&
-                  pair.vertices[side] < static_cast<int>(cloud.result.vertexCount()),
+                  pair.vertices[side] < static_cast<int>(cloud.result.surface().vertexCount()),
               "a point is a vertex or none");
     }
   }
