@@ -110,8 +110,9 @@ TEST(PartsOfCloud, ShareOneTimeLimit) {
   const Cloud::Ptr cloud(new Cloud);
   std::mt19937 random(3);
   std::normal_distribution<float> noise(0.0F, 0.1F);
+  const Cloud::Ptr ellipsoid = makeEllipsoid(150);
   for (int part = 0; part < 8; ++part)
-    for (PointXYZ point : *makeEllipsoid(150)) {
+    for (PointXYZ point : *ellipsoid) {
       point.x += noise(random) + 6.0F * static_cast<float>(part);
       point.y += noise(random);
       cloud->push_back(point);
