@@ -78,7 +78,7 @@ SurfaceDiagnosis diagnose(const Positions& points, const Surface& result, const 
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
   of_diagnosis.count_cycles = !mesh.optimization.report.is_out_of_time;
-  return diagnoseSurface(points, result.triangles, mesh.graph.graph, mesh.graph.report.bridges,
+  return diagnoseSurface(points, result.triangles, mesh.graph.graph, mesh.graph.bridges,
                          result.openings, of_diagnosis, options.threads);
 }
 
@@ -97,7 +97,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
     result.diagnosis.is_one_sided = true;
     result.diagnosis.kind = SurfaceKind::Unclear;
   }
-  for (const StrayPoint& stray : mesh.graph.report.stray_points)
+  for (const StrayPoint& stray : mesh.graph.stray_points)
     result.outliers.push_back(stray.point);
   reportFraction(report, 0.5);
   result.measures = measureMesh(points, result.triangles, options.threads);

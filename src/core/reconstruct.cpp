@@ -73,8 +73,8 @@ NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& opti
   // Outliers that are left out are not looked for again.
   const auto strays = options.outliers == OutlierMode::None ? internal::StraySearch::Yes
                                                             : internal::StraySearch::No;
-  return internal::buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(), strays,
-                                           execution);
+  return internal::buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(),
+                                           neighborhoods.agreed(), strays, execution);
 }
 
 /// Optimises the mesh on the points, and on smoothed ones if they are asked for.
@@ -245,6 +245,18 @@ auto explained(const LeftOut& left_out, const Work& work) {
   }
 }
 
+/// The points to mesh, in parts.
+std::vector<std::vector<Index>> select(const Positions& points, Options options, PartsMode parts,
+                                       LeftOut& left_out) {
+  options.parts = parts;
+  checkOptions(options);
+  StageClock clock(options);
+  std::vector<std::vector<Index>> selected =
+      explained(left_out, [&] { return Selection(points, options, {}, clock, left_out).parts(); });
+  clock.take();
+  return selected;
+}
+
 }  // namespace
 
 Result reconstruct(const Positions& points, const Options& options,
@@ -262,26 +274,14 @@ Result reconstruct(const Positions& points, const Options& options,
 }
 
 std::vector<Index> findOutliers(const Positions& points, const Options& options) {
-  Options all = options;
-  all.parts = PartsMode::All;
-  checkOptions(all);
-  StageClock clock(all);
   LeftOut left_out;
-  explained(left_out, [&] { return Selection(points, all, {}, clock, left_out).parts(); });
-  clock.take();
+  select(points, options, PartsMode::All, left_out);
   return left_out.outliers;
 }
 
 std::vector<std::vector<Index>> findParts(const Positions& points, const Options& options) {
-  Options each = options;
-  each.parts = PartsMode::Each;
-  checkOptions(each);
-  StageClock clock(each);
   LeftOut left_out;
-  std::vector<std::vector<Index>> parts =
-      explained(left_out, [&] { return Selection(points, each, {}, clock, left_out).parts(); });
-  clock.take();
-  return parts;
+  return select(points, options, PartsMode::Each, left_out);
 }
 
 }  // namespace spherical_param

@@ -1,6 +1,5 @@
 #include "selection.h"
 
-#include "local_delaunay_graph.h"
 #include "outliers.h"
 #include "parts.h"
 #include "stray_points.h"
@@ -45,10 +44,11 @@ Selection::Selection(const Positions& points, const Options& options,
 
 void Selection::leaveOutOutliers() {
   clock_.begin("outliers");
-  const Graph agreed = agreedGraph(cloud_->points(), cloud_->stars(), clock_.execution());
-  left_out_.outliers = cloud_->inputsOf(
-      markOutliers(options_.outliers, options_.outlier_sigma, cloud_->points(), cloud_->neighbors(),
-                   strayPoints(cloud_->points(), agreed, cloud_->stars()), clock_.execution()));
+  const std::vector<StrayPoint> stray =
+      strayPoints(cloud_->points(), cloud_->agreed(), cloud_->stars());
+  left_out_.outliers =
+      cloud_->inputsOf(markOutliers(options_.outliers, options_.outlier_sigma, cloud_->points(),
+                                    cloud_->neighbors(), stray, clock_.execution()));
   if (left_out_.outliers.empty())
     return;
   inputs_ = without(inputs_, left_out_.outliers);
@@ -60,10 +60,9 @@ void Selection::leaveOutOutliers() {
 
 void Selection::takeApart() {
   clock_.begin("parts");
-  const Neighborhoods& all = kept_ ? *kept_ : *cloud_;
-  const Graph agreed = agreedGraph(all.points(), all.stars(), clock_.execution());
-  parts_ = all.groupInputs(
-      partsOf(all.points(), agreed, all.stars(), static_cast<std::size_t>(options_.min_points)));
+  const Neighborhoods& all = whole();
+  parts_ = all.groupInputs(partsOf(all.points(), all.agreed(), all.stars(),
+                                   static_cast<std::size_t>(options_.min_points)));
   if (parts_.empty())
     return;
   if (options_.parts == PartsMode::Largest)
@@ -87,13 +86,12 @@ Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
   if (!cloud_)
     cloud_ =
         std::make_unique<Neighborhoods>(points_, inputs_, options_, search_of_, clock_.execution());
-  Neighborhoods& all = kept_ ? *kept_ : *cloud_;
   if (!isWhole(part))
-    part_ =
-        std::make_unique<Neighborhoods>(points_, parts_[part], options_, all, clock_.execution());
-  Neighborhoods& neighborhoods = isWhole(part) ? all : *part_;
+    part_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_, whole(),
+                                            clock_.execution());
+  Neighborhoods& neighborhoods = isWhole(part) ? whole() : *part_;
   clock_.begin("graph");
-  if (options_.graph == GraphMethod::LocalDelaunay && neighborhoods.stars().size() == 0)
+  if (options_.graph == GraphMethod::LocalDelaunay)
     neighborhoods.findStars(clock_.execution());
   return neighborhoods;
 }

@@ -34,6 +34,8 @@ private:
   void leaveOutOutliers();
   void takeApart();
   bool isWhole(std::size_t part) const { return parts_[part].size() == inputs_.size(); }
+  /// Of all inputs.
+  Neighborhoods& whole() { return kept_ ? *kept_ : *cloud_; }
 
   const Positions& points_;
   const Options& options_;

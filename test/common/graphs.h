@@ -24,13 +24,19 @@ inline GraphChoice nearest(int k = 25) {
   return {GraphMethod::NearestNeighbors, k};
 }
 
+inline internal::Stars starsOf(const Positions& points, const NeighborLists& lists,
+                               const NeighborSearch& search = {}, const Execution& execution = {}) {
+  return internal::findStars(points, {lists, search}, execution);
+}
+
 inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
                              const GraphChoice& choice = {}, const NeighborSearch& search = {},
                              const Execution& execution = {}) {
   if (choice.method == GraphMethod::NearestNeighbors)
     return internal::buildNearestNeighborGraph(points, lists, choice.k);
-  return internal::buildLocalDelaunayGraph(points,
-                                           internal::findStars(points, {lists, search}, execution),
+  const internal::Stars stars = starsOf(points, lists, search, execution);
+  return internal::buildLocalDelaunayGraph(points, stars,
+                                           internal::agreedGraph(points, stars, execution),
                                            internal::StraySearch::Yes, execution);
 }
 

@@ -223,8 +223,7 @@ std::vector<Stage> stagesOf(const Inputs& in) {
        [&](const Execution& e) {
          const NeighborGraph result =
              test::graphOf(in.points, in.lists, {}, makeNeighborSearch(in.points), e);
-         return Numbers(result.graph.offsets, result.graph.neighbors, result.graph.lengths,
-                        result.report.uncertified, result.report.weak);
+         return Numbers(result.graph.offsets, result.graph.neighbors, result.graph.lengths);
        }},
       {"openings",
        [&](const Execution& e) {

@@ -38,16 +38,18 @@ Bridge edgeBetween(const Positions& points, Index i, Index j) {
 
 /// Joins points without a tangent plane that only one of them finds near: their neighbourhood is
 /// the same from both ends, but for the ends of the lists.
-void joinWithoutPlane(const Positions& points, const Stars& stars,
-                      const std::vector<Index>& without_plane, Graph& graph) {
+void joinWithoutPlane(const Positions& points, const Stars& stars, Graph& graph) {
   std::vector<Bridge> edges;
-  for (const Index i : without_plane)
-    for (std::size_t e = stars.begin[static_cast<std::size_t>(i)];
-         e < stars.endOf(static_cast<std::size_t>(i)); ++e) {
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    if (stars.kind[i].tangent_plane)
+      continue;
+    const auto node = static_cast<Index>(i);
+    for (std::size_t e = stars.begin[i]; e < stars.endOf(i); ++e) {
       const Index j = stars.nodes[e];
-      if (!stars.kind[static_cast<std::size_t>(j)].tangent_plane && !stars.holds(j, i))
-        edges.push_back(edgeBetween(points, i, j));
+      if (!stars.kind[static_cast<std::size_t>(j)].tangent_plane && !stars.holds(j, node))
+        edges.push_back(edgeBetween(points, node, j));
     }
+  }
   if (!edges.empty())
     graph = internal::withEdges(graph, edges);
 }
@@ -60,11 +62,11 @@ std::vector<Index> pointsOfLowDegree(const Graph& graph) {
   return result;
 }
 
-/// Gives points of low degree their whole star and their nearest neighbours. Returns their number.
-Index repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
+/// Gives points of low degree their whole star and their nearest neighbours.
+void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
   const std::vector<Index> weak = pointsOfLowDegree(graph);
   if (weak.empty())
-    return 0;
+    return;
   std::vector<Bridge> edges;
   for (const Index i : weak) {
     const auto row = static_cast<std::size_t>(i);
@@ -79,7 +81,7 @@ Index repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
   // Lists of fewer than three points leave some behind.
   const std::vector<Index> poor = pointsOfLowDegree(graph);
   if (poor.empty())
-    return static_cast<Index>(weak.size());
+    return;
   edges.clear();
   const internal::ComponentTree tree(points);
   std::vector<Index> found;
@@ -95,7 +97,6 @@ Index repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
     }
   }
   graph = internal::withEdges(graph, edges);
-  return static_cast<Index>(weak.size());
 }
 
 /// Joins the components by edges of stars that found no agreement, the shortest first, and what is
@@ -129,18 +130,17 @@ void connect(const Positions& points, const Stars& stars, const internal::Fracti
              NeighborGraph& result) {
   internal::UnionFind parts = internal::connectedComponents(result.graph);
   const std::vector<Index> part = internal::representatives(parts, stars.size());
-  result.report.components = internal::countSets(part);
   internal::reportFraction(report, 0.0);
-  if (result.report.components > 1) {
-    result.report.bridges = joinParts(points, stars, part, parts);
-    result.graph = internal::withEdges(result.graph, result.report.bridges);
+  if (internal::countSets(part) > 1) {
+    result.bridges = joinParts(points, stars, part, parts);
+    result.graph = internal::withEdges(result.graph, result.bridges);
   }
   const std::vector<Bridge> bridges =
       internal::articulationBridges(points, result.graph, kBridgesPerJoint - 1);
   if (bridges.empty())
     return;
   result.graph = internal::withEdges(result.graph, bridges);
-  result.report.bridges.insert(result.report.bridges.end(), bridges.begin(), bridges.end());
+  result.bridges.insert(result.bridges.end(), bridges.begin(), bridges.end());
 }
 
 }  // namespace
@@ -179,24 +179,17 @@ Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& 
 }
 
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
-                                      StraySearch strays, const Execution& execution) {
+                                      const Graph& agreed, StraySearch strays,
+                                      const Execution& execution) {
   NeighborGraph result;
   if (stars.size() == 0)
     return result;
-  for (std::size_t i = 0; i < stars.size(); ++i) {
-    if (!stars.kind[i].tangent_plane)
-      result.report.without_tangent_plane.push_back(static_cast<Index>(i));
-    else if (!stars.kind[i].certified)
-      ++result.report.uncertified;
-  }
-  result.report.searched_again = stars.searched_again;
-  result.graph = agreedGraph(points, stars, execution);
   if (strays == StraySearch::Yes)
-    result.report.stray_points = strayPoints(points, result.graph, stars);
-  joinWithoutPlane(points, stars, result.report.without_tangent_plane, result.graph);
-  result.report.weak = repairWeak(points, stars, result.graph);
+    result.stray_points = strayPoints(points, agreed, stars);
+  result.graph = agreed;
+  joinWithoutPlane(points, stars, result.graph);
+  repairWeak(points, stars, result.graph);
   connect(points, stars, reportOf(execution, "graph"), result);
-  result.report.edges = result.graph.edgeCount();
   return result;
 }
 

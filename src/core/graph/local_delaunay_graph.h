@@ -28,8 +28,10 @@ enum class StraySearch { No, Yes };
 ///
 /// \param points 3 x n, finite, distinct.
 /// \param stars  of these points.
-/// \param strays whether to fill GraphReport::stray_points.
+/// \param agreed \see agreedGraph
+/// \param strays whether to fill NeighborGraph::stray_points.
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
-                                      StraySearch strays, const Execution& execution);
+                                      const Graph& agreed, StraySearch strays,
+                                      const Execution& execution);
 
 }  // namespace spherical_param::internal

@@ -85,12 +85,10 @@ NeighborGraph buildNearestNeighborGraph(const Positions& points, const NeighborL
   NeighborGraph result;
   result.graph = symmetrized(points, nearestOnly(points, lists, k));
   UnionFind parts = connectedComponents(result.graph);
-  result.report.components = countSets(representatives(parts, result.graph.size()));
-  if (result.report.components > 1) {
-    result.report.bridges = shortestBridges(points, parts, 1);
-    result.graph = withEdges(result.graph, result.report.bridges);
+  if (countSets(representatives(parts, result.graph.size())) > 1) {
+    result.bridges = shortestBridges(points, parts, 1);
+    result.graph = withEdges(result.graph, result.bridges);
   }
-  result.report.edges = result.graph.edgeCount();
   return result;
 }
 

@@ -3,7 +3,6 @@
 #include "graph.h"
 #include "spherical_param/options.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace spherical_param {
@@ -24,27 +23,14 @@ struct StrayPoint {
   double distance;  ///< to the nearest surface [mean distance of neighbours there]
 };
 
-/// Report of a neighbour graph.
-struct GraphReport {
-  std::size_t edges = 0;        ///< undirected edges, bridges included
-  Index components = 0;         ///< connected components before bridging
-  std::vector<Bridge> bridges;  ///< edges that join them, in the order of their insertion
-
-  // Only of GraphMethod::LocalDelaunay. Its bridges also join biconnected components.
-
-  /// Points without a reliable tangent plane, ascending; they have the neighbours of the Gabriel
-  /// graph instead.
-  std::vector<Index> without_tangent_plane;
-  Index searched_again = 0;  ///< points for which more neighbours were searched
-  Index uncertified = 0;     ///< points with a tangent plane but without a certified cell
-  Index weak = 0;            ///< points with fewer than three agreed edges, repaired
-  std::vector<StrayPoint> stray_points;  ///< ascending; also nodes of the graph
-};
-
 /// A connected neighbour graph.
 struct NeighborGraph {
-  Graph graph;         ///< connected
-  GraphReport report;  ///< figures of its construction
+  Graph graph;
+  /// The edges that join its components, in the order of their insertion. Those of
+  /// GraphMethod::LocalDelaunay also join biconnected components.
+  std::vector<Bridge> bridges;
+  /// Ascending; also nodes of the graph. Only of GraphMethod::LocalDelaunay.
+  std::vector<StrayPoint> stray_points;
 };
 
 /// @}

@@ -1,5 +1,6 @@
 #include "neighborhoods.h"
 
+#include "local_delaunay_graph.h"
 #include "neighbor_search.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
@@ -99,14 +100,18 @@ Neighborhoods::Neighborhoods(const Positions& cloud, std::vector<Index> inputs,
 }
 
 void Neighborhoods::findStars(const Execution& execution) {
+  if (stars_.size() > 0)
+    return;
   stars_ = all_ != nullptr && all_->stars_.size() > 0
                ? internal::findStars(nodes_.points, neighbors_, all_->stars_, subset_, execution)
                : internal::findStars(nodes_.points, neighbors_, execution);
+  agreed_ = agreedGraph(nodes_.points, stars_, execution);
 }
 
 void Neighborhoods::release() {
   neighbors_ = {};
   stars_ = Stars();
+  agreed_ = {};
   subset_ = {};
 }
 

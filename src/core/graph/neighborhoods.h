@@ -1,5 +1,6 @@
 #pragma once
 
+#include "neighbor_graph.h"
 #include "neighbors.h"
 #include "ordered_points.h"
 #include "spherical_param/options.h"
@@ -30,7 +31,7 @@ public:
   Neighborhoods(const Neighborhoods& other) = delete;  // searches point here
   Neighborhoods& operator=(const Neighborhoods& other) = delete;
 
-  /// Finds the stars of all nodes.
+  /// Finds the stars of all nodes and their agreed graph, if that is not done.
   void findStars(const Execution& execution);
   /// Frees neighbours and stars, which are not needed once there is a graph.
   void release();
@@ -41,6 +42,7 @@ public:
   const std::vector<Index>& inputs() const { return inputs_; }
   const Neighbors& neighbors() const { return neighbors_; }
   const Stars& stars() const { return stars_; }
+  const Graph& agreed() const { return agreed_; }  ///< \see agreedGraph
 
   /// The inputs of marked nodes. \param marked one entry for each node.
   std::vector<Index> inputsOf(const std::vector<char>& marked) const;
@@ -53,6 +55,7 @@ private:
   OrderedPoints nodes_;
   Neighbors neighbors_;
   Stars stars_;
+  Graph agreed_;
   const Neighborhoods* all_ = nullptr;
   NodeSubset subset_;  ///< of `all_`
 };

@@ -316,9 +316,9 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
   });
 }
 
-/// Asks for more neighbours of the points that want them. Returns how many points these were.
-Index searchForMore(const Positions& points, const NeighborSearch& search, int threads,
-                    std::vector<Scratch>& scratch, const FractionReport& report, Stars& stars) {
+/// Asks for more neighbours of the points that want them.
+void searchForMore(const Positions& points, const NeighborSearch& search, int threads,
+                   std::vector<Scratch>& scratch, const FractionReport& report, Stars& stars) {
   const int most =
       static_cast<int>(std::min(static_cast<std::size_t>(kMaxCandidates), stars.size() - 1));
   int count = 0;
@@ -326,7 +326,6 @@ Index searchForMore(const Positions& points, const NeighborSearch& search, int t
     count = std::max(count, static_cast<int>(kind.candidates));
   count = std::max(count, kTangentNeighbors / 2);
   std::vector<Index> open;
-  Index searched = 0;
   while (count < most) {
     count = std::min(2 * count, most);
     open.clear();
@@ -335,7 +334,6 @@ Index searchForMore(const Positions& points, const NeighborSearch& search, int t
         open.push_back(static_cast<Index>(i));
     if (open.empty())
       break;
-    searched = std::max(searched, static_cast<Index>(open.size()));
     const NeighborLists lists = search(open, count);
     checkLists(lists, open.size(), stars.size());
     findStars(points, open, lists, threads, scratch, {}, stars);
@@ -343,7 +341,6 @@ Index searchForMore(const Positions& points, const NeighborSearch& search, int t
       stars.kind[static_cast<std::size_t>(i)].is_beyond_list = true;
     reportFraction(report, static_cast<double>(count) / most);
   }
-  return searched;
 }
 
 /// Finds the stars of the nodes in `subset` (empty: of all) from lists in its order, then from more
@@ -355,7 +352,7 @@ void findAll(const Positions& points, const std::vector<Index>& subset, const Ne
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
   findStars(points, subset, lists, threads, scratch, report, stars);
   if (search)
-    stars.searched_again = searchForMore(points, search, threads, scratch, report, stars);
+    searchForMore(points, search, threads, scratch, report, stars);
 }
 
 }  // namespace

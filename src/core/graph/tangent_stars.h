@@ -30,7 +30,6 @@ struct Stars {
   std::vector<Index> nodes;
   std::vector<StarKind> kind;
   std::vector<std::array<Index, 3>> nearest;  ///< the three nearest; -1: unknown
-  Index searched_again = 0;                   ///< nodes for which more neighbours were searched
 
   std::size_t size() const { return begin.size(); }
   std::size_t endOf(std::size_t i) const { return begin[i] + static_cast<std::size_t>(count[i]); }

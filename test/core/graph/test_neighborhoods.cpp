@@ -37,8 +37,7 @@ void expectSameStars(const Neighborhoods& found, const Neighborhoods& expected) 
   ASSERT_EQ(found.stars().size(), expected.stars().size());
   for (std::size_t i = 0; i < expected.stars().size(); ++i)
     ASSERT_EQ(starOf(found.stars(), i), starOf(expected.stars(), i)) << i;
-  EXPECT_EQ(test::edgesOf(agreedGraph(found.points(), found.stars(), {})),
-            test::edgesOf(agreedGraph(expected.points(), expected.stars(), {})));
+  EXPECT_EQ(test::edgesOf(found.agreed()), test::edgesOf(expected.agreed()));
 }
 
 /// Answers far points first, without the query, and with none beyond a radius.

@@ -76,7 +76,7 @@ TEST(StrayPoints, AreThoseALittleOffASurface) {
 
 TEST(StrayPoints, HaveTheirDistanceInSpacings) {
   const Positions points = horizontally(spiralSphere(600), Eigen::Vector3d(0.0, 2.0, 0.0));
-  const std::vector<StrayPoint> found = test::localDelaunayGraph(points).report.stray_points;
+  const std::vector<StrayPoint> found = test::localDelaunayGraph(points).stray_points;
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].point, 600);
   EXPECT_NEAR(found[0].distance, 1.0 / test::sphereSpacing(600), 0.2 * found[0].distance);

@@ -25,8 +25,8 @@ SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = 
   std::vector<Opening> openings = findOpenings(scene.points, scene.graph.graph).openings;
   for (Opening& opening : openings)
     opening.is_filled = true;
-  return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph,
-                         scene.graph.report.bridges, openings, options, 1);
+  return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph, scene.graph.bridges,
+                         openings, options, 1);
 }
 
 // --- Closed surfaces -----------------------------------------------------------------------------
@@ -92,7 +92,7 @@ TEST(SurfaceDiagnosis, FalseNeighborsOfThinSheetsAreNoHandle) {
         edges(2, t) = j;
       }
   }
-  expectClosed("sheets", {points, hull, {graphOfMesh(points, edges), {}}});
+  expectClosed("sheets", {points, hull, {graphOfMesh(points, edges), {}, {}}});
 }
 
 // --- Openings ------------------------------------------------------------------------------------
@@ -211,7 +211,7 @@ TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
   // In the middle between the two, to within the distance of the points.
   EXPECT_LT((bridge.center - Eigen::Vector3d(1.75, 0.0, 0.0)).norm(), 2.0 * sphereSpacing(m));
   std::set<Index> ends;
-  for (const Bridge& edge : scene.graph.report.bridges)
+  for (const Bridge& edge : scene.graph.bridges)
     ends.insert({edge.from, edge.to});
   EXPECT_EQ(bridge.vertices, std::vector<Index>(ends.begin(), ends.end()));
 }
