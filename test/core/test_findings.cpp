@@ -63,6 +63,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
       {{}, [](Surface&) {}},
       {{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
       {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
+      {{}, [](Surface& r) { r.openings.resize(2); }},
       {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }},
       {{"1 point looks like an outlier", "outliers", "auto", false},
        [](Surface& r) { r.outliers = {3}; }},
@@ -82,6 +83,19 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
       {{"2 openings, the largest of 432 points, filled", "surface", "open", true},
        [](Surface& r) {
          r.openings = {filledOpening(40), filledOpening(432), filledOpening(500, 0.9)};
+       }},
+      {{"possible opening of 26 points, filled", "surface", "open", false},
+       [](Surface& r) {
+         r.openings = {filledOpening(26, 0.4), filledOpening(27, 0.39)};
+       }},
+      {{"2 possible openings, the largest of 26 points, filled", "surface", "open", false},
+       [](Surface& r) {
+         r.openings = {filledOpening(26, 0.9), filledOpening(12, 0.6)};
+       }},
+      {{},
+       [](Surface& r) {
+         r.openings = {filledOpening(26)};
+         r.openings[0].is_flat = true;
        }},
       {{"the points are noisy", "consolidation", "auto", false},
        [](Surface& r) { r.is_noisy = true; }},
@@ -157,19 +171,6 @@ TEST(LeftOut, SaysWhatAndHowMany) {
   left_out.other_parts.resize(1000);
   EXPECT_EQ(left_out.text(),
             "2 points that are not finite, 1 outlier, 1,000 points in other parts");
-}
-
-TEST(Findings, OfWhatDoesNotHarmTheMeshAreNone) {
-  expectFindings({{{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
-                  {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
-                  {{}, [](Surface& r) { r.openings = {filledOpening(432, 0.9)}; }},
-                  {{}, [](Surface& r) { r.openings.resize(2); }},
-                  {{},
-                   [](Surface& r) {
-                     r.openings = {filledOpening(432)};
-                     r.openings[0].is_flat = true;
-                   }},
-                  {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }}});
 }
 
 TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
