@@ -38,7 +38,8 @@ struct MappedMesh {
   spherical_param::SphereMap map;        ///< of the points
 };
 
-/** \brief The vertices of the last mesh, consolidated and smoothed. \return 3 x v */
+/** \brief The vertices of the last mesh, consolidated and smoothed.
+ * \return 3 x v */
 template <typename PointInT>
 spherical_param::Positions
 verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
@@ -56,9 +57,12 @@ verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
 }
 
 /** \brief Meshes a cloud, maps the mesh, and makes an output of it; only its header is left after a
- * failure. \param[in] function the name that messages begin with \param[in] options of
- * the map \param[in] threads of `make`; 0: those of the reconstruction \param[in] make called with
- * the mesh and the threads; returns the output without its header \return false after a failure */
+ * failure.
+ * \param[in] function the name that messages begin with
+ * \param[in] options of the map
+ * \param[in] threads of `make`; 0: those of the reconstruction
+ * \param[in] make called with the mesh and the threads; returns the output without its header
+ * \return false after a failure */
 template <typename PointInT, typename Output, typename Make>
 bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& reconstruction,
                  const spherical_param::SphereMapOptions& options, int threads, Output& output,

@@ -120,8 +120,8 @@ public:
 
   /** \brief Set which points are left out first because they belong to no surface.
    * \param[in] mode default OutlierMode::None. Auto: stray points, small clusters and isolated
-   * points near a surface. Deviation: points too far from the average of their neighbours. \note
-   * getResult().left_out lists them. */
+   * points near a surface. Deviation: points too far from the average of their neighbours.
+   * \note getResult().left_out lists them. */
   inline void setOutliers(OutlierMode mode) { options_.outliers = mode; }
   /** \brief Get which points are left out.
    * \return the mode */
@@ -137,16 +137,17 @@ public:
   /** \brief Set which parts of the cloud are meshed. A part is a set of points that neighbours
    * connect.
    * \param[in] mode default PartsMode::All: all together, as one surface. Largest meshes the part
-   * with the most points; Each meshes every part by itself, into polygons of one mesh. \note With
-   * Each, a part that cannot be meshed (all points in one plane, for example) is left out with a
-   * warning (PCL_WARN). */
+   * with the most points; Each meshes every part by itself, into polygons of one mesh.
+   * \note With Each, a part that cannot be meshed (all points in one plane, for example) is left
+   * out with a warning (PCL_WARN). */
   inline void setParts(PartsMode mode) { options_.parts = mode; }
   /** \brief Get which parts of the cloud are meshed.
    * \return the mode */
   inline PartsMode getParts() const { return options_.parts; }
 
   /** \brief Set the minimum number of distinct points of a part; smaller parts are left out. No
-   * effect with PartsMode::All. \param[in] points 4 and up; default 50 */
+   * effect with PartsMode::All.
+   * \param[in] points 4 and up; default 50 */
   inline void setMinPartSize(int points) { options_.min_points = points; }
   /** \brief Get the minimum number of distinct points of a part.
    * \return their number */
@@ -164,9 +165,9 @@ public:
   /** \brief Set the number of nearest neighbours of each point to search for.
    * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default: 25 (as in
    * the paper) for GraphMethod::NearestNeighbors; 12 for GraphMethod::LocalDelaunay, which searches
-   * for up to 32 where needed and hardly depends on it. \note For nearest neighbours, raise it for
-   * clouds with noise or uneven density along scan lines, and lower it where sheets of the surface
-   * come close to each other. */
+   * for up to 32 where needed and hardly depends on it.
+   * \note For nearest neighbours, raise it for clouds with noise or uneven density along scan
+   * lines, and lower it where sheets of the surface come close to each other. */
   inline void setKSearch(int k) { options_.k = k; }
   /** \brief Get the number of nearest neighbours of each point to search for.
    * \return that of setKSearch(), or the default of the graph method */
@@ -235,9 +236,9 @@ public:
   inline int getSmoothing() const { return options_.smoothing; }
 
   /** \brief Set the seed of all random choices: the order of coarsening in the multilevel
-   * embedding, and the parts of the mesh that OptimizationMethod::Full rebuilds. \param[in] seed
-   * any number; default 1. The same seed gives the same result. \note Change it to see how much the
-   * result depends on it. */
+   * embedding, and the parts of the mesh that OptimizationMethod::Full rebuilds. The same seed gives
+   * the same result.
+   * \param[in] seed any number; default 1 */
   inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
   /** \brief Get the seed of all random choices.
    * \return the seed */
@@ -274,7 +275,8 @@ public:
   inline const ProgressCallback& getProgressCallback() const { return options_.progress; }
 
   /** \brief Set all options at once, also the progress callback. For options without a setter,
-   * change a copy of getOptions(). \param[in] options checked by reconstruct() */
+   * change a copy of getOptions().
+   * \param[in] options checked by reconstruct() */
   inline void setOptions(const spherical_param::Options& options) { options_ = options; }
   /** \brief Get all options at once.
    * \return those in force */
@@ -325,9 +327,10 @@ public:
 
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
    * that the polygons fit. Duplicates have the place of their vertex; points that were not meshed
-   * are NaN. Empty after a failure. \note Where the optimisation moved vertices, as on noise, some
-   * polygons are inverted on the sphere; with OptimizationMethod::None only by rounding. \return a
-   * new cloud of the size of the input */
+   * are NaN. Empty after a failure.
+   * \note Where the optimisation moved vertices, as on noise, some polygons are inverted on the
+   * sphere; with OptimizationMethod::None only by rounding.
+   * \return a new cloud of the size of the input */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
 
   /** \brief Get the points after setConsolidation() and setSmoothing(), one for each point of the
@@ -340,9 +343,10 @@ public:
 
   /** \brief Get the pairs of triangles of the mesh that intersect, {lower, higher}, ascending. They
    * are indices of triangles of the part's surface in getResult(), with one part those of the
-   * polygons. Exact on the points of the input. \note Noisy points often leave some; see
-   * setSmoothing(). \param[in] part below getPartCount() \return the pairs; empty for a clean scan
-   */
+   * polygons. Exact on the points of the input.
+   * \note Noisy points often leave some; see setSmoothing().
+   * \param[in] part below getPartCount()
+   * \return the pairs; empty for a clean scan */
   inline const std::vector<std::array<spherical_param::Index, 2>>&
   getSelfIntersections(std::size_t part = 0) const {
     return getSurfaceOf(part).self_intersections;

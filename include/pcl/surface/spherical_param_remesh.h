@@ -27,20 +27,20 @@ struct SphericalParamRemeshOptions {
   spherical_param::SphereMapOptions map = spherical_param::mapOptionsForResampling();
 };
 
-/** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere:
- * manifold, oriented outward, of genus 0, with any number of vertices. It is closed, except for
- * openings that setSurface() leaves open. Vertices are slid along the surface where triangles
- * would intersect (see spherical_param::untangle()).
+/** \brief Mesh a cloud, and sample the surface anew with a regular mesh of the sphere: manifold,
+ * oriented outward, of genus 0, with any number of vertices. It is closed, except for openings that
+ * setSurface() leaves open. Vertices are slid along the surface where triangles would intersect
+ * (see spherical_param::untangle()).
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
  * results stay there
  * \param[out] output its cloud has points of type pcl::PointNormal, its header is that of the input
  * \param[in] options the defaults need no tuning
  * \return false after a failure, which PCL_ERROR reports; the output has nothing but its header
- * then. No exception leaves the function, except one that a progress callback throws. \note The
- * triangles are even on the sphere, and on the surface as far as its map keeps areas (see
- * spherical_param::SphereMap::distortion). \ingroup surface
- */
+ * then. No exception leaves the function, except one that a progress callback throws.
+ * \note The triangles are even on the sphere, and on the surface as far as its map keeps areas (see
+ * spherical_param::SphereMap::distortion).
+ * \ingroup surface */
 template <typename PointInT>
 bool remeshSphericalParam(SphericalParamReconstruction<PointInT>& reconstruction,
                           pcl::PolygonMesh& output,

@@ -78,7 +78,8 @@ Eigen::Vector3d colorOf(const PointT& point) {
   return Eigen::Vector3d(packed >> 16 & 0xFF, packed >> 8 & 0xFF, packed & 0xFF);
 }
 
-/** \brief The colours of the vertices of the last mesh. \return 3 x v; empty for points without */
+/** \brief The colours of the vertices of the last mesh.
+ * \return 3 x v; empty for points without */
 template <typename PointInT>
 spherical_param::Positions colorsOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
   spherical_param::Positions colors;
