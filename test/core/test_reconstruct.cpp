@@ -1,4 +1,3 @@
-#include "graphs.h"
 #include "reconstructions.h"
 
 #include "embedding.h"
@@ -13,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <set>
@@ -118,6 +118,16 @@ TEST(Reconstruct, NastySetsAreMeshed) {
         EXPECT_TRUE(std::isfinite(result.embedding.residual));
         EXPECT_TRUE(std::isfinite(result.measures.volume) && std::isfinite(result.measures.area));
       }
+}
+
+// Products of their differences underflow: inexact predicates made the optimisation endless.
+TEST(Reconstruct, PointsAsNearAsNumbersCanBeAreMeshed) {
+  Positions pair = Positions::Zero(3, 2);
+  pair(2, 1) = std::numeric_limits<double>::denorm_min();
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const Positions points = horizontally(randomSphere(20, seed), pair);
+    EXPECT_TRUE(test::isSphereOverAll(mesh(points).triangles, 22));
+  }
 }
 
 TEST(Reconstruct, CollapseIsReportedAndItsSphereIsNotTheMesh) {

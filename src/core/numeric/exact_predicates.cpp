@@ -148,7 +148,7 @@ Expansion<16> squaredNorm(const Expansion<2>& x, const Expansion<2>& y) {
 }
 
 /// An integer of any size, a multiple of the least positive double: digits to the base 2^24, lowest
-/// first. All are in [0, 2^24) but the last, which has the sign.
+/// first. Each has its own sign, so that differences of numbers of few digits have few digits.
 class WideInteger {
 public:
   explicit WideInteger(double x) {
@@ -168,80 +168,78 @@ public:
     carry();
   }
 
-  WideInteger operator-(const WideInteger& other) const {
-    WideInteger result = *this;
-    result.digits_.resize(std::max(digits_.size(), other.digits_.size()), 0);
-    for (std::size_t i = 0; i < other.digits_.size(); ++i)
-      result.digits_[i] -= other.digits_[i];
-    result.carry();
-    return result;
-  }
-  WideInteger operator+(const WideInteger& other) const {
-    return *this - (WideInteger(0.0) - other);
-  }
+  WideInteger operator-(const WideInteger& other) const { return plus(other, -1); }
+  WideInteger operator+(const WideInteger& other) const { return plus(other, 1); }
   WideInteger operator*(const WideInteger& other) const {
     // Sums stay below 2^63: the shorter factor has fewer than 2^9 digits of 24 bits.
     WideInteger result(0.0);
     result.digits_.assign(digits_.size() + other.digits_.size(), 0);
     for (std::size_t i = 0; i < digits_.size(); ++i)
-      for (std::size_t k = 0; k < other.digits_.size(); ++k)
+      for (std::size_t k = 0; digits_[i] != 0 && k < other.digits_.size(); ++k)
         result.digits_[i + k] += digits_[i] * other.digits_[k];
     result.carry();
     return result;
   }
-  int sign() const {
-    if (digits_.empty())
-      return 0;
-    return digits_.back() < 0 ? -1 : 1;
-  }
+  /// That of the last digit: the others amount to less than its unit.
+  int sign() const { return digits_.empty() ? 0 : digits_.back() < 0 ? -1 : 1; }
 
 private:
   static constexpr int kBits = 24;
   static constexpr std::int64_t kBase = std::int64_t{1} << kBits;
 
+  WideInteger plus(const WideInteger& other, std::int64_t factor) const {
+    WideInteger result = *this;
+    result.digits_.resize(std::max(digits_.size(), other.digits_.size()), 0);
+    for (std::size_t i = 0; i < other.digits_.size(); ++i)
+      result.digits_[i] += factor * other.digits_[i];
+    result.carry();
+    return result;
+  }
+
   void carry() {
     std::int64_t over = 0;
     for (std::int64_t& digit : digits_) {
       const std::int64_t sum = digit + over;
-      over = sum / kBase - (sum % kBase < 0 ? 1 : 0);
-      digit = sum - over * kBase;
+      over = sum / kBase;
+      digit = sum % kBase;
     }
-    while (over < -1 || over > 0) {
-      const std::int64_t next = over / kBase - (over % kBase < 0 ? 1 : 0);
-      digits_.push_back(over - next * kBase);
-      over = next;
-    }
-    if (over < 0)
-      digits_.push_back(over);
+    for (; over != 0; over /= kBase)
+      digits_.push_back(over % kBase);
     while (!digits_.empty() && digits_.back() == 0)
       digits_.pop_back();
-    // A last digit of -1 goes into the one before it, or negative numbers would grow by one each
-    // time.
-    while (digits_.size() > 1 && digits_.back() == -1) {
-      digits_.pop_back();
-      digits_.back() -= kBase;
-    }
   }
 
-  std::vector<std::int64_t> digits_;
+  std::vector<std::int64_t> digits_;  ///< in (-2^24, 2^24), the last is not 0
 };
 
-}  // namespace
+/// Whether the terms of all are 0, or of a size at which products of three are exact.
+template <typename... Differences>
+bool areProductsExact(const Differences&... differences) {
+  const auto is_in_range = [](const Expansion<2>& difference) {
+    return std::all_of(
+        difference.terms.begin(),
+        difference.terms.begin() + static_cast<std::ptrdiff_t>(difference.size),
+        [](double term) { return std::abs(term) >= 0x1p-300 && std::abs(term) <= 0x1p300; });
+  };
+  return (is_in_range(differences) && ...);
+}
 
-int anyRangeOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                          const Eigen::Vector2d& c) {
-  const auto difference_of = [](double x, double y) { return WideInteger(x) - WideInteger(y); };
-  return (difference_of(a.x(), c.x()) * difference_of(b.y(), c.y()) -
-          difference_of(a.y(), c.y()) * difference_of(b.x(), c.x()))
+WideInteger wideDifference(double a, double b) {
+  return WideInteger(a) - WideInteger(b);
+}
+
+int integerOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                         const Eigen::Vector2d& c) {
+  return (wideDifference(a.x(), c.x()) * wideDifference(b.y(), c.y()) -
+          wideDifference(a.y(), c.y()) * wideDifference(b.x(), c.x()))
       .sign();
 }
 
-int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                          const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
+int integerOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                         const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
   const auto row = [&](const Eigen::Vector3d& p) {
-    return std::array<WideInteger, 3>{WideInteger(p.x()) - WideInteger(a.x()),
-                                      WideInteger(p.y()) - WideInteger(a.y()),
-                                      WideInteger(p.z()) - WideInteger(a.z())};
+    return std::array<WideInteger, 3>{wideDifference(p.x(), a.x()), wideDifference(p.y(), a.y()),
+                                      wideDifference(p.z(), a.z())};
   };
   const auto u = row(b);
   const auto v = row(c);
@@ -250,6 +248,8 @@ int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
           w[2] * (u[0] * v[1] - v[0] * u[1]))
       .sign();
 }
+
+}  // namespace
 
 int volumeSign(const Positions& points, const Triangles& triangles) {
   const Eigen::Index count = triangles.cols();
@@ -302,9 +302,12 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
 
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                        const Eigen::Vector2d& c) {
-  return minor(difference(a.x(), c.x()), difference(a.y(), c.y()), difference(b.x(), c.x()),
-               difference(b.y(), c.y()))
-      .sign();
+  const Expansion<2> ax = difference(a.x(), c.x());
+  const Expansion<2> ay = difference(a.y(), c.y());
+  const Expansion<2> bx = difference(b.x(), c.x());
+  const Expansion<2> by = difference(b.y(), c.y());
+  return areProductsExact(ax, ay, bx, by) ? minor(ax, ay, bx, by).sign()
+                                          : integerOrientation2d(a, b, c);
 }
 
 int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
@@ -332,6 +335,11 @@ int exactOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const
   const Expansion<2> cx = difference(d.x(), a.x());
   const Expansion<2> cy = difference(d.y(), a.y());
   const Expansion<2> cz = difference(d.z(), a.z());
+  if (ax.size + bx.size + cx.size == 0 || ay.size + by.size + cy.size == 0 ||
+      az.size + bz.size + cz.size == 0)
+    return 0;
+  if (!areProductsExact(ax, ay, az, bx, by, bz, cx, cy, cz))
+    return integerOrientation3d(a, b, c, d);
   return sum(sum(product(minor(bx, by, cx, cy), az), product(minor(cx, cy, ax, ay), bz), 1.0),
              product(minor(ax, ay, bx, by), cz), 1.0)
       .sign();

@@ -13,19 +13,14 @@
 
 namespace spherical_param::internal {
 
-/// The predicates without the filter. \see orientation2d, orientation3d, inCircle
+/// The predicates without the filter: in expansions, or in integers where their products would
+/// leave the range of double. \see orientation2d, orientation3d, inCircle
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                        const Eigen::Vector2d& c);
 int exactOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                        const Eigen::Vector3d& d);
 int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                   const Eigen::Vector2d& d);
-
-/// The same for all finite doubles, whatever their magnitudes: in integers. Slow.
-int anyRangeOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                          const Eigen::Vector2d& c);
-int anyRangeOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                          const Eigen::Vector3d& c, const Eigen::Vector3d& d);
 
 /// The sign of the volume that a closed mesh encloses, exact: 1 if its triangles face outward.
 /// Plain arithmetic decides nearly always, else integers at some 20 us for each triangle.
@@ -37,9 +32,11 @@ int volumeSign(const Positions& points, const Triangles& triangles);
 /// Half a unit in the last place of 1.
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
 
-/// Sign of the determinant | b - a, c - a | of points in the plane, exact unless products of
-/// coordinate differences leave the range of double: 1 counter-clockwise, 0 collinear, -1
-/// clockwise.
+/// Far more than what is lost where products underflow.
+constexpr double kUnderflow = 1e-300;
+
+/// Sign of the determinant | b - a, c - a | of points in the plane, exact for all finite doubles: 1
+/// counter-clockwise, 0 collinear, -1 clockwise.
 inline int orientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                          const Eigen::Vector2d& c) {
   // Bound of the error of the plain evaluation relative to the permanent: ccwerrboundA of
@@ -48,16 +45,16 @@ inline int orientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
   const double left = (a.x() - c.x()) * (b.y() - c.y());
   const double right = (a.y() - c.y()) * (b.x() - c.x());
   const double determinant = left - right;
-  const double bound = filter * (std::abs(left) + std::abs(right));
+  const double bound = filter * (std::abs(left) + std::abs(right)) + kUnderflow;
   if (determinant > bound)
     return 1;
   if (-determinant > bound)
     return -1;
-  return bound == 0.0 ? 0 : exactOrientation2d(a, b, c);
+  return exactOrientation2d(a, b, c);
 }
 
-/// Sign of the determinant | b - a, c - a, d - a |, exact unless products of coordinate
-/// differences leave the range of double: 0 if the four points lie in one plane.
+/// Sign of the determinant | b - a, c - a, d - a |, exact for all finite doubles: 0 if the four
+/// points lie in one plane.
 inline int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                          const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
   // Bound of the error of the plain evaluation relative to the permanent: o3derrboundA of
@@ -76,12 +73,13 @@ inline int orientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   const double permanent = (std::abs(bc) + std::abs(cb)) * std::abs(ad.z()) +
                            (std::abs(ca) + std::abs(ac)) * std::abs(bd.z()) +
                            (std::abs(ab) + std::abs(ba)) * std::abs(cd.z());
-  const double bound = filter * permanent;
+  const double reach = std::abs(ad.z()) + std::abs(bd.z()) + std::abs(cd.z());
+  const double bound = filter * permanent + kUnderflow * (1.0 + reach);
   if (determinant > bound)
     return 1;
   if (-determinant > bound)
     return -1;
-  return bound == 0.0 ? 0 : exactOrientation3d(a, b, c, d);
+  return exactOrientation3d(a, b, c, d);
 }
 
 /// 1 if d is inside the circle through a, b and c (counter-clockwise), 0 if it is on the circle, -1

@@ -5,50 +5,19 @@
 
 #include <Eigen/Geometry>
 
-#include <cmath>
-
 namespace spherical_param {
 namespace {
 
-/// Whether products of three differences of such coordinates, and their rounding errors, are
-/// numbers of full precision.
-bool areProductsInRange(const Positions& points) {
-  constexpr double least = 1e-80;
-  constexpr double largest = 1e80;
-  return points
-             .unaryExpr([](double x) {
-               return x == 0.0 || (std::abs(x) >= least && std::abs(x) <= largest) ? 1.0 : 0.0;
-             })
-             .minCoeff() > 0.0;
+bool areCollinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto flat = [&](const Eigen::Vector3d& p) {
+      return Eigen::Vector2d(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+    };
+    if (internal::orientation2d(flat(a), flat(b), flat(c)) != 0)
+      return false;
+  }
+  return true;
 }
-
-/// The predicates for points of which is known whether products are in range.
-class Orientations {
-public:
-  explicit Orientations(bool are_products_in_range) : is_plain_(are_products_in_range) {}
-
-  bool areCoplanar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                   const Eigen::Vector3d& d) const {
-    return (is_plain_ ? internal::orientation3d(a, b, c, d)
-                      : internal::anyRangeOrientation3d(a, b, c, d)) == 0;
-  }
-  bool areCollinear(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                    const Eigen::Vector3d& c) const {
-    return areCollinearInPlane(a.head<2>(), b.head<2>(), c.head<2>()) &&
-           areCollinearInPlane(a.tail<2>(), b.tail<2>(), c.tail<2>()) &&
-           areCollinearInPlane(Eigen::Vector2d(a.x(), a.z()), Eigen::Vector2d(b.x(), b.z()),
-                               Eigen::Vector2d(c.x(), c.z()));
-  }
-
-private:
-  bool areCollinearInPlane(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-                           const Eigen::Vector2d& c) const {
-    return (is_plain_ ? internal::orientation2d(a, b, c)
-                      : internal::anyRangeOrientation2d(a, b, c)) == 0;
-  }
-
-  bool is_plain_;
-};
 
 }  // namespace
 
@@ -72,18 +41,17 @@ bool areCoplanar(const Positions& points) {
       third = i;
     }
   }
-  const Orientations orientations(areProductsInRange(points));
-  if (orientations.areCollinear(a, b, points.col(third))) {
+  if (areCollinear(a, b, points.col(third))) {
     // Rounding may have hidden a point beside the line.
     third = 0;
-    while (third < n && orientations.areCollinear(a, b, points.col(third)))
+    while (third < n && areCollinear(a, b, points.col(third)))
       ++third;
     if (third == n)
       return true;
   }
   const Eigen::Vector3d c = points.col(third);
   for (Eigen::Index i = 0; i < n; ++i)
-    if (!orientations.areCoplanar(a, b, c, points.col(i)))
+    if (internal::orientation3d(a, b, c, points.col(i)) != 0)
       return false;
   return true;
 }

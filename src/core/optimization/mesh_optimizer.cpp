@@ -873,7 +873,7 @@ bool MeshOptimizer::isPlainFan(Index v) const {
     // Each product is of two rounded differences, and rounded, and so is what is left; the last
     // term is for products that underflow.
     const double bound =
-        8.0 * kUnitRoundoff * (std::abs(first_product) + std::abs(second_product)) + 1e-290;
+        8.0 * kUnitRoundoff * (std::abs(first_product) + std::abs(second_product)) + kUnderflow;
     left_turns += turn > bound ? 1 : 0;
     right_turns += turn < -bound ? 1 : 0;
     passes += (from.x < 0.0) != (to.x < 0.0) ? 1 : 0;

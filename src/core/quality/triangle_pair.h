@@ -62,7 +62,7 @@ struct Plane {
     // A coordinate of the normal is wrong by up to 8 units of roundoff of |u| |v| (largest
     // coordinates), and at most 2 |u| |v|; each of the three products of the value with a distance
     // d thus by 8 + 2 * 4 units of |u| |v| d. The rest up to 64 covers higher powers.
-    error = 64.0 * kUnitRoundoff * largest(u) * largest(v);
+    error = 64.0 * kUnitRoundoff * largest(u) * largest(v) + kUnderflow;
   }
   /// Distance of p from the plane, times the length of the normal.
   double value(const Vector3d& p) const { return normal.dot(p - origin); }
@@ -70,7 +70,7 @@ struct Plane {
   /// \param reach bound of the coordinates of p - origin.
   template <typename... Values>
   bool isBeside(double reach, Values... values) const {
-    const double bound = error * reach;
+    const double bound = error * reach + kUnderflow;
     return std::min({values...}) > bound || std::max({values...}) < -bound;
   }
 };
@@ -84,7 +84,7 @@ inline bool separatedAt(const Vector3d& v, const Vector3d& a1, const Vector3d& a
   const Vector3d direction = (a1 - b1) + (a2 - b2);
   // 4 roundings in each of three products of a coordinate of the direction, up to 2 reach, with a
   // distance.
-  const double bound = 32.0 * kUnitRoundoff * reach * reach;
+  const double bound = 32.0 * kUnitRoundoff * reach * reach + kUnderflow;
   return std::min(direction.dot(a1 - v), direction.dot(a2 - v)) > bound &&
          std::max(direction.dot(b1 - v), direction.dot(b2 - v)) < -bound;
 }
@@ -98,7 +98,7 @@ inline bool separated(const Face& a, const Face& b, double reach) {
   const double most =
       std::max({direction.dot(b0 - a0), direction.dot(b1 - a0), direction.dot(b2 - a0)});
   // As above, for two distances and a direction up to 3 reach.
-  return least - most > 128.0 * kUnitRoundoff * reach * reach;
+  return least - most > 128.0 * kUnitRoundoff * reach * reach + kUnderflow;
 }
 
 /// Whether two triangles whose boxes overlap evidently do not intersect.

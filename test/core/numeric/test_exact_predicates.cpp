@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 
 namespace spherical_param::internal {
@@ -140,8 +141,7 @@ TEST(ExactPredicates, InCircleIsExactWhereDifferencesAreNot) {
   }
 }
 
-// The filter only ever saves time, and integers of any size agree, also far outside of the range of
-// products.
+// The filter only ever saves time, and all is exact far outside of the range of products, too.
 TEST(ExactPredicates, AllEvaluationsAgreeAtEveryScale) {
   std::mt19937_64 random(9);
   std::uniform_int_distribution<int> few(-2, 2);
@@ -169,9 +169,28 @@ TEST(ExactPredicates, AllEvaluationsAgreeAtEveryScale) {
       const Vector3d sa = scaled(a);
       const Vector3d sb = scaled(b);
       const Vector3d sc = scaled(c);
-      ASSERT_EQ(anyRangeOrientation2d(sa.head<2>(), sb.head<2>(), sc.head<2>()), flat);
-      ASSERT_EQ(anyRangeOrientation3d(sa, sb, sc, scaled(d)), solid);
+      ASSERT_EQ(orientation2d(sa.head<2>(), sb.head<2>(), sc.head<2>()), flat);
+      ASSERT_EQ(orientation3d(sa, sb, sc, scaled(d)), solid);
     }
+  }
+}
+
+// Points of an object, two of which are as near each other as numbers can be.
+TEST(ExactPredicates, OrientationIsExactWhereProductsUnderflow) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  const Vector3d a(0.1, 0.7, 0.3);
+  const Vector3d b(-0.4, 0.6, -0.2);
+  for (const double x : {-least, 0.0, least}) {
+    const Vector3d p(x, 0.0, 0.0);
+    // | a, b, p | = x (a_y b_z - a_z b_y), with the factor 0.7 * -0.2 - 0.3 * 0.6 < 0.
+    const int expected = (x < 0.0) - (x > 0.0);
+    EXPECT_EQ(orientation3d(Vector3d::Zero(), a, b, p), expected);
+    EXPECT_EQ(orientation3d(a, Vector3d::Zero(), p, b), expected);
+    EXPECT_EQ(orientation3d(p, a, Vector3d::Zero(), b), expected);
+    // | a, p | = -a_y x
+    EXPECT_EQ(orientation2d({0.0, 0.0}, a.head<2>(), p.head<2>()), expected);
+    EXPECT_EQ(orientation2d(a.head<2>(), p.head<2>(), {0.0, 0.0}), expected);
+    EXPECT_EQ(orientation2d(p.head<2>(), {0.0, 0.0}, a.head<2>()), expected);
   }
 }
 
