@@ -230,13 +230,14 @@ void summarize(Result& result) {
   }
   if (surfaces.size() == 1) {
     result.verdict = surfaces.front().verdict;
-    return;
-  }
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!parts[i].empty())
+  } else {
+    for (std::size_t i = 0; i < parts.size(); ++i)
       result.findings[i].text.insert(0, parts[i] + ": ");
-  result.verdict = grouped(surfaces.size()) + " meshes, " +
-                   (faulty == 0 ? "all sound." : grouped(faulty) + " of them with faults.");
+    result.verdict = grouped(surfaces.size()) + " meshes, " +
+                     (faulty == 0 ? "all sound." : grouped(faulty) + " of them with faults.");
+  }
+  if (!result.failures.empty())
+    result.verdict += " " + counted(result.failures.size(), "part") + " cannot be meshed.";
 }
 
 }  // namespace spherical_param::internal

@@ -19,8 +19,8 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result);
 std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
                       std::string error);
 
-/// Fills verdict and findings of a result from its surfaces; equal findings of several surfaces
-/// become one.
+/// Fills verdict and findings of a result from its surfaces and failures; equal findings of several
+/// surfaces become one.
 void summarize(Result& result);
 
 /// A headline: whether the mesh is sound, and what it leaves open, fills, cuts or joins.

@@ -153,7 +153,7 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
     texts.push_back(finding.text);
   EXPECT_EQ(result.failures[0], "part 4 of 4 (1,200 points) cannot be meshed: it is flat");
   EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
-  EXPECT_EQ(result.verdict, "3 meshes, 1 of them with faults.");
+  EXPECT_EQ(result.verdict, "3 meshes, 1 of them with faults. 1 part cannot be meshed.");
   result = {};
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
