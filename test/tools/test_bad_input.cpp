@@ -1,6 +1,7 @@
 // Mistakes of users, one a row: each must end with the right exit code, one line of cause and one
 // of remedy, and leave the directory as it was.
 
+#include "open_shapes.h"
 #include "tool_test.h"
 
 #include <sys/stat.h>
@@ -52,8 +53,7 @@ protected:
   void expectOptionsRefused(const std::string& tool, const Words& files,
                             const std::vector<std::pair<Words, std::string>>& cases) const {
     for (const auto& [options, cause] : cases) {
-      Words arguments = files;
-      arguments.insert(arguments.end(), options.begin(), options.end());
+      const Words arguments = tool_test::with(files, options);
       SCOPED_TRACE(tool + " " + testing::PrintToString(arguments));
       expectRefused(tool, arguments, wrong_usage, cause);
     }
@@ -76,6 +76,7 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {mesh_tool, {"in.xyz", "./a.obj", "-sphere", "a.obj"}, "would overwrite"},
        {mesh_tool, {"in.xyz", "out.ply", "-json", "in.xyz"}, "would overwrite"},
        {mesh_tool, {"in.ply", "link.ply"}, "would overwrite"},
+       {mesh_tool, {"in.xyz", "out_%03d.ply"}, "is a pattern for several parts"},
        {scan_tool, {}, "the shape is missing"},
        {scan_tool, {"sphere"}, "the output file"},
        {scan_tool, {"cube", "out.pcd"}, "unknown shape 'cube'"},
@@ -120,6 +121,9 @@ TEST_F(BadInput, OptionsThatMakeNoSenseAreRefused) {
   expectOptionsRefused(mesh_tool, {"in.xyz", "out.ply"},
                        {{{"-diameter", "1"}, "'-diameter'"},
                         {{"-iter", "5"}, "'-iter'"},
+                        {{"-ki", "5"}, "'-ki'"},  // no abbreviations
+                        {{"-quiet=1"}, "-quiet"},
+                        {{"-x", "--", "-k"}, "'-x'"},
                         {{"-k"}, "missing"},
                         {{"-k", "-quiet"}, "has no value"},
                         {{"-k", "5", "-k", "6"}, "more than once"},
@@ -130,7 +134,11 @@ TEST_F(BadInput, OptionsThatMakeNoSenseAreRefused) {
                         {{"-graph", "gabriel"}, "option -graph: 'gabriel'"},
                         {{"-weights", "Uniform"}, "option -weights: 'Uniform'"},
                         {{"-outliers", "1001"}, "option -outliers: '1001'"},
-                        {{"-history_frames", "5"}, "'-history_frames'"}});
+                        {{"-history_frames", "5"}, "'-history_frames'"},
+                        {{"-parts", "some"}, "'some' is not allowed"},
+                        {{"-parts", "each", "-min-points", "3"}, "-min-points"},
+                        {{"-parts", "each", "-sphere", "s.ply"}, "can hold only one part"},
+                        {{"-parts", "each", "-sphere", "s%03d.ply"}, "can hold only one part"}});
   expectOptionsRefused(scan_tool, {"sphere", "out.pcd"},
                        {{{"more"}, "one word too many: 'more'"},
                         {{"-points", "3"}, "option -points: '3'"},
@@ -161,6 +169,7 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   expectOptionsRefused(
       mesh_tool, {"in.xyz", "out.ply"},
       {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-embedding multilevel"},
+       {{"-min-points", "60"}, "-min-points" + nothing + "-parts all"},
        {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"},
        {{"-time-limit", "1", "-optimization", "flips"},
         "-time-limit" + nothing + "-optimization flips"}});
@@ -187,6 +196,7 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
   write("three.xyz", "1 0 0\n0 1 0\n0 0 1\n1 0 0\nnan 1 1\n1e999 1 1\n");
   write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n");
   write("outliers.xyz", "0 0 0\n.1 0 0\n0 .1 0\n9 9 9\n-9 9 0\n");
+  write("open.xyz", tool_test::linesOf(spherical_param::test::hemisphere(500)));
   write("pairs.txt", "1 2\n1 two\n");
   ASSERT_EQ(mkdir(directory.file("folder.ply").c_str(), 0755), 0);
   ASSERT_EQ(mkfifo(directory.file("pipe.ply").c_str(), 0644), 0);
@@ -196,6 +206,9 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
        {mesh_tool, {"pipe.ply", "out.ply"}, "not a regular file"},
        {mesh_tool, {"empty.ply", "out.ply"}, "is empty"},
        {mesh_tool, {"three.xyz", "out.ply"}, "at least 4"},
+       {mesh_tool,
+        {"in.xyz", "out.ply", "-parts", "largest", "-min-points", "501"},
+        "no part has min_points = 501"},
        {mesh_tool, {"flat.xyz", "out.ply"}, "cannot mesh 'flat.xyz': all points lie in one plane"},
        {mesh_tool,
         {"outliers.xyz", "out.ply", "-outliers", "0"},
@@ -204,6 +217,9 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
        {remesh_tool, {"no.tif", "out.ply"}, "no.tif"},
        {remesh_tool, {"in.tif", "out.ply"}, "in.tif"},
        {remesh_tool, {"flat.xyz", "out.ply"}, "cannot mesh 'flat.xyz'"},
+       {remesh_tool,
+        {"open.xyz", "out.tif", "-surface", "open"},
+        "a geometry image has no openings"},
        {morph_tool, {"in.ply", "no.ply", "m.ply"}, "no.ply"},
        {morph_tool, {"in.ply", "flat.xyz", "m.ply"}, "cannot mesh 'flat.xyz'"},
        {morph_tool, {"in.ply", "in.xyz", "m.ply", "-pairs", "pairs.txt", "-quiet"}, "line 2"},

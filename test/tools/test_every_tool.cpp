@@ -1,5 +1,7 @@
 // What all tools promise: help, silence, reports, the same bytes, and nothing half done.
 
+#include "open_shapes.h"
+#include "spherical_param/mesh_topology.h"
 #include "spherical_param/option_table.h"
 #include "tool_test.h"
 
@@ -11,7 +13,6 @@
 #include <algorithm>
 #include <csignal>
 #include <map>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ namespace {
 using nlohmann::json;
 using tool_test::RunOptions;
 using tool_test::RunResult;
+using tool_test::with;
 using Words = std::vector<std::string>;
 
 /// A tool that takes the options of the reconstruction, with a run of it that writes all it can.
@@ -28,33 +30,44 @@ struct Tool {
   std::string program;
   Words arguments;
   Words further_options;  ///< besides those of the table
+  std::string stages;     ///< the last ones of its report
 };
 
 std::vector<Tool> meshingTools() {
   return {{"reconstruction",
            RECONSTRUCTION_TOOL,
            {"in.ply", "out.ply", "-sphere", "s.vtk", "-smoothing", "4", "-outliers", "5"},
-           {"outliers", "sphere", "report", "json", "ascii", "strict", "quiet"}},
+           {"outliers", "sphere", "report", "json", "ascii", "strict", "quiet"},
+           "optimization smoothing quality write "},
           {"remesh",
            REMESH_TOOL,
            {"in.ply", "out.ply", "-sphere", "s.ply", "-harmonics", "c.json", "-degree", "6"},
            {"grid", "points", "side", "fit", "sphere", "harmonics", "series", "degree",
-            "area-weight", "map-sweeps", "outliers", "json", "ascii", "strict", "quiet"}},
+            "area-weight", "map-sweeps", "outliers", "json", "ascii", "strict", "quiet"},
+           "map surface harmonics resample untangle verify write "},
           {"texture",
            TEXTURE_TOOL,
            {"in.ply", "out.obj", "-size", "64", "-chart", "cube"},
            {"chart", "size", "gutter", "checker", "image", "area-weight", "map-sweeps", "outliers",
-            "json", "ascii", "strict", "quiet"}},
+            "json", "ascii", "strict", "quiet"},
+           "quality map atlas image write "},
           {"morph",
            MORPH_TOOL,
            {"in.ply", "other.ply", "out.ply", "-frames", "3", "-pairs", "pairs.txt"},
            {"frames", "pairs", "align", "connectivity", "samples", "fit", "match", "check",
-            "area-weight", "map-sweeps", "outliers", "json", "ascii", "strict", "quiet"}}};
+            "area-weight", "map-sweeps", "outliers", "json", "ascii", "strict", "quiet"},
+           "write "}};
 }
 
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+/// The names of all options as in the report; -report alone sets those of the history.
+Words optionsOf(const Tool& tool) {
+  Words options = tool.further_options;
+  for (const spherical_param::OptionRow& row : spherical_param::optionTable())
+    if (row.name.rfind("history", 0) != 0)
+      options.push_back(row.name);
+  for (std::string& option : options)
+    std::replace(option.begin(), option.end(), '-', '_');
+  return options;
 }
 
 class EveryTool : public tool_test::ToolTest {
@@ -74,17 +87,13 @@ protected:
 TEST_F(EveryTool, HelpListsEveryOptionAndHelpAndVersionSucceed) {
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    const RunResult help = run(tool.program, {"-h", "expert"});
-    EXPECT_EQ(help.exit_code, 0);
-    Words options = tool.further_options;
-    for (const spherical_param::OptionRow& row : spherical_param::optionTable())
-      if (row.name.rfind("history", 0) != 0)  // -report sets it
-        options.push_back(std::regex_replace(row.name, std::regex("_"), "-"));
-    for (const std::string& option : options)
+    const RunResult help = expectSuccess(tool.program, {"-h", "expert"});
+    for (std::string option : optionsOf(tool)) {
+      std::replace(option.begin(), option.end(), '_', '-');
       EXPECT_NE(help.output.find("\n  -" + option + " "), std::string::npos) << option;
+    }
     EXPECT_EQ(help.output.find("-history"), std::string::npos);
-    const RunResult version = run(tool.program, {"--version"});
-    EXPECT_EQ(version.exit_code, 0);
+    const RunResult version = expectSuccess(tool.program, {"--version"});
     EXPECT_EQ(version.output.rfind("pcl_spherical_param_" + tool.name + " ", 0), 0U);
   }
 }
@@ -97,18 +106,24 @@ TEST_F(EveryTool, ReportIsAloneOnStandardOutputAndHasEveryOption) {
     EXPECT_EQ(report["options"]["seed"], 7);
     EXPECT_EQ(report["options"]["k"], 9);
     EXPECT_TRUE(report["options"]["tolerance"].is_null());
-    Words options = tool.further_options;
-    for (const spherical_param::OptionRow& row : spherical_param::optionTable())
-      if (row.name.rfind("history", 0) != 0)
-        options.push_back(row.name);
-    for (std::string option : options) {
-      std::replace(option.begin(), option.end(), '-', '_');
+    for (const std::string& option : optionsOf(tool))
       EXPECT_TRUE(report["options"].contains(option)) << option;
-    }
     EXPECT_TRUE(report["version"].is_string());
-    EXPECT_EQ(report["stages"].back()["name"], "write");
-    for (const json& stage : report["stages"])
+    std::string stages;
+    for (const json& stage : report["stages"]) {
       EXPECT_GE(stage["seconds"], 0.0);
+      stages += stage["name"].get<std::string>() + " ";
+    }
+    EXPECT_NE(stages.find(tool.stages), std::string::npos) << stages;
+    if (tool.name == "reconstruction")
+      continue;
+    const json& map = tool.name == "morph" ? report["first"] : report;
+    EXPECT_EQ(map["flipped_triangles"], 0);
+    for (const char* kind : {"angle_distortion", "area_distortion"}) {
+      EXPECT_GE(map[kind]["mean"], 1.0);
+      EXPECT_GE(map[kind]["p95"], map[kind]["mean"]);
+      EXPECT_GE(map[kind]["max"], map[kind]["p95"]);
+    }
   }
 }
 
@@ -118,8 +133,7 @@ TEST_F(EveryTool, QuietPrintsNothingAndWritesTheSameBytesByAnyNumberOfThreads) {
     std::map<std::string, std::string> first;
     for (const char* threads : {"1", "3"}) {
       const RunResult result =
-          run(tool.program, with(tool.arguments, {"-quiet", "-threads", threads}));
-      EXPECT_EQ(result.exit_code, 0);
+          expectSuccess(tool.program, with(tool.arguments, {"-quiet", "-threads", threads}));
       EXPECT_EQ(result.output + result.errors, "");
       EXPECT_TRUE(exists(tool.name == "morph" ? "out_002.ply" : tool.arguments[1]));
       const auto files = directory.listing();
@@ -131,24 +145,19 @@ TEST_F(EveryTool, QuietPrintsNothingAndWritesTheSameBytesByAnyNumberOfThreads) {
 }
 
 TEST_F(EveryTool, StrictMakesFaultsAFailureAndWritesTheFiles) {
-  ASSERT_EQ(run(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"}).exit_code, 0);
+  expectSuccess(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"});
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    const RunResult lax = run(tool.program, with(tool.arguments, {"-quiet"}));
-    EXPECT_EQ(lax.exit_code, 0);
-    EXPECT_EQ(lax.errors, "");
-    auto files = directory.listing();
-    files.erase("report.json");  // of the tool before
+    EXPECT_EQ(expectSuccess(tool.program, with(tool.arguments, {"-quiet"})).errors, "");
+    const auto files = directory.listing();
     const RunResult strict =
-        run(tool.program, with(tool.arguments, {"-strict", "-quiet", "-json", "report.json"}));
+        run(tool.program, with(tool.arguments, {"-strict", "-quiet", "-json", "-"}));
     EXPECT_EQ(strict.exit_code, 1);
     const std::vector<std::string> lines = strict.errorLines();
     ASSERT_EQ(lines.size(), 2U) << strict.errors;
     EXPECT_EQ(lines[1].rfind("  remedy: the files were written", 0), 0U) << lines[1];
-    auto strict_files = directory.listing();
-    strict_files.erase("report.json");
-    EXPECT_TRUE(strict_files == files);
-    const json report = json::parse(content("report.json"));
+    EXPECT_TRUE(directory.listing() == files);
+    const json report = json::parse(strict.output);
     EXPECT_EQ(report["options"]["strict"], true);
     // Morphing has findings of each object.
     const json& findings = (tool.name == "morph" ? report["first"] : report)["findings"];
@@ -159,7 +168,29 @@ TEST_F(EveryTool, StrictMakesFaultsAFailureAndWritesTheFiles) {
       }
   }
   // Where there is none, nothing changes.
-  EXPECT_EQ(run(RECONSTRUCTION_TOOL, {"other.ply", "out.ply", "-strict", "-quiet"}).exit_code, 0);
+  expectSuccess(RECONSTRUCTION_TOOL, {"other.ply", "out.ply", "-strict", "-quiet"});
+}
+
+TEST_F(EveryTool, OpenSurfacesStayOpen) {
+  write("open.xyz", tool_test::linesOf(spherical_param::test::hemisphere(1000)));
+  const Words open = {"-surface", "open", "-quiet"};
+  const auto mesh_of = [&](const std::string& tool, const Words& words, const std::string& output) {
+    expectSuccess(tool, with(words, open));
+    // Without vertices where the opening is.
+    EXPECT_LT(mesh(output).points().row(2).maxCoeff(), 0.05) << output;
+    return mesh(output);
+  };
+  // Vertices on the cuts of the chart are there once for each side.
+  mesh_of(TEXTURE_TOOL, {"open.xyz", "texture.ply", "-checker", "8"}, "texture.ply");
+  mesh_of(REMESH_TOOL, {"open.xyz", "even.ply", "-grid", "even"}, "even.ply");
+  for (const tool_test::MeshFile& file :
+       {mesh_of(RECONSTRUCTION_TOOL, {"open.xyz", "mesh.ply"}, "mesh.ply"),
+        mesh_of(REMESH_TOOL, {"open.xyz", "grid.ply", "-points", "2000"}, "grid.ply"),
+        mesh_of(MORPH_TOOL, {"open.xyz", "in.ply", "m.ply", "-frames", "2"}, "m_000.ply")}) {
+    const auto topology = spherical_param::checkTopology(file.triangles, file.vertexCount());
+    EXPECT_TRUE(topology.isOpenSurface());
+    EXPECT_EQ(topology.euler_characteristic, 1);
+  }
 }
 
 TEST_F(EveryTool, ASignalLeavesNothingBehindAndKeepsTheOldFile) {

@@ -4,40 +4,31 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <utility>
 
 namespace tool_test {
 namespace {
 
-/// The values of a PLY file behind its header.
+/// The values of a PLY file of little-endian bytes behind its header.
 class PlyBody {
 public:
-  PlyBody(const std::string& bytes, std::size_t offset, bool is_text)
-      : bytes_(bytes), offset_(offset), is_text_(is_text),
-        text_(is_text ? bytes.substr(offset) : "") {}
+  PlyBody(const std::string& bytes, std::size_t offset) : bytes_(bytes), offset_(offset) {}
 
   double next(const std::string& type) {
-    if (is_text_) {
-      double value = 0.0;
-      text_ >> value;
-      return type == "float" ? static_cast<double>(static_cast<float>(value)) : value;
-    }
     if (type == "float")
       return static_cast<double>(take<float>());
     if (type == "double")
       return take<double>();
     return type == "uchar" ? take<std::uint8_t>() : take<std::int32_t>();
   }
-
-  /// Whether that was all.
-  bool isAtEnd() {
-    std::string more;
-    return is_text_ ? !text_.fail() && !(text_ >> more) : offset_ == bytes_.size();
-  }
+  bool isAtEnd() const { return offset_ == bytes_.size(); }
 
 private:
   template <typename Value>
@@ -51,8 +42,6 @@ private:
 
   const std::string& bytes_;
   std::size_t offset_;
-  bool is_text_;
-  std::istringstream text_;
 };
 
 }  // namespace
@@ -75,7 +64,6 @@ bool MeshFile::isSphere() const {
 MeshFile parsePly(const std::string& bytes) {
   MeshFile mesh;
   std::istringstream header(bytes);
-  bool is_text = true;
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   std::vector<std::pair<std::string, std::string>> columns;  // types and names
@@ -84,9 +72,7 @@ MeshFile parsePly(const std::string& bytes) {
     std::istringstream words(line);
     std::string keyword, second, third;
     words >> keyword >> second >> third;
-    if (keyword == "format")
-      is_text = second == "ascii";
-    else if (keyword == "comment")
+    if (keyword == "comment")
       mesh.comment = line;
     else if (keyword == "element")
       (second == "vertex" ? vertices : triangles) = std::stoul(third);
@@ -94,7 +80,8 @@ MeshFile parsePly(const std::string& bytes) {
       columns.emplace_back(second, third);
   }
   EXPECT_EQ(line, "end_header");
-  PlyBody body(bytes, static_cast<std::size_t>(header.tellg()), is_text);
+  EXPECT_NE(bytes.find("\nformat binary_little_endian "), std::string::npos);
+  PlyBody body(bytes, static_cast<std::size_t>(header.tellg()));
   for (std::size_t i = 0; i < vertices; ++i)
     for (const auto& [type, name] : columns)
       mesh.properties[name].push_back(body.next(type));
@@ -141,17 +128,51 @@ std::string plyOf(const Positions& points, const Positions& normals, const Posit
   return text.str();
 }
 
+bool containsAll(const Positions& vertices, const Positions& points) {
+  const auto places_of = [](const Positions& of) {
+    std::set<std::array<double, 3>> places;
+    for (Eigen::Index i = 0; i < of.cols(); ++i)
+      places.insert({of(0, i), of(1, i), of(2, i)});
+    return places;
+  };
+  const auto all = places_of(vertices);
+  const auto some = places_of(points);
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+void expectEntries(const nlohmann::json& report, const nlohmann::json& expected) {
+  for (const auto& [key, value] : expected.items()) {
+    ASSERT_TRUE(report.contains(key)) << key;
+    if (value.is_object()) {
+      expectEntries(report[key], value);
+    } else {
+      EXPECT_EQ(report[key], value) << key;
+    }
+  }
+}
+
+std::vector<std::string> with(std::vector<std::string> words,
+                              const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 RunResult ToolTest::run(const std::string& tool, const std::vector<std::string>& arguments,
                         RunOptions options) const {
   options.directory = directory.path();
   return tool_test::run(tool, arguments, options);
 }
 
-nlohmann::json ToolTest::reportOf(const std::string& tool,
-                                  std::vector<std::string> arguments) const {
-  arguments.insert(arguments.end(), {"-json", "-"});
-  const RunResult result = run(tool, arguments);
+RunResult ToolTest::expectSuccess(const std::string& tool,
+                                  const std::vector<std::string>& arguments) const {
+  RunResult result = run(tool, arguments);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
+  return result;
+}
+
+nlohmann::json ToolTest::reportOf(const std::string& tool,
+                                  const std::vector<std::string>& arguments) const {
+  const RunResult result = expectSuccess(tool, with(arguments, {"-json", "-"}));
   return nlohmann::json::parse(result.output, nullptr, false);
 }
 

@@ -31,7 +31,7 @@ struct MeshFile {
   bool isSphere() const;
 };
 
-/// Reads a PLY file, of text or of little-endian bytes, without the code of the tools.
+/// Reads a PLY file of little-endian bytes without the code of the tools.
 MeshFile parsePly(const std::string& bytes);
 
 /// n points of an ellipsoid on a spiral, exact in single precision.
@@ -45,13 +45,24 @@ std::string linesOf(const Positions& points);
 std::string plyOf(const Positions& points, const Positions& normals = {},
                   const Positions& colors = {});
 
+/// Whether all points are among the vertices, exactly.
+bool containsAll(const Positions& vertices, const Positions& points);
+
+/// Expects these entries of a report, which may have more.
+void expectEntries(const nlohmann::json& report, const nlohmann::json& expected);
+
+/// The words of a command line and some more.
+std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more);
+
 /// A directory in which tools are run.
 class ToolTest : public testing::Test {
 protected:
   RunResult run(const std::string& tool, const std::vector<std::string>& arguments,
                 RunOptions options = {}) const;
-  /// What -json reports of a run that succeeds.
-  nlohmann::json reportOf(const std::string& tool, std::vector<std::string> arguments) const;
+  /// A run that has to succeed.
+  RunResult expectSuccess(const std::string& tool, const std::vector<std::string>& arguments) const;
+  /// What -json reports of a run that has to succeed.
+  nlohmann::json reportOf(const std::string& tool, const std::vector<std::string>& arguments) const;
   /// The command line fails with a cause and a remedy, one line each, and the files stay as they
   /// are.
   void expectRefused(const std::string& tool, const std::vector<std::string>& arguments,

@@ -24,7 +24,6 @@
 #include <sstream>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -346,28 +345,23 @@ TEST_F(CloudReader, BrokenCompressedPointsAreRefused) {
   expectRefused(path, "too short for the points");
 }
 
-// PCL does not compress padding fields, so that the size of the file does not limit their counts.
-TEST_F(CloudReader, PaddingOfCompressedPointsTakesNoMemory) {
-  std::string fields = "x y z";
-  std::string sizes = "4 4 4";
-  std::string types = "F F F";
-  std::string counts = "1 1 1";
-  for (int i = 0; i < 16; ++i) {
-    fields = "_ " + fields;
-    sizes = "8 " + sizes;
-    types = "U " + types;
-    counts = "1073741824 " + counts;
-  }
-  std::string file =
-      pcdOf(fields, sizes, types, "1",
-            "binary_compressed\n" + sizesAnd(std::string("\x00\x00\xe0\x02\x00", 5), 12));
-  file.insert(file.find("WIDTH"), "COUNT " + counts + "\n");
+// Counts that the size of the file does not limit.
+TEST_F(CloudReader, PaddingTakesNoMemoryAndElementsWithoutPropertiesNoTime) {
+  // PCL does not compress padding fields.
+  const auto padded = [](const std::string& padding, const std::string& coordinates) {
+    std::string all;
+    for (int i = 0; i < 16; ++i)
+      all += padding;
+    return all + coordinates;
+  };
+  const std::string packed = sizesAnd(std::string("\x00\x00\xe0\x02\x00", 5), 12);
+  std::string file = pcdOf(padded("_ ", "x y z"), padded("8 ", "4 4 4"), padded("U ", "F F F"), "1",
+                           "binary_compressed\n" + packed);
+  file.insert(file.find("WIDTH"), "COUNT " + padded("1073741824 ", "1 1 1") + "\n");
   tool_test::writeFile(directory.file("a.pcd"), file);
   EXPECT_EQ(readCloud(directory.file("a.pcd")).points, (std::vector<Point>{{0.0, 0.0, 0.0}}));
-}
 
-TEST_F(CloudReader, ElementsWithoutPropertiesTakeNoTime) {
-  std::string file = plyOf("ascii", "1", "0 0 0\n");
+  file = plyOf("ascii", "1", "0 0 0\n");
   file.insert(file.find("element vertex"), "element nothing 1073741824\n");
   tool_test::writeFile(directory.file("a.ply"), file);
   EXPECT_EQ(readCloud(directory.file("a.ply")).points.size(), 1U);

@@ -6,10 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -42,13 +40,6 @@ public:
       value |= std::uint32_t{static_cast<unsigned char>(bytes_.at(offset + k))} << (8 * k);
     return value;
   }
-  /// Size of the values of an entry, their number, and where they are.
-  std::array<std::size_t, 3> layoutOf(std::size_t entry) const {
-    const std::uint32_t type = integer(entry + 2, 2);
-    const std::size_t size = type == 2 ? 1 : type == 3 ? 2 : 4;
-    const std::size_t count = integer(entry + 4, 4) * (type == 5 ? 2 : 1);
-    return {size, count, size * count > 4 ? integer(entry + 8, 4) : entry + 8};
-  }
   std::size_t entryOf(std::uint32_t tag) const {
     std::size_t entry = entries_offset;
     while (integer(entry, 2) != tag)
@@ -56,37 +47,14 @@ public:
     return entry;
   }
   std::vector<std::uint32_t> values(std::uint32_t tag) const {
-    const auto [size, count, place] = layoutOf(entryOf(tag));
+    const std::size_t entry = entryOf(tag);
+    const std::size_t size = integer(entry + 2, 2) == 3 ? 2 : 4;
+    const std::size_t count = integer(entry + 4, 4);
+    const std::size_t place = size * count > 4 ? integer(entry + 8, 4) : entry + 8;
     std::vector<std::uint32_t> result;
     for (std::size_t k = 0; k < count; ++k)
       result.push_back(integer(place + size * k, size));
     return result;
-  }
-  /// The same file in the other byte order.
-  std::string reversed() const {
-    std::string other = bytes_;
-    const auto reverse = [&other](std::size_t offset, std::size_t size, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i)
-        std::reverse(other.begin() + static_cast<std::ptrdiff_t>(offset + size * i),
-                     other.begin() + static_cast<std::ptrdiff_t>(offset + size * (i + 1)));
-    };
-    for (std::size_t i = 0; i < integer(8, 2); ++i) {
-      const std::size_t entry = entries_offset + 12 * i;
-      const auto [size, count, place] = layoutOf(entry);
-      reverse(place, size, count);
-      if (place != entry + 8)
-        reverse(entry + 8, 4, 1);
-      reverse(entry, 2, 2);
-      reverse(entry + 4, 4, 1);
-    }
-    const std::vector<std::uint32_t> strips = values(273);
-    const std::vector<std::uint32_t> sizes = values(279);
-    for (std::size_t s = 0; s < strips.size(); ++s)
-      reverse(strips[s], 4, sizes[s] / 4);
-    reverse(8, 2, 1);
-    reverse(4, 4, 1);
-    reverse(2, 2, 1);
-    return other.replace(0, 2, "MM");
   }
   /// The same file with another value, of type and number as before.
   std::string with(std::uint32_t tag, std::uint16_t value) const {
@@ -147,20 +115,25 @@ TEST_F(GeometryImageFile, IsATiffFileOfThreeFloatsAPixel) {
   }
 }
 
-TEST_F(GeometryImageFile, IsReadAsItWasWrittenInEitherByteOrderAndInSeveralStrips) {
+TEST_F(GeometryImageFile, IsReadAsItWasWrittenAlsoInSeveralStrips) {
   for (const int side : {3, 301}) {  // the larger one has more than one strip
     const GeometryImage image = makeImage(side);
-    const Tiff tiff = written(image);
-    EXPECT_EQ(tiff.values(273).size() > 1, side == 301);
-    for (const std::string& content : {tiff.bytes(), tiff.reversed()}) {
-      writeFile(path, content);
-      std::vector<double> shares;
-      const GeometryImage read =
-          readGeometryImage(path, [&](double share) { shares.push_back(share); });
-      EXPECT_EQ(read.side, side);
-      EXPECT_TRUE(read.positions == image.positions);
-      EXPECT_EQ(shares.back(), 1.0);
-    }
+    EXPECT_EQ(written(image).values(273).size() > 1, side == 301);
+    std::vector<double> shares;
+    const GeometryImage read =
+        readGeometryImage(path, [&](double share) { shares.push_back(share); });
+    EXPECT_EQ(read.side, side);
+    EXPECT_TRUE(read.positions == image.positions);
+    EXPECT_EQ(shares.back(), 1.0);
+  }
+}
+
+TEST_F(GeometryImageFile, FilesOfOtherProgramsAreReadInEitherByteOrder) {
+  for (const char* name : {"little", "big", "strips"}) {
+    const GeometryImage image =
+        readGeometryImage(std::string(FUZZERS_CORPUS) + "/geometry_image/" + name);
+    for (Eigen::Index i = 0; i < image.positions.cols(); ++i)
+      EXPECT_EQ(image.positions.col(i), static_cast<double>(i) * Eigen::Vector3d(1.0, 0.5, -1.0));
   }
 }
 
@@ -184,20 +157,6 @@ TEST_F(GeometryImageFile, WhatIsNoGeometryImageIsRefused) {
   const std::uint32_t bits = 0x7f800000;
   std::memcpy(infinite.data() + infinite.size() - 4, &bits, sizeof bits);
   expectRefused(infinite, "not finite");
-}
-
-TEST_F(GeometryImageFile, AWrongByteIsReadOrRefused) {
-  const std::string good = written(makeImage(3)).bytes();
-  for (std::size_t i = 0; i < good.size(); i += 3) {
-    std::string bad = good;
-    bad[i] = static_cast<char>(bad[i] ^ 0x55);
-    writeFile(path, bad);
-    try {
-      EXPECT_EQ(readGeometryImage(path).side, 3) << i;
-    } catch (const Failure& failure) {
-      EXPECT_FALSE(failure.remedy().empty()) << i;
-    }
-  }
 }
 
 }  // namespace

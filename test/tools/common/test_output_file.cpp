@@ -30,6 +30,10 @@ protected:
 
 TEST_F(OutputFileTest, HasItsNameWhenItIsCompleteAndNoneBefore) {
   const std::string large((std::size_t{1} << 20U) + 1, 'x');  // more than what is kept in memory
+  const auto write_mesh = [&](OutputFile& file) {
+    for (const std::string& part : {std::string("a mesh, "), large, std::string(" and its end")})
+      file.write(part);
+  };
   for (const bool is_there : {false, true}) {
     const Files before = is_there ? Files{{"mesh.ply", "kept"}} : Files{};
     if (is_there)
@@ -45,18 +49,14 @@ TEST_F(OutputFileTest, HasItsNameWhenItIsCompleteAndNoneBefore) {
     EXPECT_EQ(directory.listing(), before);
     {
       OutputFile file(path("mesh.ply"));
-      file.write("a mesh, ");
-      file.write(large);
-      file.write(" and its end");
+      write_mesh(file);
       removeTemporaryFiles([] {});
       EXPECT_EQ(directory.listing(), before);
       EXPECT_THROW(file.commit(), Failure);
     }
     EXPECT_EQ(directory.listing(), before);
     OutputFile file(path("mesh.ply"));
-    file.write("a mesh, ");
-    file.write(large);
-    file.write(" and its end");
+    write_mesh(file);
     file.commit();
     EXPECT_TRUE((directory.listing() == Files{{"mesh.ply", "a mesh, " + large + " and its end"}}));
     fs::remove(path("mesh.ply"));
