@@ -458,7 +458,8 @@ ResampledMesh resampleSurface(const SphereSurface& surface, const GridSphere& gr
 IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   if (mesh.directions.cols() != mesh.points.cols() || !mesh.directions.allFinite())
     throw InvalidInput("removeIntersections: " + std::to_string(mesh.points.cols()) +
-                       " points need as many directions, all finite");
+                       " points need as many directions, all finite; give what resampleSurface() "
+                       "returned");
   internal::checkTriangles("removeIntersections", mesh.triangles, mesh.points.cols());
   Execution options;
   options.threads = threads;
@@ -472,7 +473,8 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   FlippableMesh flippable(mesh, workers);
   if (!flippable.isSphere(workers))
     throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
-                       "consistently oriented mesh of genus 0 over all points");
+                       "consistently oriented mesh of genus 0 over all points; give what "
+                       "resampleSurface() returned");
   // Around what is left, farther and farther.
   constexpr int most_rounds = 6;
   for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {

@@ -24,6 +24,13 @@ struct Blob {
   }
 };
 
+/// The vertex whose direction is nearest to one.
+inline Index nearestTo(const Vector3d& direction, const Mapped& mesh) {
+  Eigen::Index i = 0;
+  (mesh.sphere.colwise() - direction.normalized()).colwise().norm().minCoeff(&i);
+  return static_cast<Index>(i);
+}
+
 inline Blob firstBlob() {
   return {{{1, 0.1, 0.2}, {-0.3, 1, 0.1}, {0.4, -0.2, -1}}, {1.5, 0.9, 0.5}};
 }

@@ -2,6 +2,7 @@
 
 #include "exact_predicates.h"
 #include "helpers.h"
+#include "spherical_param/errors.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
 #include "spherical_param/sphere_triangulation.h"
@@ -12,7 +13,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <random>
+#include <functional>
+#include <string>
 #include <vector>
 
 /// Meshes with a map to the sphere that the tests of the map share.
@@ -143,6 +145,16 @@ inline double sphericalArea(const Positions& sphere, const Triangles& triangles,
     sum += std::atan2(std::abs(a.dot(b.cross(c))), a.cross(b).dot(a.cross(c)));
   }
   return sum;
+}
+
+/// Of the call: empty, or the message of InvalidInput.
+inline std::string refusalOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return {};
 }
 
 /// Whether directions are unit vectors, no triangle is flipped, and all cover the sphere once.

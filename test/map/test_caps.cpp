@@ -2,7 +2,6 @@
 
 #include "boundary_loops.h"
 #include "map_shapes.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/texture_atlas.h"
@@ -11,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -72,18 +70,6 @@ TEST(Caps, TheMapOfAnOpenMeshIsOneToOneAndLeavesRoomForTheOpenings) {
   const MapDistortion distortion = measureMapDistortion(open.points, open.triangles, open.sphere);
   EXPECT_LT(distortion.angle.mean, 1.3);
   EXPECT_LT(distortion.area.mean, 1.3);
-}
-
-TEST(Caps, OfAMapAreAskedForAndMustFit) {
-  const Mapped open = test::openBumpy(400);
-  EXPECT_THROW(SphereSurface(open.points, open.triangles, open.sphere), InvalidInput);
-  EXPECT_THROW(SphereSurface(open.points, open.triangles, open.sphere,
-                             {SurfaceFit::Linear, 0, open.caps.leftCols(3)}),
-               InvalidInput);
-  const Mapped closed = test::bumpy(test::spiralSphere(100));
-  EXPECT_THROW(SphereSurface(closed.points, closed.triangles, closed.sphere,
-                             {SurfaceFit::Linear, 0, open.caps}),
-               InvalidInput);
 }
 
 TEST(Caps, AreNoPartOfTheSurface) {

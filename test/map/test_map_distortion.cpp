@@ -1,5 +1,4 @@
 #include "map_shapes.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/map/sphere_map.h"
 
 #include <Eigen/SVD>
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace spherical_param {
@@ -165,38 +163,6 @@ TEST(MapDistortion, TrianglesWithoutAreaAreUnboundedOnTheSphereAndDoNotCountInSp
   EXPECT_EQ(of_point.degenerate_triangles, mesh.triangles.cols());
   EXPECT_EQ(of_point.area.mean, 0.0);
   EXPECT_EQ(measureMapDistortion(mesh.points, Triangles(3, 0), mesh.sphere).area.mean, 0.0);
-}
-
-TEST(MapDistortion, IsTheSameForAnyNumberOfThreads) {
-  const Mapped mesh = test::mapped(test::spiralSphere(2500));
-  const Positions points = test::randomPositions(2500, 4);
-  const MapDistortion one = measureMapDistortion(points, mesh.triangles, mesh.sphere, 1);
-  for (const int threads : {2, 3}) {
-    const MapDistortion more = measureMapDistortion(points, mesh.triangles, mesh.sphere, threads);
-    EXPECT_EQ(more.angle.mean, one.angle.mean);
-    EXPECT_EQ(more.angle.p95, one.angle.p95);
-    EXPECT_EQ(more.area.mean, one.area.mean);
-    EXPECT_EQ(more.area.max, one.area.max);
-    EXPECT_EQ(more.mean_angle_difference, one.mean_angle_difference);
-    EXPECT_EQ(more.stretch_efficiency, one.stretch_efficiency);
-  }
-}
-
-TEST(MapDistortion, RefusesInputThatDoesNotFit) {
-  const Mapped mesh = test::octasphere(2);
-  const auto refuses = [](const Positions& points, const Triangles& triangles,
-                          const Positions& sphere, int threads = 0) {
-    EXPECT_THROW(measureMapDistortion(points, triangles, sphere, threads), InvalidInput);
-  };
-  refuses(mesh.points, mesh.triangles, mesh.sphere.leftCols(5));
-  refuses(mesh.points, mesh.triangles, mesh.sphere, -1);
-  Positions bad = mesh.points;
-  bad(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  refuses(bad, mesh.triangles, mesh.sphere);
-  refuses(mesh.points, mesh.triangles, bad);
-  Triangles beyond = mesh.triangles;
-  beyond(1, 2) = static_cast<Index>(mesh.points.cols());
-  refuses(mesh.points, beyond, mesh.sphere);
 }
 
 }  // namespace

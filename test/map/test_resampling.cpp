@@ -1,7 +1,6 @@
 #include "spherical_param/map/resampling.h"
 
-#include "map_shapes.h"
-#include "spherical_param/errors.h"
+#include "charts.h"
 #include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -86,20 +84,6 @@ TEST(GridSphere, FrequencyIsTheOneWhoseVerticesAreNearest) {
     }
 }
 
-TEST(GridSphere, RefusesAFrequencyOutOfRange) {
-  for (const SphereGrid kind : kGrids) {
-    // The largest that there is, for any number.
-    const int most = gridFrequency(kind, std::numeric_limits<std::size_t>::max());
-    EXPECT_EQ(most, gridFrequency(kind, std::size_t{1} << 29));
-    EXPECT_LE(gridVertices(kind, most), std::size_t{1} << 29);
-    for (const int frequency :
-         {0, std::numeric_limits<int>::min(), most + 1, std::numeric_limits<int>::max()}) {
-      EXPECT_THROW(gridVertices(kind, frequency), InvalidInput);
-      EXPECT_THROW(makeGridSphere(kind, frequency), InvalidInput);
-    }
-  }
-}
-
 TEST(ResampleSurface, HasTheSurfaceAtEachDirectionAndIsAMapAgain) {
   const SphereSurface surface = bumpySurface(500);
   for (const SphereGrid kind : kGrids) {
@@ -116,30 +100,13 @@ TEST(ResampleSurface, HasTheSurfaceAtEachDirectionAndIsAMapAgain) {
   }
 }
 
-TEST(ResampleSurface, MapOptionsKeepAnglesMoreThanTheDefault) {
-  EXPECT_EQ(mapOptionsForResampling().area_weight, 0.5);
-  EXPECT_EQ(mapOptionsForResampling().sweeps, 40);
-}
-
 TEST(GeometryImage, IsLaidOutAsTheOctahedralChart) {
   const Positions directions = geometryImageDirections(9);
   for (int row = 0; row < 9; ++row)
     for (int column = 0; column < 9; ++column) {
-      // The octahedron, above and below: x to the right and y up, (0, 0, 1) in the middle.
-      const double x = (column - 4) / 4.0;
-      const double y = (4 - row) / 4.0;
-      const Vector3d direction = directions.col(row * 9 + column);
-      const Vector3d on_octahedron = direction / direction.lpNorm<1>();
-      EXPECT_NEAR(direction.norm(), 1.0, 1e-15);
-      EXPECT_NEAR(on_octahedron.z(), 1.0 - std::abs(x) - std::abs(y), 1e-15);
-      if (on_octahedron.z() >= 0.0) {
-        EXPECT_NEAR(on_octahedron.x(), x, 1e-15);
-        EXPECT_NEAR(on_octahedron.y(), y, 1e-15);
-      } else {
-        EXPECT_NEAR(std::abs(on_octahedron.x()), 1.0 - std::abs(y), 1e-15);
-        EXPECT_GE(on_octahedron.x() * x, 0.0);
-        EXPECT_GE(on_octahedron.y() * y, 0.0);
-      }
+      const Vector3d expected =
+          test::directionAt({SphereChart::Octahedral}, {column / 8.0, 1.0 - row / 8.0});
+      EXPECT_LT((directions.col(row * 9 + column) - expected).norm(), 1e-15);
     }
   // Pairs on the border are the same, bit by bit.
   for (int i = 0; i < 9; ++i) {
@@ -186,20 +153,6 @@ TEST(GeometryImage, PixelsThatDifferOnTheBorderAreAveraged) {
   EXPECT_LT((meshOfGeometryImage(image).points - before.points - expected).norm(), 1e-13);
 }
 
-TEST(GeometryImage, RefusesBadInput) {
-  const SphereSurface surface = bumpySurface(100);
-  for (const int side : {-3, 0, 1, 2, 4, 16386, 16387}) {
-    EXPECT_THROW(geometryImageDirections(side), InvalidInput);
-    EXPECT_THROW(makeGeometryImage(surface, side), InvalidInput);
-    EXPECT_THROW(meshOfGeometryImage({side, Positions(3, 9)}), InvalidInput);
-  }
-  GeometryImage image = makeGeometryImage(surface, 5);
-  image.positions(1, 7) = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(meshOfGeometryImage(image), InvalidInput);
-  EXPECT_THROW(meshOfGeometryImage({5, Positions::Zero(3, 24)}), InvalidInput);
-  EXPECT_THROW(geometryImageOfMesh(resampled(surface, SphereGrid::Icosahedral, 3)), InvalidInput);
-}
-
 /// A long body with a groove along it, and a map that is twisted, so that the edges of a grid run
 /// askew to the groove.
 ResampledMesh groovedBody() {
@@ -240,20 +193,6 @@ TEST(RemoveIntersections, FlipsEdgesUntilNoTrianglesIntersect) {
   ResampledMesh other = before;
   removeIntersections(other, 3);
   EXPECT_EQ(other.triangles, mesh.triangles);
-}
-
-TEST(RemoveIntersections, RefusesBadInput) {
-  const ResampledMesh mesh = resampled(bumpySurface(100), SphereGrid::Octahedral, 2);
-  ResampledMesh bad = mesh;
-  EXPECT_THROW(removeIntersections(bad, -1), InvalidInput);
-  bad.directions = mesh.directions.leftCols(5);
-  EXPECT_THROW(removeIntersections(bad), InvalidInput);
-  bad = mesh;
-  bad.triangles = mesh.triangles.leftCols(7);
-  EXPECT_THROW(removeIntersections(bad), InvalidInput);
-  bad = mesh;
-  bad.triangles(0, 0) = 1000;
-  EXPECT_THROW(removeIntersections(bad), InvalidInput);
 }
 
 }  // namespace

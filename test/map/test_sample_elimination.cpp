@@ -1,13 +1,11 @@
 #include "map_shapes.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/map/resampling.h"
+#include "spherical_param/mesh_topology.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -35,6 +33,7 @@ TEST(SampleEvenly, PointsAreOnTheSurfaceAndKeepTheirDistance) {
       const SurfacePoints samples = sampleEvenly(surface, count);
       ASSERT_EQ(samples.points.cols(), static_cast<Eigen::Index>(count));
       ASSERT_EQ(samples.locations.size(), count);
+      EXPECT_NE(sampleEvenly(surface, count, 2).points, samples.points);
       if (count > 1)
         expectEven(samples.points, surface.area() / static_cast<double>(count));
       for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
@@ -57,13 +56,9 @@ TEST(SampleEvenly, IsEvenInSpaceWhateverTheMap) {
   for (const double z : {0.5, 2.0, 6.0}) {
     double area = 0.0;
     for (Eigen::Index t = 0; t < surface.triangles().cols(); ++t) {
-      Eigen::Matrix3d corners;
-      for (Index k = 0; k < 3; ++k)
-        corners.col(k) = surface.points().col(surface.triangles()(k, t));
-      if (corners.row(2).mean() > z)
-        area += 0.5 * (corners.col(1) - corners.col(0))
-                          .cross(Vector3d(corners.col(2) - corners.col(0)))
-                          .norm();
+      const Triangles triangle = surface.triangles().col(t);
+      if (surface.points()(2, triangle.reshaped()).mean() > z)
+        area += surfaceArea(surface.points(), triangle);
     }
     const double expected = area / surface.area() * count;
     const auto found = static_cast<double>((samples.points.row(2).array() > z).count());
@@ -83,26 +78,6 @@ TEST(SampleEvenly, SheetsThatAreCloseDoNotPushEachOther) {
       upper = test::horizontally(upper, samples.points.col(i));
   EXPECT_NEAR(static_cast<double>(upper.cols()), 200.0, 10.0);
   expectEven(upper, surface.area() / 400.0);
-}
-
-TEST(SampleEvenly, IsTheSameForTheSameSeedAndAnyNumberOfThreads) {
-  const auto place = [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); };
-  const SurfacePoints expected = sampleEvenly(test::surfaceOver(500, place, 1), 1000, 7);
-  for (const int threads : {2, 3}) {
-    const SurfacePoints samples = sampleEvenly(test::surfaceOver(500, place, threads), 1000, 7);
-    EXPECT_EQ(samples.points, expected.points);
-    EXPECT_EQ(samples.normals, expected.normals);
-  }
-  EXPECT_NE(sampleEvenly(test::surfaceOver(500, place), 1000, 8).points, expected.points);
-}
-
-TEST(SampleEvenly, RefusesBadInput) {
-  const SphereSurface surface = test::surfaceOver(20, [](const Vector3d& u) { return u; });
-  EXPECT_THROW(sampleEvenly(surface, 0), InvalidInput);
-  EXPECT_THROW(sampleEvenly(surface, (std::size_t{1} << 24) + 1), InvalidInput);
-  EXPECT_THROW(
-      sampleEvenly(test::surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); }), 5),
-      InvalidInput);
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
 #include "spherical_param/map/sphere_map.h"
 
 #include "map_shapes.h"
-#include "spherical_param/errors.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace spherical_param {
@@ -131,17 +128,6 @@ TEST(SphereMap, TrianglesWithoutAreaAndTinyClustersHaveRoom) {
   soundMapOf(cluster);
 }
 
-TEST(SphereMap, IsTheSameForAnyNumberOfThreads) {
-  const Mapped mesh = stretchedSphere(36, {1.0, 2.0, 4.0});
-  SphereMapOptions options = withWeight(0.85, 2);
-  options.threads = 1;
-  const SphereMap expected = mapOf(mesh, options);
-  for (const int threads : {2, 3}) {
-    options.threads = threads;
-    EXPECT_EQ(mapOf(mesh, options).sphere, expected.sphere);
-  }
-}
-
 TEST(SphereMap, TurnsWithItsStartAndNotWithTheMesh) {
   Mapped mesh = stretchedSphere(16, {1.0, 1.5, 2.5});
   // Nothing is symmetric, so that rounding breaks no ties.
@@ -171,44 +157,6 @@ TEST(SphereMap, LevelsEndAtATetrahedron) {
     EXPECT_TRUE(std::isfinite(levels[l].energy) && levels[l].energy > 0.0);
     EXPECT_TRUE(l == 0 || levels[l].vertices < levels[l - 1].vertices);
   }
-}
-
-TEST(SphereMap, ProgressIsReportedAndCancels) {
-  const Mapped mesh = test::octasphere(8);
-  const auto run = [&](const std::function<bool(double)>& progress) {
-    SphereMapOptions options;
-    options.progress = test::reportingTo(progress).progress;
-    mapOf(mesh, options);
-  };
-  const std::vector<double> fractions = test::fractionsOf(run);
-  EXPECT_TRUE(test::areFractions(fractions));
-  EXPECT_EQ(fractions.back(), 1.0);
-  EXPECT_THROW(run([](double fraction) { return fraction < 0.5; }), Cancelled);
-}
-
-TEST(SphereMap, RefusesBadInput) {
-  const Mapped mesh = test::octasphere(4);
-  const Positions& points = mesh.points;
-  const Triangles& triangles = mesh.triangles;
-  const auto refuses = [](const Positions& p, const Triangles& t, const Positions& start) {
-    EXPECT_THROW(computeSphereMap(p, t, start), InvalidInput);
-  };
-  refuses(points, triangles.leftCols(20), points);
-  refuses(points, triangles, points.leftCols(7));
-  refuses(points.leftCols(3), Triangles(3, 0), points.leftCols(3));
-  refuses(points, triangles, 1.1 * points);
-  Positions wrong = points;
-  wrong(1, 1) = std::numeric_limits<double>::quiet_NaN();
-  refuses(wrong, triangles, points);
-  refuses(points, triangles, wrong);
-  Triangles turned = triangles;
-  std::swap(turned(0, 3), turned(1, 3));
-  refuses(points, turned, points);
-  const Positions unused = test::horizontally(points, Vector3d::UnitX());
-  refuses(unused, triangles, unused);
-  Triangles two(3, 2 * triangles.cols());
-  two << triangles, (triangles.array() + static_cast<Index>(points.cols())).matrix();
-  refuses(test::horizontally(points, points), two, test::horizontally(points, points));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "spherical_param/map/spherical_harmonics.h"
 
 #include "map_shapes.h"
-#include "spherical_param/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -112,48 +111,6 @@ TEST(SphericalHarmonics, OfAShapeThatIsASeriesAreItsCoefficients) {
   const SphericalHarmonics few = computeSphericalHarmonics(surface, 3);
   const double rest = std::sqrt(given.coefficients.rightCols(20).squaredNorm() / (4.0 * kPi));
   EXPECT_NEAR(few.rms_residual, rest, 0.01 * rest);
-}
-
-TEST(SphericalHarmonics, ResidualIsThatOfTheSurfaceAtManyDirections) {
-  const SphereSurface surface = test::surfaceOver(
-      1000, [](const Vector3d& u) { return Vector3d((1.0 + 0.2 * std::sin(6.0 * u.x())) * u); });
-  const SphericalHarmonics harmonics = computeSphericalHarmonics(surface, 4);
-  const Positions directions = test::spiralSphere(10000);
-  const double expected = std::sqrt(
-      (surface.evaluate(directions).positions - evaluateSphericalHarmonics(harmonics, directions))
-          .squaredNorm() /
-      10000.0);
-  EXPECT_NEAR(harmonics.rms_residual, expected, 2e-3 * expected);
-  EXPECT_LT(computeSphericalHarmonics(surface, 12).rms_residual, 0.1 * harmonics.rms_residual);
-}
-
-TEST(SphericalHarmonics, AreTheSameForAnyNumberOfThreads) {
-  const SphereSurface surface =
-      test::surfaceOver(500, [](const Vector3d& u) { return Vector3d(2.0 * u.x(), u.y(), u.z()); });
-  const SphericalHarmonics expected = computeSphericalHarmonics(surface, 12, 1);
-  const Positions directions = test::randomSphere(2000, 5);
-  const Positions values = evaluateSphericalHarmonics(expected, directions, 1);
-  for (const int threads : {2, 3}) {
-    const SphericalHarmonics found = computeSphericalHarmonics(surface, 12, threads);
-    EXPECT_EQ(found.coefficients, expected.coefficients);
-    EXPECT_EQ(found.rms_residual, expected.rms_residual);
-    EXPECT_EQ(evaluateSphericalHarmonics(expected, directions, threads), values);
-  }
-}
-
-TEST(SphericalHarmonics, RefuseBadInput) {
-  const SphereSurface surface = test::surfaceOver(20, [](const Vector3d& u) { return u; });
-  for (const int degree : {-1, 513}) {
-    EXPECT_THROW(sphericalHarmonicsAt(Vector3d::UnitX(), degree), InvalidInput);
-    EXPECT_THROW(computeSphericalHarmonics(surface, degree), InvalidInput);
-  }
-  EXPECT_THROW(sphericalHarmonicsAt(Vector3d::Zero(), 3), InvalidInput);
-  EXPECT_THROW(computeSphericalHarmonics(surface, 3, -1), InvalidInput);
-  SphericalHarmonics harmonics = computeSphericalHarmonics(surface, 0);
-  EXPECT_THROW(evaluateSphericalHarmonics(harmonics, Positions::Zero(3, 1)), InvalidInput);
-  EXPECT_THROW(evaluateSphericalHarmonics(harmonics, Vector3d::UnitX(), 1025), InvalidInput);
-  harmonics.degree = 1;
-  EXPECT_THROW(evaluateSphericalHarmonics(harmonics, Vector3d::UnitX()), InvalidInput);
 }
 
 }  // namespace

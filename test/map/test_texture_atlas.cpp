@@ -1,16 +1,12 @@
 #include "spherical_param/map/texture_atlas.h"
 
 #include "charts.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <utility>
 #include <vector>
 
 namespace spherical_param {
@@ -157,27 +153,6 @@ TEST(Equirectangular, APoleHasACoordinateInTheMiddleOfEachOfItsTriangles) {
   // The seam has both of its sides at the ends of the image.
   EXPECT_EQ(atlas.coordinates.row(0).minCoeff(), 0.0);
   EXPECT_EQ(atlas.coordinates.row(0).maxCoeff(), 1.0);
-}
-
-TEST(TextureAtlas, RefusesMapsThatAreNotOneToOne) {
-  const Mapped mesh = test::mapped(test::randomSphere(50, 3));
-  const auto refuses = [](const Triangles& triangles, const Positions& sphere) {
-    EXPECT_THROW(makeTextureAtlas(triangles, sphere), InvalidInput);
-  };
-  refuses(mesh.triangles.leftCols(20), mesh.sphere);
-  refuses(mesh.triangles.colwise().reverse(), mesh.sphere);
-  refuses(mesh.triangles, 2.0 * mesh.sphere);
-  refuses(mesh.triangles, mesh.sphere.leftCols(49));
-  refuses(Triangles(3, 0), Positions(3, 0));
-  Positions bad = mesh.sphere;
-  bad(1, 7) = std::numeric_limits<double>::quiet_NaN();
-  refuses(mesh.triangles, bad);
-  bad = mesh.sphere;
-  bad.col(3).swap(bad.col(4));
-  refuses(mesh.triangles, bad);
-  EXPECT_THROW(chartCoordinates({}, Vector3d::Zero()), InvalidInput);
-  EXPECT_THROW(atCutVertices(makeTextureAtlas(mesh.triangles, mesh.sphere), bad.leftCols(49)),
-               InvalidInput);
 }
 
 }  // namespace

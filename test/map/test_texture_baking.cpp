@@ -1,5 +1,4 @@
 #include "charts.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/map/texture_atlas.h"
 
 #include <gtest/gtest.h>
@@ -111,19 +110,6 @@ TEST_P(TextureOfChart, TheGutterHasTheColorOfTheNearestPixel) {
     }
 }
 
-TEST_P(TextureOfChart, IsTheSameForAnyNumberOfThreads) {
-  const Mapped mesh = test::mapped(test::randomSphere(1000, 8));
-  const TextureAtlas atlas = atlasOf(mesh);
-  const TextureImage one = bakeColors(atlas, colorsOf(mesh), {100, 5, 1});
-  const TextureImage board = bakeCheckerboard(atlas, mesh.sphere, 8, {100, 5, 1});
-  for (const int threads : {2, 3}) {
-    const TextureImage more = bakeColors(atlas, colorsOf(mesh), {100, 5, threads});
-    EXPECT_EQ(more.pixels, one.pixels);
-    EXPECT_EQ(more.covered, one.covered);
-    EXPECT_EQ(bakeCheckerboard(atlas, mesh.sphere, 8, {100, 5, threads}).pixels, board.pixels);
-  }
-}
-
 TEST_P(TextureOfChart, ACheckerboardShowsTheSquareOfItsDirection) {
   const Mapped mesh = test::octasphere(32);
   const int cells = 4;
@@ -161,19 +147,6 @@ TEST_P(TextureOfChart, ACheckerboardShowsTheSquareOfItsDirection) {
     }
   }
   EXPECT_EQ(all.size(), 16U);  // light and dark for each octant
-}
-
-TEST(Texture, RefusesColorsThatDoNotMatchAndSquaresOutOfRange) {
-  const Mapped mesh = test::octasphere(1);
-  const TextureAtlas atlas = makeTextureAtlas(mesh.triangles, mesh.sphere);
-  EXPECT_NO_THROW(bakeColors(atlas, Colors::Constant(3, 6, 255.0), {16, 0, 1}));
-  for (const Index count : {5, 7})
-    EXPECT_THROW(bakeColors(atlas, Colors::Constant(3, count, 100.0)), InvalidInput);
-  for (const double bad : {-1.0, 255.1, std::nan("")})
-    EXPECT_THROW(bakeColors(atlas, Colors::Constant(3, 6, bad)), InvalidInput);
-  for (const int cells : {0, 4097})
-    EXPECT_THROW(bakeCheckerboard(atlas, mesh.sphere, cells), InvalidInput);
-  EXPECT_THROW(bakeCheckerboard(atlas, mesh.sphere.leftCols(5)), InvalidInput);
 }
 
 }  // namespace

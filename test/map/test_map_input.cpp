@@ -1,0 +1,263 @@
+// What the functions of the map refuse, each with a remedy: meshes and maps that are wrong,
+// arguments that do not fit, options beyond their ranges, of which the ends are taken.
+
+#include "map_shapes.h"
+#include "spherical_param/map/morphing.h"
+#include "spherical_param/map/resampling.h"
+#include "spherical_param/map/spherical_harmonics.h"
+#include "spherical_param/map/texture_atlas.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+constexpr int kMax = std::numeric_limits<int>::max();
+
+void expectRefused(const std::string& what, const std::function<void()>& call) {
+  EXPECT_NE(refusalOf(call).find("; "), std::string::npos) << what << ": " << refusalOf(call);
+}
+
+TEST(MapInput, MeshesAndMapsThatAreWrongAreRefused) {
+  const Mapped good = mapped(randomSphere(50, 3));
+  // Computing a map takes any start, and measuring one takes any triangles of vertices.
+  const std::vector<std::pair<std::string, std::function<void(const Mapped&)>>> functions = {
+      {"surface", [](const Mapped& m) { m.surface(); }},
+      {"atlas", [](const Mapped& m) { makeTextureAtlas(m.triangles, m.sphere); }},
+      {"map", [](const Mapped& m) { computeSphereMap(m.points, m.triangles, m.sphere); }},
+      {"distortion",
+       [](const Mapped& m) { measureMapDistortion(m.points, m.triangles, m.sphere); }}};
+  struct Fault {
+    std::string what;
+    std::size_t count;  ///< of these functions, which refuse it
+    std::function<void(Mapped&)> make;
+  };
+  const std::vector<Fault> faults = {
+      {"too few", 4, [&](Mapped& m) { m.sphere = good.sphere.leftCols(49); }},
+      {"not finite", 4, [](Mapped& m) { m.sphere(1, 7) = kNan; }},
+      {"index", 4, [](Mapped& m) { m.triangles(1, 2) = 50; }},
+      {"length", 3, [](Mapped& m) { m.sphere *= 1.1; }},
+      {"nothing", 3, [](Mapped& m) { m = {}; }},
+      {"a part", 3, [&](Mapped& m) { m.triangles = good.triangles.leftCols(20); }},
+      {"turned", 3, [](Mapped& m) { std::swap(m.triangles(0, 3), m.triangles(1, 3)); }},
+      {"unused", 3,
+       [](Mapped& m) { m.points = m.sphere = horizontally(m.sphere, -m.sphere.col(0)); }},
+      {"two surfaces", 3,
+       [&](Mapped& m) {
+         m.points = m.sphere = horizontally(good.sphere, good.sphere);
+         m.triangles.resize(3, 2 * good.triangles.cols());
+         m.triangles << good.triangles, (good.triangles.array() + 50).matrix();
+       }},
+      {"inside out", 2, [](Mapped& m) { m.triangles.row(0).swap(m.triangles.row(1)); }},
+      {"flipped", 2, [](Mapped& m) { m.sphere.col(3).swap(m.sphere.col(4)); }}};
+  for (const Fault& fault : faults) {
+    Mapped wrong = good;
+    fault.make(wrong);
+    for (std::size_t i = 0; i < fault.count; ++i)
+      expectRefused(functions[i].first + ", " + fault.what, [&] { functions[i].second(wrong); });
+  }
+  Mapped wrong = good;
+  wrong.points(0, 0) = kNan;
+  for (const std::size_t i : {0U, 2U, 3U})
+    expectRefused(functions[i].first, [&] { functions[i].second(wrong); });
+}
+
+TEST(MapInput, SurfacesRefuseCapsAndPlacesThatDoNotFit) {
+  const Mapped open = openBumpy(400);
+  const Mapped closed = mapped(randomSphere(50, 3));
+  const auto surface_of = [](const Mapped& mesh, const Positions& caps) {
+    return SphereSurface(mesh.points, mesh.triangles, mesh.sphere, {SurfaceFit::Linear, 0, caps});
+  };
+  expectRefused("no caps", [&] { surface_of(open, {}); });
+  expectRefused("too few caps", [&] { surface_of(open, open.caps.leftCols(3)); });
+  expectRefused("caps of a closed mesh", [&] { surface_of(closed, open.caps); });
+
+  const SphereSurface surface = closed.surface();
+  for (const Vector3d& direction : {Vector3d(0.0, 0.0, 0.0), Vector3d(kNan, 0.0, 1.0)}) {
+    expectRefused("locate()", [&] { surface.locate(direction); });
+    expectRefused("evaluate()", [&] { surface.evaluate(Positions(direction)); });
+    expectRefused("chartCoordinates()", [&] { chartCoordinates({}, direction); });
+    expectRefused("harmonics", [&] { sphericalHarmonicsAt(direction, 3); });
+  }
+  for (const Index t : {Index{-1}, static_cast<Index>(closed.triangles.cols())})
+    expectRefused("location", [&] { surface.evaluate(SphereLocation{t, Vector3d::UnitX()}); });
+}
+
+TEST(MapInput, GridsAndGeometryImagesOfWrongSizesAreRefused) {
+  for (const SphereGrid kind : {SphereGrid::Icosahedral, SphereGrid::Octahedral}) {
+    // The largest that there is, for any number.
+    const int most = gridFrequency(kind, std::numeric_limits<std::size_t>::max());
+    EXPECT_EQ(most, gridFrequency(kind, std::size_t{1} << 29));
+    EXPECT_LE(gridVertices(kind, most), std::size_t{1} << 29);
+    for (const int frequency : {0, std::numeric_limits<int>::min(), most + 1, kMax}) {
+      expectRefused("gridVertices()", [&] { gridVertices(kind, frequency); });
+      expectRefused("makeGridSphere()", [&] { makeGridSphere(kind, frequency); });
+    }
+  }
+  const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
+  for (const int side : {-3, 0, 1, 2, 4, 16386, 16387}) {
+    expectRefused("geometryImageDirections()", [&] { geometryImageDirections(side); });
+    expectRefused("makeGeometryImage()", [&] { makeGeometryImage(surface, side); });
+    expectRefused("side", [&] { meshOfGeometryImage({side, Positions(3, 9)}); });
+  }
+  GeometryImage image = makeGeometryImage(surface, 5);
+  image.positions(1, 7) = std::numeric_limits<double>::infinity();
+  expectRefused("pixel", [&] { meshOfGeometryImage(image); });
+  expectRefused("pixels", [&] { meshOfGeometryImage({5, Positions::Zero(3, 24)}); });
+  const GridSphere grid = makeGridSphere(SphereGrid::Icosahedral, 3);
+  expectRefused("grid", [&] { geometryImageOfMesh(resampleSurface(surface, grid)); });
+}
+
+TEST(MapInput, ResampledMeshesThatDoNotFitAreRefused) {
+  const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
+  const ResampledMesh good = resampleSurface(surface, makeGridSphere(SphereGrid::Octahedral, 3));
+  ResampledMesh few = good;
+  few.directions = good.directions.leftCols(5);
+  ResampledMesh beyond = good;
+  beyond.triangles(0, 0) = 38;
+  ResampledMesh normals = good;
+  normals.normals = good.normals.leftCols(5);
+  ResampledMesh part = good;
+  part.triangles = good.triangles.leftCols(7);
+  const auto untangled = [&](ResampledMesh mesh, int threads) { untangle(surface, mesh, threads); };
+  const auto flipped = [](ResampledMesh mesh, int threads) { removeIntersections(mesh, threads); };
+  for (const auto& [mesh, threads] : {std::pair(&good, -1), {&few, 0}, {&beyond, 0}}) {
+    expectRefused("untangle()", [&, mesh = mesh, threads = threads] { untangled(*mesh, threads); });
+    expectRefused("flips", [&, mesh = mesh, threads = threads] { flipped(*mesh, threads); });
+  }
+  expectRefused("normals", [&] { untangled(normals, 0); });
+  expectRefused("a part", [&] { flipped(part, 0); });
+}
+
+TEST(MapInput, SamplesAndSeriesOutOfRangeAreRefused) {
+  const SphereSurface surface = mapped(randomSphere(50, 3)).surface();
+  for (const std::size_t count : {std::size_t{0}, (std::size_t{1} << 24) + 1})
+    expectRefused("sampleEvenly()", [&] { sampleEvenly(surface, count); });
+  const SphereSurface point = surfaceOver(20, [](const Vector3d&) { return Vector3d(1, 2, 3); });
+  expectRefused("without area", [&] { sampleEvenly(point, 5); });
+  const Vector3d x = Vector3d::UnitX();
+  for (const int degree : {-1, 513}) {
+    expectRefused("degree", [&] { sphericalHarmonicsAt(x, degree); });
+    expectRefused("degree", [&] { computeSphericalHarmonics(surface, degree); });
+  }
+  SphericalHarmonics series = computeSphericalHarmonics(surface, 0);
+  for (const int threads : {-1, 1025}) {
+    expectRefused("threads", [&] { computeSphericalHarmonics(surface, 3, threads); });
+    expectRefused("threads", [&] { evaluateSphericalHarmonics(series, x, threads); });
+    expectRefused("threads", [&] {
+      measureMapDistortion(surface.points(), surface.triangles(), surface.points(), threads);
+    });
+  }
+  expectRefused("zero", [&] { evaluateSphericalHarmonics(series, Positions::Zero(3, 1)); });
+  series.degree = 1;
+  expectRefused("coefficients", [&] { evaluateSphericalHarmonics(series, x); });
+}
+
+TEST(MapInput, TexturesAndMorphsThatDoNotFitAreRefused) {
+  using Colors = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  const Mapped mesh = mapped(spiralSphere(30));
+  const TextureAtlas good = makeTextureAtlas(mesh.triangles, mesh.sphere);
+  std::vector<TextureAtlas> atlases(5, good);
+  atlases[0].vertices[3].vertices[1] = -1;
+  atlases[1].triangles(0, 0) = static_cast<Index>(good.vertices.size());
+  atlases[2].coordinate_triangles(2, 4) = -5;
+  atlases[3].coordinates(0, 2) = kNan;
+  atlases[4].chart = static_cast<SphereChart>(17);
+  for (const TextureAtlas& atlas : atlases)
+    expectRefused("atlas", [&] { bakeCheckerboard(atlas, mesh.sphere, 8, {16, 0, 0}); });
+  for (const int cells : {0, 4097})
+    expectRefused("cells", [&] { bakeCheckerboard(good, mesh.sphere, cells); });
+  expectRefused("directions", [&] { bakeCheckerboard(good, mesh.sphere.leftCols(29)); });
+  expectRefused("values", [&] { atCutVertices(good, mesh.sphere.leftCols(29)); });
+  EXPECT_NO_THROW(bakeColors(good, Colors::Constant(3, 30, 255.0), {16, 0, 1}));
+  for (const Index count : {29, 31})
+    expectRefused("colours", [&] { bakeColors(good, Colors::Constant(3, count, 100.0)); });
+  for (const double bad : {-1.0, 255.1, kNan})
+    expectRefused("a colour", [&] { bakeColors(good, Colors::Constant(3, 30, bad)); });
+  MorphResult morph;
+  for (const double t : {kNan, std::numeric_limits<double>::infinity()})
+    expectRefused("t", [&] { inBetween(morph, t); });
+  morph.first.resize(3, 4);
+  morph.second.resize(3, 5);
+  expectRefused("shapes", [&] { inBetween(morph, 0.5); });
+}
+
+/// Sets an option to values that are taken and to values that are refused by its name.
+template <typename Options, typename Base, typename Member>
+void expectRange(const std::string& name, Options options, Member Base::*member,
+                 const std::function<void(const Options&)>& use, const std::vector<double>& good,
+                 const std::vector<double>& bad) {
+  const auto refusal = [&](double value) {
+    if constexpr (std::is_enum_v<Member>)
+      options.*member = static_cast<Member>(static_cast<int>(value));
+    else
+      options.*member = static_cast<Member>(value);
+    return refusalOf([&] { use(options); });
+  };
+  for (const double value : good)
+    EXPECT_EQ(refusal(value), "") << name << " = " << value;
+  for (const double value : bad)
+    EXPECT_NE(refusal(value).find(name), std::string::npos) << name << " = " << value;
+}
+
+TEST(MapInput, EndsOfTheRangesAreTakenAndWhatIsBeyondIsRefusedByName) {
+  for (const Index n : {4, 150}) {
+    const Mapped mesh =
+        mapped(n == 4 ? Positions(cubeGrid(2)(Eigen::all, std::vector{0, 3, 5, 6}).array() - 0.5)
+                            .colwise()
+                            .normalized()
+                      : randomSphere(n, 7));
+    const SphereSurface surface = mesh.surface();
+    const TextureAtlas atlas = makeTextureAtlas(mesh.triangles, mesh.sphere);
+    const std::function<void(const SphereMapOptions&)> map = [&](const SphereMapOptions& o) {
+      computeSphereMap(mesh.points, mesh.triangles, mesh.sphere, o);
+    };
+    const std::function<void(const SphereSurfaceOptions&)> fit =
+        [&](const SphereSurfaceOptions& o) {
+          SphereSurface(mesh.points, mesh.triangles, mesh.sphere, o);
+        };
+    const std::function<void(const MorphOptions&)> morph = [&](const MorphOptions& o) {
+      morphSurfaces(surface, surface, o);
+    };
+    const std::function<void(const TextureAtlasOptions&)> lay_out =
+        [&](const TextureAtlasOptions& o) { makeTextureAtlas(mesh.triangles, mesh.sphere, o); };
+    const std::function<void(const BakeOptions&)> bake = [&](const BakeOptions& o) {
+      bakeCheckerboard(atlas, mesh.sphere, 8, o);
+    };
+    SphereMapOptions few;
+    few.sweeps = 2;
+    MorphOptions plain;
+    plain.align = false;
+    plain.samples = 100;
+    const BakeOptions small{16, 0, 0};
+    expectRange("area_weight", few, &SphereMapOptions::area_weight, map, {0, kTiny, 1},
+                {-kTiny, 1.0000000000000002, kNan});
+    expectRange("sweeps", few, &SphereMapOptions::sweeps, map, {0, 1}, {-1, 1001, kMax});
+    expectRange("threads", few, &SphereMapOptions::threads, map, {0, 1, 1024}, {-1, 1025, kMax});
+    expectRange("fit", SphereSurfaceOptions(), &SphereSurfaceOptions::fit, fit, {0, 1}, {-1, 2});
+    expectRange("connectivity", plain, &MorphOptions::connectivity, morph, {0, 1}, {-1, 2});
+    expectRange("samples", plain, &MorphOptions::samples, morph, {12}, {0, 11, (1 << 24) + 1});
+    expectRange("chart", TextureAtlasOptions(), &TextureAtlasOptions::chart, lay_out, {0, 2},
+                {-1, 3});
+    expectRange("margin", TextureAtlasOptions(), &TextureAtlasOptions::margin, lay_out, {0, 0.2499},
+                {-kTiny, 0.25, kNan});
+    expectRange("height", small, &BakeOptions::height, bake, {16, 17}, {15, 16385, kMax});
+    expectRange("gutter", small, &BakeOptions::gutter, bake, {0, 256}, {-1, 257, kMax});
+    plain.pairs.assign(4097, {});
+    EXPECT_NE(refusalOf([&] { morph(plain); }).find("pairs"), std::string::npos);
+    plain.pairs = {{std::numeric_limits<Index>::min(), 0}, {0, kMax}, {-1, -1}, {0, 0}};
+    EXPECT_EQ(morphSurfaces(surface, surface, plain).impossible.size(), 3U);
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param::test
