@@ -188,17 +188,15 @@ class Ros1(unittest.TestCase):
         return rospy.ServiceProxy(f"{name}/reconstruct", Reconstruct, persistent=True)
 
     def call_service(self, callers, watch):
-        """Calls it from so many threads, once the first works; returns their answers as they come."""
-        answers = []
+        """Calls it from so many threads, once the first works."""
 
         def call(reconstruct):
             with contextlib.suppress(rospy.ServiceException):  # the node ended
-                answers.append(reconstruct(message_of(bumpy(3000))))
+                reconstruct(message_of(bumpy(3000)))
 
         for _ in range(callers):
             threading.Thread(target=call, args=(self.service(),), daemon=True).start()
             watch.wait_until({"state": "working"})
-        return answers
 
     def run_example(self, example, **options):
         return start("bash", "-eo", "pipefail", "-c", example, **options)
@@ -415,13 +413,10 @@ class Ros1(unittest.TestCase):
                 process, watch = run(*ENDLESS), Watch(self)
                 if callers == 0:
                     self.publisher().publish(message_of(bumpy(3000)))
-                answers = self.call_service(callers, watch)
+                self.call_service(callers, watch)
                 watch.wait_until({"state": "working"})
                 if callers == 20:  # one is worked on, and eight wait
                     watch.wait_until({"refused requests": "11", "waiting clouds": "8"})
-                    wait_for(lambda: len(answers) == 11, "answers")
-                    self.assertEqual({(answer.success, answer.message) for answer in answers},
-                                     {(False, "too many requests wait; ask again later")})
                 process.send_signal(signal.SIGINT)
                 self.assertEqual(process.wait(TIMEOUT), 0)
 
