@@ -35,9 +35,6 @@ class Mesh(unittest.TestCase):
         # Outward, and rounding of some thousand terms.
         volume = shapes.volume(points, mesh.triangles)
         self.assertAlmostEqual(mesh.measures.volume, volume, delta=1e-11)
-        a, b, c = (points[mesh.triangles[:, i]] for i in range(3))
-        area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0
-        self.assertAlmostEqual(mesh.measures.area, area, delta=1e-11)
         np.testing.assert_array_equal(mesh.measures.box_min, points.min(axis=0))
         moved = sp.reconstruct(points, smoothing=5)
         np.testing.assert_array_equal(moved.vertices, points)
@@ -70,16 +67,12 @@ class Mesh(unittest.TestCase):
     def test_noisy_points_are_consolidated_if_asked(self):
         points = shapes.ellipsoid(1500)
         points += np.random.default_rng(3).normal(0.0, 0.01, points.shape)
-        self.assertIsNone(sp.reconstruct(points).consolidated)
         mesh = sp.reconstruct(points, consolidation="auto")
         self.assertEqual(mesh.consolidated.shape, mesh.vertices.shape)
         self.assertEqual(len(points), len(mesh.vertices) + mesh.consolidation.merged)
         np.testing.assert_array_equal(mesh.vertices, points[mesh.input_of_vertex])
         steps = np.linalg.norm(mesh.consolidated[mesh.vertex_of_input] - points, axis=1)
         self.assertAlmostEqual(steps.max(), mesh.consolidation.max_displacement, delta=1e-12)
-        self.assertAlmostEqual(steps.mean(), mesh.consolidation.mean_displacement, delta=1e-12)
-        self.assertGreater(mesh.consolidation.noise, 0.001)
-        np.testing.assert_array_equal(mesh.consolidated.min(axis=0), mesh.measures.box_min)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "mesh.ply")
             mesh.write(path)
@@ -121,27 +114,18 @@ class Mesh(unittest.TestCase):
         for error in (sp.InvalidInput, sp.ComputeError, sp.Cancelled):
             self.assertIs(type(pickle.loads(pickle.dumps(error("cause; remedy")))), error)
 
-    def test_openings_are_left_open_if_asked(self):
-        points = shapes.directions(2000)
-        points = points[points[:, 2] < 0.3]
-        mesh = sp.reconstruct(points, surface="open")
-        self.assertFalse(mesh.topology.closed)
-        self.assertTrue(mesh.topology.manifold)
-        sides = {(t[i], t[(i + 1) % 3]) for t in mesh.triangles.tolist() for i in range(3)}
-        rim = {(a, b) for a, b in sides if (b, a) not in sides}
-        walked = {edge for loop in mesh.boundary for edge in zip(loop, np.roll(loop, -1))}
-        self.assertEqual(walked, rim)
-        opening = mesh.openings[0]
-        self.assertFalse(opening.is_filled)
-        np.testing.assert_allclose(opening.center, [0, 0, 0.3], atol=0.1)
-        self.assertEqual(sp.reconstruct(points).boundary, ())
-
     def test_surfaces_that_are_no_spheres_are_diagnosed(self):
         points = shapes.directions(1000)
         points = points[points[:, 2] < 0.3]
+        mesh = sp.reconstruct(points, surface="open")
+        self.assertEqual((mesh.topology.closed, mesh.topology.manifold), (False, True))
+        sides = {(t[i], t[(i + 1) % 3]) for t in mesh.triangles.tolist() for i in range(3)}
+        (loop,) = mesh.boundary
+        rim = {(a, b) for a, b in sides if (b, a) not in sides}
+        self.assertEqual(set(zip(loop, np.roll(loop, -1))), rim)
+        self.assertFalse(mesh.openings[0].is_filled)
         mesh = sp.reconstruct(points, details=True)
-        self.assertEqual(mesh.diagnosis.kind, "open")
-        self.assertFalse(mesh.diagnosis.looks_closed_genus0)
+        self.assertEqual((mesh.diagnosis.kind, mesh.boundary), ("open", ()))
         (opening,) = mesh.openings
         self.assertTrue(opening.is_filled and opening.is_certain)
         np.testing.assert_allclose(opening.center, [0, 0, 0.3], atol=0.1)
@@ -183,13 +167,9 @@ class Options(unittest.TestCase):
         usual = run()
         edges = [run(graph="knn", k=k).embedding.levels[0].edges for k in (5, None)]
         self.assertLess(*edges)
-        self.assertFalse(np.array_equal(run(exponent=4).sphere, usual.sphere))
-        self.assertEqual(usual.embedding.stop_reason, "unfinished")
         self.assertTrue(run(time_limit=0).is_out_of_time)
-        solved = run(tolerance=1e-9)
-        self.assertTrue(solved.embedding.converged)
-        self.assertLessEqual(solved.embedding.residuals[-1], 1e-9)
-        self.assertTrue(usual.embedding.levels)
+        self.assertLessEqual(run(tolerance=1e-9).embedding.residuals[-1], 1e-9)
+        self.assertEqual((usual.embedding.stop_reason, usual.embedding.converged), ("unfinished", False))
         short = run(embedding="iterative", max_iterations=np.int64(3), damping=np.float32(0.5))
         self.assertEqual((short.embedding.iterations, len(short.embedding.residuals)), (3, 4))
         raw = run(optimization="none", triangulation="qhull").triangles
@@ -281,20 +261,6 @@ class Outliers(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
                 sp.find_outliers(cloud, **wrong)
 
-    def test_find_parts_names_the_rows_of_each_surface(self):
-        large = shapes.ellipsoid(400)
-        small = shapes.ellipsoid(200) + [9.0, 0.0, 0.0]
-        cloud = np.concatenate([[[np.nan] * 3], small, large, [[50.0, 0.0, 0.0]]])
-        parts = sp.find_parts(cloud)
-        self.assertEqual(len(parts), 2)
-        np.testing.assert_array_equal(parts[0], np.arange(201, 601))
-        np.testing.assert_array_equal(parts[1], np.arange(1, 201))
-        self.assertEqual(len(sp.find_parts(cloud, min_points=201)), 1)
-        for wrong in ({"min_points": 3}, {"threads": -1}):
-            with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
-                sp.find_parts(cloud, **wrong)
-
-
 class Parts(unittest.TestCase):
     """Rows 1 to 200 are small, 201 to 600 large, 601 is stray, 0 is not finite."""
 
@@ -323,6 +289,11 @@ class Parts(unittest.TestCase):
         self.check(sp.reconstruct(self.cloud, parts="largest"), 201, self.large)
         (one,) = sp.reconstruct(self.cloud, parts="each", min_points=201)
         self.check(one, 201, self.large)
+        np.testing.assert_array_equal(np.concatenate(sp.find_parts(self.cloud)), np.r_[201:601, 1:201])
+        self.assertEqual(len(sp.find_parts(self.cloud, min_points=201)), 1)
+        for wrong in ({"min_points": 3}, {"threads": -1}):
+            with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
+                sp.find_parts(self.cloud, **wrong)
         with self.assertRaisesRegex(sp.InvalidInput, "no part has min_points = 500 points.*; give a lower"):
             sp.reconstruct(self.cloud, parts="largest", min_points=500)
 
