@@ -3,6 +3,7 @@
 import inspect
 import pickle
 import tempfile
+import time
 import unittest
 from fractions import Fraction
 from pathlib import Path
@@ -261,6 +262,7 @@ class Outliers(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
                 sp.find_outliers(cloud, **wrong)
 
+
 class Parts(unittest.TestCase):
     """Rows 1 to 200 are small, 201 to 600 large, 601 is stray, 0 is not finite."""
 
@@ -276,14 +278,26 @@ class Parts(unittest.TestCase):
         np.testing.assert_array_equal(mesh.vertex_of_input, expected)
         np.testing.assert_array_equal(mesh.left_out.not_finite, [0])
 
+    def test_eight_parts_share_one_time_limit(self):
+        calls = []
+
+        def progress(stage, fraction):
+            # The first part takes it all.
+            if stage == "embedding" and fraction == 1.0 and not calls:
+                calls.append(stage)
+                time.sleep(0.35)
+            return True
+
+        eight = np.concatenate([self.small + [4.0 * part, 0.0, 0.0] for part in range(8)])
+        hurried = sp.reconstruct(eight, parts="each", time_limit=0.3, progress=progress)
+        self.assertEqual([mesh.is_out_of_time for mesh in hurried], 8 * [True])
+        self.assertIn("part 7, part 8: the time limit", str(hurried.findings[0]))
+
     def test_parts_are_meshed_each_or_the_largest_and_refer_to_the_whole_input(self):
         both = sp.reconstruct(self.cloud, parts="each")
         self.assertIsInstance(both, tuple)
         self.assertEqual((both.verdict, both.findings), ("2 meshes, all sound.", ()))
         np.testing.assert_array_equal(both.left_out.other_parts, [601])
-        hurried = sp.reconstruct(self.cloud, parts="each", time_limit=0)
-        self.assertEqual([mesh.is_out_of_time for mesh in hurried], [True, True])
-        self.assertIn("part 1, part 2: the time limit", str(hurried.findings[0]))
         self.check(both[0], 201, self.large)
         self.check(both[1], 1, self.small)
         self.check(sp.reconstruct(self.cloud, parts="largest"), 201, self.large)

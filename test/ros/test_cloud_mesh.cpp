@@ -9,11 +9,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <limits>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -251,11 +253,28 @@ TEST(RosCloudMesh, EachMeshesThePartsByThemselvesOverOneListOfVertices) {
   settings.options.parts = spherical_param::PartsMode::Each;
   settings.options.min_points = 500;
   EXPECT_EQ(meshed(cloud, settings).other_points, 403U);
-  settings.options.min_points = 50;
-  settings.options.time_limit = 0.0;
-  const Outcome hurried = meshed(cloud, settings);
-  ASSERT_EQ(hurried.warnings.size(), 1U);
-  EXPECT_EQ(hurried.warnings[0].find("part 1, part 2: the time limit"), 0U) << hurried.warnings[0];
+}
+
+TEST(RosCloudMesh, EightPartsShareOneTimeLimit) {
+  pcl::PCLPointCloud2 cloud = ellipsoid(1600);
+  const Positions part = positionsOf<float>(ellipsoid(200));
+  for (std::uint32_t i = 0; i < cloud.width; ++i) {
+    const Eigen::Vector3d p = part.col(i / 8) + Eigen::Vector3d(4.0 * (i % 8), 0.0, 0.0);
+    setPoint(cloud, i, p.x(), p.y(), p.z());
+  }
+  Settings settings;
+  settings.options.parts = spherical_param::PartsMode::Each;
+  settings.options.time_limit = 0.3;
+  bool has_waited = false;
+  const Outcome outcome = meshCloud(cloud, settings, [&] {
+    // What comes first takes it all.
+    if (!std::exchange(has_waited, true))
+      std::this_thread::sleep_for(std::chrono::milliseconds(350));
+    return true;
+  });
+  EXPECT_EQ(outcome.parts, 8U);
+  ASSERT_EQ(outcome.warnings.size(), 1U);
+  EXPECT_NE(outcome.warnings[0].find("part 7, part 8: the time limit"), std::string::npos);
 }
 
 TEST(RosCloudMesh, AnOpenSurfaceIsNoFaultUnlessItsOpeningsAreFilled) {

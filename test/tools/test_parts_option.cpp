@@ -77,6 +77,23 @@ TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
   EXPECT_EQ(mesh("open.ply").points().cols(), 560);
 }
 
+TEST_F(PartsOption, EightPartsShareOneTimeLimit) {
+  std::string text;
+  for (int part = 0; part < 8; ++part)
+    text += linesOf(ellipsoid(100, {1.0, 0.8, 0.6}, {4.0 * part, 0.0, 0.0}));
+  write("eight.xyz", text);
+  const RunResult result =
+      tool({"eight.xyz", "out.ply", "-parts", "each", "-time-limit", "0", "-json", "report.json"});
+  EXPECT_NE(
+      result.errors.find("part 1, part 2, part 3, part 4, part 5, part 6, part 7, part 8: the "
+                         "time limit ended the work early"),
+      std::string::npos)
+      << result.errors;
+  EXPECT_EQ(mesh("out.ply").triangles.cols(), 8 * 196);
+  for (const json& part : json::parse(content("report.json"))["parts"])
+    EXPECT_EQ(part["is_out_of_time"], true);
+}
+
 TEST_F(PartsOption, OthersThanTheLargestAreLeftOutInEveryTool) {
   for (const Words& words : {Words{"largest"}, Words{"each", "-min-points", "201"}}) {
     tool(tool_test::with({"two.xyz", "out.ply", "-json", "report.json", "-parts"}, words));
