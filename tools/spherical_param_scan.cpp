@@ -12,7 +12,8 @@
 #include "common/text.h"
 #include "scan_shapes.h"
 
-#include <cstdint>
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,11 +25,8 @@ using namespace spherical_param::tools;
 
 const std::string tool_name = "pcl_spherical_param_scan";
 
-/// About as many triangles as the largest scan of the paper gives.
-constexpr std::size_t truth_triangles = 200000;
-
 const std::vector<OptionInfo> option_table = {
-    {"points", "N", "number of points, 4 and up (5000, or as the preset says)"},
+    {"points", "N", "number of points, 4 to 10000000 (5000, or as the preset says)"},
     {"noise", "B", "noise along the normal, relative to the mean distance of neighbours (0)"},
     {"seed", "S", "seed of the random placement (1)"},
     {"normals", "", "write the normals of the surface, too"},
@@ -55,39 +53,32 @@ std::string helpText(bool with_experts) {
          "\nExit code: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
+struct Preset {
+  std::string name;   ///< of the paper's scan, lower case
+  std::string shape;  ///< stands for it
+  std::size_t points = 0;
+};
+
+/// Table 1 of the paper.
+const std::vector<Preset> presets = {
+    {"tweety", "bird", 19818}, {"max", "head", 52809}, {"igea", "head", 134345}};
+
 std::string listText() {
   const auto line = [](const std::string& name, const std::string& text) {
     return "  " + name + std::string(14 - name.size(), ' ') + text + "\n";
   };
   std::string text = "Shapes:\n";
-  for (const ShapeInfo& shape : allShapes())
+  for (const Shape& shape : allShapes())
     text += line(shape.name, shape.description);
   text += "Presets:\n";
-  for (const ScanPreset& preset : allPresets())
+  for (const Preset& preset : presets)
     text += line(preset.name, "the shape " + preset.shape + " in place of the paper's scan (" +
                                   std::to_string(preset.points) + " points)");
   return text;
 }
 
-/// Sets shape and number of points from a name. \throw UsageError for an unknown one.
-void applyShape(const std::string& name, ScanOptions& scan) {
-  scan.shape.clear();
-  for (const ShapeInfo& shape : allShapes())
-    if (shape.name == lowerCase(name))
-      scan.shape = shape.name;
-  for (const ScanPreset& preset : allPresets())
-    if (preset.name == lowerCase(name)) {
-      scan.shape = preset.shape;
-      scan.points = preset.points;
-    }
-  if (scan.shape.empty())
-    throw UsageError("unknown shape " + inQuotes(name),
-                     "run '" + tool_name + " -list' for the shapes");
-}
-
 /// Shape and output, in either order.
-std::pair<std::string, std::string> shapeAndOutput(const CommandLine& command_line) {
-  const std::vector<std::string>& words = command_line.others();
+std::pair<std::string, std::string> shapeAndOutput(const std::vector<std::string>& words) {
   if (words.size() != 2)
     throw UsageError(words.empty()       ? "the shape is missing"
                      : words.size() == 1 ? "the shape or the output file is missing"
@@ -97,12 +88,21 @@ std::pair<std::string, std::string> shapeAndOutput(const CommandLine& command_li
   return {words[output_first ? 1 : 0], words[output_first ? 0 : 1]};
 }
 
-ScanOptions parseScanOptions(const std::string& shape, const CommandLine& command_line) {
+ScanOptions parseScanOptions(const std::string& name, const CommandLine& command_line) {
   ScanOptions scan;
-  applyShape(shape, scan);
-  if (command_line.has("points"))
-    scan.points = static_cast<std::size_t>(
-        parseInteger("points", command_line.value("points", ""), {4, 100000000}));
+  scan.shape = lowerCase(name);
+  for (const Preset& preset : presets)
+    if (preset.name == scan.shape) {
+      scan.shape = preset.shape;
+      scan.points = preset.points;
+      break;
+    }
+  if (std::none_of(allShapes().begin(), allShapes().end(),
+                   [&](const Shape& shape) { return shape.name == scan.shape; }))
+    throw UsageError("unknown shape " + inQuotes(name),
+                     "run '" + tool_name + " -list' for the shapes");
+  const std::string points = command_line.value("points", std::to_string(scan.points));
+  scan.points = static_cast<std::size_t>(parseInteger("points", points, {4, kMaxScanPoints}));
   scan.noise = parseReal("noise", command_line.value("noise", "0"), {0.0, 100.0, true});
   scan.seed = parseUnsigned("seed", command_line.value("seed", "1"));
   return scan;
@@ -112,38 +112,35 @@ void run(const std::vector<std::string>& words) {
   const CommandLine command_line(words, option_table);
   if (answerHelpOrVersion(command_line, tool_name, helpText))
     return;
-  if (command_line.has("list")) {
-    printAll(listText());
-    return;
-  }
-  const auto [shape, output] = shapeAndOutput(command_line);
+  if (command_line.has("list"))
+    return printAll(listText());
+  const auto [shape, output] = shapeAndOutput(command_line.others());
   const ScanOptions options = parseScanOptions(shape, command_line);
-  const FileFormat format = requireFormat(output, FileUse::WriteCloud);
   std::vector<std::string> outputs = {output};
-  if (command_line.has("truth"))
+  std::vector<FileFormat> formats = {requireFormat(output, FileUse::WriteCloud)};
+  if (command_line.has("truth")) {
     outputs.push_back(command_line.value("truth", ""));
-  const FileFormat truth_format =
-      outputs.size() > 1 ? requireFormat(outputs[1], FileUse::WriteMesh) : nullptr;
+    formats.push_back(requireFormat(outputs[1], FileUse::WriteMesh));
+  }
   checkOutputs({}, outputs);
 
-  std::vector<std::unique_ptr<OutputFile>> files;
-  const auto write = [&](const PointData& points, const spherical_param::Triangles& triangles,
-                         FileFormat as) {
-    files.push_back(std::make_unique<OutputFile>(outputs[files.size()]));
-    writeMesh(*files.back(), MeshView(points, triangles), as, Encoding::Binary);
-    files.back()->finish();
-  };
   const Scan scan = generateScan(options);
-  PointData cloud;
-  cloud.points = toPoints(scan.points);
+  PointData data;
+  data.points = toPoints(scan.points);
   if (command_line.has("normals"))
-    cloud.normals = toNormals(scan.normals);
-  write(cloud, {}, format);
-  if (truth_format) {
-    const TruthMesh truth = referenceMesh(options.shape, truth_triangles);
-    PointData vertices;
-    vertices.points = toPoints(truth.vertices);
-    write(vertices, truth.triangles, truth_format);
+    data.normals = toNormals(scan.normals);
+  spherical_param::Triangles triangles;
+  std::vector<std::unique_ptr<OutputFile>> files;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (i == 1) {
+      const TruthMesh truth = referenceMesh(options.shape);
+      data = {};
+      data.points = toPoints(truth.vertices);
+      triangles = truth.triangles;
+    }
+    files.push_back(std::make_unique<OutputFile>(outputs[i]));
+    writeMesh(*files[i], MeshView(data, triangles), formats[i], Encoding::Binary);
+    files[i]->finish();
   }
   printAll(std::to_string(options.points) + " points written to " + oneLine(output) + "\n");
   for (const auto& file : files)

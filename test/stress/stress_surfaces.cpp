@@ -80,7 +80,7 @@ struct Truth {
 };
 
 Truth truthOf(const std::string& shape) {
-  const TruthMesh mesh = referenceMesh(shape, 100000);
+  const TruthMesh mesh = referenceMesh(shape);
   Truth truth;
   truth.openings = openingsOf(mesh);
   truth.handles = shape == "torus" ? 1 : shape == "double_torus" ? 2 : 0;
@@ -176,7 +176,7 @@ int main(int argc, char** argv) {
                                              : std::vector<std::size_t>{2000, 8000, 30000};
   std::size_t tried = 0;
   std::size_t found = 0;
-  for (const ShapeInfo& shape : allShapes()) {
+  for (const Shape& shape : allShapes()) {
     const Truth truth = truthOf(shape.name);
     const bool has_noise = !arguments.quick && truth.kind != SurfaceKind::ClosedGenus0;
     for (const std::size_t points : sizes)

@@ -12,34 +12,29 @@
 namespace {
 
 using tool_test::RunResult;
+using Words = std::vector<std::string>;
 
 class ScanTool : public tool_test::ToolTest {
 protected:
-  RunResult scan(const std::vector<std::string>& arguments) const {
-    return run(SCAN_TOOL, arguments);
-  }
+  RunResult scan(const Words& words) const { return run(SCAN_TOOL, words); }
 };
 
 TEST_F(ScanTool, WritesTheScanAndItsNormalsOnRequestInEveryFormat) {
-  const spherical_param::tools::ScanOptions options = {"ellipsoid", 100, 0.25, 7};
   const spherical_param::Positions points =
-      spherical_param::tools::generateScan(options).points.cast<float>().cast<double>();
-  const std::vector<std::string> words = {"-points=100", "-noise", "0.25", "--seed", "7"};
-  const auto with = [&](std::vector<std::string> files) {
-    files.insert(files.end(), words.begin(), words.end());
-    return files;
-  };
-  ASSERT_EQ(scan(with({"out.ply", "ELLIPSOID"})).exit_code, 0);
-  EXPECT_EQ(mesh("out.ply").points(), points);
+      spherical_param::tools::generateScan({"ellipsoid", 100, 0.25, 7}).points;
+  Words words = {"out.ply", "ELLIPSOID", "-points=100", "-noise", "0.25", "--seed", "7"};
+  ASSERT_EQ(scan(words).exit_code, 0);
+  EXPECT_EQ(mesh("out.ply").points(), points.cast<float>().cast<double>());
   EXPECT_EQ(mesh("out.ply").properties.count("nx"), 0U);
+  words.emplace_back("-normals");
   for (const std::string extension : {"pcd", "ply", "obj", "xyz", "txt"}) {
-    const std::string name = "out." + extension;
-    ASSERT_EQ(scan(with({"ellipsoid", name, "-normals"})).exit_code, 0) << name;
-    const RunResult result = run(RECONSTRUCTION_TOOL, {name, extension + ".off"});
+    words[0] = "out." + extension;
+    ASSERT_EQ(scan(words).exit_code, 0) << extension;
+    const RunResult result = run(RECONSTRUCTION_TOOL, {words[0], extension + ".off"});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     // Nothing of points and normals is lost on the way, hence all meshes are the same.
-    EXPECT_EQ(content(extension + ".off").rfind("NOFF\n100 196 0\n", 0), 0U) << name;
-    EXPECT_EQ(content(extension + ".off"), content("pcd.off")) << name;
+    EXPECT_EQ(content(extension + ".off").rfind("NOFF\n100 196 0\n", 0), 0U) << extension;
+    EXPECT_EQ(content(extension + ".off"), content("pcd.off")) << extension;
   }
 }
 
@@ -58,11 +53,11 @@ TEST_F(ScanTool, TheTruthIsAFineClosedMesh) {
 TEST_F(ScanTool, ListHelpAndVersionSucceed) {
   const RunResult list = scan({"-list"});
   EXPECT_EQ(list.exit_code, 0);
-  for (const auto& shape : spherical_param::tools::allShapes())
-    EXPECT_NE(list.output.find("\n  " + shape.name), std::string::npos) << shape.name;
-  // The sizes of Table 1 of the paper.
-  for (const char* size : {"19818", "52809", "134345"})
-    EXPECT_NE(list.output.find(size), std::string::npos) << size;
+  Words expected = {"19818", "52809", "134345"};  // the sizes of Table 1 of the paper
+  for (const spherical_param::tools::Shape& shape : spherical_param::tools::allShapes())
+    expected.push_back("\n  " + shape.name);
+  for (const std::string& text : expected)
+    EXPECT_NE(list.output.find(text), std::string::npos) << text;
   for (const char* option : {"-h", "-version"}) {
     const RunResult result = scan({option});
     EXPECT_EQ(result.exit_code, 0);
