@@ -25,10 +25,9 @@ Distance ball(const Vector3d& center, double radius) {
   return [=](const Vector3d& p) { return (p - center).norm() - radius; };
 }
 
-/// Convex hull of two spheres, neither of which contains the other. It is the union of the spheres
-/// around a + s u with radius r_a - s slope. The one nearest to p touches the hull where the normal
-/// has the cosine `slope` with the axis, which puts its centre `shift` times the distance of p from
-/// the axis before the foot of p.
+/// Convex hull of two spheres, neither of which contains the other. It is the union of spheres
+/// along the axis. The one nearest to p has its centre before the foot of p, by `shift` times the
+/// distance of p from the axis.
 Distance cone(const Vector3d& a, double radius_a, const Vector3d& b, double radius_b) {
   const double length = (b - a).norm();
   const double slope = (radius_a - radius_b) / length;
@@ -91,13 +90,13 @@ Distance bumps(const Vector3d& center, double radius, double period, double ampl
   };
 }
 
+constexpr double carved = -1.0;
+
 struct Part {
   Distance distance;
   double blend = 0.0;  ///< size of the fillet, about
-  double sign = 1.0;   ///< -1: is carved out
+  double sign = 1.0;   ///< or carved
 };
-
-constexpr double carved = -1.0;
 
 /// Joins the parts of the middle one after the other, then those of either side, given for y > 0.
 /// The joint is the quadratic smooth minimum (Quilez, "Smooth minimum",
@@ -109,9 +108,9 @@ Distance body(const std::vector<Part>& middle, const std::vector<Part>& sides = 
       for (const auto& [distance, blend, sign] : parts) {
         const double a = sign * result;
         const double b = distance(at);
-        const double overlap = std::max(0.0, blend - std::abs(a - b));
-        result =
-            sign * (std::min(a, b) - (overlap > 0.0 ? overlap * overlap / (4.0 * blend) : 0.0));
+        const double overlap = blend - std::abs(a - b);
+        const double fillet = overlap > 0.0 ? 0.25 * overlap * overlap / blend : 0.0;
+        result = sign * (std::min(a, b) - fillet);
       }
     };
     join(middle, p);
@@ -402,7 +401,7 @@ Scan generateScan(const ScanOptions& options) {
     areas[t] = 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm();
 
   // Candidates, one from each of many parts of equal area. Those that are left keep a distance.
-  Positions points(3, std::max<Eigen::Index>(2000, 4 * static_cast<Eigen::Index>(options.points)));
+  Positions points(3, std::max<Eigen::Index>(2000, 3 * static_cast<Eigen::Index>(options.points)));
   std::mt19937_64 random(options.seed);
   const double part = areas.sum() / static_cast<double>(points.cols());
   Eigen::Index t = 0;

@@ -145,7 +145,7 @@ TEST_F(EveryTool, QuietPrintsNothingAndWritesTheSameBytesByAnyNumberOfThreads) {
 }
 
 TEST_F(EveryTool, StrictMakesFaultsAFailureAndWritesTheFiles) {
-  expectSuccess(SCAN_TOOL, {"bowl", "in.ply", "-points", "300"});
+  expectSuccess(SCAN_TOOL, {"bowl", "in.ply", "-points", "500"});
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
     EXPECT_EQ(expectSuccess(tool.program, with(tool.arguments, {"-quiet"})).errors, "");
