@@ -295,9 +295,9 @@ const std::vector<Shape>& allShapes() {
 }
 
 // Surface nets (Gibson 1998, "Constrained elastic surface nets"): a vertex in each cube of a
-// lattice that the surface cuts, and two triangles around each edge that it cuts. The result can be
-// pinched where the surface touches a cube twice. The lattice lies so that this happens to no shape
-// at 256 cells, which the tests check.
+// lattice that the surface cuts, and two triangles around each edge that it cuts. The mesh is not
+// manifold if the surface passes a cube twice. The lattice lies so that this does not happen at 256
+// cells, which the tests check for every shape.
 TruthMesh referenceMesh(const std::string& name, int cells) {
   const Shape& shape = findShape(name);
   const double step = 1.28 / cells;
@@ -305,14 +305,14 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
     return step * (node + Vector3d(0.27, 0.41, 0.13)).array() - 0.64;
   };
   const auto key = [](const Vector3i& node) { return node.dot(Vector3i(1, 1 << 9, 1 << 18)); };
-  std::unordered_map<int, double> values;
+  std::unordered_map<int, double> values;  // of nodes, by their keys
   const auto value = [&](const Vector3i& node) {
     const auto [entry, is_new] = values.try_emplace(key(node));
     if (is_new)
       entry->second = shape.distance(position(node.cast<double>()));
     return entry->second;
   };
-  // Where the surface cuts an edge; away from the nodes, where vertices of other cubes may be.
+  // Where the surface cuts an edge; not at a node, where vertices of several cubes would meet.
   const auto crossing = [&](const Vector3i& node, int axis) -> std::optional<Vector3d> {
     const double a = value(node);
     const double b = value(node + Vector3i::Unit(axis));
@@ -323,7 +323,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
 
   std::vector<Vector3i> cubes;  // with a vertex, by their lowest nodes
   std::vector<Vector3d> vertices;
-  std::vector<char> is_on_rim;  // of the opening
+  std::vector<bool> is_on_rim;  // of the opening
   std::unordered_map<int, Index> vertex_of_cube;
   const std::function<void(const Vector3i&, int)> visit = [&](const Vector3i& low, int size) {
     const Vector3d center = position(low.cast<double>().array() + 0.5 * size);
@@ -349,7 +349,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
     vertex_of_cube[key(low)] = static_cast<Index>(cubes.size());
     cubes.push_back(low);
     vertices.emplace_back(sum.hnormalized());
-    is_on_rim.push_back(is_open ? 1 : 0);
+    is_on_rim.push_back(is_open);
   };
   visit({0, 0, 0}, cells);
 
@@ -366,10 +366,8 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
       std::array<Index, 4> around = {vertex(cube), vertex(cube - a), vertex(cube - a - b),
                                      vertex(cube - b)};
       // No triangle has all its vertices on the rim.
-      const auto is_rim = [&](std::size_t i) {
-        return is_on_rim[static_cast<std::size_t>(around[i])] != 0;
-      };
-      if (is_rim(0) && is_rim(2))
+      const auto is_rim = [&](Index v) { return is_on_rim[static_cast<std::size_t>(v)]; };
+      if (is_rim(around[0]) && is_rim(around[2]))
         std::rotate(around.begin(), around.begin() + 1, around.end());
       triangles.emplace_back(around[0], around[1], around[2]);
       triangles.emplace_back(around[0], around[2], around[3]);
@@ -379,7 +377,7 @@ TruthMesh referenceMesh(const std::string& name, int cells) {
   mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
   forEach(vertices.size(), [&](std::size_t i) {
     Vector3d p = project(vertices[i], shape.distance);
-    for (int k = 0; k < 20 && is_on_rim[i] != 0; ++k)  // alternating projections
+    for (int k = 0; k < 20 && is_on_rim[i]; ++k)  // alternating projections
       p = project(project(p, shape.distance), shape.opening);
     mesh.vertices.col(static_cast<Eigen::Index>(i)) = p;
   });
@@ -400,7 +398,8 @@ Scan generateScan(const ScanOptions& options) {
   for (Eigen::Index t = 0; t < areas.size(); ++t)
     areas[t] = 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm();
 
-  // Candidates, one from each of many parts of equal area. Those that are left keep a distance.
+  // Three candidates for each point, one from each of as many parts of equal area. More candidates
+  // would give 3 % more spacing and take much longer.
   Positions points(3, std::max<Eigen::Index>(2000, 3 * static_cast<Eigen::Index>(options.points)));
   std::mt19937_64 random(options.seed);
   const double part = areas.sum() / static_cast<double>(points.cols());
@@ -432,7 +431,7 @@ Scan generateScan(const ScanOptions& options) {
   const int neighbors = static_cast<int>(std::min<std::size_t>(25, kept.size() - 1));
   const NeighborLists lists = findNearestNeighbors(scan.points, neighbors);
   const Positions clean = scan.points;
-  random.seed(~options.seed);  // not what the samples happen to leave
+  random.seed(~options.seed);  // another stream than that of the samples
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     double sum = 0.0;  // the point itself is in its list and adds nothing

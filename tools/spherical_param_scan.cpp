@@ -26,7 +26,8 @@ using namespace spherical_param::tools;
 const std::string tool_name = "pcl_spherical_param_scan";
 
 const std::vector<OptionInfo> option_table = {
-    {"points", "N", "number of points, 4 to 10000000 (5000, or as the preset says)"},
+    {"points", "N",
+     "number of points, 4 to " + std::to_string(kMaxScanPoints) + " (5000, or as the preset says)"},
     {"noise", "B", "noise along the normal, relative to the mean distance of neighbours (0)"},
     {"seed", "S", "seed of the random placement (1)"},
     {"normals", "", "write the normals of the surface, too"},
@@ -124,23 +125,24 @@ void run(const std::vector<std::string>& words) {
   }
   checkOutputs({}, outputs);
 
-  const Scan scan = generateScan(options);
-  PointData data;
-  data.points = toPoints(scan.points);
-  if (command_line.has("normals"))
-    data.normals = toNormals(scan.normals);
-  spherical_param::Triangles triangles;
   std::vector<std::unique_ptr<OutputFile>> files;
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    if (i == 1) {
-      const TruthMesh truth = referenceMesh(options.shape);
-      data = {};
-      data.points = toPoints(truth.vertices);
-      triangles = truth.triangles;
-    }
-    files.push_back(std::make_unique<OutputFile>(outputs[i]));
-    writeMesh(*files[i], MeshView(data, triangles), formats[i], Encoding::Binary);
-    files[i]->finish();
+  const auto write = [&](const PointData& data, const spherical_param::Triangles& triangles) {
+    const FileFormat format = formats[files.size()];
+    files.push_back(std::make_unique<OutputFile>(outputs[files.size()]));
+    writeMesh(*files.back(), MeshView(data, triangles), format, Encoding::Binary);
+    files.back()->finish();
+  };
+  const Scan scan = generateScan(options);
+  PointData cloud;
+  cloud.points = toPoints(scan.points);
+  if (command_line.has("normals"))
+    cloud.normals = toNormals(scan.normals);
+  write(cloud, {});
+  if (command_line.has("truth")) {
+    const TruthMesh truth = referenceMesh(options.shape);
+    PointData vertices;
+    vertices.points = toPoints(truth.vertices);
+    write(vertices, truth.triangles);
   }
   printAll(std::to_string(options.points) + " points written to " + oneLine(output) + "\n");
   for (const auto& file : files)
