@@ -345,7 +345,7 @@ TEST_F(ReconstructionTool, ATerminalShowsABarOfWhatTakesLong) {
   expectSuccess(SCAN_TOOL, {"pair", "pair.ply", "-points", "8000"});
   RunOptions options;
   options.terminal = true;
-  const RunResult result = tool({"pair.ply", "out.ply", "-time-limit", "1"}, options);
+  const RunResult result = tool({"pair.ply", "out.ply", "-time-limit", "3"}, options);
   EXPECT_NE(result.output.find("\r  optimization        ["), std::string::npos);
   // It does not stay.
   EXPECT_NE(result.output.find("\r\033[Kread"), std::string::npos);
