@@ -5,9 +5,9 @@
 #include "nearest_neighbor_graph.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <set>
+#include <utility>
 #include <vector>
 
 /// Neighbour graphs for tests of the core's stages.
@@ -40,44 +40,51 @@ inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists
                                            internal::StraySearch::Yes, execution);
 }
 
+/// Row i of a graph.
+inline std::vector<Index> rowOf(const Graph& graph, Index i) {
+  return rowOf(graph.offsets, graph.neighbors, i);
+}
+
+/// The graph of n nodes with some edges, all of length 1.
+inline Graph unitGraph(Eigen::Index n, const std::vector<std::pair<Index, Index>>& edges) {
+  std::vector<std::set<Index>> rows(static_cast<std::size_t>(n));
+  for (const auto& [i, j] : edges) {
+    rows[static_cast<std::size_t>(i)].insert(j);
+    rows[static_cast<std::size_t>(j)].insert(i);
+  }
+  Graph graph;
+  for (const std::set<Index>& row : rows) {
+    graph.neighbors.insert(graph.neighbors.end(), row.begin(), row.end());
+    graph.offsets.push_back(graph.neighbors.size());
+  }
+  graph.lengths.assign(graph.neighbors.size(), 1.0);
+  return graph;
+}
+
 /// The edges of triangles as a graph, with the lengths of the points.
 inline Graph graphOfMesh(const Positions& points, const Triangles& triangles) {
-  std::vector<std::pair<Index, Index>> entries;
+  std::vector<std::pair<Index, Index>> edges;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      entries.emplace_back(triangles(k, t), triangles((k + 1) % 3, t));
-      entries.emplace_back(triangles((k + 1) % 3, t), triangles(k, t));
-    }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  Graph graph;
-  graph.offsets.assign(static_cast<std::size_t>(points.cols()) + 1, 0);
-  for (const auto& [i, j] : entries) {
-    ++graph.offsets[static_cast<std::size_t>(i) + 1];
-    graph.neighbors.push_back(j);
-    graph.lengths.push_back((points.col(i) - points.col(j)).norm());
-  }
-  std::partial_sum(graph.offsets.begin(), graph.offsets.end(), graph.offsets.begin());
+    for (int k = 0; k < 3; ++k)
+      edges.emplace_back(triangles(k, t), triangles((k + 1) % 3, t));
+  Graph graph = unitGraph(points.cols(), edges);
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+      graph.lengths[e] =
+          (points.col(static_cast<Index>(i)) - points.col(graph.neighbors[e])).norm();
   return graph;
 }
 
 /// Fraction of the edges of triangles that join nodes more than two steps apart in a graph.
 inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triangles) {
-  const auto row = [&](Index i) {
-    const auto begin = graph.neighbors.begin() +
-                       static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i)]);
-    const auto end = graph.neighbors.begin() +
-                     static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i) + 1]);
-    return std::vector<Index>(begin, end);
-  };
   Index beyond = 0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
       const Index a = triangles(k, t);
       const Index b = triangles((k + 1) % 3, t);
       bool near = false;
-      for (const Index middle : row(a)) {
-        const std::vector<Index> next = row(middle);
+      for (const Index middle : rowOf(graph, a)) {
+        const std::vector<Index> next = rowOf(graph, middle);
         near = near || middle == b || std::find(next.begin(), next.end(), b) != next.end();
       }
       beyond += near ? 0 : 1;

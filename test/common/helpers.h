@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -22,6 +23,14 @@
 namespace spherical_param::test {
 
 constexpr double kPi = 3.14159265358979323846;
+
+/// Points one beside the other.
+inline Positions positionsOf(const std::vector<Eigen::Vector3d>& points) {
+  Positions result(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    result.col(static_cast<Eigen::Index>(i)) = points[i];
+  return result;
+}
 
 /// n points spread evenly over the unit sphere (golden-angle spiral).
 inline Positions spiralSphere(Index n) {
@@ -45,6 +54,13 @@ inline Positions randomSphere(Index n, std::uint64_t seed) {
   return points;
 }
 
+/// n independent random points in the cube [-1, 1]^3.
+inline Positions randomCube(Index n, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return Positions::NullaryExpr(3, n, [&] { return uniform(random); });
+}
+
 /// The m^3 - (m - 2)^3 grid points on the surface of the cube [0, 1]^3: full of ties.
 inline Positions cubeGrid(int m) {
   std::vector<Eigen::Vector3d> points;
@@ -53,10 +69,7 @@ inline Positions cubeGrid(int m) {
       for (int z = 0; z < m; ++z)
         if (std::min({x, y, z}) == 0 || std::max({x, y, z}) == m - 1)
           points.emplace_back(Eigen::Vector3d(x, y, z) / (m - 1));
-  Positions result(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    result.col(static_cast<Eigen::Index>(i)) = points[i];
-  return result;
+  return positionsOf(points);
 }
 
 /// Independent normal noise on each coordinate.
@@ -73,6 +86,31 @@ inline Positions horizontally(const Positions& a, const Positions& b) {
   Positions result(3, a.cols() + b.cols());
   result << a, b;
   return result;
+}
+
+/// The numbers from `begin` to `end`.
+inline std::vector<Index> range(Eigen::Index begin, Eigen::Index end) {
+  std::vector<Index> result(static_cast<std::size_t>(end - begin));
+  std::iota(result.begin(), result.end(), static_cast<Index>(begin));
+  return result;
+}
+
+/// The numbers from 0 to n in a random order.
+inline std::vector<Index> shuffledRange(Eigen::Index n, std::uint64_t seed) {
+  std::vector<Index> result = range(0, n);
+  std::shuffle(result.begin(), result.end(), std::mt19937_64(seed));
+  return result;
+}
+
+/// Row i of a graph, or list i of neighbour lists.
+inline std::vector<Index> rowOf(const std::vector<std::size_t>& offsets,
+                                const std::vector<Index>& indices, Index i) {
+  const auto row = static_cast<std::size_t>(i);
+  return {indices.begin() + static_cast<std::ptrdiff_t>(offsets[row]),
+          indices.begin() + static_cast<std::ptrdiff_t>(offsets[row + 1])};
+}
+inline std::vector<Index> rowOf(const NeighborLists& lists, Index i) {
+  return rowOf(lists.offsets, lists.indices, i);
 }
 
 /// The k nearest other points of each point, by brute force; ties by index.
@@ -100,10 +138,8 @@ inline auto bruteForceSearch(const Positions& points) {
     const NeighborLists all = bruteForceNeighbors(points, count);
     NeighborLists answer;
     for (const Index query : queries) {
-      const auto i = static_cast<std::size_t>(query);
-      answer.indices.insert(answer.indices.end(),
-                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i]),
-                            all.indices.begin() + static_cast<std::ptrdiff_t>(all.offsets[i + 1]));
+      const std::vector<Index> nearest = rowOf(all, query);
+      answer.indices.insert(answer.indices.end(), nearest.begin(), nearest.end());
       answer.offsets.push_back(answer.indices.size());
     }
     return answer;
@@ -253,20 +289,24 @@ inline double volumeOf(const Positions& points, const Triangles& triangles) {
   return sum / 6.0;
 }
 
-/// A closed tube of radius 1 whose axis is an arc, with its true triangles.
-struct Tube {
+/// Points and triangles over them.
+struct Mesh {
   Positions points;
   Triangles triangles;
 };
 
+using Tube = Mesh;
+
+/// A closed tube of radius 1 whose axis is an arc, with its true triangles.
+///
 /// \param length of the axis, in radii, besides the two ends.
 /// \param turn   [rad] that the axis bends by in all; 0 is straight.
 /// \param ring   points around.
-inline Tube bentTube(double length, double turn, int ring) {
+inline Mesh bentTube(double length, double turn, int ring) {
   const double spacing = 2.0 * kPi / ring;
   const int rings = std::max(2, static_cast<int>(length / (spacing * std::sqrt(3.0) / 2.0)));
   const auto n = static_cast<Index>(rings * ring + 2);
-  Tube tube{Positions(3, n), Triangles(3, 2 * n - 4)};
+  Mesh tube{Positions(3, n), Triangles(3, 2 * n - 4)};
   const auto place = [&](double s, double across, double angle) {
     // The frame of the arc at s: the axis runs in the plane of x and y.
     const double bend = turn * s / length;

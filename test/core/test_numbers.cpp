@@ -38,10 +38,7 @@ Positions sphereWith(const std::vector<double>& radii, int ring, double turn, do
       points.emplace_back(r * std::cos(angle), r * std::sin(angle),
                           -r * r / (1.0 + std::sqrt(1.0 - r * r)));
     }
-  Positions result(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    result.col(static_cast<Eigen::Index>(i)) = points[i];
-  return result;
+  return test::positionsOf(points);
 }
 
 Positions sphereWithDisc(double radius, int count = 30) {
@@ -107,7 +104,7 @@ TEST(Numbers, TheMeshIsThatOfAnyExtentDownToDenormalNumbers) {
 }
 
 TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
-  const test::Tube tube = test::bentTube(90.0, 0.0, 8);
+  const test::Mesh tube = test::bentTube(90.0, 0.0, 8);
   const Surface result = meshOf(tube.points);
   EXPECT_EQ(canonical(result.triangles), canonical(tube.triangles));
   // Its ends are some units in the last place of 1 wide, as exp(-45 / sqrt(2)) = 1.5e-14 has it.

@@ -1,7 +1,6 @@
-#include "reconstructions.h"
-
 #include "embedding.h"
 #include "graphs.h"
+#include "reconstructions.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/option_table.h"
 
@@ -13,7 +12,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <set>
 #include <stdexcept>
@@ -72,9 +70,7 @@ TEST(Reconstruct, EllipsoidIsMeshedTrulyByAllMethods) {
 TEST(Reconstruct, FourToTenPointsAreMeshed) {
   for (Index n = 4; n <= 10; ++n)
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
-      std::mt19937_64 random(seed);
-      std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-      const Positions points = Positions(3, n).unaryExpr([&](double) { return uniform(random); });
+      const Positions points = test::randomCube(n, seed);
       for (const Options& options : bothMethods())
         expectGuarantees(points, mesh(points, seed < 2 ? options : quick(options)));
     }
@@ -181,9 +177,7 @@ TEST(Reconstruct, MovedAndPermutedCloudGivesTheSameMesh) {
   std::uniform_real_distribution<double> jitter(-0.01, 0.01);
   for (Positions points : {ellipsoid(1000), test::bentTube(12.0, 2.0, 12).points}) {
     points = points.unaryExpr([&](double x) { return x + jitter(random); });
-    std::vector<Index> order(static_cast<std::size_t>(points.cols()));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::shuffle(order.begin(), order.end(), random);
+    const std::vector<Index> order = test::shuffledRange(points.cols(), 3);
     const Eigen::Matrix3d rotation =
         Eigen::AngleAxisd(1.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
     Positions moved = 7.0 * rotation * points(Eigen::all, order);
@@ -210,10 +204,7 @@ TEST(Reconstruct, MovedAndPermutedCloudGivesTheSameMesh) {
 Positions shuffledWithRepetitions(Index n) {
   Positions points = test::withNoise(ellipsoid(n), 0.004, 10);
   points = horizontally(points, points.leftCols(n / 10));
-  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::shuffle(order.begin(), order.end(), std::mt19937_64(7));
-  return points(Eigen::all, order);
+  return points(Eigen::all, test::shuffledRange(points.cols(), 7));
 }
 
 TEST(Reconstruct, AskingForDetailsChangesNoBit) {

@@ -12,6 +12,7 @@
 namespace spherical_param {
 namespace {
 
+using test::horizontally;
 using test::randomSphere;
 using test::spiralSphere;
 using test::withNoise;
@@ -24,21 +25,17 @@ double roughnessOf(const Positions& points) {
 double shortestDistance(const Positions& points) {
   const NeighborLists lists = findNearestNeighbors(points, 1);
   double shortest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < lists.size(); ++i)
-    for (std::size_t e = lists.offsets[i]; e < lists.offsets[i + 1]; ++e)
-      if (lists.indices[e] != static_cast<Index>(i))
-        shortest = std::min(
-            shortest,
-            (points.col(lists.indices[e]) - points.col(static_cast<Eigen::Index>(i))).norm());
+  for (Index i = 0; i < points.cols(); ++i)
+    for (const Index j : test::rowOf(lists, i))
+      if (j != i)
+        shortest = std::min(shortest, (points.col(i) - points.col(j)).norm());
   return shortest;
 }
 
 /// Two spheres around each other, as two scans of one surface that do not quite fit.
 Positions twoLayers(Index n, double distance) {
-  Positions points(3, 2 * n);
-  points << (1.0 - distance / 2.0) * randomSphere(n, 1),
-      (1.0 + distance / 2.0) * randomSphere(n, 2);
-  return points;
+  return horizontally((1.0 - distance / 2.0) * randomSphere(n, 1),
+                      (1.0 + distance / 2.0) * randomSphere(n, 2));
 }
 
 /// Points that came together are numbered by the first of them, all are in use, and the report is
@@ -122,8 +119,7 @@ TEST(Consolidation, HardlyTouchesCleanPoints) {
 
 TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
   EXPECT_EQ(consolidate(Positions(3, 0)).points.cols(), 0);
-  Positions few(3, 12);
-  few << spiralSphere(10), spiralSphere(10).leftCols(2);
+  const Positions few = horizontally(spiralSphere(10), spiralSphere(10).leftCols(2));
   const Consolidation result = consolidate(few);
   EXPECT_EQ(result.points, few.leftCols(10));
   EXPECT_EQ(result.point_of_input[10], 0);
@@ -131,10 +127,9 @@ TEST(Consolidation, FewPointsDuplicatesAndLonePointsStay) {
   EXPECT_EQ(result.report.merged, 0U);
   EXPECT_EQ(result.report.max_displacement, 0.0);
 
-  Positions with_lone_point(3, 2001);
-  with_lone_point << withNoise(spiralSphere(2000), 0.01, 7), Eigen::Vector3d(2.0, 0.0, 0.0);
-  const Consolidation lone = consolidate(with_lone_point);
-  EXPECT_EQ(lone.points.rightCols<1>(), Eigen::Vector3d(2.0, 0.0, 0.0));
+  const Eigen::Vector3d lone(2.0, 0.0, 0.0);
+  const Positions with_lone = horizontally(withNoise(spiralSphere(2000), 0.01, 7), lone);
+  EXPECT_EQ(consolidate(with_lone).points.rightCols<1>(), lone);
 }
 
 TEST(Consolidation, APowerOfTwoScalesTheResult) {
@@ -147,9 +142,8 @@ TEST(Consolidation, APowerOfTwoScalesTheResult) {
 }
 
 TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
-  Positions points(3, 2050);
-  points << withNoise(randomSphere(2000, 10), 0.02, 11), Positions::Zero(3, 50);
-  points.rightCols(50) = points.leftCols(50);
+  const Positions base = withNoise(randomSphere(2000, 10), 0.02, 11);
+  const Positions points = horizontally(base, base.leftCols(50));
   const Surface plain = test::surfaceOf(points);
   EXPECT_EQ(plain.consolidated.cols(), 0);
   EXPECT_EQ(plain.moved().cols(), 0);

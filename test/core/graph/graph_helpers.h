@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graphs.h"
 #include "helpers.h"
 #include "neighbor_graph.h"
 #include "spherical_param/reconstruct.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <random>
 #include <set>
 #include <utility>
@@ -18,13 +18,6 @@ namespace spherical_param::test {
 
 using Edges = std::set<std::pair<Index, Index>>;
 
-/// The numbers from `begin` to `end`.
-inline std::vector<Index> range(Eigen::Index begin, Eigen::Index end) {
-  std::vector<Index> result(static_cast<std::size_t>(end - begin));
-  std::iota(result.begin(), result.end(), static_cast<Index>(begin));
-  return result;
-}
-
 /// The outliers of a cloud that reconstruct() leaves out.
 inline std::vector<Index> outliersOf(const Positions& points, OutlierMode mode,
                                      double sigma = 4.0) {
@@ -32,20 +25,6 @@ inline std::vector<Index> outliersOf(const Positions& points, OutlierMode mode,
   options.outliers = mode;
   options.outlier_sigma = sigma;
   return findOutliers(points, options);
-}
-
-/// Row i of a graph, or list i of neighbour lists.
-inline std::vector<Index> rowOf(const std::vector<std::size_t>& offsets,
-                                const std::vector<Index>& indices, Index i) {
-  const auto row = static_cast<std::size_t>(i);
-  return {indices.begin() + static_cast<std::ptrdiff_t>(offsets[row]),
-          indices.begin() + static_cast<std::ptrdiff_t>(offsets[row + 1])};
-}
-inline std::vector<Index> rowOf(const Graph& graph, Index i) {
-  return rowOf(graph.offsets, graph.neighbors, i);
-}
-inline std::vector<Index> rowOf(const NeighborLists& lists, Index i) {
-  return rowOf(lists.offsets, lists.indices, i);
 }
 
 /// All pairs of neighbours, in both directions.

@@ -7,21 +7,19 @@ namespace {
 
 /// Points with a random tree as their graph, and some more edges.
 Graph randomGraph(Index n, int extra, std::mt19937_64& random) {
-  std::vector<Bridge> edges;
+  std::vector<std::pair<Index, Index>> edges;
   const auto below = [&](Index end) {
     return static_cast<Index>(random() % static_cast<std::uint64_t>(end));
   };
   for (Index i = 1; i < n; ++i)
-    edges.push_back({below(i), i, 1.0});
+    edges.emplace_back(below(i), i);
   for (; extra > 0; --extra) {
     const Index i = below(n);
     const Index j = below(n);
     if (i != j)
-      edges.push_back({std::min(i, j), std::max(i, j), 1.0});
+      edges.emplace_back(i, j);
   }
-  Graph graph;
-  graph.offsets.assign(static_cast<std::size_t>(n) + 1, 0);
-  return withEdges(graph, edges);
+  return test::unitGraph(n, edges);
 }
 
 TEST(GraphBuilding, PartsThatHangByOneNodeAreTiedInAnyGraph) {
@@ -55,14 +53,12 @@ TEST(GraphBuilding, PartsThatShareANodeAreTiedByTheClosestPairs) {
   for (const Index end : {12, 30}) {
     const auto is_inner = [&](Index i) { return i >= 2 && i < end; };
     const Positions points = test::randomSphere(40, 2);
-    Graph graph;
-    graph.offsets.assign(41, 0);
-    std::vector<Bridge> edges;
+    std::vector<std::pair<Index, Index>> edges;
     for (Index i = 0; i < 40; ++i)
       for (Index j = i + 1; j < 40; ++j)
         if (i == 1 || j == 1 || is_inner(i) == is_inner(j))
-          edges.push_back({i, j, 1.0});
-    const std::vector<Bridge> bridges = articulationBridges(points, withEdges(graph, edges), 3);
+          edges.emplace_back(i, j);
+    const std::vector<Bridge> bridges = articulationBridges(points, test::unitGraph(40, edges), 3);
     ASSERT_EQ(bridges.size(), 3U);
     std::set<Index> taken{1};
     for (const Bridge& bridge : bridges) {

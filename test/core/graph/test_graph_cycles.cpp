@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -14,17 +14,6 @@ namespace {
 
 int cyclesOf(const Graph& graph, int reach) {
   return countCycles(graph, reach).value_or(-1);
-}
-
-/// Of unit lengths.
-Graph graphOf(const std::vector<std::set<Index>>& rows) {
-  Graph graph;
-  for (const std::set<Index>& row : rows) {
-    graph.neighbors.insert(graph.neighbors.end(), row.begin(), row.end());
-    graph.offsets.push_back(graph.neighbors.size());
-  }
-  graph.lengths.assign(graph.neighbors.size(), 1.0);
-  return graph;
 }
 
 TEST(GraphCycles, AHandleHasTwoAndOpeningsHaveOneLessThanThereAre) {
@@ -59,27 +48,25 @@ TEST(GraphCycles, AHandleHasTwoAndOpeningsHaveOneLessThanThereAre) {
 TEST(GraphCycles, ARingOfThreeTimesTheReachDoesNotCount) {
   for (const int reach : {1, 2, 3})
     for (const Index length : {3 * reach, 3 * reach + 1}) {
-      std::vector<std::set<Index>> rows(static_cast<std::size_t>(length));
+      std::vector<std::pair<Index, Index>> ring;
       for (Index v = 0; v < length; ++v)
-        rows[static_cast<std::size_t>(v)] = {(v + 1) % length, (v + length - 1) % length};
-      EXPECT_EQ(cyclesOf(graphOf(rows), reach), length == 3 * reach ? 0 : 1) << reach;
+        ring.emplace_back(v, (v + 1) % length);
+      EXPECT_EQ(cyclesOf(test::unitGraph(length, ring), reach), length == 3 * reach ? 0 : 1)
+          << reach;
     }
 }
 
 TEST(GraphCycles, OfNoSurfaceAreNotCounted) {
   // Random edges: hundreds of cycles, and within three steps of a node half of all nodes.
   std::mt19937 random(5);
-  std::vector<std::set<Index>> chaos(400);
-  for (std::size_t v = 0; v < chaos.size(); ++v)
-    for (int i = 0; i < 3; ++i) {
-      const std::size_t w = random() % chaos.size();
-      if (w != v) {
-        chaos[v].insert(static_cast<Index>(w));
-        chaos[w].insert(static_cast<Index>(v));
-      }
-    }
-  EXPECT_FALSE(countCycles(graphOf(chaos), 1));
-  EXPECT_FALSE(countCycles(graphOf(chaos), 3));
+  std::vector<std::pair<Index, Index>> edges;
+  for (Index v = 0; v < 400; ++v)
+    for (int i = 0; i < 3; ++i)
+      if (const auto w = static_cast<Index>(random() % 400); w != v)
+        edges.emplace_back(v, w);
+  const Graph chaos = test::unitGraph(400, edges);
+  EXPECT_FALSE(countCycles(chaos, 1));
+  EXPECT_FALSE(countCycles(chaos, 3));
 }
 
 }  // namespace

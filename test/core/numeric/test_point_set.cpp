@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -71,12 +71,8 @@ TEST(PointSet, PlanesAreFoundExactlyWhateverTheMagnitudes) {
 
 TEST(PointSet, PlanesOfTinyDifferencesBesideLargeOnesAreFoundExactly) {
   const double m = std::numeric_limits<double>::max();
-  const auto are_coplanar = [](std::initializer_list<Eigen::Vector3d> places) {
-    Positions points(3, static_cast<Eigen::Index>(places.size()));
-    Eigen::Index i = 0;
-    for (const Eigen::Vector3d& place : places)
-      points.col(i++) = place;
-    return areCoplanar(points);
+  const auto are_coplanar = [](const std::vector<Eigen::Vector3d>& places) {
+    return areCoplanar(test::positionsOf(places));
   };
   for (const double tiny : {1e-100, 1e-120, 1e-200, 0x1p-1074}) {
     SCOPED_TRACE(tiny);
