@@ -1,5 +1,4 @@
 #include "filled_graph.h"
-#include "graphs.h"
 
 #include "graph_cycles.h"
 #include "graph_helpers.h"
@@ -10,6 +9,18 @@ namespace spherical_param {
 namespace {
 
 using internal::FilledGraph;
+
+void expectSortedSymmetricRowsWithPositiveLengths(const Graph& graph) {
+  std::map<std::pair<Index, Index>, double> entries;
+  for (std::size_t v = 0; v < graph.size(); ++v)
+    for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {
+      EXPECT_TRUE(e == graph.offsets[v] || graph.neighbors[e - 1] < graph.neighbors[e]);
+      EXPECT_GT(graph.lengths[e], 0.0);
+      entries[{static_cast<Index>(v), graph.neighbors[e]}] = graph.lengths[e];
+    }
+  for (const auto& [edge, length] : entries)
+    EXPECT_EQ(entries.at({edge.second, edge.first}), length);
+}
 
 TEST(FilledGraph, IsThatOfAClosedSurface) {
   for (const Positions& points :
@@ -28,32 +39,15 @@ TEST(FilledGraph, IsThatOfAClosedSurface) {
     EXPECT_EQ(static_cast<std::size_t>(filled.points.cols()), filled.graph.size());
     EXPECT_EQ(filled.points.leftCols(points.cols()), points);
     EXPECT_TRUE(filled.points.allFinite());
+    expectSortedSymmetricRowsWithPositiveLengths(filled.graph);
   }
-}
-
-TEST(FilledGraph, HasSortedSymmetricRowsWithPositiveLengths) {
-  const Positions points = test::sphereWithHoles(1500, 3, 0.4);
-  const Graph graph = test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
-  const Graph filled = internal::fillOpenings(points, graph, findOpenings(points, graph)).graph;
-  std::map<std::pair<Index, Index>, double> entries;
-  for (std::size_t v = 0; v < filled.size(); ++v)
-    for (std::size_t e = filled.offsets[v]; e < filled.offsets[v + 1]; ++e) {
-      EXPECT_TRUE(e == filled.offsets[v] || filled.neighbors[e - 1] < filled.neighbors[e]);
-      EXPECT_GT(filled.lengths[e], 0.0);
-      entries[{static_cast<Index>(v), filled.neighbors[e]}] = filled.lengths[e];
-    }
-  for (const auto& [edge, length] : entries)
-    EXPECT_EQ(entries.at({edge.second, edge.first}), length);
 }
 
 TEST(FilledGraph, KeepsFalseEdgesThatJoinTheRest) {
   // A path of three nodes, none of them at an opening.
   Positions points(3, 3);
   points << 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0;
-  Graph path;
-  path.offsets = {0, 1, 3, 4};
-  path.neighbors = {1, 0, 2, 1};
-  path.lengths = {1.0, 1.0, 1.0, 1.0};
+  const Graph path = test::unitGraph(3, {{0, 1}, {1, 2}});
   Openings openings;
   openings.spacing = {1.0, 1.0, 1.0};
   openings.false_edges = {{0, 1}};

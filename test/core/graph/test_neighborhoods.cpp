@@ -3,7 +3,6 @@
 #include "../reconstructions.h"
 #include "graph_helpers.h"
 #include "local_delaunay_graph.h"
-#include "neighbor_search.h"
 
 #include <tuple>
 
@@ -97,31 +96,6 @@ TEST(Neighborhoods, OfSomePointsAreThoseOfThesePointsAlone) {
         }
       }
   }
-}
-
-TEST(Neighbors, OfASubsetAreTheNearestWithinIt) {
-  const Positions points = test::randomSphere(300, 5);
-  NodeSubset subset{someOf(range(0, 300), 0.4), std::vector<Index>(300, -1), {}};
-  for (std::size_t i = 0; i < subset.old_of_new.size(); ++i)
-    subset.new_of_old[slotOf(subset.old_of_new[i])] = static_cast<Index>(i);
-  const Positions some = points(Eigen::all, subset.old_of_new);
-  const auto m = static_cast<Index>(some.cols());
-  for (const NeighborSearch& search :
-       {makeNeighborSearch(points), NeighborSearch(test::bruteForceSearch(points))})
-    for (const int count : {1, 12, 200}) {
-      const Neighbors all = findNeighbors(search, 300, count);
-      const Neighbors found = neighborsOf(some, all, count, subset);
-      const NeighborLists within = searchWithin(some, search, subset)(range(0, m), count);
-      const NeighborLists expected = test::bruteForceNeighbors(some, count);
-      for (Index i = 0; i < m; ++i)
-        for (const NeighborLists& lists : {found.lists, within}) {
-          const std::vector<Index> list = rowOf(lists, i);
-          std::set<Index> others(list.begin(), list.end());
-          others.erase(i);
-          const std::vector<Index> nearest = rowOf(expected, i);
-          EXPECT_EQ(others, std::set<Index>(nearest.begin(), nearest.end()));
-        }
-    }
 }
 
 }  // namespace
