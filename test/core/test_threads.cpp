@@ -1,5 +1,6 @@
 // What holds of every stage and of reconstruct(), by one table: the result is the same, bit by bit,
-// for any number of threads; progress comes from the calling thread and can end the work.
+// for any number of threads; progress comes from the calling thread and can end the work. What
+// holds of every public function that takes a mesh, by another: bad arguments are refused.
 
 #include "consolidation.h"
 #include "embedding.h"
@@ -21,11 +22,14 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -50,7 +54,7 @@ struct Inputs {
   Positions holed = test::sphereWithHoles(40000, 3, 0.3);
   Graph holed_graph = test::graphOf(holed, findNearestNeighbors(holed, 24)).graph;
   test::Scene torus = test::cutTorus(2100, 24, 0.05);
-  test::Tube knot = test::bentTube(20.0, 2.2 * test::kPi, 86);  // into itself
+  test::Mesh knot = test::bentTube(20.0, 2.2 * test::kPi, 86);  // into itself
   Positions rough = test::withNoise(test::randomSphere(6000, 8), 0.02, 9);
   Positions scattered = test::horizontally(points, 2.0 * test::spiralSphere(40));
 
@@ -266,6 +270,64 @@ TEST(Threads, ThatCallReceiveTheProgressAndCanEndEveryStage) {
       EXPECT_EQ(calls, last);
     }
   }
+}
+
+struct MeshFunction {
+  const char* name;
+  std::function<void(const Positions&, const Triangles&, int threads)> call;
+  bool takes_threads = true;
+};
+
+TEST(PublicFunctions, RefuseBadArguments) {
+  const std::vector<MeshFunction> functions{
+      {"checkTopology",
+       [](const Positions& p, const Triangles& t, int threads) {
+         checkTopology(t, static_cast<std::size_t>(p.cols()), threads);
+       }},
+      {"measureMesh",
+       [](const Positions& p, const Triangles& t, int threads) { measureMesh(p, t, threads); }},
+      {"findSelfIntersections",
+       [](const Positions& p, const Triangles& t, int threads) {
+         findSelfIntersections(p, t, test::onThreads(threads));
+       }},
+      {"findSelfIntersectionsOf",
+       [](const Positions& p, const Triangles& t, int threads) {
+         findSelfIntersectionsOf(p, t, {0}, test::onThreads(threads));
+       }},
+      {"areaWeightedNormals",
+       [](const Positions& p, const Triangles& t, int) { areaWeightedNormals(p, t); }, false},
+      {"signedVolume", [](const Positions& p, const Triangles& t, int) { signedVolume(p, t); },
+       false},
+      {"surfaceArea", [](const Positions& p, const Triangles& t, int) { surfaceArea(p, t); },
+       false}};
+  const Positions points = test::spiralSphere(9);
+  const Triangles triangles = triangulateSphere(points);
+  for (const auto& [name, call, takes_threads] : functions) {
+    SCOPED_TRACE(name);
+    EXPECT_NO_THROW(call(points, triangles, 1024));
+    for (const int threads : {-1, 1025})
+      if (takes_threads) {
+        EXPECT_THROW(call(points, triangles, threads), InvalidInput);
+      }
+    for (const Index vertex : {-1, 9}) {
+      Triangles wrong = triangles;
+      wrong(1, 3) = vertex;
+      EXPECT_THROW(call(points, wrong, 1), InvalidInput);
+    }
+  }
+  for (const Index triangle : {-1, 14})
+    EXPECT_THROW(findSelfIntersectionsOf(points, triangles, {triangle}), InvalidInput);
+  EXPECT_THROW(triangulateSphere(points.leftCols(3)), InvalidInput);
+  for (const double factor : {1.1, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Positions wrong = points;
+    wrong.col(4) *= factor;
+    EXPECT_THROW(triangulateSphere(wrong), InvalidInput);
+    if (!std::isfinite(factor)) {
+      EXPECT_THROW(findSelfIntersections(wrong, triangles), InvalidInput);
+    }
+  }
+  // 50,000 lists of as many entries are more than 2^31.
+  EXPECT_THROW(findNearestNeighbors(test::spiralSphere(50000), 50000), InvalidInput);
 }
 
 }  // namespace
