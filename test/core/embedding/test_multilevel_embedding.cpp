@@ -33,26 +33,19 @@ TEST(MultilevelEmbedding, IcosahedronByHand) {
   EXPECT_NEAR(result.energy, 30.0 * 4.0 / (golden + 2.0) / 3.0, 1e-9);
 }
 
-TEST(MultilevelEmbedding, TangentialLaplacianVanishes) {
+TEST(MultilevelEmbedding, TangentialLaplacianVanishesWithEveryExponent) {
   const Cloud cloud = dentedCloud(4000);
-  const Embedding result = solve(cloud.graph, converging(1e-12));
-  EXPECT_TRUE(result.report.converged());
-  EXPECT_LT(meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive), 1e-12);
-  EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
-  EXPECT_EQ(result.report.residuals.back(), result.report.residual);
-  EXPECT_GT(result.report.residuals.front(), 1e-5);
-}
-
-TEST(MultilevelEmbedding, OtherExponentsConverge) {
-  const Cloud cloud = dentedCloud(2000);
-  for (const double exponent : {2.5, 4.0, 6.0}) {
-    Setting options = converging(1e-11);
+  for (const double exponent : {2.5, 3.0, 4.0, 6.0}) {
+    Setting options = converging(1e-12);
     options.exponent = exponent;
     const Embedding result = solve(cloud.graph, options);
     EXPECT_TRUE(result.report.converged()) << exponent;
     EXPECT_LT(
         meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive, exponent),
-        1e-11);
+        1e-12);
+    EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+    EXPECT_EQ(result.report.residuals.back(), result.report.residual);
+    EXPECT_GT(result.report.residuals.front(), 1e-5);
     EXPECT_LT(fractionBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions)), 1e-3);
   }
 }
@@ -73,7 +66,7 @@ TEST(MultilevelEmbedding, SameMinimumWhateverTheStart) {
 }
 
 TEST(MultilevelEmbedding, UnfoldsABentTubeThatTheIterationFolds) {
-  const Tube tube = bentTube(25.0, 4.0, 16);
+  const Mesh tube = bentTube(25.0, 4.0, 16);
   const Graph graph = graphOfMesh(tube.points, tube.triangles);
   const auto folded = [&](const Positions& directions) {
     return fractionBeyondTwoSteps(graph, triangulateSphere(directions));
@@ -81,21 +74,6 @@ TEST(MultilevelEmbedding, UnfoldsABentTubeThatTheIterationFolds) {
   EXPECT_GT(folded(internal::embedIteratively(graph, tube.points, {}, {}, {}).directions), 0.01);
   EXPECT_LT(folded(solve(graph).directions), 0.001);
   EXPECT_LT(folded(solve(graph, converging(1e-9)).directions), 0.001);
-}
-
-TEST(MultilevelEmbedding, LongTubesDoNotUnderflow) {
-  // Along a tube of radius r the map shrinks like exp(-s / (r sqrt 2)): 6e-10 from the middle of
-  // this one to its ends.
-  for (const double turn : {0.0, 3.0}) {
-    const Tube tube = bentTube(60.0, turn, 12);
-    const Graph graph = graphOfMesh(tube.points, tube.triangles);
-    const Embedding result = solve(graph, {}, 1000, 1);
-    ASSERT_NE(result.report.stop_reason, StopReason::Collapsed);
-    const SphereTriangulation sphere =
-        triangulateSphere(result.directions, TriangulationMethod::Incremental);
-    EXPECT_EQ(sphere.report.coincident, 0);
-    EXPECT_LT(fractionBeyondTwoSteps(graph, sphere.triangles), 0.01);
-  }
 }
 
 TEST(MultilevelEmbedding, AllWeightsUnfoldWithoutCollapse) {
@@ -165,17 +143,11 @@ TEST(MultilevelEmbedding, GraphsOfAllSizes) {
 
 TEST(MultilevelEmbedding, CollapsedStartsAreRejectedAndABarrierIsAdded) {
   // A path: nothing holds its ends apart.
-  Graph path;
   constexpr Index n = 30;
-  for (Index i = 0; i < n; ++i) {
-    for (const Index j : {i - 1, i + 1})
-      if (j >= 0 && j < n) {
-        path.neighbors.push_back(j);
-        path.lengths.push_back(1.0);
-      }
-    path.offsets.push_back(path.neighbors.size());
-  }
-  const Embedding result = solve(path);
+  std::vector<std::pair<Index, Index>> path;
+  for (Index i = 1; i < n; ++i)
+    path.emplace_back(i - 1, i);
+  const Embedding result = solve(unitGraph(n, path));
   // Two without a barrier, and four times two with one that pulls hard at each.
   EXPECT_EQ(result.starts, 10);
   EXPECT_EQ(result.collapsed_starts, 2);

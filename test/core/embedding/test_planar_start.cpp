@@ -1,4 +1,3 @@
-#include "graphs.h"
 #include "planar_start.h"
 
 #include "embeddings.h"
@@ -13,7 +12,7 @@ using namespace test;
 TEST(PlanarStart, IsUnfolded) {
   // Tutte's theorem: only the outer face may be turned over. A few large triangles next to it may
   // be as well, since straight edges in the plane are not great circles on the sphere.
-  const Tube tube = bentTube(20.0, 3.0, 12);
+  const Mesh tube = bentTube(20.0, 3.0, 12);
   const Graph graph = graphOfMesh(tube.points, tube.triangles);
   const Positions u = internal::planarStart(graph, internal::centralNodes(graph).front());
   int outward = 0;
@@ -29,7 +28,7 @@ TEST(PlanarStart, IsUnfolded) {
 }
 
 TEST(PlanarStart, CentralNodesOfATubeAreInItsMiddle) {
-  const Tube tube = bentTube(30.0, 0.0, 10);
+  const Mesh tube = bentTube(30.0, 0.0, 10);
   const Graph graph = graphOfMesh(tube.points, tube.triangles);
   EXPECT_NEAR(tube.points(0, internal::centralNodes(graph).front()), 15.0, 2.0);
 }
