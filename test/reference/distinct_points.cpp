@@ -1,16 +1,25 @@
 #include "reference/distinct_points.h"
 
-#include "space_filling_curve.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <utility>
 
 namespace spherical_param::reference {
+namespace {
+
+/// The bits of the three numbers of a cell in turns.
+std::uint64_t mortonKey(const Eigen::Vector3d& cell) {
+  std::uint64_t key = 0;
+  for (unsigned bit = 0; bit < 21; ++bit)
+    for (unsigned axis = 0; axis < 3; ++axis)
+      key |= (static_cast<std::uint64_t>(cell[axis]) >> bit & 1U) << (3 * bit + axis);
+  return key;
+}
+
+}  // namespace
 
 OrderedPoints orderPoints(const Positions& points, int exponent) {
   OrderedPoints result;
@@ -28,10 +37,11 @@ OrderedPoints orderPoints(const Positions& points, int exponent) {
       points(Eigen::all, result.distinct.input_of_vertex) * std::ldexp(1.0, -exponent);
   if (vertices.cols() == 0)
     return result;
-  const internal::MortonCurve curve(vertices.rowwise().minCoeff(), vertices.rowwise().maxCoeff());
+  const Eigen::Vector3d low = vertices.rowwise().minCoeff();
+  const double extent = (vertices.rowwise().maxCoeff() - low).maxCoeff();
   std::vector<std::pair<std::uint64_t, Index>> places;
   for (Index v = 0; v < vertices.cols(); ++v)
-    places.emplace_back(curve.key(vertices.col(v)), v);
+    places.emplace_back(mortonKey((vertices.col(v) - low) * (2097151.0 / extent)), v);
   std::sort(places.begin(), places.end());
   for (const auto& [key, v] : places)
     result.vertex_of_node.push_back(v);

@@ -4,9 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <random>
 #include <utility>
@@ -14,31 +12,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-TEST(SpaceFillingCurve, MortonOrderIsThatOfSortedKeys) {
-  EXPECT_TRUE(mortonOrder(Positions(3, 0)).empty());
-  for (const Index n : {2, 100, 5000}) {
-    Positions points = test::randomSphere(n, 4);
-    points.row(1) *= 0.25;
-    points.rightCols(n / 4) = points.leftCols(n / 4).eval();  // ties
-    const Eigen::Vector3d low = points.rowwise().minCoeff();
-    const double extent = (points.rowwise().maxCoeff() - low).maxCoeff();
-    std::vector<std::pair<std::uint64_t, Index>> keys;
-    for (Index i = 0; i < n; ++i) {
-      const Eigen::Vector3d cell = (points.col(i) - low) * (2097151.0 / extent);
-      std::uint64_t key = 0;
-      for (unsigned bit = 0; bit < 21; ++bit)
-        for (unsigned axis = 0; axis < 3; ++axis)
-          key |= (static_cast<std::uint64_t>(cell[axis]) >> bit & 1U) << (3 * bit + axis);
-      keys.emplace_back(key, i);
-    }
-    std::sort(keys.begin(), keys.end());
-    std::vector<Index> expected;
-    for (const auto& [key, index] : keys)
-      expected.push_back(index);
-    EXPECT_EQ(mortonOrder(points), expected);
-  }
-}
 
 TEST(SpaceFillingCurve, MortonOrderIsTheSameAtAnyScale) {
   // Whole numbers: no scale rounds them, and the least are denormal.
