@@ -84,16 +84,11 @@ TEST(IncrementalDelaunay, DoesNotDependOnTheOrderOfThePoints) {
   for (const Positions& points :
        {randomSphere(5000, 1), clusters(5000, 2), limbs(5000, 3),
         horizontally(randomSphere(500, 1), cap(3000, 1e-11, {0.6, 0.0, 0.8}, 2))}) {
-    const auto n = static_cast<Index>(points.cols());
-    std::vector<Index> order(static_cast<std::size_t>(n));
-    std::iota(order.begin(), order.end(), Index{0});
-    std::shuffle(order.begin(), order.end(), std::mt19937(7));
-    Positions shuffled(3, n);
-    for (Index i = 0; i < n; ++i)
-      shuffled.col(i) = points.col(order[static_cast<std::size_t>(i)]);
-    Triangles triangles = triangulate(shuffled).triangles;
-    triangles =
-        triangles.unaryExpr([&](Index v) { return order[static_cast<std::size_t>(v)]; }).eval();
+    const std::vector<Index> order = test::shuffledRange(points.cols(), 7);
+    const Triangles triangles =
+        triangulate(points(Eigen::all, order)).triangles.unaryExpr([&](Index v) {
+          return order[static_cast<std::size_t>(v)];
+        });
     EXPECT_EQ(test::canonical(triangles), test::canonical(triangulate(points).triangles));
   }
 }
