@@ -25,6 +25,15 @@ Face faceOf(const Positions& points, const Triangles& triangles, Index t) {
   return face;
 }
 
+/// Holds all triangles of a mesh.
+LocalIntersections intersectionsOf(const Positions& points, const Triangles& triangles) {
+  LocalIntersections local;
+  local.begin(static_cast<std::size_t>(triangles.cols()));
+  for (Index t = 0; t < triangles.cols(); ++t)
+    local.set(faceOf(points, triangles, t));
+  return local;
+}
+
 /// How many other triangles each one intersects.
 std::vector<std::size_t> countsOf(const Positions& points, const Triangles& triangles) {
   std::vector<std::size_t> counts(static_cast<std::size_t>(triangles.cols()), 0);
@@ -38,10 +47,7 @@ std::vector<std::size_t> countsOf(const Positions& points, const Triangles& tria
 TEST(LocalIntersections, CountsAreThoseOfTheWholeMesh) {
   const Case of = scrambledEllipsoid(300, 0.3, 400, 1);
   const auto m = static_cast<Index>(of.triangles.cols());
-  LocalIntersections local;
-  local.begin(static_cast<std::size_t>(m));
-  for (Index t = 0; t < m; ++t)
-    local.set(faceOf(of.points, of.triangles, t));
+  LocalIntersections local = intersectionsOf(of.points, of.triangles);
   const std::vector<std::size_t> counts = countsOf(of.points, of.triangles);
   for (Index t = 0; t < m; ++t) {
     const Face face = faceOf(of.points, of.triangles, t);
@@ -60,10 +66,7 @@ TEST(LocalIntersections, NumbersAreKeptUpToDate) {
   const Case of = scrambledEllipsoid(300, 0.3, 400, 1);
   Triangles triangles = of.triangles;
   const auto m = static_cast<Index>(triangles.cols());
-  LocalIntersections local;
-  local.begin(static_cast<std::size_t>(m));
-  for (Index t = 0; t < m; ++t)
-    local.set(faceOf(of.points, triangles, t));
+  LocalIntersections local = intersectionsOf(of.points, triangles);
   std::mt19937_64 random(3);
   for (int round = 0; round < 20; ++round) {
     // Some are asked for now, others only after changes.

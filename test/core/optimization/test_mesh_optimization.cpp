@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,7 +100,7 @@ TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
 
 TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
   // Seen from its centroid, the tube hides much of itself; nothing intersects, but much is spiky.
-  const Tube tube = bentTube(10.0, 2.0, 12);
+  const Mesh tube = bentTube(10.0, 2.0, 12);
   const Case of = radialStart(withNoise(tube.points, 0.01, 4));
   const MeshOptimization result = optimize(of);
   expectGuarantees(of, result);
@@ -116,21 +115,16 @@ TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
 // --- Any input -----------------------------------------------------------------------------------
 
 TEST(MeshOptimization, AnyCloudStaysASphereOverAllPoints) {
-  std::mt19937_64 random(9);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto in_cube = [&](Index n) {
-    return Positions(Positions::NullaryExpr(3, n, [&] { return uniform(random); }));
-  };
   std::vector<Positions> clouds;
   for (const Index n : {4, 4, 5, 5, 6, 8, 15, 40})
-    clouds.push_back(in_cube(n));
-  Positions flat = in_cube(24);
+    clouds.push_back(randomCube(n, 9 + clouds.size()));
+  Positions flat = randomCube(24, 7);
   flat.row(2) *= 1e-12;
   clouds.push_back(flat);
   flat.row(2).setZero();  // no area between sheets, many triangles without area
   flat.col(0) << 0.0, 0.0, 0.5;
   clouds.push_back(flat);
-  Positions line = in_cube(30);
+  Positions line = randomCube(30, 8);
   line.topRows(2) *= 1e-9;
   clouds.push_back(line);
   // The same shape again, 1e-8 beside itself, and a tiny one beside a large one.
@@ -199,10 +193,8 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
 
 /// The mesh of a sphere on other points, in a cube: nearly all of its triangles intersect others.
 Case tangle(Index n) {
-  std::mt19937_64 random(31);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Case of = ellipsoid(n, 1.0, 1.0);
-  of.points = Positions(Positions::NullaryExpr(3, n, [&] { return uniform(random); }));
+  of.points = randomCube(n, 31);
   return of;
 }
 

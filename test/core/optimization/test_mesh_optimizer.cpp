@@ -231,23 +231,17 @@ TEST(MeshOptimizer, ASecondPassGivesTheResultOfAFirstOne) {
   }
 }
 
-TEST(MeshOptimizer, IntersectionsAreThoseOfAMeshOfWhichNothingIsKnown) {
+TEST(MeshOptimizer, IntersectionsNeedNotCompareFansThatAreFreeOfThem) {
+  const std::vector<std::uint8_t> fans = optimizerOf(ellipsoid(1000, 0.9, 0.8)).plainFans();
+  EXPECT_GT(std::count(fans.begin(), fans.end(), 1), 900);
+}
+
+TEST(MeshOptimizer, IntersectionsOfAMeshThatChangedAreThoseOfItAlone) {
   std::vector<Case> cases = roughCases();
   cases.push_back(ellipsoid(1000, 0.9, 0.8));
   cases.push_back(scrambledEllipsoid(3000, 0.3, 2000, 3));
   cases.push_back(noisySphere(3000, 0.7, 4));
   for (const Case& of : cases) {
-    MeshOptimizer optimizer = optimizerOf(of);
-    const auto expected = findSelfIntersections(of.points, of.triangles);
-    EXPECT_EQ(optimizer.intersections(), expected);
-  }
-  // Where nothing is wrong, the triangles around nearly all vertices need not be compared.
-  const std::vector<std::uint8_t> fans = optimizerOf(cases[3]).plainFans();
-  EXPECT_GT(std::count(fans.begin(), fans.end(), 1), 900);
-}
-
-TEST(MeshOptimizer, IntersectionsOfAMeshThatChangedAreThoseOfItAlone) {
-  for (const Case& of : {scrambledEllipsoid(3000, 0.3, 2000, 3), noisySphere(3000, 0.7, 4)}) {
     MeshOptimizer optimizer = optimizerOf(of);
     optimizer.setEnergy(energyWith(Bend::Angle));
     const auto expect_all = [&] {
@@ -264,7 +258,7 @@ TEST(MeshOptimizer, IntersectionsOfAMeshThatChangedAreThoseOfItAlone) {
     expect_all();
     SphereMesh flipped(before, static_cast<std::size_t>(of.points.cols()), 1);
     std::size_t flips = 0;
-    for (Index t = 0; t < 2000 && flips < 20; t += 7)
+    for (Index t = 0; t < before.cols() && flips < 20; t += 7)
       flips += flipped.flip(t, 0) ? 1U : 0U;
     EXPECT_GT(flips, 10U);
     optimizer.reset(flipped.triangles());
@@ -276,12 +270,6 @@ TEST(MeshOptimizer, IntersectionsOfAMeshThatChangedAreThoseOfItAlone) {
   }
 }
 
-std::vector<Index> allVertices(const Case& of) {
-  std::vector<Index> vertices(static_cast<std::size_t>(of.points.cols()));
-  std::iota(vertices.begin(), vertices.end(), Index{0});
-  return vertices;
-}
-
 TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
   std::size_t all = 0;
   for (const Case& of : roughCases()) {
@@ -290,7 +278,7 @@ TEST(MeshOptimizer, FlipsApartAreCountedAndKeepASphere) {
     const std::size_t before = findSelfIntersections(of.points, of.triangles).size();
     optimizer.watch({});
     EXPECT_EQ(optimizer.flipApart(), 0U);
-    optimizer.watch(allVertices(of));
+    optimizer.watch(range(0, of.points.cols()));
     const std::size_t fewer = optimizer.flipApart();
     all += fewer;
     const Triangles triangles = optimizer.mesh().triangles();

@@ -41,13 +41,6 @@ struct DoublePyramid {
   Openings openings;
 };
 
-TEST(OpenMesh, IsClosedWithoutOpenings) {
-  DoublePyramid pyramid(8);
-  const OpenMesh mesh = pyramid.open({});
-  EXPECT_EQ(internal::surfaceOf(mesh), pyramid.triangles);
-  EXPECT_TRUE(internal::boundaryLoops(mesh.triangles, 10).empty());
-}
-
 TEST(OpenMesh, LeavesOutWhatALoopLeadsToAndKeepsEveryVertex) {
   // The loop is one triangle of the upper side: its sides at the tip are long.
   DoublePyramid pyramid(8);
@@ -109,15 +102,6 @@ TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
   EXPECT_FALSE(places.isOpen(4, 5, 8));
   EXPECT_TRUE(places.isOpen(0, 1, 8));
   EXPECT_TRUE(internal::trianglesWithoutLoop(mesh, places).empty());
-}
-
-TEST(OpenMesh, KeepsAVertexAmongOpenTriangles) {
-  // All around the tip is open.
-  DoublePyramid pyramid(8);
-  const OpenMesh mesh = pyramid.open({{0, 1, 2, 3, 4, 5, 6, 7, 8}});
-  const MeshTopology topology = checkTopology(internal::surfaceOf(mesh), 10);
-  EXPECT_TRUE(topology.manifold());
-  EXPECT_TRUE(topology.unused_vertices.empty());
 }
 
 }  // namespace

@@ -24,11 +24,6 @@ SmoothingOptions optionsOf(SmoothingMethod method, int steps = 5, bool restore_v
   return options;
 }
 
-struct Mesh {
-  Positions points;
-  Triangles triangles;
-};
-
 Mesh noisyMesh(Index n, double noise, std::uint64_t seed) {
   const Positions sphere = spiralSphere(n);
   return {withNoise(sphere, noise, seed), triangulateSphere(sphere)};
@@ -73,12 +68,9 @@ TEST(Smoothing, WavesOnARegularMeshAreMultipliedByTheGainOfTheirFrequency) {
 TEST(Smoothing, OneStepOfTheUmbrellaMovesToTheMeanOfTheNeighbours) {
   const Mesh mesh = noisyMesh(100, 0.1, 5);
   const Graph graph = graphOfMesh(mesh.points, mesh.triangles);
-  Positions means = Positions::Zero(3, 100);
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      means.col(static_cast<Eigen::Index>(i)) +=
-          mesh.points.col(graph.neighbors[e]) /
-          static_cast<double>(graph.offsets[i + 1] - graph.offsets[i]);
+  Positions means(3, 100);
+  for (Index i = 0; i < 100; ++i)
+    means.col(i) = mesh.points(Eigen::all, rowOf(graph, i)).rowwise().mean();
   EXPECT_LT(largestDifference(smoothSurface(mesh.points, mesh.triangles,
                                             optionsOf(SmoothingMethod::Umbrella, 1, false))
                                   .points,
@@ -86,30 +78,8 @@ TEST(Smoothing, OneStepOfTheUmbrellaMovesToTheMeanOfTheNeighbours) {
             1e-14);
 }
 
-TEST(Smoothing, NoiseIsTakenOffAndOnlyTheUmbrellaShrinks) {
-  const Mesh mesh = noisyMesh(1000, 0.02, 1);
-  const auto roughness = [](const Positions& points) {
-    const Eigen::ArrayXd radii = points.colwise().norm().transpose().array();
-    return std::sqrt((radii - radii.mean()).square().mean());
-  };
-  for (const SmoothingMethod method : kSmoothingMethods) {
-    const Smoothing smooth =
-        smoothSurface(mesh.points, mesh.triangles, optionsOf(method, 5, false));
-    EXPECT_LT(roughness(smooth.points), 0.4 * roughness(mesh.points));
-    EXPECT_NEAR(smooth.report.volume_after, volumeOf(smooth.points, mesh.triangles), 1e-12);
-    // The coordinates of a sphere have k = h^2 / 2 with edges of h^2 = 4 pi / 1000 * 2 / sqrt(3),
-    // so k = 0.0073: five steps of the umbrella take 3 * 5 k = 11 % of the volume, the flow takes
-    // 3 ln(2) (k / 0.129)^2 = 0.7 %, and the noise adds to it.
-    const double change = smooth.report.volume_after / smooth.report.volume_before - 1.0;
-    if (method == SmoothingMethod::Umbrella)
-      EXPECT_LT(change, -0.08);
-    else
-      EXPECT_LT(std::abs(change), 0.012);
-  }
-}
-
 TEST(Smoothing, VolumeIsRestored) {
-  const Tube tube = bentTube(12.0, 2.0, 12);
+  const Mesh tube = bentTube(12.0, 2.0, 12);
   for (const Mesh& mesh :
        {noisyMesh(300, 0.05, 2), Mesh{withNoise(tube.points, 0.05, 3), tube.triangles}})
     for (const SmoothingMethod method : kSmoothingMethods) {

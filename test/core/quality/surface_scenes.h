@@ -2,12 +2,10 @@
 
 #include "graphs.h"
 #include "helpers.h"
+#include "open_shapes.h"
 #include "sphere_triangulation.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <random>
 #include <vector>
 
 /// Clouds to diagnose, with meshes that are spheres and graphs that show what the clouds are.
@@ -28,21 +26,10 @@ inline Scene starShaped(const Positions& directions, const Positions& points) {
   return {points, hullOf(directions), localDelaunayGraph(points)};
 }
 
-/// The columns for which keep(point) holds.
-template <typename Keep>
-Positions filtered(const Positions& points, const Keep& keep) {
-  Positions result(3, points.cols());
-  Eigen::Index count = 0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (keep(Eigen::Vector3d(points.col(i))))
-      result.col(count++) = points.col(i);
-  return result.leftCols(count);
-}
-
 /// A sphere without the cap beyond x = height.
 inline Scene openSphere(Index n, double height) {
   const Positions open =
-      filtered(spiralSphere(n), [&](const Eigen::Vector3d& p) { return p.x() < height; });
+      pointsWhere(spiralSphere(n), [&](const Eigen::Vector3d& p) { return p.x() < height; });
   return starShaped(open, open);
 }
 
@@ -95,9 +82,7 @@ inline Scene joinedSpheres(Index n, Index m, double distance) {
 
 /// The same scene under a mesh of shuffled vertices.
 inline Scene folded(Scene scene) {
-  std::vector<Index> shuffled(static_cast<std::size_t>(scene.points.cols()));
-  std::iota(shuffled.begin(), shuffled.end(), Index{0});
-  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
+  const std::vector<Index> shuffled = shuffledRange(scene.points.cols(), 3);
   scene.triangles =
       scene.triangles.unaryExpr([&](Index v) { return shuffled[static_cast<std::size_t>(v)]; })
           .eval();

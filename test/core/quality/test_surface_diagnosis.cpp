@@ -9,12 +9,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::test {
@@ -46,7 +44,7 @@ TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
   expectClosed("random", starShaped(random, random));
   const Positions cube = cubeGrid(13);
   expectClosed("cube", starShaped((cube.array() - 0.5).matrix().colwise().normalized(), cube));
-  const Tube tube = bentTube(12.0, 2.0, 20);
+  const Mesh tube = bentTube(12.0, 2.0, 20);
   expectClosed("tube", {tube.points, tube.triangles, localDelaunayGraph(tube.points)});
   expectClosed("4 times denser in one direction",
                starShaped(even, Eigen::Vector3d(4.0, 1.0, 1.0).asDiagonal() * even));
@@ -60,16 +58,17 @@ TEST(SurfaceDiagnosis, ClosedSurfacesRaiseNoAlarm) {
   }
   expectClosed("12 times denser at one end", starShaped(crowded, crowded));
   const int fine = 8 * 7 + 1;
-  const Positions creased = filtered(cubeGrid(fine).array() - 0.5, [&](const Eigen::Vector3d& p) {
-    int at_end = 0;
-    bool coarse = true;
-    for (int c = 0; c < 3; ++c) {
-      const long step = std::lround((p[c] + 0.5) * (fine - 1));
-      at_end += step % (fine - 1) == 0 ? 1 : 0;
-      coarse = coarse && step % 8 == 0;
-    }
-    return coarse || at_end >= 2;
-  });
+  const Positions creased =
+      pointsWhere(cubeGrid(fine).array() - 0.5, [&](const Eigen::Vector3d& p) {
+        int at_end = 0;
+        bool coarse = true;
+        for (int c = 0; c < 3; ++c) {
+          const long step = std::lround((p[c] + 0.5) * (fine - 1));
+          at_end += step % (fine - 1) == 0 ? 1 : 0;
+          coarse = coarse && step % 8 == 0;
+        }
+        return coarse || at_end >= 2;
+      });
   expectClosed("8 times denser along edges", starShaped(creased.colwise().normalized(), creased));
   expectClosed("too narrow a handle", cutTorus(20, 5, 0.4));
 }
@@ -157,11 +156,17 @@ TEST(SurfaceDiagnosis, TornNeighborsWithoutACycleAreNoHandle) {
   EXPECT_TRUE(diagnosis.handles.empty());
 }
 
+SurfaceDiagnosis expectKind(const Scene& scene, SurfaceKind kind, std::optional<int> genus,
+                            const DiagnosisOptions& options = {}) {
+  const SurfaceDiagnosis diagnosis = diagnose(scene, options);
+  EXPECT_EQ(diagnosis.kind, kind);
+  EXPECT_EQ(diagnosis.genus, genus);
+  return diagnosis;
+}
+
 TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
   const auto expect = [](const Scene& scene, SurfaceKind kind, std::optional<int> genus) {
-    const SurfaceDiagnosis diagnosis = diagnose(scene);
-    EXPECT_EQ(diagnosis.kind, kind);
-    EXPECT_EQ(diagnosis.genus, genus);
+    const SurfaceDiagnosis diagnosis = expectKind(scene, kind, genus);
     EXPECT_TRUE(diagnosis.handles.empty());
     EXPECT_TRUE(diagnosis.isFolded());
     EXPECT_GT(diagnosis.edges_outside_graph, 0.5);
@@ -169,26 +174,21 @@ TEST(SurfaceDiagnosis, HandlesAreFoundUnderAFoldedMeshUnlessThereIsAnOpening) {
                      fractionBeyondTwoSteps(scene.graph.graph, scene.triangles));
   };
   expect(folded(cutTorus(60, 24, 0.4)), SurfaceKind::Handles, 1);
-  const Positions ball = spiralSphere(1000);
-  expect(folded(starShaped(ball, ball)), SurfaceKind::Unclear, 0);
+  expect(folded(openSphere(1000, 2.0)), SurfaceKind::Unclear, 0);
   // Three openings have as many cycles as a handle.
-  const Positions open = filtered(
-      ball, [](const Eigen::Vector3d& p) { return p.x() < 0.9 && p.y() > -0.9 && p.z() > -0.9; });
+  const Positions open = pointsWhere(spiralSphere(1000), [](const Eigen::Vector3d& p) {
+    return p.x() < 0.9 && p.y() > -0.9 && p.z() > -0.9;
+  });
   expect(folded(starShaped(open, open)), SurfaceKind::Unclear, std::nullopt);
 }
 
 TEST(SurfaceDiagnosis, WithoutCyclesHandlesAreNotToldFromFolds) {
   DiagnosisOptions options;
   options.count_cycles = false;
-  const auto expect = [&](const Scene& scene, SurfaceKind kind, std::optional<int> genus) {
-    const SurfaceDiagnosis diagnosis = diagnose(scene, options);
-    EXPECT_EQ(diagnosis.kind, kind);
-    EXPECT_EQ(diagnosis.genus, genus);
-  };
-  expect(folded(cutTorus(60, 24, 0.4)), SurfaceKind::Unclear, std::nullopt);
-  expect(cutTorus(60, 24, 0.4), SurfaceKind::Unclear, std::nullopt);
-  const Positions ball = spiralSphere(1000);
-  expect(starShaped(ball, ball), SurfaceKind::ClosedGenus0, std::nullopt);
+  const Scene torus = cutTorus(60, 24, 0.4);
+  expectKind(folded(torus), SurfaceKind::Unclear, std::nullopt, options);
+  expectKind(torus, SurfaceKind::Unclear, std::nullopt, options);
+  expectKind(openSphere(1000, 2.0), SurfaceKind::ClosedGenus0, std::nullopt, options);
 }
 
 TEST(SurfaceDiagnosis, PartsAreCountedWithGapAndPlace) {
