@@ -64,32 +64,6 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
   }
 }
 
-TEST(PartsOfCloud, LargestLeavesOutTheOthers) {
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(makeTwo());
-  reconstruction.setParts(PartsMode::Largest);
-  EXPECT_EQ(meshed(reconstruction).size(), 596U);
-  EXPECT_EQ(reconstruction.getPartCount(), 1U);
-  EXPECT_EQ(reconstruction.getUsedIndices().size(), 300U);
-  EXPECT_FALSE(reconstruction.getSphereCoordinates()->is_dense);
-}
-
-TEST(PartsOfCloud, HaveALeastSize) {
-  Reconstruction reconstruction;
-  reconstruction.setInputCloud(makeTwo());
-  reconstruction.setParts(PartsMode::Each);
-  reconstruction.setMinPartSize(201);
-  EXPECT_EQ(meshed(reconstruction).size(), 596U);
-  reconstruction.setMinPartSize(301);
-  Polygons polygons;
-  reconstruction.reconstruct(polygons);
-  EXPECT_TRUE(polygons.empty());
-  EXPECT_NE(reconstruction.getErrorMessage().find("no part has min_points = 301 points"),
-            std::string::npos);
-  EXPECT_EQ(reconstruction.getPartCount(), 1U);
-  EXPECT_TRUE(reconstruction.getResult().surfaces.empty());
-}
-
 TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
   const Cloud::Ptr cloud = makeEllipsoid(300);
   for (int i = 0; i < 100; ++i)

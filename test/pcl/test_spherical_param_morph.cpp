@@ -87,10 +87,6 @@ TEST_F(SphericalParamMorph, FailuresLeaveAnEmptyOutputAndExceptionsOfTheCallback
   for (const int frames : {-1, 0, 1, 10001})
     expect_failure(frames);
   pcl::SphericalParamMorphOptions options;
-  options.morph.connectivity = spherical_param::MorphConnectivity::Resampled;
-  options.morph.samples = 3;
-  expect_failure(2, options);
-  options = {};
   options.map.area_weight = -1.0;
   expect_failure(2, options);
   options = {};

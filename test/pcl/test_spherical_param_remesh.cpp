@@ -115,9 +115,6 @@ TEST_F(SphericalParamRemesh, FailureLeavesNothingAndExceptionsOfTheCallbackPass)
   };
   Reconstruction without_input;
   expect_failure(without_input, {});
-  Reconstruction few_points;
-  few_points.setInputCloud(test::makeEllipsoid(3));
-  expect_failure(few_points, {});
   pcl::SphericalParamRemeshOptions options;
   options.map.area_weight = std::numeric_limits<double>::quiet_NaN();
   expect_failure(reconstruction, options);
