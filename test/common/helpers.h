@@ -295,8 +295,6 @@ struct Mesh {
   Triangles triangles;
 };
 
-using Tube = Mesh;
-
 /// A closed tube of radius 1 whose axis is an arc, with its true triangles.
 ///
 /// \param length of the axis, in radii, besides the two ends.

@@ -63,7 +63,7 @@ TEST(SphereMap, KeepsTheAreasOfAnEllipsoidAndOfANeedle) {
 TEST(SphereMap, KeepsTheAreaOfTheEndOfALimbFromAnyStart) {
   // A tube bent to a half circle, 20 times as long as it is thick: a conformal map would shrink its
   // ends by e^20.
-  const test::Tube tube = test::bentTube(40.0, test::kPi, 12);
+  const test::Mesh tube = test::bentTube(40.0, test::kPi, 12);
   const auto n = static_cast<Index>(tube.points.cols());
   const SphereMap map = soundMapOf({tube.points, tube.triangles, test::randomSphere(n, 5)});
   EXPECT_GT(map.before.flipped_triangles, 0);
@@ -71,7 +71,7 @@ TEST(SphereMap, KeepsTheAreaOfTheEndOfALimbFromAnyStart) {
 }
 
 TEST(SphereMap, WeightOfAreasTradesThemForAngles) {
-  const test::Tube tube = test::bentTube(12.0, 0.0, 16);
+  const test::Mesh tube = test::bentTube(12.0, 0.0, 16);
   const Positions start = (tube.points.colwise() - Vector3d(6.0, 0.0, 0.0)).colwise().normalized();
   double angle = 1.0;
   double area = std::numeric_limits<double>::infinity();

@@ -6,6 +6,7 @@
 
 #include "guarantees.h"
 #include "helpers.h"
+#include "open_shapes.h"
 #include "scan_shapes.h"
 #include "spherical_param/reconstruct.h"
 #include "stress.h"
@@ -18,7 +19,6 @@
 #include <cstdio>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace {
@@ -47,16 +47,9 @@ Opening measured(const std::vector<Vector3d>& loop) {
   return opening;
 }
 
-/// The loops of directed edges that have no reverse.
+/// The loops of the boundary.
 std::vector<Opening> openingsOf(const TruthMesh& mesh) {
-  std::map<std::pair<Index, Index>, int> sides;
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-    for (Eigen::Index k = 0; k < 3; ++k)
-      ++sides[{mesh.triangles(k, t), mesh.triangles((k + 1) % 3, t)}];
-  std::map<Index, Index> next;
-  for (const auto& [side, count] : sides)
-    if (sides.count({side.second, side.first}) == 0)
-      next[side.first] = side.second;
+  std::map<Index, Index> next = test::boundaryOf(mesh.triangles);
   std::vector<Opening> openings;
   while (!next.empty()) {
     std::vector<Vector3d> loop;
