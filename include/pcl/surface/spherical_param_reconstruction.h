@@ -237,7 +237,8 @@ public:
 
   /** \brief Set the seed of all random choices: the order of coarsening in the multilevel
    * embedding, and the parts of the mesh that OptimizationMethod::Full rebuilds. The same seed
-   * gives the same result. \param[in] seed any number; default 1 */
+   * gives the same result.
+   * \param[in] seed any number; default 1 */
   inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
   /** \brief Get the seed of all random choices.
    * \return the seed */
