@@ -39,9 +39,10 @@ OrderedPoints orderPoints(const Positions& points, int exponent) {
     return result;
   const Eigen::Vector3d low = vertices.rowwise().minCoeff();
   const double extent = (vertices.rowwise().maxCoeff() - low).maxCoeff();
+  const double scale = extent > 0.0 ? 2097151.0 / extent : 0.0;
   std::vector<std::pair<std::uint64_t, Index>> places;
   for (Index v = 0; v < vertices.cols(); ++v)
-    places.emplace_back(mortonKey((vertices.col(v) - low) * (2097151.0 / extent)), v);
+    places.emplace_back(mortonKey((vertices.col(v) - low) * scale), v);
   std::sort(places.begin(), places.end());
   for (const auto& [key, v] : places)
     result.vertex_of_node.push_back(v);
