@@ -90,9 +90,11 @@ std::optional<Finding> filledOf(const Surface& result, const Options& options) {
   const std::size_t certain = result.filledOpenings();
   std::size_t count = 0;
   std::size_t points = 0;
+  const auto is_possible = [](const Opening& opening) {
+    return opening.certainty >= kMinCertainty && !opening.is_flat;
+  };
   for (const Opening& opening : result.openings)
-    if (opening.is_filled && !opening.is_flat &&
-        opening.certainty >= (certain > 0 ? 1.0 : kMinCertainty)) {
+    if (opening.is_filled && (certain > 0 ? opening.isCertain() : is_possible(opening))) {
       ++count;
       points = std::max(points, opening.loop.size());
     }
