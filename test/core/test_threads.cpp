@@ -8,7 +8,6 @@
 #include "graphs.h"
 #include "mesh_optimization.h"
 #include "neighbor_search.h"
-#include "number_list.h"
 #include "open_shapes.h"
 #include "openings.h"
 #include "optimization/optimization_cases.h"
@@ -24,6 +23,7 @@
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
+#include "thread_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -257,18 +257,11 @@ TEST(Threads, ThatCallReceiveTheProgressAndCanEndEveryStage) {
     if (!stage.reports)
       continue;
     SCOPED_TRACE(stage.name);
-    const auto run = [&](const std::function<bool(double)>& callback) {
+    test::expectProgressThatCanCancel([&](const std::function<bool(double)>& callback) {
       Execution execution = test::reportingTo(callback);
       execution.threads = 3;
       return stage.run(execution);
-    };
-    const std::vector<double> fractions = test::fractionsOf(run);
-    EXPECT_TRUE(test::areFractions(fractions));
-    for (const std::size_t last : {std::size_t{1}, (fractions.size() + 1) / 2, fractions.size()}) {
-      std::size_t calls = 0;
-      EXPECT_THROW(run([&](double) { return ++calls < last; }), Cancelled);
-      EXPECT_EQ(calls, last);
-    }
+    });
   }
 }
 

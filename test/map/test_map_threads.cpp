@@ -3,12 +3,11 @@
 // end the work. removeIntersections() and untangle(): beside what they do to a mesh.
 
 #include "blobs.h"
-#include "number_list.h"
-#include "spherical_param/errors.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/spherical_harmonics.h"
 #include "spherical_param/map/texture_atlas.h"
+#include "thread_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -125,17 +124,9 @@ TEST(MapThreads, ThatCallReceiveTheProgressAndCanEndTheWork) {
     if (!function.reports)
       continue;
     SCOPED_TRACE(function.name);
-    const auto run = [&](const std::function<bool(double)>& callback) {
-      function.run(reportingTo(callback));
-    };
-    const std::vector<double> fractions = fractionsOf(run);
-    EXPECT_TRUE(areFractions(fractions));
+    const std::vector<double> fractions = expectProgressThatCanCancel(
+        [&](const std::function<bool(double)>& callback) { function.run(reportingTo(callback)); });
     EXPECT_EQ(fractions.back(), 1.0);
-    for (const std::size_t last : {std::size_t{1}, (fractions.size() + 1) / 2, fractions.size()}) {
-      std::size_t calls = 0;
-      EXPECT_THROW(run([&](double) { return ++calls < last; }), Cancelled);
-      EXPECT_EQ(calls, last);
-    }
   }
 }
 
