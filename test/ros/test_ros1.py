@@ -211,7 +211,7 @@ class Ros1(unittest.TestCase):
         # Each thread that answers requests would have an arena of its own; they fill up one by one.
         node = self.run_node(env=dict(os.environ, MALLOC_ARENA_MAX="1"))
         reconstruct, memory = self.service(), []
-        for turn in range(5):
+        for turn in range(10):
             size = 0
             for number, count in enumerate((4, 20000, 5, 100, 1000, 9000, 300, 5000)):
                 points = bumpy(count, 1000 * turn + number)
@@ -226,9 +226,9 @@ class Ros1(unittest.TestCase):
                 self.assertRegex(answer.message, f"{cause}.*; ")
             with open(f"/proc/{node.pid}/statm", encoding="ascii") as file:
                 memory.append(int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE"))
-        # The first two turns are the warm-up. Had each cloud of the others left itself and its mesh
-        # behind, it were twice as much; the rest is for the allocator.
-        self.assertLess(memory[-1] - memory[1], 3 * size / 2)
+        # Had each cloud left itself and its mesh behind, it were five times as much. A block at the
+        # end of the heap keeps the allocator from giving memory back, in one turn of seven or so.
+        self.assertLess(min(memory[5:]) - min(memory[:5]), 3 * size / 2)
 
     def test_topic_always_meshes_the_last_and_a_long_queue_all(self):
         for arguments in ((), ("_queue_depth:=100", "_cancel_running:=false")):
