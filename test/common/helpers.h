@@ -196,8 +196,7 @@ inline bool isSphereOverAll(const Triangles& triangles, Index n) {
     if (steps != degree[static_cast<std::size_t>(v)])
       return false;
   }
-  std::vector<Index> piece(static_cast<std::size_t>(n));
-  std::iota(piece.begin(), piece.end(), Index{0});
+  std::vector<Index> piece = range(0, n);
   const auto root = [&](Index v) {
     while (piece[static_cast<std::size_t>(v)] != v)
       v = piece[static_cast<std::size_t>(v)];

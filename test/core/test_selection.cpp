@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -31,10 +30,7 @@ Positions mixedCloud() {
   points = horizontally(points, 2.0 * test::spiralSphere(6));
   points = horizontally(points, points.middleCols(280, 176));
   points = horizontally(points, Positions::Constant(3, 2, nan));
-  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::shuffle(order.begin(), order.end(), std::mt19937_64(7));
-  return points(Eigen::all, order);
+  return points(Eigen::all, test::shuffledRange(points.cols(), 7));
 }
 
 /// Every point is in one list, and each list is ascending.

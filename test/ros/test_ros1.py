@@ -208,8 +208,8 @@ class Ros1(unittest.TestCase):
         return publisher
 
     def test_service_answers_good_and_bad_clouds_in_flat_memory(self):
-        # Each thread that answers requests would have an arena of its own, which fill up one by one, and after
-        # large blocks the allocator keeps some MB at the end of the heap.
+        # Each thread that answers requests would have an arena of its own, and these fill up one by one. After
+        # large blocks the allocator would keep some MB at the end of the heap.
         env = dict(os.environ, MALLOC_ARENA_MAX="1", MALLOC_TRIM_THRESHOLD_="131072")
         node = self.run_node(env=env)
         reconstruct, memory = self.service(), []

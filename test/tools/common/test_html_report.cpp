@@ -19,7 +19,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <string>
 #include <vector>
@@ -166,11 +165,10 @@ TEST(HtmlReport, HoldsTheMeshItsMarksAndDistortionUpToRounding) {
     }
     return all;
   };
-  std::vector<Index> all(result.vertexCount());
-  std::iota(all.begin(), all.end(), 0);
   const ReportMesh& mesh = shown.mesh;
   EXPECT_EQ(marked(mesh.triangles, mesh.marks, mesh.vertices),
-            marked(result.triangles, result.diagnosis.triangle_marks, all));
+            marked(result.triangles, result.diagnosis.triangle_marks,
+                   test::range(0, static_cast<Eigen::Index>(result.vertexCount()))));
   EXPECT_TRUE(std::any_of(mesh.marks.begin(), mesh.marks.end(),
                           [](std::uint8_t mark) { return mark != 0; }));
   for (const char* absent : {"cloud", "colors", "outliers"})
