@@ -23,7 +23,7 @@ PICTURES = ROOT / "doc" / "pictures"
 GITHUB = ROOT / ".github"
 FRONT = "--view=0,0"
 SIDE = "--view=30,10"
-PAPER = ["-embedding", "iterative", "-graph", "knn"]
+PAPER = ["-method", "paper"]
 
 
 def run(program, *arguments):
@@ -105,10 +105,9 @@ def morph():
 
 def pipeline():
     cloud = scan("hand", 4000)
-    mesh(cloud, "first", "-optimization", "none", "-sphere", "sphere.ply")
-    mesh(cloud, "last")
-    draw(PICTURES / "pipeline.png", "1320x360", [(cloud, "points"), ("sphere.ply", "embedding, triangulated"),
-         ("first.ply", "the same triangles in space"), ("last.ply", "optimised mesh")],
+    mesh(cloud, "mesh", "-sphere", "sphere.ply")
+    draw(PICTURES / "pipeline.png", "1320x480", [(cloud, "points"), ("sphere.ply", "embedding, triangulated"),
+         ("mesh.ply", "the same triangles in space, optimised")],
          "--colors=sphere.ply", "--edges", FRONT)  # fmt: skip
 
 
@@ -123,17 +122,10 @@ def openings():
 
 def embedding():
     cloud, views = scan("hand", 8000), []
-    for name, text, options in (("iteration", "the paper's iteration", PAPER), ("multilevel", "multilevel", [])):
-        said = mesh(cloud, name, "-optimization", "none", "-sphere", f"{name}_sphere.ply", *options)
+    for name, text, options in (("paper", "the paper's iteration", PAPER), ("multilevel", "multilevel", [])):
+        said = mesh(cloud, name, "-sphere", f"{name}_sphere.ply", *options)
         views += [(f"{name}_sphere.ply", text), (f"{name}.ply", f"its mesh: {said}")]
     draw(PICTURES / "embedding.png", "1320x350", views, "--colors=multilevel_sphere.ply", FRONT)
-
-
-def optimisation():
-    cloud = scan("hand", 8000)
-    views = [(f"{method}.ply", f"{method}: {mesh(cloud, method, '-optimization', method, *PAPER)}")
-             for method in ("none", "flips", "full")]  # fmt: skip
-    draw(PICTURES / "optimisation.png", "1200x400", views, "--focus=0,0,0.2", "--zoom=2", FRONT)
 
 
 def smoothing():
@@ -203,7 +195,7 @@ def scans():
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
-ALL = [demo, remesh, morph, pipeline, openings, embedding, optimisation, smoothing, consolidation, symptoms, depth_camera, scans]
+ALL = [demo, remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera, scans]
 
 
 def main(names):

@@ -32,16 +32,14 @@ enum class ConsolidationMode {
   Auto,  ///< points are moved to the sampled surface and merged within their noise
 };
 
-/// How points become neighbours.
-enum class GraphMethod {
-  NearestNeighbors,  ///< nearest-neighbour graph (Zwicker and Gotsman 2004, section 3)
-  LocalDelaunay,     ///< tangent Delaunay graph (future work in their section 6)
-};
-
-/// How a graph is embedded on the sphere.
-enum class EmbeddingMethod {
-  Iterative,   ///< the iteration of Zwicker and Gotsman 2004, Figure 3
-  Multilevel,  ///< from coarse to fine graphs; unfolds limbs
+/// How a cloud is meshed.
+enum class Method {
+  /// Tangent Delaunay graph, embedding from coarse to fine, exact Delaunay triangulation of the
+  /// sphere, optimisation on the points.
+  Default,
+  /// As Zwicker and Gotsman 2004 published it: nearest-neighbour graph, the iteration of Figure 3,
+  /// convex hull.
+  Paper,
 };
 
 /// Weights of the Laplacian (Zwicker and Gotsman 2004, section 3, equations 2 to 4), normalised so
@@ -49,51 +47,34 @@ enum class EmbeddingMethod {
 enum class EdgeWeights {
   Uniform,        ///< w_ij = 1
   InverseLength,  ///< w_ij = 1 / |p_i - p_j|
-  /// w_ij = (|u_i - u_j| / |p_i - p_j|)^(p - 2), recomputed in each iteration; equation 4 for p = 3
-  Adaptive,
+  Adaptive,       ///< w_ij = |u_i - u_j| / |p_i - p_j|, recomputed in each iteration; equation 4
+};
+
+/// Parameters of Method::Paper.
+struct PaperOptions {
+  int k = 25;  ///< nearest neighbours of each point; >= 3 (k >= n: n - 1 are used)
+  EdgeWeights weights = EdgeWeights::Adaptive;  ///< of the Laplacian
+  /// Fraction of the tangential Laplacian by which an iteration moves each point; (0, 1].
+  double damping = 0.5;
+  /// Maximum number of iterations, as in Table 1; >= 0. 0: the embedding is the projection of the
+  /// points from their centroid.
+  int max_iterations = 1600;
 };
 
 /// Parameters of the embedding.
 struct EmbeddingOptions {
-  EmbeddingMethod method = EmbeddingMethod::Multilevel;  ///< how the graph is embedded
-  EdgeWeights weights = EdgeWeights::Adaptive;           ///< weights of the Laplacian
-  /// p of the energy that adaptive weights minimise, sum |u_i - u_j|^p / (p |p_i - p_j|^(p - 2));
-  /// (2, 16]. 3 gives the weights of the paper; the iteration supports only 3.
-  double exponent = 3.0;
-  /// Fraction of the tangential Laplacian by which iteration and smoothing sweeps move each point;
-  /// (0, 1].
-  double damping = 0.5;
   /// Mean length of the tangential Laplacian at which the embedding counts as converged [radius of
-  /// the sphere]; [0, 1]. Unset: 1e-8 for the iteration; Multilevel then ends with its sweeps.
+  /// the sphere]; [0, 1]. Unset: 1e-8 for Method::Paper; Method::Default then ends with its sweeps.
   std::optional<double> tolerance;
-  /// Maximum number of steps of the iteration, as in Table 1 of the paper; >= 0. 0: the embedding
-  /// is the projection of the points from their centroid.
-  int max_iterations = 1600;
-  /// Iterations over which stagnation is judged; 0 or 1: never; >= 0.
-  int stagnation_window = 100;
-  /// Number of starts of Multilevel on the coarsest level; the start of least energy is kept;
+  /// Number of starts of Method::Default on the coarsest level; the start of least energy is kept;
   /// [1, 100].
   int starts = 2;
   /// Maximum number of nodes whose paths are recorded to show how the embedding unfolds; 0: none;
-  /// [0, 2^24]. Costs the memory of the states and, with Multilevel, the time of the coarsest
-  /// level.
+  /// [0, 2^24]. Costs the memory of the states and, with Method::Default, the time of a start.
   Index history_vertices = 0;
   /// Maximum number of states of these paths; [2, 10000]. Surplus states between the first and the
   /// last are dropped.
   int history_frames = 40;
-};
-
-/// How the points on the sphere are triangulated.
-enum class TriangulationMethod {
-  Qhull,        ///< convex hull by qhull (Zwicker and Gotsman 2004, section 3), completed
-  Incremental,  ///< incremental Delaunay triangulation with exact predicates
-};
-
-/// How a mesh on fixed points is optimised.
-enum class OptimizationMethod {
-  None,   ///< not at all
-  Flips,  ///< edge flips only
-  Full,   ///< flips, relocation of vertices, ruin and recreate
 };
 
 /// Whether openings of the sampled surface are filled.
@@ -103,11 +84,11 @@ enum class SurfaceMode {
   Auto,    ///< certain openings stay open, others are filled
 };
 
-/// Parameters of reconstruct(). The defaults need no tuning. The paper's own method is
-/// GraphMethod::NearestNeighbors, EmbeddingMethod::Iterative, TriangulationMethod::Qhull and
-/// OptimizationMethod::None. optionTable() lists the options of tools, Python and ROS with their
-/// ranges.
+/// Parameters of reconstruct(). The defaults need no tuning. optionTable() lists the options of
+/// tools, Python and ROS with their ranges.
 struct Options : Execution {
+  Method method = Method::Default;           ///< how the cloud is meshed
+  PaperOptions paper;                        ///< of Method::Paper
   OutlierMode outliers = OutlierMode::None;  ///< which points are left out first
   /// OutlierMode::Deviation: outliers deviate by more than the mean and this number of standard
   /// deviations; [0, 1000].
@@ -119,20 +100,14 @@ struct Options : Execution {
   /// Whether points are consolidated before meshing. The mesh then goes through
   /// Surface::consolidated.
   ConsolidationMode consolidation = ConsolidationMode::None;
-  GraphMethod graph = GraphMethod::LocalDelaunay;  ///< how points become neighbours
-  /// Nearest neighbours of each point; >= 3 (k >= n: n - 1 are used). Unset: 25 for the
-  /// nearest-neighbour graph, as in the paper; 12 for the tangent Delaunay graph, which searches
-  /// for up to 32 where needed.
-  std::optional<int> k;
   EmbeddingOptions embedding;  ///< how the graph is embedded
-  TriangulationMethod triangulation = TriangulationMethod::Incremental;  ///< of the sphere
-  OptimizationMethod optimization = OptimizationMethod::Full;  ///< of the mesh on the points
   /// Strength of smoothing, in steps of the paper's section 4.2; [0, 10000], 0: none. The result is
-  /// Surface::smoothed; the input points stay. The mesh is then optimised on the smoothed points.
+  /// Surface::smoothed; the input points stay. Method::Default then optimises the mesh on the
+  /// smoothed points.
   int smoothing = 0;
 
-  /// Whether openings are filled. Only the tangent Delaunay graph finds them. The embedding leaves
-  /// room for them in any case, so that the surface beside them does not fold.
+  /// Whether openings are filled. Only Method::Default finds them. Its embedding leaves room for
+  /// them in any case, so that the surface beside them does not fold.
   SurfaceMode surface = SurfaceMode::Closed;
   /// Openings of up to this number of edges are filled in any case; >= 0.
   int fill_holes = 0;
@@ -143,12 +118,6 @@ struct Options : Execution {
   /// Fill Surface::vertex_residuals and SurfaceDiagnosis::triangle_marks.
   bool details = false;
 };
-
-/// Number of nearest neighbours of each point to search for first.
-///
-/// \param options graph, k
-/// \return Options::k or its default; >= 3.
-int neighborsToSearch(const Options& options);
 
 /// Checks the ranges of all options. reconstruct() does so too; callers may check before long work.
 ///

@@ -135,13 +135,20 @@ struct ConsolidationReport {
 /// Why the work on an embedding ended.
 enum class StopReason {
   Converged,       ///< the residual is at most the tolerance
-  IterationLimit,  ///< `max_iterations` was reached
-  Stagnated,       ///< the residual no longer falls, or rounding allows no further step
+  IterationLimit,  ///< PaperOptions::max_iterations was reached
+  Stagnated,       ///< a barrier or rounding allows no further step
   Collapsed,       ///< nearly all points are at one place of the sphere: not an embedding
   Unfinished,      ///< no tolerance was set: the work ended with the smoothing sweeps
 };
 
-/// Work on one level of EmbeddingMethod::Multilevel.
+/// Where a barrier keeps an embedding from collapsing.
+enum class EmbeddingBarrier {
+  None,          ///< nowhere: it holds by itself
+  CoarseLevels,  ///< on all levels but the graph itself
+  Everywhere,    ///< on the graph itself, too: the tangential Laplacian does not vanish
+};
+
+/// Work on one level of the embedding.
 struct LevelReport {
   std::size_t nodes = 0;      ///< of the level's graph
   std::size_t edges = 0;      ///< undirected
@@ -153,22 +160,22 @@ struct LevelReport {
 
 /// How an embedding was reached.
 struct EmbeddingReport {
-  /// Of Multilevel: Unfinished without a tolerance; Stagnated also where a barrier keeps the
-  /// residual above the tolerance.
+  /// Unfinished without a tolerance; Stagnated also where a barrier keeps the residual above it.
   StopReason stop_reason = StopReason::Unfinished;
-  int iterations = 0;     ///< steps of the iteration, or of Newton's method
+  int iterations = 0;     ///< steps of Newton's method, or of the paper's iteration
   double residual = 0.0;  ///< mean length of the tangential Laplacian at the embedding [radius]
   /// The same before each step on the graph itself, and at the end (Figures 6 and 7 of the paper);
-  /// empty for Multilevel without a tolerance.
+  /// empty without a tolerance.
   std::vector<double> residuals;
   double centroid_norm = 0.0;  ///< length of the mean direction, in [0, 1]; 1: collapsed
   /// The embedding collapsed and was replaced by a start that cannot collapse.
   bool fallback_start = false;
 
-  // Only of EmbeddingMethod::Multilevel.
+  // Only of Method::Default.
 
   std::vector<LevelReport> levels;  ///< finest (the graph itself) first
-  bool added_barrier = false;       ///< a barrier keeps it from collapsing
+  std::size_t start_level = 0;      ///< level on which it started; 0 is the graph itself
+  EmbeddingBarrier barrier = EmbeddingBarrier::None;  ///< where it has one
 
   /// Whether the tolerance was reached. \return true if it was
   bool converged() const { return stop_reason == StopReason::Converged; }
@@ -179,7 +186,7 @@ enum class EmbeddingStep {
   Start,      ///< none on this level: the first start, or the interpolated coarser level
   Sweeps,     ///< the smoothing sweeps of a level
   Newton,     ///< a step of Newton's method; 0 is the state before the first
-  Iteration,  ///< a step of EmbeddingMethod::Iterative; 0 is the state before the first
+  Iteration,  ///< a step of the paper's iteration; 0 is the state before the first
   End,        ///< none: the returned embedding
 };
 

@@ -49,6 +49,10 @@ constexpr std::array<const char*, 5> namesOf(StopReason) {
   return {"converged", "iteration_limit", "stagnated", "collapsed", "unfinished"};
 }
 /// \copydoc namesOf(SurfaceKind)
+constexpr std::array<const char*, 3> namesOf(EmbeddingBarrier) {
+  return {"none", "coarse_levels", "everywhere"};
+}
+/// \copydoc namesOf(SurfaceKind)
 constexpr std::array<const char*, 5> namesOf(EmbeddingStep) {
   return {"start", "sweeps", "newton", "iteration", "end"};
 }
@@ -228,7 +232,7 @@ void visitFields(const ConsolidationReport*, const Visit& visit) {
 }
 
 constexpr ResultField describe(const LevelReport*) {
-  return {"EmbeddingLevel", "Work on one level of the multilevel embedding."};
+  return {"EmbeddingLevel", "Work on one level of the embedding."};
 }
 template <typename Visit>
 void visitFields(const LevelReport*, const Visit& visit) {
@@ -249,15 +253,16 @@ void visitFields(const EmbeddingReport*, const Visit& visit) {
   using Of = EmbeddingReport;
   visit({"stop_reason", "why the work on it ended"}, &Of::stop_reason);
   visit({"converged", "the residual reached the tolerance"}, &Of::converged);
-  visit({"iterations", "steps; of Newton's method for the multilevel embedding"}, &Of::iterations);
+  visit({"iterations", "steps of Newton's method, or of the paper's iteration"}, &Of::iterations);
   visit({"residual", "mean length of the tangential Laplacian [radius]"}, &Of::residual);
   visit({"residuals", "the same before each step and at the end [radius]"}, &Of::residuals);
   visit({"centroid_norm", "length of the mean direction, in [0, 1]; 1: collapsed"},
         &Of::centroid_norm);
   visit({"fallback_start", "it collapsed and was replaced by a start that cannot collapse"},
         &Of::fallback_start);
-  visit({"added_barrier", "a barrier keeps it from collapsing"}, &Of::added_barrier);
-  visit({"levels", "of the multilevel embedding, the finest first"}, &Of::levels);
+  visit({"start_level", "level on which it started; 0 is the graph itself"}, &Of::start_level);
+  visit({"barrier", "where a barrier keeps it from collapsing"}, &Of::barrier);
+  visit({"levels", "the finest first"}, &Of::levels);
 }
 
 constexpr ResultField describe(const HistoryFrame*) {

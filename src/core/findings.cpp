@@ -51,7 +51,7 @@ bool isRough(const Surface& result) {
 }
 
 bool isRaw(const Options& options) {
-  return options.optimization == OptimizationMethod::None;
+  return options.method == Method::Paper;
 }
 
 bool isFolded(const Options& options, const Surface& result) {
@@ -109,19 +109,20 @@ std::optional<Finding> filledOf(const Surface& result, const Options& options) {
 
 /// Twice as many, at least the default, without overflow.
 int moreIterations(int iterations) {
-  return std::max(EmbeddingOptions().max_iterations,
+  return std::max(PaperOptions().max_iterations,
                   iterations < std::numeric_limits<int>::max() / 2 ? 2 * iterations : iterations);
 }
 
 void addOfEmbedding(const Options& options, const Surface& result, std::vector<Finding>& findings) {
   const EmbeddingReport& embedding = result.embedding;
-  const bool is_iterative = options.embedding.method == EmbeddingMethod::Iterative;
   if (embedding.fallback_start)
-    findings.push_back({"the embedding collapsed and was replaced by one of lower quality",
-                        is_iterative ? "embedding" : "", is_iterative ? "multilevel" : "", false});
+    findings.push_back(
+        {"the embedding collapsed and was replaced by one of lower quality", "", "", false});
+  else if (embedding.stop_reason == StopReason::Collapsed)
+    findings.push_back({"the embedding collapsed", "method", "default", false});
   else if (embedding.stop_reason == StopReason::IterationLimit)
     findings.push_back({"the embedding has not converged", "max_iterations",
-                        std::to_string(moreIterations(options.embedding.max_iterations)), false});
+                        std::to_string(moreIterations(options.paper.max_iterations)), false});
   else if (embedding.stop_reason == StopReason::Stagnated)
     findings.push_back(
         {"the embedding has not converged: its residual no longer falls", "", "", false});
@@ -149,13 +150,11 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
     findings.push_back(
         {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
   if (isFolded(options, result)) {
-    const bool may_unfold =
-        isRaw(options) && result.embedding.stop_reason == StopReason::Unfinished;
     Finding fold{"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
                      " of its edges join points that are far apart in the cloud",
                  "", "", true};
-    if (may_unfold)
-      std::tie(fold.option, fold.value) = std::pair("tolerance", "1e-8");
+    if (isRaw(options))
+      std::tie(fold.option, fold.value) = std::pair("method", "default");
     else if (isRough(result))
       std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
     findings.push_back(fold);

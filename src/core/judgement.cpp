@@ -106,9 +106,9 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
       checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
   reportFraction(report, 0.8);
   if (options.details) {
-    result.vertex_residuals =
-        tangentialLaplacianLengths(mesh.graph.graph, mesh.embedding.directions,
-                                   options.embedding.weights, options.embedding.exponent);
+    result.vertex_residuals = tangentialLaplacianLengths(
+        mesh.graph.graph, mesh.embedding.directions,
+        options.method == Method::Paper ? options.paper.weights : EdgeWeights::Adaptive);
     for (const auto& pair : result.self_intersections)
       for (const Index t : pair)
         result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=

@@ -84,7 +84,7 @@ std::vector<Opening> OpenSurface::found(const Positions& points, const Graph& gr
 }
 
 bool seeksOpenings(const Options& options) {
-  return options.graph == GraphMethod::LocalDelaunay;
+  return options.method == Method::Default;
 }
 
 Embedding OpenSurface::embedded(const Positions& points, const Graph& graph, const Options& options,
@@ -92,8 +92,8 @@ Embedding OpenSurface::embedded(const Positions& points, const Graph& graph, con
   if (embedded_.openings.empty())
     return embed(graph, points, options.embedding, options.seed, execution);
   const FilledGraph filled = fillOpenings(points, graph, embedded_);
-  Embedding embedding = embed(filled.graph, filled.points, options.embedding, options.seed,
-                              execution, NodeMass::ByArea);
+  Embedding embedding =
+      embed(filled.graph, filled.points, options.embedding, options.seed, execution);
   embedding.directions = Positions(embedding.directions.leftCols(points.cols()));
   dropVertices(static_cast<Index>(points.cols()), embedding.history);
   return embedding;

@@ -15,9 +15,6 @@ namespace spherical_param {
 namespace {
 
 constexpr double kMaxInt = std::numeric_limits<int>::max();
-/// k of the paper, and enough neighbours to certify most local Delaunay cells.
-constexpr int kTypicalNearestNeighbors = 25;
-constexpr int kTypicalDelaunayNeighbors = 12;
 /// Far above any sensible value.
 constexpr double kMaxArea = 1e15;
 constexpr double kMaxSeconds = 1e9;
@@ -117,6 +114,11 @@ OptionRow usedWith(std::vector<std::pair<std::string, std::vector<std::string>>>
   return row;
 }
 
+/// The row of an option of Method::Default alone.
+OptionRow byDefault(OptionRow row) {
+  return usedWith({{"method", {"default"}}}, std::move(row));
+}
+
 /// The row of outliers: a number is the sigma of OutlierMode::Deviation.
 OptionRow outlierRow() {
   OptionRow row = number(
@@ -169,56 +171,42 @@ std::vector<OptionRow> pointRows() {
   };
 }
 
-std::vector<OptionRow> graphRows() {
+std::vector<OptionRow> methodRows() {
+  const auto of_paper = [](OptionRow row) {
+    return usedWith({{"method", {"paper"}}}, std::move(row));
+  };
   return {
-      choice<GraphMethod>(
-          "graph", "graph", "how points become neighbours; in the paper knn", Expert,
-          {{"delaunay", GraphMethod::LocalDelaunay}, {"knn", GraphMethod::NearestNeighbors}},
-          [](Options & o) -> auto& { return o.graph; }),
-      number(
-          "k", "k", "nearest neighbours of each point; unset: 25 for knn, 12 for delaunay", Expert,
-          3, kMaxInt, [](Options & o) -> auto& { return o.k; }),
+      choice<Method>(
+          "method", "method", "how the cloud is meshed; paper: as published in 2004", Expert,
+          {{"default", Method::Default}, {"paper", Method::Paper}},
+          [](Options & o) -> auto& { return o.method; }),
+      of_paper(number(
+          "k", "paper.k", "nearest neighbours of each point", Expert, 3, kMaxInt,
+          [](Options & o) -> auto& { return o.paper.k; })),
+      of_paper(choice<EdgeWeights>(
+          "weights", "paper.weights", "weights of the Laplacian", Expert,
+          {{"adaptive", EdgeWeights::Adaptive},
+           {"inverse", EdgeWeights::InverseLength},
+           {"uniform", EdgeWeights::Uniform}},
+          [](Options & o) -> auto& { return o.paper.weights; })),
+      of_paper(aboveMin(number(
+          "damping", "paper.damping", "damping of the iteration", Expert, 0, 1,
+          [](Options & o) -> auto& { return o.paper.damping; }))),
+      of_paper(number(
+          "max_iterations", "paper.max_iterations", "maximum number of iterations", Expert, 0,
+          kMaxInt, [](Options & o) -> auto& { return o.paper.max_iterations; })),
   };
 }
 
 std::vector<OptionRow> embeddingRows() {
   return {
-      choice<EmbeddingMethod>(
-          "embedding", "embedding.method", "how the graph is embedded; in the paper iterative",
-          Expert,
-          {{"multilevel", EmbeddingMethod::Multilevel}, {"iterative", EmbeddingMethod::Iterative}},
-          [](Options & o) -> auto& { return o.embedding.method; }),
-      choice<EdgeWeights>(
-          "weights", "embedding.weights", "weights of the Laplacian", Expert,
-          {{"adaptive", EdgeWeights::Adaptive},
-           {"inverse", EdgeWeights::InverseLength},
-           {"uniform", EdgeWeights::Uniform}},
-          [](Options & o) -> auto& { return o.embedding.weights; }),
-      usedWith({{"embedding", {"multilevel"}}, {"weights", {"adaptive"}}},
-               aboveMin(number(
-                   "exponent", "embedding.exponent", "exponent p of adaptive weights", Expert, 2,
-                   16, [](Options & o) -> auto& { return o.embedding.exponent; }))),
-      aboveMin(number(
-          "damping", "embedding.damping", "damping of iterations and smoothing sweeps", Expert, 0,
-          1, [](Options & o) -> auto& { return o.embedding.damping; })),
       number(
           "tolerance", "embedding.tolerance",
-          "mean tangential Laplacian at convergence; unset: 1e-8 for iterative, else none", Expert,
-          0, 1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
-      usedWith({{"embedding", {"iterative"}}},
-               number(
-                   "max_iterations", "embedding.max_iterations", "maximum number of iterations",
-                   Expert, 0, kMaxInt,
-                   [](Options & o) -> auto& { return o.embedding.max_iterations; })),
-      usedWith({{"embedding", {"iterative"}}},
-               number(
-                   "stagnation_window", "embedding.stagnation_window",
-                   "iterations over which stagnation is judged; 0 or 1: never", Expert, 0, kMaxInt,
-                   [](Options & o) -> auto& { return o.embedding.stagnation_window; })),
-      usedWith({{"embedding", {"multilevel"}}},
-               number(
-                   "starts", "embedding.starts", "number of starts on the coarsest level", Expert,
-                   1, 100, [](Options & o) -> auto& { return o.embedding.starts; })),
+          "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert, 0,
+          1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
+      byDefault(number(
+          "starts", "embedding.starts", "number of starts on the coarsest level", Expert, 1, 100,
+          [](Options & o) -> auto& { return o.embedding.starts; })),
       number(
           "history_vertices", "embedding.history_vertices",
           "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
@@ -226,23 +214,6 @@ std::vector<OptionRow> embeddingRows() {
       number(
           "history_frames", "embedding.history_frames", "maximum number of states of these paths",
           Expert, 2, 10000, [](Options & o) -> auto& { return o.embedding.history_frames; }),
-  };
-}
-
-std::vector<OptionRow> meshRows() {
-  return {
-      choice<TriangulationMethod>(
-          "triangulation", "triangulation", "how the sphere is triangulated; in the paper qhull",
-          Expert,
-          {{"incremental", TriangulationMethod::Incremental},
-           {"qhull", TriangulationMethod::Qhull}},
-          [](Options & o) -> auto& { return o.triangulation; }),
-      choice<OptimizationMethod>(
-          "optimization", "optimization", "how the mesh is optimised on the points", Expert,
-          {{"full", OptimizationMethod::Full},
-           {"flips", OptimizationMethod::Flips},
-           {"none", OptimizationMethod::None}},
-          [](Options & o) -> auto& { return o.optimization; }),
       number(
           "smoothing", "smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000,
           [](Options & o) -> auto& { return o.smoothing; }),
@@ -251,22 +222,19 @@ std::vector<OptionRow> meshRows() {
 
 std::vector<OptionRow> surfaceRows() {
   return {
-      usedWith({{"graph", {"delaunay"}}},
-               choice<SurfaceMode>(
-                   "surface", "surface",
-                   "openings are filled, left open, or left open if certain (auto)", Everybody,
-                   {{"closed", SurfaceMode::Closed},
-                    {"open", SurfaceMode::Open},
-                    {"auto", SurfaceMode::Auto}},
-                   [](Options & o) -> auto& { return o.surface; })),
-      usedWith({{"graph", {"delaunay"}}},
-               number(
-                   "fill_holes", "fill_holes", "openings of up to this number of edges are filled",
-                   Expert, 0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
-      usedWith({{"graph", {"delaunay"}}},
-               number(
-                   "fill_holes_area", "fill_holes_area", "openings of up to this area are filled",
-                   Expert, 0, kMaxArea, [](Options & o) -> auto& { return o.fill_holes_area; })),
+      byDefault(choice<SurfaceMode>(
+          "surface", "surface", "openings are filled, left open, or left open if certain (auto)",
+          Everybody,
+          {{"closed", SurfaceMode::Closed},
+           {"open", SurfaceMode::Open},
+           {"auto", SurfaceMode::Auto}},
+          [](Options & o) -> auto& { return o.surface; })),
+      byDefault(number(
+          "fill_holes", "fill_holes", "openings of up to this number of edges are filled", Expert,
+          0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
+      byDefault(number(
+          "fill_holes_area", "fill_holes_area", "openings of up to this area are filled", Expert, 0,
+          kMaxArea, [](Options & o) -> auto& { return o.fill_holes_area; })),
   };
 }
 
@@ -275,11 +243,10 @@ std::vector<OptionRow> runRows() {
       number(
           "seed", "seed", "seed of all random choices", Expert, 0, kMaxSeed,
           [](Options & o) -> auto& { return o.seed; }),
-      usedWith({{"optimization", {"full"}}},
-               number(
-                   "time_limit", "time_limit",
-                   "seconds until the work ends with the best mesh so far; unset: no limit",
-                   Everybody, 0, kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
+      byDefault(number(
+          "time_limit", "time_limit",
+          "seconds until the work ends with the best mesh so far; unset: no limit", Everybody, 0,
+          kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
       number(
           "threads", "threads", "threads; 0: as many as OpenMP would use", Expert, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),
@@ -288,8 +255,7 @@ std::vector<OptionRow> runRows() {
 
 std::vector<OptionRow> makeTable() {
   std::vector<OptionRow> table;
-  for (const auto& rows :
-       {pointRows(), graphRows(), embeddingRows(), meshRows(), surfaceRows(), runRows()})
+  for (const auto& rows : {pointRows(), methodRows(), embeddingRows(), surfaceRows(), runRows()})
     table.insert(table.end(), rows.begin(), rows.end());
   return table;
 }
@@ -379,19 +345,9 @@ std::string textOf(const OptionValue& value) {
   return text.str();
 }
 
-int neighborsToSearch(const Options& options) {
-  return options.k.value_or(options.graph == GraphMethod::NearestNeighbors
-                                ? kTypicalNearestNeighbors
-                                : kTypicalDelaunayNeighbors);
-}
-
 void checkOptions(const Options& options) {
   for (const OptionRow& row : optionTable())
     checkValue(row, row.get(options));
-  if (options.embedding.method == EmbeddingMethod::Iterative && options.embedding.exponent != 3.0)
-    throw InvalidInput("exponent = " + textOf(options.embedding.exponent) +
-                       " has no effect on the iterative embedding; use 3, or the multilevel "
-                       "embedding");
 }
 
 }  // namespace spherical_param

@@ -1,24 +1,27 @@
 #include "spherical_param/reconstruct.h"
 
 #include "consolidation.h"
+#include "embedding_history.h"
 #include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
-#include "nearest_neighbor_graph.h"
 #include "open_mesh.h"
 #include "open_surface.h"
+#include "paper_method.h"
 #include "point_set.h"
 #include "result_units.h"
 #include "selection.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
 #include "stage_clock.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,9 +70,9 @@ bool mayBeOpen(const Options& options) {
 
 NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& options,
                          const Execution& execution) {
-  if (options.graph == GraphMethod::NearestNeighbors)
-    return internal::buildNearestNeighborGraph(
-        neighborhoods.points(), neighborhoods.neighbors().lists, neighborsToSearch(options));
+  if (options.method == Method::Paper)
+    return internal::paper::nearestNeighborGraph(neighborhoods.points(),
+                                                 neighborhoods.neighbors().lists, options.paper.k);
   // Outliers that are left out are not looked for again.
   const auto strays = options.outliers == OutlierMode::None ? internal::StraySearch::Yes
                                                             : internal::StraySearch::No;
@@ -77,27 +80,64 @@ NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& opti
                                            neighborhoods.agreed(), strays, execution);
 }
 
-/// Optimises the mesh on the points, and on smoothed ones if they are asked for.
-void optimize(const Positions& points, const Triangles& triangles, const OpenSurface& openings,
-              const Options& options, StageClock& clock, MeshedCloud& mesh) {
-  const bool is_smoothed = options.smoothing > 0;
+/// The published method: embed the graph by the iteration, and take the hull.
+MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const Options& options,
+                            StageClock& clock) {
+  constexpr double typical_tolerance = 1e-8;
+  MeshedCloud mesh;
+  mesh.graph = std::move(graph);
+  clock.begin("embedding");
+  internal::EmbeddingRecorder recorder(mesh.graph.graph.size(), options.embedding);
+  internal::EmbeddingObserver observer;
+  if (options.embedding.history_vertices > 0)
+    observer = std::ref(recorder);
+  mesh.embedding = internal::paper::embed(mesh.graph.graph, points, options.paper,
+                                          options.embedding.tolerance.value_or(typical_tolerance),
+                                          observer, clock.execution());
+  mesh.embedding.history = recorder.take();
+  clock.begin("triangulation");
+  Triangles& triangles = mesh.optimization.triangles;
+  triangles = internal::paper::convexHull(mesh.embedding.directions, clock.execution());
+  orientOutward(points, triangles, mesh.embedding);
+  clock.begin("quality");
+  mesh.optimization.self_intersections =
+      findSelfIntersections(points, triangles, clock.execution());
+  return mesh;
+}
+
+/// Our method: embed the graph with room for its openings, triangulate the sphere, and optimise the
+/// mesh on the points.
+MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, const OpenSurface& openings,
+                          const Options& options, StageClock& clock) {
+  MeshedCloud mesh;
+  mesh.graph = std::move(graph);
+  clock.begin("embedding");
+  mesh.embedding = openings.embedded(points, mesh.graph.graph, options, clock.execution());
+  clock.begin("triangulation");
+  Triangles triangles = triangulateSphere(mesh.embedding.directions, clock.execution());
+  orientOutward(points, triangles, mesh.embedding);
   Execution execution = clock.execution();
   execution.time_limit = clock.remaining();
   // The other half is for the smoothed points, which get an optimisation of their own.
+  const bool is_smoothed = options.smoothing > 0;
   if (is_smoothed && execution.time_limit)
     *execution.time_limit /= 2.0;
   clock.begin("optimization");
   mesh.optimization = internal::optimizeMesh(
       points, triangles, mesh.graph.graph, openings.places(),
-      OptimizationOptions{options.optimization, !is_smoothed}, options.seed, execution);
-  if (!is_smoothed)
-    return;
+      OptimizationOptions{OptimizationMethod::Full, !is_smoothed}, options.seed, execution);
+  return mesh;
+}
+
+void smooth(const Positions& points, const OpenSurface& openings, const Options& options,
+            StageClock& clock, MeshedCloud& mesh) {
+  Execution execution = clock.execution();
   execution.time_limit = clock.remaining();
   clock.begin("smoothing");
   mesh.smoothed =
       internal::smoothMesh(points, mesh.optimization.triangles, mesh.graph.graph, openings.places(),
                            SmoothingOptions{SmoothingMethod::Biharmonic, options.smoothing},
-                           options.optimization, options.seed, execution);
+                           options.method == Method::Default, options.seed, execution);
   bool& is_out_of_time = mesh.optimization.report.is_out_of_time;
   is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
 }
@@ -110,28 +150,22 @@ OpenSurface findOpenings(const Positions& points, const Graph& graph, int expone
   return {points, graph, is_flat, std::ldexp(1.0, exponent), options, clock.execution()};
 }
 
-/// The method: find openings in the graph, embed it, triangulate the sphere, optimise the mesh on
-/// the points, and judge it.
+/// Meshes a graph of points, and judges the mesh.
 ///
 /// \param is_flat all points are in one plane.
 Surface meshGraph(const Positions& points, NeighborGraph graph, int exponent, bool is_flat,
                   const Options& options, StageClock& clock) {
-  const Execution& execution = clock.execution();
   const OpenSurface openings = findOpenings(points, graph.graph, exponent, is_flat, options, clock);
   if (is_flat && !openings.isOpen())
     refuseFlat(options);
-  MeshedCloud mesh;
-  mesh.graph = std::move(graph);
-  clock.begin("embedding");
-  mesh.embedding = openings.embedded(points, mesh.graph.graph, options, execution);
-  clock.begin("triangulation");
-  Triangles triangles =
-      triangulateSphere(mesh.embedding.directions, options.triangulation, execution).triangles;
-  orientOutward(points, triangles, mesh.embedding);
-  optimize(points, triangles, openings, options, clock, mesh);
+  MeshedCloud mesh = options.method == Method::Paper
+                         ? meshAsPublished(points, std::move(graph), options, clock)
+                         : meshByDefault(points, std::move(graph), openings, options, clock);
+  if (options.smoothing > 0)
+    smooth(points, openings, options, clock, mesh);
   orientOutward(points, mesh.triangles(), mesh.embedding);
   clock.begin("quality");
-  return internal::judge(points, std::move(mesh), openings, options, execution);
+  return internal::judge(points, std::move(mesh), openings, options, clock.execution());
 }
 
 /// Meshes some nodes. \param is_flat all points are in one plane.

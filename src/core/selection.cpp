@@ -91,7 +91,7 @@ Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
                                             clock_.execution());
   Neighborhoods& neighborhoods = isWhole(part) ? whole() : *part_;
   clock_.begin("graph");
-  if (options_.graph == GraphMethod::LocalDelaunay)
+  if (options_.method == Method::Default)
     neighborhoods.findStars(clock_.execution());
   return neighborhoods;
 }

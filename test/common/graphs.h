@@ -2,7 +2,6 @@
 
 #include "helpers.h"
 #include "local_delaunay_graph.h"
-#include "nearest_neighbor_graph.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -13,27 +12,13 @@
 /// Neighbour graphs for tests of the core's stages.
 namespace spherical_param::test {
 
-/// How a graph is made.
-struct GraphChoice {
-  GraphMethod method = GraphMethod::LocalDelaunay;
-  int k = 12;
-};
-
-/// The graph of the k nearest neighbours.
-inline GraphChoice nearest(int k = 25) {
-  return {GraphMethod::NearestNeighbors, k};
-}
-
 inline internal::Stars starsOf(const Positions& points, const NeighborLists& lists,
                                const NeighborSearch& search = {}, const Execution& execution = {}) {
   return internal::findStars(points, {lists, search}, execution);
 }
 
 inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
-                             const GraphChoice& choice = {}, const NeighborSearch& search = {},
-                             const Execution& execution = {}) {
-  if (choice.method == GraphMethod::NearestNeighbors)
-    return internal::buildNearestNeighborGraph(points, lists, choice.k);
+                             const NeighborSearch& search = {}, const Execution& execution = {}) {
   const internal::Stars stars = starsOf(points, lists, search, execution);
   return internal::buildLocalDelaunayGraph(points, stars,
                                            internal::agreedGraph(points, stars, execution),
@@ -94,7 +79,7 @@ inline double fractionBeyondTwoSteps(const Graph& graph, const Triangles& triang
 
 /// The graph of the tangent Delaunay neighbours, by brute force.
 inline NeighborGraph localDelaunayGraph(const Positions& points) {
-  return graphOf(points, bruteForceNeighbors(points, 12), {}, bruteForceSearch(points));
+  return graphOf(points, bruteForceNeighbors(points, 12), bruteForceSearch(points));
 }
 
 }  // namespace spherical_param::test

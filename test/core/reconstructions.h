@@ -36,20 +36,18 @@ inline Positions twoSpheres(Index n, Index m, double distance) {
 /// The method as it was published.
 inline Options paper() {
   Options options;
-  options.graph = GraphMethod::NearestNeighbors;
-  options.embedding.method = EmbeddingMethod::Iterative;
-  options.triangulation = TriangulationMethod::Qhull;
+  options.method = Method::Paper;
   return options;
 }
 
-/// Both methods, whole.
+/// Both methods.
 inline std::vector<Options> bothMethods() {
   return {Options(), paper()};
 }
 
 /// For clouds that cannot be meshed well: without the search for a better mesh.
 inline Options quick(Options options = {}) {
-  options.optimization = OptimizationMethod::Flips;
+  options.time_limit = 0.0;
   return options;
 }
 

@@ -1,11 +1,12 @@
 // Calls from several threads share nothing. A program of its own, so that the thread sanitizer has
 // no more to build than this.
 
+#include "qhull.h"
 #include "reconstructions.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/map/sphere_surface.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 
@@ -35,10 +36,10 @@ TEST(Concurrency, ReconstructionsTriangulationsAndMapsAgreeWithSingleOnes) {
     options.threads = 1;
     return test::surfaceOf(ellipsoid(i), options).sphere;
   });
-  for (const auto method : {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
-    expectTheSameAlone([method](std::size_t i) {
-      return triangulateSphere(ellipsoid(i).colwise().normalized(), method).triangles;
-    });
+  expectTheSameAlone(
+      [](std::size_t i) { return triangulateSphere(ellipsoid(i).colwise().normalized()); });
+  expectTheSameAlone(
+      [](std::size_t i) { return internal::hullByQhull(ellipsoid(i).colwise().normalized()); });
   expectTheSameAlone([](std::size_t i) {
     const Positions start = ellipsoid(i).colwise().normalized();
     SphereMapOptions options;

@@ -62,7 +62,7 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
   expectFindings({
       {{}, [](Surface&) {}},
       {{}, [](Surface& r) { r.vertex_of_input.resize(kPoints + 7); }},
-      {{}, [](Surface& r) { r.embedding.added_barrier = true; }},
+      {{}, [](Surface& r) { r.embedding.barrier = EmbeddingBarrier::Everywhere; }},
       {{}, [](Surface& r) { r.openings.resize(2); }},
       {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }},
       {{"1 point looks like an outlier", "outliers", "auto", false},
@@ -182,29 +182,22 @@ TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {
                  filling);
 }
 
-TEST(Findings, ThePapersStagesHaveTheirOwn) {
+TEST(Findings, ThePapersMethodHasItsOwn) {
   Options options;
-  options.optimization = OptimizationMethod::None;
-  options.embedding.method = EmbeddingMethod::Iterative;
-  options.embedding.max_iterations = 40;
-  const auto fold = [](Surface& r, StopReason reason) {
-    r.diagnosis.edges_outside_graph = 0.002;
-    r.embedding.stop_reason = reason;
-  };
+  options.method = Method::Paper;
+  options.paper.max_iterations = 40;
   const std::string folded =
       "the mesh is folded: 0.2 % of its edges join points that are far apart in the cloud";
-  expectFindings(
-      {{{folded, "tolerance", "1e-8", true}, [&](Surface& r) { fold(r, StopReason::Unfinished); }},
-       {{folded, "", "", true}, [&](Surface& r) { fold(r, StopReason::Converged); }},
-       {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.001; }},
-       {{"the embedding has not converged", "max_iterations", "1600", false},
-        [](Surface& r) { r.embedding.stop_reason = StopReason::IterationLimit; }},
-       {{"the embedding has not converged: its residual no longer falls", "", "", false},
-        [](Surface& r) { r.embedding.stop_reason = StopReason::Stagnated; }},
-       {{"the embedding collapsed and was replaced by one of lower quality", "embedding",
-         "multilevel", false},
-        [](Surface& r) { r.embedding.fallback_start = true; }}},
-      options);
+  expectFindings({{{folded, "method", "default", true},
+                   [](Surface& r) { r.diagnosis.edges_outside_graph = 0.002; }},
+                  {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.001; }},
+                  {{"the embedding has not converged", "max_iterations", "1600", false},
+                   [](Surface& r) { r.embedding.stop_reason = StopReason::IterationLimit; }},
+                  {{"the embedding has not converged: its residual no longer falls", "", "", false},
+                   [](Surface& r) { r.embedding.stop_reason = StopReason::Stagnated; }},
+                  {{"the embedding collapsed", "method", "default", false},
+                   [](Surface& r) { r.embedding.stop_reason = StopReason::Collapsed; }}},
+                 options);
 }
 
 TEST(Verdict, SaysInProportionWhatIsWrong) {

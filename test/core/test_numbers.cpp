@@ -15,9 +15,7 @@ namespace {
 using test::canonical;
 
 /// The topology must be sound.
-Surface meshOf(const Positions& points, OptimizationMethod method = OptimizationMethod::Full) {
-  Options options;
-  options.optimization = method;
+Surface meshOf(const Positions& points, const Options& options = {}) {
   const Surface result = test::mesh(points, options);
   EXPECT_TRUE(test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
   return result;
@@ -79,7 +77,7 @@ TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
 
 TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndTheRestIsSaid) {
   for (const double radius : {1e-5, 1e-20}) {
-    const Surface result = meshOf(sphereWithDisc(radius, 100), OptimizationMethod::Flips);
+    const Surface result = meshOf(sphereWithDisc(radius, 100), test::quick());
     EXPECT_EQ(result.duplicates(), 0U) << radius;
     EXPECT_FALSE(result.self_intersections.empty()) << radius;
     EXPECT_FALSE(result.findings.empty()) << radius;
@@ -117,7 +115,7 @@ TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
 }
 
 TEST(Numbers, WhereATubeIsTooLongForTheSphereThatIsSaid) {
-  const Surface result = meshOf(test::bentTube(130.0, 0.0, 8).points, OptimizationMethod::Flips);
+  const Surface result = meshOf(test::bentTube(130.0, 0.0, 8).points, test::quick());
   EXPECT_FALSE(result.findings.empty());
 }
 

@@ -84,8 +84,8 @@ TEST(OptionTable, NamesAndFieldsOccurOnceAndDefaultsAreInRange) {
     EXPECT_NO_THROW(setOption(options, row.name, row.get(options))) << row.name;
   }
   Options options;
-  setOption(options, "exponent", std::int64_t{4});  // an integer will do for a number
-  EXPECT_EQ(options.embedding.exponent, 4.0);
+  setOption(options, "damping", std::int64_t{1});  // an integer will do for a number
+  EXPECT_EQ(options.paper.damping, 1.0);
   expectRefusal([] { findOption("solver"); }, "solver");
 }
 
@@ -154,19 +154,9 @@ TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
   for (const int past : {-1, 3}) {
     refuses("outliers", [=](Options& o) { o.outliers = static_cast<OutlierMode>(past); });
     refuses("parts", [=](Options& o) { o.parts = static_cast<PartsMode>(past); });
-    refuses("graph", [=](Options& o) { o.graph = static_cast<GraphMethod>(past); });
-    refuses("embedding",
-            [=](Options& o) { o.embedding.method = static_cast<EmbeddingMethod>(past); });
-    refuses("weights", [=](Options& o) { o.embedding.weights = static_cast<EdgeWeights>(past); });
-    refuses("triangulation",
-            [=](Options& o) { o.triangulation = static_cast<TriangulationMethod>(past); });
-    refuses("optimization",
-            [=](Options& o) { o.optimization = static_cast<OptimizationMethod>(past); });
+    refuses("method", [=](Options& o) { o.method = static_cast<Method>(past); });
+    refuses("weights", [=](Options& o) { o.paper.weights = static_cast<EdgeWeights>(past); });
   }
-  refuses("exponent", [](Options& o) {
-    o.embedding.method = EmbeddingMethod::Iterative;
-    o.embedding.exponent = 4.0;
-  });
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
   for (const bool takes_apart : {false, true})
     for (Options options : test::bothMethods()) {
       options = test::quick(options);
-      options.embedding.max_iterations = 50;
+      options.paper.max_iterations = 50;
       options.parts = takes_apart ? PartsMode::Each : PartsMode::All;
       options.outliers = takes_apart ? OutlierMode::Auto : OutlierMode::None;
       int made = 0;

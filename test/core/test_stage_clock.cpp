@@ -114,7 +114,7 @@ TEST(ProgressCallback, EndsReconstructAtEveryCall) {
   smoothed.smoothing = 2;
   smoothed.embedding.history_vertices = 10;
   Options paper = test::paper();
-  paper.embedding.max_iterations = 20;
+  paper.paper.max_iterations = 20;
   const Positions points = test::withNoise(test::spiralSphere(60), 0.1, 3);
   for (Options options : {smoothed, paper}) {
     const auto sphere_of = [&](const std::function<bool(double)>& callback) {

@@ -12,16 +12,17 @@
 #include "openings.h"
 #include "optimization/optimization_cases.h"
 #include "ordered_points.h"
+#include "paper_method.h"
 #include "quality/surface_scenes.h"
 #include "reconstructions.h"
 #include "sampling_analysis.h"
 #include "smoothing.h"
 #include "sphere_mesh.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
 #include "surface_diagnosis.h"
 #include "thread_checks.h"
 
@@ -48,7 +49,7 @@ struct Stage {
 struct Inputs {
   Positions points = test::withNoise(test::ellipsoid(40000), 0.001, 1);
   NeighborLists lists = findNearestNeighbors(points, 8);  // so few that more are searched for
-  Graph graph = test::graphOf(points, lists, {}, makeNeighborSearch(points)).graph;
+  Graph graph = test::graphOf(points, lists, makeNeighborSearch(points)).graph;
   Triangles triangles = triangulateSphere(test::spiralSphere(40000));
   Triangles damaged = triangles;
   Positions holed = test::sphereWithHoles(40000, 3, 0.3);
@@ -101,34 +102,33 @@ Numbers numbersOf(const internal::GraphHierarchy& hierarchy) {
 }
 
 void addEmbeddings(std::vector<Stage>& stages, const Inputs& in) {
-  for (const EmbeddingMethod method : {EmbeddingMethod::Iterative, EmbeddingMethod::Multilevel})
-    for (const EdgeWeights weights :
-         {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive})
-      stages.push_back({"embedding", [&in, method, weights](const Execution& e) {
-                          EmbeddingOptions options;
-                          options.method = method;
-                          options.weights = weights;
-                          options.max_iterations = 5;
-                          options.starts = 3;
-                          options.history_vertices = 100;
-                          if (weights == EdgeWeights::Adaptive)
-                            options.tolerance = 1e-7;
-                          const Embedding result = embed(in.graph, in.points, options, 1, e);
-                          Numbers numbers(result.directions, result.report.residuals, result.energy,
-                                          result.starts);
-                          for (const HistoryFrame& frame : result.history.frames)
-                            numbers.add(frame.sphere);
-                          return numbers;
-                        }});
+  stages.push_back({"embedding", [&in](const Execution& e) {
+                      EmbeddingOptions options;
+                      options.starts = 3;
+                      options.history_vertices = 100;
+                      options.tolerance = 1e-7;
+                      const Embedding result = embed(in.graph, in.points, options, 1, e);
+                      Numbers numbers(result.directions, result.report.residuals);
+                      for (const HistoryFrame& frame : result.history.frames)
+                        numbers.add(frame.sphere);
+                      return numbers;
+                    }});
+  for (const EdgeWeights weights :
+       {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive})
+    stages.push_back({"embedding", [&in, weights](const Execution& e) {
+                        PaperOptions options;
+                        options.weights = weights;
+                        options.max_iterations = 5;
+                        const Embedding result =
+                            internal::paper::embed(in.graph, in.points, options, 1e-8, {}, e);
+                        return Numbers(result.directions, result.report.residuals);
+                      }});
 }
 
 void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
-  for (const TriangulationMethod method :
-       {TriangulationMethod::Qhull, TriangulationMethod::Incremental})
-    stages.push_back({"triangulation", [method](const Execution& e) {
-                        return Numbers(
-                            triangulateSphere(test::spiralSphere(3000), method, e).triangles);
-                      }});
+  stages.push_back({"triangulation", [](const Execution& e) {
+                      return Numbers(triangulateSphere(test::spiralSphere(3000), e));
+                    }});
   for (const test::Case& of :
        {test::noisySphere(2100, 0.3, 15), test::scrambledEllipsoid(2100, 0.6, 2500, 15)})
     stages.push_back({"optimization", [of](const Execution& e) {
@@ -175,7 +175,7 @@ void addReconstructions(std::vector<Stage>& stages, const Inputs& in) {
   Options smoothed = test::watched();
   smoothed.smoothing = 2;
   Options paper = test::watched(test::quick(test::paper()));
-  paper.embedding.max_iterations = 40;
+  paper.paper.max_iterations = 40;
   Options open = test::quick();
   open.surface = SurfaceMode::Open;
   for (const Options& options : {smoothed, paper, open})
@@ -200,7 +200,7 @@ std::vector<Stage> stagesOf(const Inputs& in) {
       {"graph",
        [&](const Execution& e) {
          const NeighborGraph result =
-             test::graphOf(in.points, in.lists, {}, makeNeighborSearch(in.points), e);
+             test::graphOf(in.points, in.lists, makeNeighborSearch(in.points), e);
          return Numbers(result.graph.offsets, result.graph.neighbors, result.graph.lengths);
        }},
       {"openings",

@@ -21,11 +21,9 @@ using fuzz::require;
 Options optionsFrom(Bytes& bytes) {
   Options options;
   EmbeddingOptions& embedding = options.embedding;
-  options.graph = bytes.choice<GraphMethod>(2);
-  embedding.method = bytes.choice<EmbeddingMethod>(2);
-  options.triangulation = bytes.choice<TriangulationMethod>(2);
-  options.optimization = bytes.choice<OptimizationMethod>(3);
-  embedding.weights = bytes.choice<EdgeWeights>(3);
+  PaperOptions& paper = options.paper;
+  options.method = bytes.choice<Method>(2);
+  paper.weights = bytes.choice<EdgeWeights>(3);
   // Each bit stands for an option that is not the default.
   unsigned which = bytes.raw<std::uint16_t>();
   const auto vary = [&](auto& option, auto(Bytes::*read)()) {
@@ -33,12 +31,10 @@ Options optionsFrom(Bytes& bytes) {
       option = (bytes.*read)();
     which /= 2;
   };
-  vary(options.k, &Bytes::integer);
-  vary(embedding.exponent, &Bytes::real);
-  vary(embedding.damping, &Bytes::real);
+  vary(paper.k, &Bytes::integer);
+  vary(paper.damping, &Bytes::real);
+  vary(paper.max_iterations, &Bytes::integer);
   vary(embedding.tolerance, &Bytes::real);
-  vary(embedding.max_iterations, &Bytes::integer);
-  vary(embedding.stagnation_window, &Bytes::integer);
   vary(embedding.starts, &Bytes::integer);
   vary(options.seed, &Bytes::raw<std::uint32_t>);
   vary(options.smoothing, &Bytes::integer);
@@ -186,7 +182,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Positions points = fuzz::pointsFrom(bytes);
 
   // Valid, but too long to wait for.
-  if (options.embedding.max_iterations > 3000 || options.embedding.starts > 20 ||
+  if (options.paper.max_iterations > 3000 || options.embedding.starts > 20 ||
       options.smoothing > 300)
     watch.cancelAt(2000);
   const std::array<std::string, 11> stages{

@@ -1,11 +1,11 @@
 // Every public function but reconstruct(): the first byte picks one. It is given any arguments.
 
 #include "fuzz_stages.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <algorithm>
 #include <array>
@@ -25,9 +25,8 @@ void fuzzTriangulation(Bytes& bytes, const Positions& points, Watch& watch) {
   const bool is_raw = bytes.oneIn(8);
   const Positions sphere = is_raw ? points : normalized(points);
   const Execution execution = executionFrom(bytes, watch);
-  const Triangles triangles =
-      is_by_qhull ? triangulateSphere(sphere, TriangulationMethod::Qhull, execution).triangles
-                  : triangulateSphere(sphere, execution);
+  const Triangles triangles = is_by_qhull ? internal::paper::convexHull(sphere, execution)
+                                          : triangulateSphere(sphere, execution);
   require(isSphere(triangles, sphere), "the triangulation is a sphere over all points");
 }
 

@@ -2,9 +2,9 @@
 
 #include "embedding_starts.h"
 #include "fuzz_input.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/sphere_triangulation.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>

@@ -10,8 +10,7 @@
 
 namespace {
 
-using spherical_param::EmbeddingMethod;
-using spherical_param::GraphMethod;
+using spherical_param::Method;
 using spherical_param::Progress;
 using namespace test;
 using SearchPtr = pcl::search::Search<PointXYZ>::Ptr;
@@ -28,8 +27,9 @@ TEST_F(SphericalParamReconstruction, MeshIsThatOfTheCoreInIndicesOfTheCloud) {
   Options options;
   for (const int changes : {0, 1}) {
     if (changes == 1) {
-      options.k = 9;
-      options.embedding.weights = spherical_param::EdgeWeights::InverseLength;
+      options.method = Method::Paper;
+      options.paper.k = 9;
+      options.paper.weights = spherical_param::EdgeWeights::InverseLength;
       options.smoothing = 2;
       options.seed = 99;
     }
@@ -281,15 +281,10 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
       SETTER("parts", "each", Parts, spherical_param::PartsMode::Each),
       SETTER("min_points", Integer{7}, MinPartSize, 7),
       SETTER("consolidation", "auto", Consolidation, spherical_param::ConsolidationMode::Auto),
-      SETTER("graph", "knn", GraphMethod, GraphMethod::NearestNeighbors),
+      SETTER("method", "paper", Method, Method::Paper),
       SETTER("k", Integer{17}, KSearch, 17),
-      SETTER("embedding", "iterative", EmbeddingMethod, EmbeddingMethod::Iterative),
       SETTER("weights", "inverse", Weights, spherical_param::EdgeWeights::InverseLength),
       SETTER("tolerance", 1e-5, Tolerance, 1e-5),
-      SETTER("triangulation", "qhull", TriangulationMethod,
-             spherical_param::TriangulationMethod::Qhull),
-      SETTER("optimization", "flips", OptimizationMethod,
-             spherical_param::OptimizationMethod::Flips),
       SETTER("smoothing", Integer{8}, Smoothing, 8),
       SETTER("surface", "open", Surface, spherical_param::SurfaceMode::Open),
       SETTER("fill_holes", Integer{12}, FillHoles, 12),
@@ -309,8 +304,6 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
           << setter.option << " changed " << row.name;
   }
   Reconstruction unset;
-  EXPECT_EQ(unset.getKSearch(), 12);
-  unset.setGraphMethod(GraphMethod::NearestNeighbors);
   EXPECT_EQ(unset.getKSearch(), 25);
   EXPECT_FALSE(unset.getTolerance().has_value());
   EXPECT_FALSE(unset.getProgressCallback());

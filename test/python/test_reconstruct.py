@@ -137,10 +137,10 @@ class Mesh(unittest.TestCase):
         angle, around = 2 * np.pi * np.random.default_rng(1).random((2, 600))
         radius = 1.0 + 0.4 * np.cos(angle)
         torus = [radius * np.cos(around), radius * np.sin(around), 0.4 * np.sin(angle)]
-        diagnosis = sp.reconstruct(np.transpose(torus), optimization="none").diagnosis
+        diagnosis = sp.reconstruct(np.transpose(torus)).diagnosis
         self.assertEqual((diagnosis.kind, diagnosis.genus), ("handles", 1))
         parts = np.concatenate([points, shapes.ellipsoid(300) + [5, 0, 0]])
-        mesh = sp.reconstruct(parts, optimization="none")
+        mesh = sp.reconstruct(parts)
         self.assertEqual(mesh.diagnosis.kind, "several_parts")
         (part,) = mesh.diagnosis.bridges
         self.assertEqual((part.points, part.other_points), (300, len(points)))
@@ -166,15 +166,13 @@ class Options(unittest.TestCase):
             return sp.reconstruct(self.points, **options)
 
         usual = run()
-        edges = [run(graph="knn", k=k).embedding.levels[0].edges for k in (5, None)]
-        self.assertLess(*edges)
+        paper = [run(method="paper", k=k) for k in (8, 25)]
+        self.assertFalse(np.array_equal(*(mesh.triangles for mesh in paper)))
         self.assertTrue(run(time_limit=0).is_out_of_time)
         self.assertLessEqual(run(tolerance=1e-9).embedding.residuals[-1], 1e-9)
         self.assertEqual((usual.embedding.stop_reason, usual.embedding.converged), ("unfinished", False))
-        short = run(embedding="iterative", max_iterations=np.int64(3), damping=np.float32(0.5))
+        short = run(method="paper", max_iterations=np.int64(3), damping=np.float32(0.5))
         self.assertEqual((short.embedding.iterations, len(short.embedding.residuals)), (3, 4))
-        raw = run(optimization="none", triangulation="qhull").triangles
-        self.assertFalse(np.array_equal(raw, usual.triangles))
         for absent in (usual.smoothed, usual.smoothing, usual.consolidated, usual.consolidation,
                        usual.history, usual.vertex_residuals,
                        usual.diagnosis.triangle_marks):  # fmt: skip
@@ -204,7 +202,7 @@ class Options(unittest.TestCase):
             self.check_refused({row["name"]: wrong})
         self.check_refused(OTHERS)
         with self.assertRaisesRegex(sp.InvalidInput, "do not fit into memory; use a smaller k"):
-            sp.reconstruct(shapes.directions(60000), k=2**31 - 1)
+            sp.reconstruct(shapes.directions(60000), method="paper", k=2**31 - 1)
         with self.assertRaisesRegex(TypeError, "no option 'radius'; use one of outliers, parts, min_points, "):
             sp.reconstruct(self.points, radius=1)
 

@@ -167,7 +167,7 @@ TEST(RosCloudMesh, OptionsReachTheReconstruction) {
     std::copy_n(smoothed.begin(), 12, expected.begin());
     EXPECT_EQ(smoothed, expected);
   }
-  settings.options.embedding.damping = 2.0;
+  settings.options.paper.damping = 2.0;
   const Outcome refused = meshCloud(cloud, settings, {});
   EXPECT_EQ(refused.status, Status::Failed);
   EXPECT_NE(refused.message.find("damping"), std::string::npos) << refused.message;

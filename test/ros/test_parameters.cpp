@@ -74,8 +74,8 @@ TEST(RosParameters, EachChangesWhatItNamesOnly) {
 
 TEST(RosParameters, AnIntegerWillDoForANumberAndWhatIsSetCanBeUnset) {
   Settings settings;
-  setParameter(settings, "exponent", 4);
-  EXPECT_EQ(settings.options.embedding.exponent, 4.0);
+  setParameter(settings, "fill_holes_area", 4);
+  EXPECT_EQ(settings.options.fill_holes_area, 4.0);
   for (const Value& number : {Value(4), Value(4.0), Value(std::string("4"))}) {
     setParameter(settings, "outliers", number);
     EXPECT_EQ(settings.options.outliers, spherical_param::OutlierMode::Deviation);
@@ -85,8 +85,8 @@ TEST(RosParameters, AnIntegerWillDoForANumberAndWhatIsSetCanBeUnset) {
     EXPECT_EQ(settings.options.outliers, spherical_param::OutlierMode::None);
   }
   for (const Value& unset : {Value(std::int64_t{kUnset}), Value(-1.0)})
-    for (const char* name : {"k", "tolerance"}) {
-      setParameter(settings, name, name == std::string("k") ? 3 : 1);
+    for (const char* name : {"time_limit", "tolerance"}) {
+      setParameter(settings, name, 1);
       setParameter(settings, name, unset);
       EXPECT_EQ(parameterOf(settings, name), parameterOf({}, name)) << name;
     }
@@ -94,10 +94,10 @@ TEST(RosParameters, AnIntegerWillDoForANumberAndWhatIsSetCanBeUnset) {
 
 TEST(RosParameters, WrongOnesAreRefusedWithCauseAndRemedy) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Values wrong = {{"graph", std::string("gabriel")},
-                        {"graph", 1},
+  const Values wrong = {{"method", std::string("ball")},
+                        {"method", 1},
                         {"k", 12.0},
-                        {"exponent", 2.0},
+                        {"fill_holes_area", -2.0},
                         {"damping", true},
                         {"outliers", 1000.5},
                         {"outliers", -0.5},

@@ -48,7 +48,7 @@ POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4")
 DEPTH_CAMERA, RVIZ, SCANNER = (os.environ[name] for name in ("DEPTH_CAMERA", "RVIZ", "SCANNER"))
 TIMEOUT = 120  # of whatever should take seconds at most [s]
 # A reconstruction that would take weeks.
-ENDLESS = ("_embedding:=iterative", "_max_iterations:=2000000000", "_stagnation_window:=0", "_tolerance:=0.0")
+ENDLESS = ("_method:=paper", "_max_iterations:=2000000000", "_tolerance:=0.0")
 processes = []
 
 
@@ -276,17 +276,17 @@ class Ros1(unittest.TestCase):
         self.assertGreater(np.linalg.det(drawn.reshape(-1, 3, 3)).sum(), 0.0)
 
     def test_parameters_change_while_it_runs(self):
-        self.run_node("_smoothing:=3", "_exponent:=4")
+        self.run_node("_smoothing:=3", "_fill_holes_area:=4")
         reconstruct, points = self.service(), bumpy(500, 6)
         cloud = message_of(points)
         client = dynamic_reconfigure.client.Client("/spherical_param", timeout=TIMEOUT)
         self.addCleanup(client.close)
-        self.assertLessEqual({"smoothing": 3, "exponent": 4.0}.items(), client.get_configuration(TIMEOUT).items())
+        self.assertLessEqual({"smoothing": 3, "fill_holes_area": 4.0}.items(), client.get_configuration(TIMEOUT).items())
         self.assertNotEqual(reconstruct(cloud).mesh.cloud.data, cloud.data)
         client.update_configuration({"smoothing": 0})
         self.assertEqual(rospy.get_param("/spherical_param/smoothing"), 0)
         assert_mesh(self, reconstruct(cloud).mesh, cloud, points)
-        for name, value in (("embedding", "simplex"), ("outliers", "many"), ("exponent", 2.0), ("k", 2)):  # refused
+        for name, value in (("method", "simplex"), ("outliers", "many"), ("damping", 2.0), ("k", 2)):  # refused
             client.update_configuration({name: value})
             self.assertNotEqual(client.get_configuration(TIMEOUT)[name], value)
         client.update_configuration({"outliers": "auto", "parts": "each", "min_points": 1000})
@@ -295,7 +295,7 @@ class Ros1(unittest.TestCase):
         self.assertIn("max_points", reconstruct(cloud).message)
 
     def test_wrong_parameters_end_the_node_with_cause_and_remedy(self):
-        for name, value in (("embedding", "simplex"), ("damping", "0.0"), ("k", "2"), ("threads", "many")):
+        for name, value in (("method", "simplex"), ("damping", "0.0"), ("k", "2"), ("threads", "many")):
             node = self.run_node(f"_{name}:={value}", stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
             self.assertRegex(node.communicate(timeout=TIMEOUT)[0], f"{name} = .*; use ")
             self.assertEqual(node.returncode, 1)
@@ -319,7 +319,7 @@ class Ros1(unittest.TestCase):
         self.assertEqual((counts["done"], counts["failed"], counts["dropped"]), (2, 1, 0))
 
     def test_launch_file_starts_node_and_nodelet_with_parameters(self):
-        parameters = {"optimization": "flips", "queue_depth": 4}
+        parameters = {"surface": "open", "queue_depth": 4}
         file = pathlib.Path(_folder.name, "parameters.yaml")
         file.write_text("".join(f"{name}: {value}\n" for name, value in parameters.items()))
         manager = start(program("nodelet", "nodelet"), "manager", "__name:=manager")

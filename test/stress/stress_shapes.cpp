@@ -62,20 +62,12 @@ Options someOptions(stress::Random& random, bool is_large) {
   Options options;
   if (one(2) == 0)
     return options;
-  options.graph = one(5) < 2 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
-  EmbeddingOptions& embedding = options.embedding;
-  embedding.method = one(3) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
-  options.triangulation =
-      one(5) < 2 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
-  embedding.weights = static_cast<EdgeWeights>(one(3));
-  options.optimization = static_cast<OptimizationMethod>(one(3));
-  if (one(5) < 2)
-    options.k = 3 + one(30);
-  if (one(5) == 0 && embedding.method == EmbeddingMethod::Multilevel)
-    embedding.exponent = 2.0 + 0.1 * (1 + one(140));
+  options.method = one(3) == 0 ? Method::Paper : Method::Default;
+  options.paper.weights = static_cast<EdgeWeights>(one(3));
+  options.paper.k = 3 + one(30);
+  options.paper.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
   options.smoothing = one(3) == 0 ? one(30) : 0;
-  embedding.max_iterations = is_large ? 50 : one(10) == 0 ? 0 : 300;
-  embedding.starts = 1 + one(3);
+  options.embedding.starts = 1 + one(3);
   options.seed = static_cast<std::uint32_t>(one(1000000));
   options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(3)) : OutlierMode::None;
   options.parts = one(5) == 0 ? static_cast<PartsMode>(one(3)) : PartsMode::All;

@@ -56,13 +56,8 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
     job.points.row(1).setConstant(0.5);
   }
   Options& options = job.options;
-  options.graph = below(3) == 0 ? GraphMethod::NearestNeighbors : GraphMethod::LocalDelaunay;
-  options.embedding.method =
-      below(4) == 0 ? EmbeddingMethod::Iterative : EmbeddingMethod::Multilevel;
-  options.embedding.max_iterations = 60;
-  options.triangulation =
-      below(3) == 0 ? TriangulationMethod::Qhull : TriangulationMethod::Incremental;
-  options.optimization = static_cast<OptimizationMethod>(below(3));
+  options.method = below(4) == 0 ? Method::Paper : Method::Default;
+  options.paper.max_iterations = 60;
   options.smoothing = below(3) == 0 ? 5 : 0;
   options.seed = static_cast<std::uint32_t>(below(1000));
   options.details = below(4) == 0;
@@ -119,11 +114,8 @@ std::size_t differencesByThreads(const std::vector<Index>& sizes) {
           Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() * test::spiralSphere(size);
       Options options;
       if (is_paper) {
-        options.graph = GraphMethod::NearestNeighbors;
-        options.embedding.method = EmbeddingMethod::Iterative;
-        options.embedding.max_iterations = 20;
-        options.triangulation = TriangulationMethod::Qhull;
-        options.optimization = OptimizationMethod::None;
+        options.method = Method::Paper;
+        options.paper.max_iterations = 20;
       }
       std::array<std::string, 3> bytes;
       for (std::size_t i = 0; i < bytes.size(); ++i) {

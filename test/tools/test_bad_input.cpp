@@ -131,7 +131,7 @@ TEST_F(BadInput, OptionsThatMakeNoSenseAreRefused) {
                         {{"-k", "25.5"}, "option -k: '25.5'"},
                         {{"-tolerance", "nan"}, "option -tolerance: 'nan'"},
                         {{"-damping", ""}, "option -damping: ''"},
-                        {{"-graph", "gabriel"}, "option -graph: 'gabriel'"},
+                        {{"-method", "ball"}, "option -method: 'ball'"},
                         {{"-weights", "Uniform"}, "option -weights: 'Uniform'"},
                         {{"-outliers", "1001"}, "option -outliers: '1001'"},
                         {{"-history_frames", "5"}, "'-history_frames'"},
@@ -168,11 +168,9 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   const std::string nothing = " does nothing with ";
   expectOptionsRefused(
       mesh_tool, {"in.xyz", "out.ply"},
-      {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-embedding multilevel"},
+      {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-method default"},
        {{"-min-points", "60"}, "-min-points" + nothing + "-parts all"},
-       {{"-exponent", "4", "-weights", "uniform"}, "-exponent" + nothing + "-weights uniform"},
-       {{"-time-limit", "1", "-optimization", "flips"},
-        "-time-limit" + nothing + "-optimization flips"}});
+       {{"-time-limit", "1", "-method", "paper"}, "-time-limit" + nothing + "-method paper"}});
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
                        {{{"-side", "9"}, "-side" + nothing},
                         {{"-grid", "even", "-series"}, "-series" + nothing},
@@ -270,8 +268,7 @@ TEST_F(BadInput, AFullDiskIsAFailureAndKeepsTheOldFile) {
       {{mesh_tool, {"in.xyz", "kept.ply", "-sphere", "s.stl"}, "cannot write 's.stl': " + full},
        medium},
       {{mesh_tool,
-        {"in.xyz", "kept.ply", "-json", "r.json", "-embedding", "iterative", "-stagnation-window",
-         "0", "-tolerance", "0"},
+        {"in.xyz", "kept.ply", "-json", "r.json", "-method", "paper", "-tolerance", "0"},
         "cannot write 'r.json': " + full},
        medium},
       {{remesh_tool, {"in.xyz", "kept.ply", "-harmonics", "c.json"}, full}, medium / 2},

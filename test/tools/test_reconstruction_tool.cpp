@@ -103,16 +103,16 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"number_integer",
        "/points /vertices /edges /duplicates /triangles /components /genus /embedding/iterations "
        "/peak_memory_bytes /self_intersections /intersecting_triangles "
-       "/embedding/levels/0/newton_iterations"},
+       "/embedding/levels/0/newton_iterations /embedding/start_level"},
       {"number_float",
        "/embedding/residual /diagnosis/edges_outside_graph /stages/0/seconds "
        "/embedding/centroid_norm /measures/volume /measures/area /measures/mean_edge_length "
        "/measures/box_min/2 /measures/box_max/2 /measures/centroid/2 /measures/inertia/2/2"},
       {"boolean",
        "/usable /closed /manifold /oriented /is_noisy /is_out_of_time /embedding/converged "
-       "/embedding/fallback_start /embedding/added_barrier /diagnosis/looks_closed_genus0"},
+       "/embedding/fallback_start /diagnosis/looks_closed_genus0"},
       {"string",
-       "/input /output /version /stages/0/name /embedding/stop_reason /verdict /diagnosis/kind"},
+       "/input /output /version /stages/0/name /embedding/stop_reason /embedding/barrier /verdict /diagnosis/kind"},
       {"array",
        "/stages /findings /self_intersecting_pairs /embedding/residuals /embedding/levels "
        "/diagnosis/handles /diagnosis/bridges /outliers /openings /boundary /left_out/not_finite "
@@ -125,7 +125,7 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"string", &json::is_string},
       {"array", &json::is_array},
       {"null", &json::is_null}};
-  const json report = reportOf({"in.ply", "out.ply", "-k=9"});
+  const json report = reportOf({"in.ply", "out.ply", "-starts=4"});
   for (const auto& [type, paths] : keys) {
     std::istringstream words(paths);
     for (std::string path; words >> path;) {
@@ -182,19 +182,18 @@ TEST_F(ReconstructionTool, ConsolidationIsReportedAndWritten) {
 
 TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
   const json paper =
-      reportOf({"in.ply", "out.ply", "-graph", "knn", "--embedding=iterative", "-max-iterations=3",
-                "-triangulation", "qhull", "-optimization", "none", "-weights", "inverse"});
+      reportOf({"in.ply", "out.ply", "--method=paper", "-max-iterations=3", "-weights", "inverse"});
   const json& iteration = paper["embedding"];
   expectEntries(iteration,
                 {{"iterations", 3}, {"stop_reason", "iteration_limit"}, {"levels", json::array()}});
   // A residual before each step and at the end.
   EXPECT_EQ(iteration["residuals"].size(), 4U);
   EXPECT_EQ(iteration["residuals"].back(), iteration["residual"]);
-  expectEntries(paper["options"], R"({"max_iterations": 3, "weights": "inverse", "exponent": null,
-                                      "starts": null, "tolerance": null, "k": null})"_json);
+  expectEntries(paper["options"], R"({"max_iterations": 3, "weights": "inverse", "k": 25,
+                                      "starts": null, "tolerance": null, "surface": null})"_json);
   const json standard = reportOf({"in.ply", "out.ply", "-starts", "5"});
   expectEntries(standard["options"],
-                {{"starts", 5}, {"max_iterations", nullptr}, {"exponent", 3.0}});
+                {{"starts", 5}, {"max_iterations", nullptr}, {"k", nullptr}});
   EXPECT_LT(standard["embedding"]["levels"][0]["edges"], 200 * 4);
 }
 
@@ -220,9 +219,9 @@ TEST_F(ReconstructionTool, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
 }
 
 TEST_F(ReconstructionTool, SelfIntersectionsOfTheReportAreThoseOfTheMesh) {
-  expectSuccess(SCAN_TOOL, {"hand", "mess.ply", "-points", "1000", "-noise", "20"});
+  expectSuccess(SCAN_TOOL, {"hand", "mess.ply", "-points", "1000"});
   const RunResult result =
-      tool({"mess.ply", "out.ply", "-optimization", "none", "-json", "report.json"});
+      tool({"mess.ply", "out.ply", "-method", "paper", "-json", "report.json"});
   const json report = json::parse(content("report.json"));
   const MeshFile out = mesh("out.ply");
   const auto pairs = selfIntersections(out.points(), out.triangles);
@@ -269,7 +268,7 @@ TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
   RunOptions options;
   options.address_space_limit = std::size_t{3} << 30U;
   const RunResult result =
-      tool({"large.xyz", "out.ply", "-threads", "1024", "-optimization", "none"}, options);
+      tool({"large.xyz", "out.ply", "-threads", "1024"}, options);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_TRUE(exists("out.ply"));
 }
@@ -317,7 +316,7 @@ TEST_F(ReconstructionTool, PrintsSixLinesAndWarningsApart) {
 TEST_F(ReconstructionTool, VerbosePrintsOptionsStagesAndTables) {
   const RunResult result = tool({"in.ply", "out.ply", "-smoothing", "3", "-verbose"});
   EXPECT_EQ(result.output.find_first_of("\r\033"), std::string::npos);
-  for (const char* line : {"\n  graph               delaunay\n", "\n  embedding  ", "\n  write  ",
+  for (const char* line : {"\n  method              default\n", "\n  embedding  ", "\n  write  ",
                            "\n  nodes  edges  sweeps ", "\n  volume  ", "\n  centroid  ",
                            "\nverdict   A sound mesh.\n"})
     EXPECT_NE(result.output.find(line), std::string::npos) << line;
@@ -346,8 +345,8 @@ TEST_F(ReconstructionTool, ATerminalShowsABarOfWhatTakesLong) {
   RunOptions options;
   options.terminal = true;
   // Some seconds of work on any machine.
-  const RunResult result = tool({"in.ply", "out.ply", "-embedding", "iterative", "-tolerance", "0",
-                                 "-stagnation-window", "0", "-max-iterations", "100000"},
+  const RunResult result = tool({"in.ply", "out.ply", "-method", "paper", "-tolerance", "0",
+                                 "-max-iterations", "100000"},
                                 options);
   EXPECT_NE(result.output.find("\r  embedding           ["), std::string::npos);
   // It does not stay.

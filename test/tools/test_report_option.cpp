@@ -82,7 +82,7 @@ TEST_F(ReportOption, PageLoadsNothingAndHoldsTheReportOfJson) {
   std::filesystem::create_directories(directory.file("b <"));
   write(input, content("in.ply"));
   tool({input, output, "-report", "page.HTML", "-json", "report.json", "-smoothing", "2", "-quiet",
-        "-damping=0.25"});
+        "-starts=7"});
   const std::string html = content("page.HTML");
   const std::string whole(reportPage());
   const std::size_t place = whole.find(marker);
@@ -113,7 +113,7 @@ TEST_F(ReportOption, PageLoadsNothingAndHoldsTheReportOfJson) {
   EXPECT_EQ(page.data["tool"]["name"], "pcl_spherical_param_reconstruction");
   EXPECT_EQ(
       shellWords(page.data["command"]),
-      (Words{"pcl_spherical_param_reconstruction", input, output, "-damping", "0.25", "-smoothing",
+      (Words{"pcl_spherical_param_reconstruction", input, output, "-starts", "7", "-smoothing",
              "2", "-seed", "1", "-report", "page.HTML", "-json", "report.json", "-quiet"}));
 }
 
@@ -121,7 +121,7 @@ TEST_F(ReportOption, ItsCommandRepeatsTheRun) {
   write("-it's in.ply", content("in.ply"));
   for (const Words& options :
        {Words{"-seed", "3", "-outliers", "9"},
-        Words{"-embedding", "iterative", "-optimization", "none", "-max-iterations", "20"}}) {
+        Words{"-method", "paper", "-max-iterations", "20"}}) {
     tool(tool_test::with(options,
                          {"-report", "page.html", "-quiet", "--", "-it's in.ply", "out.ply"}));
     const Page first = decodedPage(content("page.html"));

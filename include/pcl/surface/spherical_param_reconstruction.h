@@ -31,9 +31,7 @@ namespace pcl {
  * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
  * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
  * k nearest neighbours, a damped iteration from the projection from the centroid, and qhull, is
- * setGraphMethod(GraphMethod::NearestNeighbors), setEmbeddingMethod(EmbeddingMethod::Iterative),
- * setTriangulationMethod(TriangulationMethod::Qhull) and
- * setOptimizationMethod(OptimizationMethod::None).
+ * setMethod(Method::Paper).
  *
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
@@ -49,9 +47,9 @@ namespace pcl {
  * used from two threads at once.
  * \note The core finds the neighbours in double precision, unless setSearchMethod() sets a search
  * object, which is used from the calling thread only.
- * \note Memory: below 2 KB a point; 3 KB for the multilevel embedding with a tolerance on 25
- * nearest neighbours. Time: O(n log n), typically; the iterative embedding adds iterations * O(n
- * k). \ingroup surface
+ * \note Memory: below 1 KB a point. Time: O(n log n), typically; Method::Paper adds iterations *
+ * O(n k).
+ * \ingroup surface
  */
 template <typename PointInT>
 class SphericalParamReconstruction : public MeshConstruction<PointInT> {
@@ -68,16 +66,10 @@ public:
   /** \brief The type of the input cloud. */
   using PointCloudIn = pcl::PointCloud<PointInT>;
 
-  /** \brief How points become neighbours. */
-  using GraphMethod = spherical_param::GraphMethod;
-  /** \brief How the graph is embedded on the sphere. */
-  using EmbeddingMethod = spherical_param::EmbeddingMethod;
-  /** \brief How the points on the sphere are triangulated. */
-  using TriangulationMethod = spherical_param::TriangulationMethod;
+  /** \brief How the cloud is meshed. */
+  using Method = spherical_param::Method;
   /** \brief Weights of the Laplacian. */
   using EdgeWeights = spherical_param::EdgeWeights;
-  /** \brief How the mesh is optimised on the points. */
-  using OptimizationMethod = spherical_param::OptimizationMethod;
   /** \brief Whether points are consolidated before meshing. */
   using ConsolidationMode = spherical_param::ConsolidationMode;
   /** \brief Whether openings of the surface are filled. */
@@ -153,48 +145,34 @@ public:
    * \return their number */
   inline int getMinPartSize() const { return options_.min_points; }
 
-  /** \brief Set how points become neighbours.
-   * \param[in] method default GraphMethod::LocalDelaunay
-   * \note Set GraphMethod::NearestNeighbors to compare with the paper, or to join parts of a cloud
-   * by a large k (setKSearch()). */
-  inline void setGraphMethod(GraphMethod method) { options_.graph = method; }
-  /** \brief Get how points become neighbours.
+  /** \brief Set how the cloud is meshed.
+   * \param[in] method default Method::Default; Paper is the method as published in 2004, without
+   * what this library adds to it.
+   * \note Set Method::Paper to compare with it: it folds limbs, fills openings and takes longer. */
+  inline void setMethod(Method method) { options_.method = method; }
+  /** \brief Get how the cloud is meshed.
    * \return the method */
-  inline GraphMethod getGraphMethod() const { return options_.graph; }
+  inline Method getMethod() const { return options_.method; }
 
-  /** \brief Set the number of nearest neighbours of each point to search for.
-   * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default: 25 (as in
-   * the paper) for GraphMethod::NearestNeighbors; 12 for GraphMethod::LocalDelaunay, which searches
-   * for up to 32 where needed and hardly depends on it.
-   * \note For nearest neighbours, raise it for clouds with noise or uneven density along scan
-   * lines, and lower it where sheets of the surface come close to each other. */
-  inline void setKSearch(int k) { options_.k = k; }
-  /** \brief Get the number of nearest neighbours of each point to search for.
-   * \return that of setKSearch(), or the default of the graph method */
-  inline int getKSearch() const { return spherical_param::neighborsToSearch(options_); }
+  /** \brief Set the number of nearest neighbours of each point, of Method::Paper.
+   * \param[in] k 3 and up; clouds with fewer than k + 1 points use all others. Default 25. */
+  inline void setKSearch(int k) { options_.paper.k = k; }
+  /** \brief Get the number of nearest neighbours of each point, of Method::Paper.
+   * \return their number */
+  inline int getKSearch() const { return options_.paper.k; }
 
-  /** \brief Set how the graph is embedded on the sphere.
-   * \param[in] method default EmbeddingMethod::Multilevel
-   * \note Set EmbeddingMethod::Iterative for the paper's iteration; it folds limbs. */
-  inline void setEmbeddingMethod(EmbeddingMethod method) { options_.embedding.method = method; }
-  /** \brief Get how the graph is embedded on the sphere.
-   * \return the method */
-  inline EmbeddingMethod getEmbeddingMethod() const { return options_.embedding.method; }
-
-  /** \brief Set the weights of the Laplacian (equations 2 to 4 of the paper).
+  /** \brief Set the weights of the Laplacian (equations 2 to 4 of the paper), of Method::Paper.
    * \param[in] weights default EdgeWeights::Adaptive
-   * \note Only adaptive weights keep the embedding from collapsing by themselves. The others are
-   * for comparison: with them, the multilevel embedding holds the centroid by a barrier, and the
-   * tangential Laplacian vanishes only together with its pull. */
-  inline void setWeights(EdgeWeights weights) { options_.embedding.weights = weights; }
+   * \note Only adaptive weights keep the embedding from collapsing by themselves. */
+  inline void setWeights(EdgeWeights weights) { options_.paper.weights = weights; }
   /** \brief Get the weights of the Laplacian.
    * \return the weights */
-  inline EdgeWeights getWeights() const { return options_.embedding.weights; }
+  inline EdgeWeights getWeights() const { return options_.paper.weights; }
 
   /** \brief Set the mean length of the tangential Laplacian at which the embedding has converged.
-   * \param[in] tolerance in radii of the sphere, 0 to 1. Unset (std::nullopt, the default), the
-   * iterative embedding aims at 1e-8; the multilevel embedding ends with its smoothing sweeps and
-   * does not converge.
+   * \param[in] tolerance in radii of the sphere, 0 to 1. Unset (std::nullopt, the default),
+   * Method::Paper aims at 1e-8; Method::Default ends with its smoothing sweeps and does not
+   * converge.
    * \note Set it, to 1e-8 for example, for a map that hardly depends on its start, and where
    * smoothing sweeps leave folds (getDiagnosis().edges_outside_graph), as on long thin limbs.
    * Otherwise the mesh hardly gains. */
@@ -204,26 +182,6 @@ public:
   /** \brief Get the mean length of the tangential Laplacian at convergence.
    * \return that of setTolerance(); unset by default */
   inline std::optional<double> getTolerance() const { return options_.embedding.tolerance; }
-
-  /** \brief Set how the points on the sphere are triangulated.
-   * \param[in] method default TriangulationMethod::Incremental
-   * \note Set TriangulationMethod::Qhull to compare with the paper; it is slower and must reinsert
-   * points in dense places. */
-  inline void setTriangulationMethod(TriangulationMethod method) {
-    options_.triangulation = method;
-  }
-  /** \brief Get how the points on the sphere are triangulated.
-   * \return the method */
-  inline TriangulationMethod getTriangulationMethod() const { return options_.triangulation; }
-
-  /** \brief Set how the mesh is optimised on the points.
-   * \param[in] method default OptimizationMethod::Full
-   * \note Set OptimizationMethod::None for the plain mesh of the sphere, and
-   * OptimizationMethod::Flips if time matters more than the last self-intersections. */
-  inline void setOptimizationMethod(OptimizationMethod method) { options_.optimization = method; }
-  /** \brief Get how the mesh is optimised on the points.
-   * \return the method */
-  inline OptimizationMethod getOptimizationMethod() const { return options_.optimization; }
 
   /** \brief Set the strength of smoothing.
    * \param[in] steps 0 (default) to 10000; 0: none. About as strong as this number of steps of the
@@ -235,9 +193,8 @@ public:
    * \return the steps; 0: none */
   inline int getSmoothing() const { return options_.smoothing; }
 
-  /** \brief Set the seed of all random choices: the order of coarsening in the multilevel
-   * embedding, and the parts of the mesh that OptimizationMethod::Full rebuilds. The same seed
-   * gives the same result.
+  /** \brief Set the seed of all random choices: the order of coarsening in the embedding, and the
+   * parts of the mesh that the optimisation rebuilds. The same seed gives the same result.
    * \param[in] seed any number; default 1 */
   inline void setSeed(std::uint32_t seed) { options_.seed = seed; }
   /** \brief Get the seed of all random choices.
@@ -329,7 +286,7 @@ public:
    * that the polygons fit. Duplicates have the place of their vertex; points that were not meshed
    * are NaN. Empty after a failure.
    * \note Where the optimisation moved vertices, as on noise, some polygons are inverted on the
-   * sphere; with OptimizationMethod::None only by rounding.
+   * sphere; with Method::Paper only by rounding.
    * \return a new cloud of the size of the input */
   pcl::PointCloud<pcl::PointXYZ>::Ptr getSphereCoordinates() const;
 

@@ -1,6 +1,7 @@
 #include "embedding_energy.h"
 
 #include "parallel.h"
+#include "tangential_laplacian.h"
 
 #include <Eigen/Geometry>
 
@@ -17,14 +18,8 @@ std::vector<TangentBasis> tangentBases(const Positions& directions) {
   return bases;
 }
 
-EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, const EdgeWeightLaw& weights, int threads)
-    : graph_(graph), weights_(weights),
-      threads_(threadCount(threads, graph.size(), kShortPassThreshold)) {}
-
-/// Inline, for all loops over edges.
-inline double EmbeddingEnergy::weight(double length, std::size_t entry) const {
-  return weights_.weight(weights_.factor(graph_.lengths[entry]), length);
-}
+EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, int threads)
+    : graph_(graph), threads_(threadCount(threads, graph.size(), kShortPassThreshold)) {}
 
 double EmbeddingEnergy::value(const Positions& u) const {
   const double sum =
@@ -36,13 +31,14 @@ double EmbeddingEnergy::value(const Positions& u) const {
             if (static_cast<std::size_t>(j) > i)
               break;  // each edge once
             const double squared = (u.col(j) - u.col(static_cast<Eigen::Index>(i))).squaredNorm();
-            energy += weight(std::sqrt(squared), e) * squared;
+            energy +=
+                edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e], std::sqrt(squared)) * squared;
           }
         return energy;
       });
   const double barrier =
       masses_.size() > 0 ? -barrier_ * std::log1p(-(u * masses_).squaredNorm()) : 0.0;
-  return sum / (weights_.power() + 2.0) + barrier;
+  return sum / 3.0 + barrier;
 }
 
 void EmbeddingEnergy::addBarrier(const Positions& u) {
@@ -80,7 +76,7 @@ EmbeddingEnergy::Residual EmbeddingEnergy::gradient(const Positions& u, Position
           for (std::size_t e = graph_.offsets[i]; e < graph_.offsets[i + 1]; ++e) {
             const Eigen::Vector3d edge = center - u.col(graph_.neighbors[e]);
             const double length = edge.norm();
-            const double w = weight(length, e);
+            const double w = edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e], length);
             sum += w * edge;
             weights += w;
             lengths += w * length;
@@ -150,10 +146,10 @@ void EmbeddingEnergy::hessian(const Positions& u, const std::vector<TangentBasis
         }
         const Eigen::Vector3d edge = center - u.col(static_cast<Eigen::Index>(j));
         const double squared = edge.squaredNorm();
-        const double w = weight(std::sqrt(squared), e++);
+        const double w = edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e++], std::sqrt(squared));
         const Eigen::Vector2d along = own.transpose() * edge;
         const Eigen::Vector2d other_along = bases[j].transpose() * edge;
-        const double second = squared > 0.0 ? w * weights_.power() / squared : 0.0;
+        const double second = squared > 0.0 ? w / squared : 0.0;
         diagonal += second * along * along.transpose();
         diagonal.diagonal().array() += w;
         curvature += w * squared / 2.0;

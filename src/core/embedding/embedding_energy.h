@@ -1,7 +1,6 @@
 #pragma once
 
 #include "block_matrix.h"
-#include "edge_weights.h"
 #include "graph.h"
 #include "spherical_param/types.h"
 #include "tangent_basis.h"
@@ -15,20 +14,20 @@ namespace spherical_param::internal {
 /// \param directions 3 x n, unit vectors.
 std::vector<TangentBasis> tangentBases(const Positions& directions);
 
-/// The energy of an embedding u of a graph with edge weights w,
+/// The energy of an embedding u of a graph of points p,
 ///
-///   E(u) = sum over edges  w_ij |u_i - u_j|^2 / p   +   barrier,
+///   E(u) = sum over edges  |u_i - u_j|^3 / (3 |p_i - p_j|)   +   barrier.
 ///
-/// of degree p in the lengths on the sphere. Its gradient in the tangent plane of u_i is minus the
-/// tangential Laplacian of Zwicker and Gotsman 2004, equation 2, times the sum of the weights at i.
+/// Its gradient in the tangent plane of u_i is minus the tangential Laplacian of Zwicker and
+/// Gotsman 2004 with their adaptive weights (equations 2 and 4), times the sum of the weights at i.
 ///
-/// For p = 2 a barrier -b log(1 - |c|^2) in the centroid c = sum m_i u_i of masses keeps it from
-/// collapsing, \see embed.
+/// Where the energy alone does not keep it from collapsing, a barrier -b log(1 - |c|^2) in the
+/// centroid c = sum m_i u_i of masses does, \see embed.
 class EmbeddingEnergy {
 public:
   /// \param graph    must outlive the energy.
   /// \param threads  that share the work.
-  EmbeddingEnergy(const Graph& graph, const EdgeWeightLaw& weights, int threads);
+  EmbeddingEnergy(const Graph& graph, int threads);
 
   /// Adds the barrier: b is the energy of u, the mass of a node its mean squared edge in u. Equal
   /// masses would fold limbs of tiny area on the sphere.
@@ -67,10 +66,8 @@ public:
 
 private:
   void buildPattern(BlockMatrix& matrix) const;
-  double weight(double length, std::size_t entry) const;
 
   const Graph& graph_;
-  EdgeWeightLaw weights_;
   double barrier_ = 0.0;
   Eigen::VectorXd masses_;  ///< n entries, sum 1; empty without barrier
   int threads_;

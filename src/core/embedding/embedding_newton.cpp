@@ -1,7 +1,5 @@
 #include "embedding_newton.h"
 
-#include "collapse.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -107,8 +105,7 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
       options.progress(report.iterations, residual.absolute);
     const bool converged =
         residual.absolute <= options.tolerance && residual.relative <= options.relative_tolerance;
-    const bool collapses =
-        centroidOf(current.directions, options.masses).norm() > options.longest_mean;
+    const bool collapses = options.collapses && options.collapses(current.directions);
     if (converged || collapses || report.iterations >= options.max_iterations)
       break;
 

@@ -13,9 +13,8 @@ struct NewtonOptions {
   int max_iterations = 100;
   double tolerance = 0.0;           ///< mean length of the tangential Laplacian [radius]
   double relative_tolerance = 1.0;  ///< the same in units of each node's mean edge
-  /// The work ends if the centroid is farther from the origin: the rest would collapse. 1: never.
-  double longest_mean = 1.0;
-  Eigen::VectorXd masses;  ///< of that centroid, \see centroidOf(); empty: equal
+  /// Whether the work is given up because the embedding collapses; may be empty.
+  std::function<bool(const Positions&)> collapses;
   /// Called with (iteration, residual) before each step; throws to end the work.
   std::function<void(int, double)> progress;
 };

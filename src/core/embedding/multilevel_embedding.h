@@ -1,22 +1,39 @@
 #pragma once
 
 #include "embedding.h"
-#include "embedding_history.h"
 #include "graph_hierarchy.h"
+#include "level_solver.h"
+
+#include <cstddef>
+#include <vector>
 
 namespace spherical_param::internal {
 
-/// embed() with EmbeddingMethod::Multilevel, on checked input.
+/// How an embedding is attempted.
+struct EmbeddingAttempt {
+  std::size_t level;         ///< on which it starts: 0 is the graph itself
+  EmbeddingBarrier barrier;  ///< where it has one
+  std::size_t starts;        ///< at most so many are tried
+  std::size_t compared;      ///< the best of so many that are accepted is kept
+};
+
+/// The attempts at an embedding, in the order in which they are made.
 ///
-/// \param hierarchy of the graph. Coarsest levels of some hundred nodes suit best.
-/// \param observer receives the chosen start and each step of its solution; then each finer level
-///        after interpolation, after its sweeps and at each step of Newton's method; then the end.
-///        May be empty. The coarsest level is solved once more for it. If a level collapses, its
-///        states are followed by those of the solution with a barrier.
-/// \return the embedding; StopReason::Collapsed and no columns if all starts collapse even with a
-///         barrier.
+/// 1. The start on the coarsest level.
+/// 2. The same with a barrier on all levels but the graph itself, and with more starts. It helps
+///    graphs of a few nodes and with wide gaps, on which all starts collapse.
+/// 3. Starts on finer and finer levels: the fewer nodes are around a limb, the easier the sphere
+///    slips off it.
+/// 4. The barrier also on the graph itself, whatever comes of it.
+std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int starts);
+
+/// An embedding from coarse to fine. \see embed
+///
+/// \param history whose states are recorded, see EmbeddingOptions.
+/// \return the embedding of the first attempt that is accepted; EmbeddingReport::attempt says
+/// which.
+///         Without columns if none is.
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
-                        const EmbeddingOptions& options, NodeMass mass,
-                        const EmbeddingObserver& observer, const Execution& execution);
+                        const EmbeddingOptions& options, const Execution& execution);
 
 }  // namespace spherical_param::internal

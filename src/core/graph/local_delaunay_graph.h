@@ -12,7 +12,7 @@ Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& 
 /// Whether to look for stray points.
 enum class StraySearch { No, Yes };
 
-/// The tangent Delaunay graph (GraphMethod::LocalDelaunay), connected.
+/// The tangent Delaunay graph (Method::Default), connected.
 ///
 /// The nearest neighbours of a point are laid into its tangent plane at their true distances; its
 /// star is the set of its Voronoi neighbours there. Points i and j are joined if both stars agree.

@@ -27,9 +27,9 @@ struct StrayPoint {
 struct NeighborGraph {
   Graph graph;
   /// The edges that join its components, in the order of their insertion. Those of
-  /// GraphMethod::LocalDelaunay also join biconnected components.
+  /// the tangent Delaunay graph also join biconnected components.
   std::vector<Bridge> bridges;
-  /// Ascending; also nodes of the graph. Only of GraphMethod::LocalDelaunay.
+  /// Ascending; also nodes of the graph. Only of the tangent Delaunay graph.
   std::vector<StrayPoint> stray_points;
 };
 

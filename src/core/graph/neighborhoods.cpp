@@ -80,6 +80,13 @@ NodeSubset subsetOf(const OrderedPoints& all, const std::vector<Index>& all_inpu
   return subset;
 }
 
+/// Number of nearest neighbours of each point to search for. The tangent Delaunay graph searches
+/// for up to 32 where these do not certify its cells.
+int neighborsToSearch(const Options& options) {
+  constexpr int of_delaunay_graph = 12;
+  return options.method == Method::Paper ? options.paper.k : of_delaunay_graph;
+}
+
 }  // namespace
 
 Neighborhoods::Neighborhoods(const Positions& cloud, std::vector<Index> inputs,

@@ -19,7 +19,7 @@ public:
   ///
   /// \param cloud     3 x n.
   /// \param inputs    indices of the points to use, ascending, finite.
-  /// \param options   for neighborsToSearch().
+  /// \param options   method, k
   /// \param search_of makes the search; empty: a k-d tree is built.
   /// \throw InvalidInput for too many points, too large coordinates, or fewer than four distinct
   ///        points.

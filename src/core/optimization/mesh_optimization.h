@@ -1,7 +1,8 @@
 #pragma once
 
 #include "graph.h"
-#include "spherical_param/options.h"
+#include "spherical_param/execution.h"
+#include "spherical_param/types.h"
 
 #include <array>
 #include <cstddef>
@@ -14,6 +15,13 @@ namespace spherical_param {
 
 /// \addtogroup optimization
 /// @{
+
+/// How a mesh on fixed points is optimised.
+enum class OptimizationMethod {
+  None,   ///< not at all
+  Flips,  ///< edge flips only
+  Full,   ///< flips, relocation of vertices, ruin and recreate
+};
 
 /// Parameters of optimizeMesh().
 struct OptimizationOptions {

@@ -9,8 +9,8 @@
 namespace spherical_param::internal {
 
 SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                        const OpenPlaces* openings, const SmoothingOptions& options,
-                        OptimizationMethod method, std::uint32_t seed, const Execution& execution) {
+                        const OpenPlaces* openings, const SmoothingOptions& options, bool optimizes,
+                        std::uint32_t seed, const Execution& execution) {
   const TimeLeft time_left(execution.time_limit);
   Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
@@ -18,7 +18,7 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
   none.method = OptimizationMethod::None;
   auto pairs = optimizeMesh(result.points, triangles, graph, openings, none, seed, execution)
                    .self_intersections;
-  if (!pairs.empty() && method == OptimizationMethod::Full) {
+  if (!pairs.empty() && optimizes) {
     Execution rest = execution;
     rest.time_limit = time_left();
     MeshOptimization outcome =

@@ -18,18 +18,18 @@ struct SmoothedMesh {
   bool is_out_of_time = false;             ///< the time limit ended the optimisation early
 };
 
-/// Smooths the points and, with OptimizationMethod::Full, optimises the mesh on the smoothed points
-/// if triangles intersect. Smoothing again with the better mesh gains nothing: on 26 clouds and 26
+/// Smooths the points and, if wanted, optimises the mesh on the smoothed points if triangles
+/// intersect. Smoothing again with the better mesh gains nothing: on 26 clouds and 26
 /// noisy clouds, three rounds leave 55,682 self-intersections after 10 steps of smoothing, one
 /// round 49,997.
 ///
 /// \param graph     of the points.
 /// \param openings  of the surface; nullptr: it is closed.
-/// \param method    of the optimisation.
+/// \param optimizes whether the mesh is optimised.
 /// \param seed      of the optimisation.
 /// \param execution threads, progress
 SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
-                        const OpenPlaces* openings, const SmoothingOptions& options,
-                        OptimizationMethod method, std::uint32_t seed, const Execution& execution);
+                        const OpenPlaces* openings, const SmoothingOptions& options, bool optimizes,
+                        std::uint32_t seed, const Execution& execution);
 
 }  // namespace spherical_param::internal

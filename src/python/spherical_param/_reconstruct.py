@@ -62,7 +62,7 @@ OPTIONS
     No guarantees: the mesh may intersect itself, and openings of the cloud are closed and its
     handles cut; ``diagnosis`` reports them. Below 2 KB of memory a point, 3 KB with a tolerance.
     The result does not depend on ``threads``; a forked process works with one. Ctrl-C and False of
-    ``progress`` are noticed every second or two; the paper's own stages ("iterative", "qhull") may
+    ``progress`` are noticed every second or two; the paper's own method may
     take longer.
 
     Examples

@@ -2,12 +2,9 @@
 
 import json
 
-from .programs import ITERATIVE, PAPER, Failure, in_turn, median_seconds, stage_seconds
+from .programs import PAPER, Failure, in_turn, median_seconds, stage_seconds
 
 WEIGHTS = ("uniform", "inverse", "adaptive")
-RAW = ("-optimization", "none")
-CONVERGED = ("-tolerance", "1e-12", *RAW)
-KNN = ("-graph", "knn", "-k", 25)
 PAPER_SECONDS = {"tweety": 125, "max": 424, "igea": 843}
 
 TABLE1 = [("model", "scan"), ("points", "points"), ("paper", "paper, 2004 [s]"),
@@ -28,18 +25,15 @@ FIGURE10 = [("noise", "noise b"), ("method", "method"), ("intersections", "self-
 # Table 1: the columns and the options of their runs.
 VARIANTS = {"iteration": PAPER, "default": (), "converged": ("-tolerance", "1e-8")}
 # Figures 6 and 7: scan and iterations, quick and in full; title; curves with their options.
-BY_WEIGHTS = {f"iteration, {weights}": (*ITERATIVE, "-weights", weights, "-k", 25)
-              for weights in WEIGHTS}  # fmt: skip
-DEFAULT = {"default graph and weights": CONVERGED}
+BY_WEIGHTS = {f"iteration, {weights}": (*PAPER, "-weights", weights) for weights in WEIGHTS}
+NEWTON = {"default method": ("-tolerance", "1e-12")}
 RESIDUALS = {
     "figure6": (("head_2000", 100), ("max", 1600), "Figure 6: uniform weights", {
-        **{f"iteration, k = {k}": (*ITERATIVE, "-weights", "uniform", "-k", k) for k in (100, 25, 9)},
-        "Newton, k = 25, uniform (with barrier)": (*KNN, "-weights", "uniform", *CONVERGED),
-        **DEFAULT}),
-    "figure7": (("head_2000", 100), ("max", 1600), "Figure 7: k = 25", {
-        **BY_WEIGHTS, "Newton, k = 25, adaptive": (*KNN, *CONVERGED), **DEFAULT}),
-    "figure6_long": (("head_1000", 400), ("head_5000", 10000), "more iterations", {
-        **BY_WEIGHTS, "Newton, adaptive, the same graph": (*KNN, *CONVERGED)}),
+        **{f"iteration, k = {k}": (*PAPER, "-weights", "uniform", "-k", k) for k in (100, 25, 9)},
+        **NEWTON}),
+    "figure7": (("head_2000", 100), ("max", 1600), "Figure 7: k = 25", {**BY_WEIGHTS, **NEWTON}),
+    "figure6_long": (("head_1000", 400), ("head_5000", 10000), "more iterations",
+                     {**BY_WEIGHTS, **NEWTON}),
 }  # fmt: skip
 # Figure 10: rows of pictures by method, smoothing, caption and options.
 NOISE_ROWS = [
@@ -83,7 +77,7 @@ def figures6_and_7(context):
         plot = Plot(panels=1 if name == "figure6_long" else 2)
         reports = []
         for color, (label, options) in enumerate(curves.items()):
-            is_paper = options[: len(ITERATIVE)] == ITERATIVE
+            is_paper = options[: len(PAPER)] == PAPER
             limit = ("-max-iterations", iterations) if is_paper else ()
             report = context.programs.reconstruct(cloud, mesh, *options, *limit)[1]
             reports.append(report)
@@ -104,7 +98,7 @@ def figures6_and_7(context):
             plot.label(1, "seconds in the embedding", "", "the same over time")
         plot.save(context.out / f"{name}.svg")
         context.report.facts[f"{name}_cloud"] = scan
-    # Of the last figure: the iteration with adaptive weights, and Newton's method.
+    # Of the last figure: the iteration with adaptive weights, and the default method.
     iteration, newton = (report["embedding"] for report in reports[-2:])
     context.report.facts.update(figure6_long_count=iterations, settled=iteration["residual"],
                                 centroid=newton["centroid_norm"])  # fmt: skip
@@ -145,7 +139,7 @@ def figure8(context):
     points = vertices(cloud.points)
     tip = points[:, 0].argmax()  # of the nose
     methods = {weights: (*PAPER, "-weights", weights) for weights in WEIGHTS}
-    methods["default, raw"] = RAW
+    methods["default"] = ()
     meshes, spheres = _measured(context, cloud, "figure8", methods, FIGURE8)
     pictures = Pictures(context.out / "figure8.png")
     pictures.row(meshes, methods, view=[(35, 10)])
@@ -163,15 +157,14 @@ def figure9(context):
     cloud = context.programs.scan(context.choose("bird_2000", "tweety"))
     points = vertices(cloud.points)
     tip = (points[:, 2] - 0.2 * points[:, 0]).argmax()
-    methods = {}
+    methods = {"default": ()}
     for weights in ("uniform", "adaptive"):
         for count in (0, 100, 200, 800):
             methods[f"{weights}, {count} iterations"] = (
                 *PAPER, "-max-iterations", count, "-weights", weights)  # fmt: skip
-        methods[f"{weights}, default, raw"] = (*RAW, "-weights", weights)
     meshes, spheres = _measured(context, cloud, "figure9", methods, FIGURE9)
     pictures = Pictures(context.out / "figure9.png")
-    for half in (slice(0, 5), slice(5, 10)):
+    for half in (slice(0, 5), slice(5, 9)):
         pictures.row(meshes[half], list(methods)[half], view=[(15, 15)])
         _draw_maps(pictures, cloud, spheres[half], "map of the tail", tip, 4)
     pictures.save()

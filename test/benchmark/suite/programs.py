@@ -9,9 +9,7 @@ import subprocess
 import time
 
 # The paper's own method, with all of its iterations.
-ITERATIVE = ("-graph", "knn", "-embedding", "iterative", "-optimization", "none",
-             "-stagnation-window", "0", "-tolerance", "0")  # fmt: skip
-PAPER = (*ITERATIVE, "-triangulation", "qhull")
+PAPER = ("-method", "paper", "-tolerance", "0")
 # Exit code of our tools if too many triangles intersect. The mesh is written, and measured like others.
 NOT_USABLE = 3
 

@@ -6,7 +6,7 @@
 #include "graphs.h"
 #include "helpers.h"
 #include "multilevel_embedding.h"
-#include "sphere_triangulation.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <cmath>
 #include <random>
@@ -20,8 +20,6 @@ using internal::EmbeddingEnergy;
 using internal::GraphHierarchy;
 using internal::TangentBasis;
 using internal::TangentVector;
-
-const internal::EdgeWeightLaw kAdaptive(EdgeWeights::Adaptive, 3.0);
 
 /// An ellipsoid with dents and its true edges.
 struct Cloud {
@@ -46,7 +44,7 @@ struct Setting : EmbeddingOptions, Execution {};
 
 inline Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
                                const Setting& setting = {}) {
-  return internal::embedByLevels(graph, hierarchy, setting, {}, {}, setting);
+  return internal::embedByLevels(graph, hierarchy, setting, setting);
 }
 
 inline Embedding solve(const Graph& graph, const Setting& setting = {}, Index coarsest_size = 200,
@@ -54,10 +52,9 @@ inline Embedding solve(const Graph& graph, const Setting& setting = {}, Index co
   return embedByLevels(graph, buildGraphHierarchy(graph, seed, coarsest_size), setting);
 }
 
-inline Setting converging(double tolerance, EdgeWeights weights = EdgeWeights::Adaptive) {
+inline Setting converging(double tolerance) {
   Setting options;
   options.tolerance = tolerance;
-  options.weights = weights;
   return options;
 }
 

@@ -2,7 +2,7 @@
 
 #include "graphs.h"
 #include "helpers.h"
-#include "sphere_triangulation.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <gtest/gtest.h>
 

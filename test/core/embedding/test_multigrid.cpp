@@ -64,7 +64,7 @@ TEST(MultigridPreconditioner, IsTheCycleOfDenseMatricesForEachMatrixInTurn) {
   for (unsigned turn = 0; turn < 3; ++turn) {
     const std::vector<TangentBasis> bases = internal::tangentBases(u);
     EmbeddingEnergy::Hessian hessian;
-    EmbeddingEnergy(cloud.graph, kAdaptive, 1).hessian(u, bases, hessian);
+    EmbeddingEnergy(cloud.graph, 1).hessian(u, bases, hessian);
     // Well above the rotations, for which the matrix is nearly singular.
     for (std::size_t i = 0; i < hessian.matrix.size(); ++i)
       for (std::size_t e = hessian.matrix.offsets[i]; e < hessian.matrix.offsets[i + 1]; ++e)

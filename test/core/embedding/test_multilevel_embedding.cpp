@@ -1,7 +1,7 @@
 #include "multilevel_embedding.h"
 
 #include "embeddings.h"
-#include "iterative_embedding.h"
+#include "paper_method.h"
 
 #include <gtest/gtest.h>
 
@@ -30,24 +30,24 @@ TEST(MultilevelEmbedding, IcosahedronByHand) {
   const Eigen::MatrixXd expected = points.transpose() * points;
   EXPECT_LT((cosines - expected).cwiseAbs().maxCoeff(), 1e-9);
   // 30 edges as long on the sphere as in space, of squared length 4 / (golden + 2).
-  EXPECT_NEAR(result.energy, 30.0 * 4.0 / (golden + 2.0) / 3.0, 1e-9);
+  EXPECT_NEAR(EmbeddingEnergy(graph, 1).value(result.directions), 30.0 * 4.0 / (golden + 2.0) / 3.0,
+              1e-9);
 }
 
-TEST(MultilevelEmbedding, TangentialLaplacianVanishesWithEveryExponent) {
+TEST(MultilevelEmbedding, TangentialLaplacianVanishes) {
   const Cloud cloud = dentedCloud(4000);
-  for (const double exponent : {2.5, 3.0, 4.0, 6.0}) {
-    Setting options = converging(1e-12);
-    options.exponent = exponent;
-    const Embedding result = solve(cloud.graph, options);
-    EXPECT_TRUE(result.report.converged()) << exponent;
-    EXPECT_LT(
-        meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive, exponent),
-        1e-12);
-    EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
-    EXPECT_EQ(result.report.residuals.back(), result.report.residual);
-    EXPECT_GT(result.report.residuals.front(), 1e-5);
-    EXPECT_LT(fractionBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions)), 1e-3);
-  }
+  const Embedding result = solve(cloud.graph, converging(1e-12));
+  EXPECT_TRUE(result.report.converged());
+  EXPECT_LT(meanTangentialLaplacian(cloud.graph, result.directions, EdgeWeights::Adaptive), 1e-12);
+  EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+  EXPECT_NEAR(result.report.residuals.back(), result.report.residual, 1e-15);
+  EXPECT_GT(result.report.residuals.front(), 1e-5);
+  EXPECT_LT(fractionBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions)), 1e-3);
+}
+
+/// The energy of an embedding.
+double energyOf(const Graph& graph, const Embedding& embedding) {
+  return EmbeddingEnergy(graph, 1).value(embedding.directions);
 }
 
 TEST(MultilevelEmbedding, SameMinimumWhateverTheStart) {
@@ -57,7 +57,8 @@ TEST(MultilevelEmbedding, SameMinimumWhateverTheStart) {
     Setting options = converging(1e-12);
     options.starts = 1;
     const Embedding other = solve(cloud.graph, options, 300, seed);
-    EXPECT_NEAR(other.energy, one.energy, 1e-9 * one.energy);
+    EXPECT_NEAR(energyOf(cloud.graph, other), energyOf(cloud.graph, one),
+                1e-9 * energyOf(cloud.graph, one));
     // Up to a rotation or reflection: the angles between nodes are the same.
     for (Eigen::Index i = 0; i + 7 < 3000; i += 7)
       EXPECT_NEAR(one.directions.col(i).dot(one.directions.col(i + 7)),
@@ -71,32 +72,9 @@ TEST(MultilevelEmbedding, UnfoldsABentTubeThatTheIterationFolds) {
   const auto folded = [&](const Positions& directions) {
     return fractionBeyondTwoSteps(graph, triangulateSphere(directions));
   };
-  EXPECT_GT(folded(internal::embedIteratively(graph, tube.points, {}, {}, {}).directions), 0.01);
+  EXPECT_GT(folded(internal::paper::embed(graph, tube.points, {}, 1e-8, {}, {}).directions), 0.01);
   EXPECT_LT(folded(solve(graph).directions), 0.001);
   EXPECT_LT(folded(solve(graph, converging(1e-9)).directions), 0.001);
-}
-
-TEST(MultilevelEmbedding, AllWeightsUnfoldWithoutCollapse) {
-  const Cloud cloud = dentedCloud(4000);
-  for (const EdgeWeights weights :
-       {EdgeWeights::Uniform, EdgeWeights::InverseLength, EdgeWeights::Adaptive})
-    for (const bool converge : {false, true}) {
-      Setting options = converging(1e-10, weights);
-      if (!converge)
-        options.tolerance.reset();
-      const Embedding result = solve(cloud.graph, options);
-      if (!converge) {
-        EXPECT_EQ(result.report.stop_reason, StopReason::Unfinished);
-      } else {
-        // The pull of the barrier is left to the weights that need one.
-        EXPECT_LT(result.report.residual, weights == EdgeWeights::Adaptive ? 1e-10 : 1e-4);
-        EXPECT_EQ(result.report.converged(), result.report.residual <= 1e-10);
-      }
-      EXPECT_LT(result.report.centroid_norm, 0.3);
-      EXPECT_NEAR(result.report.residual,
-                  meanTangentialLaplacian(cloud.graph, result.directions, weights), 1e-12);
-      EXPECT_LT(fractionBeyondTwoSteps(cloud.graph, triangulateSphere(result.directions)), 1e-3);
-    }
 }
 
 TEST(MultilevelEmbedding, StepsDoNotGrowWithTheGraph) {
@@ -123,8 +101,8 @@ TEST(MultilevelEmbedding, ReportsItsLevels) {
     EXPECT_GT(result.report.levels[l].newton_iterations, 0);
     EXPECT_LT(result.report.levels[l].residual, 1e-4);
   }
-  EXPECT_EQ(result.starts, 2);
-  EXPECT_EQ(result.collapsed_starts, 0);
+  EXPECT_EQ(result.report.start_level, hierarchy.levels.size());
+  EXPECT_EQ(result.report.barrier, EmbeddingBarrier::None);
 }
 
 TEST(MultilevelEmbedding, GraphsOfAllSizes) {
@@ -141,20 +119,31 @@ TEST(MultilevelEmbedding, GraphsOfAllSizes) {
   EXPECT_EQ(embed(Graph(), Positions(3, 0)).directions.cols(), 0);
 }
 
-TEST(MultilevelEmbedding, CollapsedStartsAreRejectedAndABarrierIsAdded) {
+TEST(MultilevelEmbedding, WhereNothingHoldsItABarrierDoes) {
   // A path: nothing holds its ends apart.
   constexpr Index n = 30;
   std::vector<std::pair<Index, Index>> path;
   for (Index i = 1; i < n; ++i)
     path.emplace_back(i - 1, i);
   const Embedding result = solve(unitGraph(n, path));
-  // Two without a barrier, and four times two with one that pulls hard at each.
-  EXPECT_EQ(result.starts, 10);
-  EXPECT_EQ(result.collapsed_starts, 2);
-  EXPECT_TRUE(result.report.added_barrier);
+  EXPECT_EQ(result.report.barrier, EmbeddingBarrier::Everywhere);
   ASSERT_EQ(result.directions.cols(), n);
-  EXPECT_LT(result.report.centroid_norm, 0.9);
-  EXPECT_FALSE(solve(dentedCloud(2000).graph).report.added_barrier);
+  EXPECT_LT(result.report.centroid_norm, 0.95);
+}
+
+TEST(MultilevelEmbedding, AttemptsGoFromTheCoarsestLevelToFinerOnes) {
+  const Graph graph = dentedCloud(5000).graph;
+  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
+  const auto attempts = internal::attemptsOf({graph, hierarchy, 1}, 3);
+  const std::size_t coarsest = hierarchy.levels.size();
+  ASSERT_EQ(attempts.size(), coarsest + 3);
+  EXPECT_EQ(attempts[0].level, coarsest);
+  EXPECT_EQ(attempts[0].barrier, EmbeddingBarrier::None);
+  EXPECT_EQ(attempts[0].compared, 3U);
+  EXPECT_EQ(attempts[1].barrier, EmbeddingBarrier::CoarseLevels);
+  for (std::size_t i = 2; i < attempts.size() - 1; ++i)
+    EXPECT_EQ(attempts[i].level, coarsest + 1 - i);
+  EXPECT_EQ(attempts.back().barrier, EmbeddingBarrier::Everywhere);
 }
 
 /// The graph of a dented sphere without its first nodes, which are around the pole.
@@ -172,18 +161,11 @@ Graph openGraph(std::size_t nodes, std::size_t first) {
   return open;
 }
 
-TEST(MultilevelEmbedding, ABarrierThatHardlyPullsOnCoarseLevelsIsNoFinding) {
-  // Too many nodes for the graph itself to be solved; uniform weights have a barrier anyway.
-  const Graph open = openGraph(12500, 600);
-  for (const EdgeWeights weights : {EdgeWeights::Adaptive, EdgeWeights::Uniform}) {
-    Setting options;
-    options.weights = weights;
-    const Embedding result = solve(open, options);
-    EXPECT_EQ(result.starts, 4);
-    EXPECT_EQ(result.collapsed_starts, 2);
-    EXPECT_FALSE(result.report.added_barrier);
-    EXPECT_LT(result.report.centroid_norm, 0.95);
-  }
+TEST(MultilevelEmbedding, ABarrierThatHardlyPullsIsOnCoarseLevelsAlone) {
+  // Too many nodes for the graph itself to be solved.
+  const Embedding result = solve(openGraph(12500, 600));
+  EXPECT_EQ(result.report.barrier, EmbeddingBarrier::CoarseLevels);
+  EXPECT_LT(result.report.centroid_norm, 0.95);
 }
 
 TEST(MultilevelEmbedding, OpenSurfacesDoNotSlipOffTheSphere) {

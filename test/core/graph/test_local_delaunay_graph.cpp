@@ -23,7 +23,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// From the k nearest, and more where they are wanted.
 NeighborGraph build(const Positions& points, int k = 12) {
-  return test::graphOf(points, bruteForceNeighbors(points, k), {}, bruteForceSearch(points));
+  return test::graphOf(points, bruteForceNeighbors(points, k), bruteForceSearch(points));
 }
 
 /// Points with a tangent plane but without a certified cell.
@@ -334,7 +334,7 @@ TEST(LocalDelaunayGraph, ShorterAnswersOfTheSearchChangeNothing) {
   const Positions points = randomSphere(50, 25);
   const NeighborLists lists = bruteForceNeighbors(points, 4);
   const NeighborGraph answered =
-      test::graphOf(points, lists, {}, [](const std::vector<Index>& some, int) {
+      test::graphOf(points, lists, [](const std::vector<Index>& some, int) {
         NeighborLists nothing;
         nothing.offsets.assign(some.size() + 1, 0);
         return nothing;

@@ -73,9 +73,10 @@ TEST(Neighborhoods, OfSomePointsAreThoseOfThesePointsAlone) {
   for (const Positions& cloud : {spheres, ball}) {
     for (const NeighborSearchFactory& search_of :
          {NeighborSearchFactory(), test::bruteForceFactory(cloud), shortSearchOf(cloud, 0.4)})
-      for (const std::optional<int> k : {std::optional<int>(), {5}, {31}}) {
+      for (const int k : {5, 12, 31}) {
         Options options;
-        options.k = k;
+        options.method = Method::Paper;
+        options.paper.k = k;
         const auto alone = [&](const std::vector<Index>& inputs) {
           auto result =
               std::make_unique<Neighborhoods>(cloud, inputs, options, search_of, Execution());

@@ -1,8 +1,8 @@
 #include "spherical_param/mesh_measures.h"
 
 #include "helpers.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/sphere_triangulation.h"
 #include "triangle_lists.h"
 
 #include <Eigen/Geometry>

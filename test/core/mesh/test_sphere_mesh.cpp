@@ -1,7 +1,7 @@
 #include "sphere_mesh.h"
 
 #include "helpers.h"
-#include "sphere_triangulation.h"
+#include "spherical_param/sphere_triangulation.h"
 #include "triangle_lists.h"
 
 #include <gtest/gtest.h>

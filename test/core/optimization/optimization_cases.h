@@ -5,7 +5,7 @@
 #include "graphs.h"
 #include "helpers.h"
 #include "sphere_mesh.h"
-#include "sphere_triangulation.h"
+#include "spherical_param/sphere_triangulation.h"
 #include "surface_energy.h"
 
 #include <Eigen/Geometry>

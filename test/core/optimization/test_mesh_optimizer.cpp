@@ -2,8 +2,8 @@
 
 #include "helpers.h"
 #include "optimization_cases.h"
-#include "sphere_triangulation.h"
 #include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

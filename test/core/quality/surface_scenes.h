@@ -3,7 +3,7 @@
 #include "graphs.h"
 #include "helpers.h"
 #include "open_shapes.h"
-#include "sphere_triangulation.h"
+#include "spherical_param/sphere_triangulation.h"
 
 #include <cmath>
 #include <vector>

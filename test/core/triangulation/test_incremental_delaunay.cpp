@@ -1,4 +1,5 @@
 #include "exact_predicates.h"
+#include "qhull.h"
 #include "spherical_param/mesh_topology.h"
 #include "triangulations.h"
 
@@ -8,16 +9,16 @@
 namespace spherical_param {
 namespace {
 
+using internal::SphereDelaunay;
 using test::cap;
 using test::expectSound;
 using test::horizontally;
 using test::isSphereOverAll;
 using test::latitude;
 using test::randomSphere;
-using Method = TriangulationMethod;
 
-SphereTriangulation triangulate(const Positions& directions) {
-  return triangulateSphere(directions, Method::Incremental);
+SphereDelaunay triangulate(const Positions& directions) {
+  return internal::incrementalDelaunay(directions);
 }
 
 /// Most triangles around one of the vertices [0, n).
@@ -67,14 +68,14 @@ TEST(IncrementalDelaunay, HasTheTrianglesOfQhull) {
     for (std::uint64_t seed = 0; seed < (n < 100 ? 20U : 2U); ++seed)
       for (const Positions& points : {randomSphere(n, seed), clusters(n, seed), limbs(n, seed),
                                       cap(n, 0.1, {1, 0, 0}, seed)}) {
-        const SphereTriangulation result = triangulate(points);
+        const SphereDelaunay result = triangulate(points);
         expectSound(points, result);
-        EXPECT_EQ(result.report.coincident, 0);
-        const SphereTriangulation reference = triangulateSphere(points, Method::Qhull);
-        if (reference.report.reinserted > 0)
+        EXPECT_EQ(result.coincident, 0);
+        const Triangles reference = internal::hullByQhull(points);
+        if (reference.cols() == 0)
           continue;
         ++compared;
-        ASSERT_EQ(test::canonical(result.triangles), test::canonical(reference.triangles))
+        ASSERT_EQ(test::canonical(result.triangles), test::canonical(reference))
             << "n = " << n << ", seed " << seed;
       }
   EXPECT_GT(compared, 400);
@@ -180,9 +181,9 @@ TEST(IncrementalDelaunay, IsThatOfIntegerArithmeticInClustersOf1em13) {
       IntegerCluster cluster = integerGrid(3, 400, seed);
       Positions points = horizontally(cluster.directions(z), randomSphere(200, seed));
       points = horizontally(points, Eigen::Vector3d::UnitZ());
-      SphereTriangulation result = triangulate(points);
+      SphereDelaunay result = triangulate(points);
       expectSound(points, result);
-      EXPECT_EQ(result.report.coincident, 0);
+      EXPECT_EQ(result.coincident, 0);
       if (z > 0.0) {
         // Seen from outside, the highest point has the axes the right way round; there the added
         // point is in the midst of the cluster.
@@ -217,7 +218,7 @@ TEST(IncrementalDelaunay, IsDelaunayOnRandomSubsetsOfAGrid) {
     std::shuffle(cluster.places.begin(), cluster.places.end(), random);
     const Positions points = horizontally(cluster.directions(-1.0), Eigen::Vector3d::UnitZ());
     const Index pole = static_cast<Index>(points.cols()) - 1;
-    SphereTriangulation result = triangulate(points);
+    SphereDelaunay result = triangulate(points);
     expectSound(points, result);
     flipOrientation(result.triangles);
     std::int64_t area = 0;
@@ -261,7 +262,7 @@ TEST(IncrementalDelaunay, CirclesThroughThePoleAreTriangulatedWhole) {
         points.col(i) << std::sin(angle) * std::cos(tilt), std::sin(tilt),
             std::cos(angle) * std::cos(tilt);
       }
-      const SphereTriangulation result = triangulate(points);
+      const SphereDelaunay result = triangulate(points);
       expectSound(points, result);
       if (tilt == 0.0) {
         // All points are on one line: a zigzag on either side.
@@ -291,9 +292,9 @@ TEST(IncrementalDelaunay, FewPlacesAreTriangulatedWhole) {
         used.insert(rest % 6);
         points.col(i) = places.col(rest % 6);
       }
-      const SphereTriangulation result = triangulate(points);
+      const SphereDelaunay result = triangulate(points);
       ASSERT_TRUE(isSphereOverAll(result.triangles, n)) << n << " points, way " << way;
-      ASSERT_EQ(result.report.coincident, n - static_cast<Index>(used.size()));
+      ASSERT_EQ(result.coincident, n - static_cast<Index>(used.size()));
       if (used.size() == 6) {
         ASSERT_GT(test::volumeOf(points, result.triangles), 0.0);
       }
@@ -315,11 +316,11 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
   }
   for (const double z : {1.0, -1.0}) {
     points.row(2) *= z;
-    const SphereTriangulation result = triangulate(horizontally(points, Eigen::Vector3d::UnitZ()));
+    const SphereDelaunay result = triangulate(horizontally(points, Eigen::Vector3d::UnitZ()));
     expectSound(horizontally(points, Eigen::Vector3d::UnitZ()), result);
     // From about 2^-200 on they coincide: beyond that, predicates would leave the range of double.
-    EXPECT_LT(result.report.coincident, 3 * (1074 - 195));
-    EXPECT_GT(result.report.coincident, 3 * (1074 - 210));
+    EXPECT_LT(result.coincident, 3 * (1074 - 195));
+    EXPECT_GT(result.coincident, 3 * (1074 - 210));
   }
 }
 
@@ -327,10 +328,9 @@ TEST(IncrementalDelaunay, DistancesFromThePoleSpanTheRangeOfDouble) {
 TEST(IncrementalDelaunay, PointsAtOnePlaceShareItsTriangles) {
   const Positions points =
       horizontally(randomSphere(100, 3), Positions(randomSphere(100, 3).col(5).replicate(1, 1000)));
-  const SphereTriangulation result = triangulate(points);
+  const SphereDelaunay result = triangulate(points);
   expectSound(points, result);
-  EXPECT_EQ(result.report.coincident, 1000);
-  EXPECT_EQ(result.report.reinserted, 1000);
+  EXPECT_EQ(result.coincident, 1000);
   EXPECT_LE(highestDegree(result.triangles, static_cast<Index>(points.cols())), 40);
 }
 
@@ -338,7 +338,7 @@ TEST(IncrementalDelaunay, PointsAtOnePlaceShareItsTriangles) {
 TEST(IncrementalDelaunay, CrowdsAreTriangulatedInTime) {
   for (const double radius : {1e-3, 1e-7, 1e-11}) {
     const Positions points = cap(100000, radius, {0.6, 0.0, 0.8}, 2);
-    const SphereTriangulation result = triangulate(points);
+    const SphereDelaunay result = triangulate(points);
     EXPECT_EQ(result.triangles.cols(), 2 * points.cols() - 4);
   }
 }

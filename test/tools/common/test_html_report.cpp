@@ -35,9 +35,8 @@ Positions scanned(const std::string& shape, std::size_t points) {
   return generateScan(options).points;
 }
 
-ReconstructionSettings flipsAlone() {
+ReconstructionSettings twoThreads() {
   ReconstructionSettings settings;
-  settings.options.optimization = OptimizationMethod::Flips;
   settings.options.threads = 2;
   return settings;
 }
@@ -50,7 +49,7 @@ struct Shown {
 };
 
 /// \param outliers points at the end that are left out; with any, all points have colours.
-Shown show(const Positions& points, ReconstructionSettings settings = flipsAlone(),
+Shown show(const Positions& points, ReconstructionSettings settings = twoThreads(),
            Index outliers = 0, std::size_t max_triangles = kMaxReportTriangles) {
   Shown shown;
   CloudReconstruction& cloud = *shown.cloud;
@@ -181,9 +180,9 @@ TEST(HtmlReport, HoldsTheMeshItsMarksAndDistortionUpToRounding) {
 }
 
 TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
-  for (const auto method : {EmbeddingMethod::Multilevel, EmbeddingMethod::Iterative}) {
-    ReconstructionSettings settings = flipsAlone();
-    settings.options.embedding.method = method;
+  for (const Method method : {Method::Default, Method::Paper}) {
+    ReconstructionSettings settings = twoThreads();
+    settings.options.method = method;
     const Shown shown = show(scanned("hand", 1500), settings);
     expectShown(shown);
     const Eigen::MatrixXd& positions = shown.page["history_positions"];
@@ -204,7 +203,7 @@ TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
 }
 
 TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
-  ReconstructionSettings settings = flipsAlone();
+  ReconstructionSettings settings = twoThreads();
   settings.options.smoothing = 5;
   Positions far(3, 6);
   for (Eigen::Index i = 0; i < 6; ++i)
@@ -236,7 +235,7 @@ TEST(HtmlReport, ShowsSmoothedPointsOutliersAndColours) {
 TEST(HtmlReport, ArraysAreTheSameForAnyNumberOfThreads) {
   std::map<std::string, std::string> first;
   for (const int threads : {1, 2, 3}) {
-    ReconstructionSettings settings = flipsAlone();
+    ReconstructionSettings settings = twoThreads();
     settings.options.threads = threads;
     settings.options.smoothing = 2;
     const Shown shown = show(scanned("animal", 2000), settings, 0, 2000);
@@ -257,7 +256,7 @@ TEST(HtmlReport, HasAboutTwelveBytesForATriangle) {
 
 TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
   const Shown whole = show(scanned("bowl", 2400));
-  const Shown shown = show(scanned("bowl", 2400), flipsAlone(), 0, 1200);
+  const Shown shown = show(scanned("bowl", 2400), twoThreads(), 0, 1200);
   expectShown(shown);
   EXPECT_EQ(shown.mesh.triangles.cols(), 1200);
   EXPECT_EQ(std::set<Index>(shown.mesh.vertices.begin(), shown.mesh.vertices.end()).size(), 602U);
@@ -273,7 +272,7 @@ TEST(HtmlReport, AReducedMeshIsClosedAndHasTheShapeAndTheSuspiciousPlaces) {
 }
 
 TEST(HtmlReport, HasTheSpacingOfTheShownPointsOfTheInput) {
-  ReconstructionSettings smoothed = flipsAlone();
+  ReconstructionSettings smoothed = twoThreads();
   smoothed.options.smoothing = 5;
   const Positions points = 1e6 * scanned("bird", 1500);
   for (const std::size_t max_triangles : {kMaxReportTriangles, std::size_t{800}}) {

@@ -1,0 +1,105 @@
+#include "level_solver.h"
+
+#include "collapse.h"
+#include "multigrid.h"
+#include "parallel.h"
+#include "tangential_laplacian.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Linear systems of at most this number of nodes are solved directly. With all, the time is 1.5
+/// times as long.
+constexpr std::size_t kMaxDirectSize = 2000;
+
+/// The share of each node in the area of the surface.
+Eigen::VectorXd areasOf(const Graph& graph) {
+  Eigen::VectorXd areas(static_cast<Eigen::Index>(graph.size()));
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    double squares = 0.0;
+    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
+      squares += graph.lengths[e] * graph.lengths[e];
+    const auto degree = static_cast<double>(graph.offsets[i + 1] - graph.offsets[i]);
+    areas[static_cast<Eigen::Index>(i)] = squares / std::max(degree, 1.0);
+  }
+  return areas / areas.sum();
+}
+
+}  // namespace
+
+EmbeddingLevels::EmbeddingLevels(const Graph& graph, const GraphHierarchy& hierarchy, int threads)
+    : graph_(graph), hierarchy_(hierarchy), threads_(threads), masses_(1, areasOf(graph)) {
+  for (const HierarchyLevel& level : hierarchy.levels)
+    masses_.emplace_back(level.prolongation.transpose() * masses_.back());
+}
+
+Eigen::Vector3d EmbeddingLevels::centroid(std::size_t l, const Positions& u) const {
+  return u * masses_[l];
+}
+
+double EmbeddingLevels::energy(std::size_t l, const Positions& u) const {
+  return EmbeddingEnergy(graph(l), threads_).value(u);
+}
+
+double EmbeddingLevels::pull(std::size_t l, const Positions& u) const {
+  Positions gradient;
+  return EmbeddingEnergy(graph(l), threads_).gradient(u, gradient).relative;
+}
+
+double EmbeddingLevels::smooth(std::size_t l, int sweeps, const FractionReport& report,
+                               Positions& u) const {
+  const int threads = threadCount(threads_, graph(l).size(), kShortPassThreshold);
+  Positions moved(3, u.cols());
+  double residual = 0.0;
+  for (int i = 0; i < sweeps; ++i) {
+    reportFraction(report, static_cast<double>(i) / sweeps);
+    residual = sweep(graph(l), EdgeWeights::Adaptive, kDamping, u, moved, threads);
+    std::swap(u, moved);
+  }
+  return residual;
+}
+
+Positions EmbeddingLevels::interpolated(std::size_t l, const Positions& coarse) const {
+  const auto& weights = hierarchy_.levels[l].prolongation;
+  const auto n = static_cast<std::size_t>(weights.rows());
+  Positions u(3, weights.rows());
+  forEachBlock(
+      n, threadCount(threads_, n, kShortPassThreshold),
+      [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+          Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+          for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
+            sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
+          u.col(i) = sum.normalized();
+        }
+      });
+  return u;
+}
+
+std::vector<double> EmbeddingLevels::solve(std::size_t l, const Solution& solution, Positions& u,
+                                           LevelReport& report) const {
+  EmbeddingEnergy energy(graph(l), threads_);
+  NewtonOptions options;
+  options.relative_tolerance = solution.relative_tolerance;
+  options.tolerance = solution.tolerance.value_or(1.0);
+  options.progress = solution.progress;
+  if (solution.has_barrier)
+    energy.addBarrier(u);
+  else
+    options.collapses = [&](const Positions& directions) {
+      return isCollapsed(centroid(l, directions));
+    };
+  // Small systems are solved directly: no slower, and exact at all scales.
+  const bool is_direct = graph(l).size() <= kMaxDirectSize;
+  MultigridPreconditioner preconditioner(hierarchy_, is_direct ? coarsest() : l, threads_);
+  NewtonReport newton = minimizeByNewton(energy, preconditioner, options, u);
+  report.newton_iterations += newton.iterations;
+  report.linear_iterations += newton.linear_iterations;
+  report.residual = newton.residuals.back();
+  return std::move(newton.residuals);
+}
+
+}  // namespace spherical_param::internal

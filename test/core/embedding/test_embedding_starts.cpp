@@ -1,0 +1,35 @@
+#include "embedding_starts.h"
+#include "embeddings.h"
+
+#include <gtest/gtest.h>
+
+namespace spherical_param {
+namespace {
+
+using test::randomSphere;
+using test::spiralSphere;
+
+TEST(EmbeddingStart, RankStartIsNeverCollapsed) {
+  for (const Positions& points :
+       {test::horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0)),
+        Positions(randomSphere(100, 1) * 1e-300), Positions(Positions::Constant(3, 50, 2.0)),
+        test::dentedCloud(1000).points}) {
+    const Positions directions = internal::projectByRank(points);
+    EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+    // All on one meridian: the mean radius is pi / 4.
+    EXPECT_LT(directions.rowwise().mean().norm(), 0.8);
+  }
+}
+
+TEST(EmbeddingStart, ProjectionGivesEveryPointADirection) {
+  Positions points = test::horizontally(randomSphere(10, 1), -randomSphere(10, 1));
+  points = test::horizontally(points, Positions::Zero(3, 1));  // the centroid itself
+  for (const double scale : {1.0, 1e-300, 1e300}) {
+    const Positions directions = internal::projectFromCentroid(points * scale);
+    EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
+    EXPECT_LT((directions.leftCols(20) - points.leftCols(20)).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param

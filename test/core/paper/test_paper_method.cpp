@@ -1,0 +1,232 @@
+#include "paper_method.h"
+
+#include "core/embedding/embeddings.h"
+#include "core/graph/graph_helpers.h"
+#include "core/triangulation/triangulations.h"
+#include "graphs.h"
+#include "qhull.h"
+#include "union_find.h"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using internal::paper::nearestNeighborGraph;
+using test::bruteForceNeighbors;
+using test::edgesOf;
+using test::horizontally;
+using test::randomSphere;
+using test::spiralSphere;
+
+/// Total length of the minimum spanning tree over the parts (J. B. Kruskal, 1956, on all pairs).
+double shortestJoin(const Positions& points, internal::UnionFind parts) {
+  std::vector<std::tuple<double, Index, Index>> pairs;
+  for (Index i = 0; i < points.cols(); ++i)
+    for (Index j = 0; j < i; ++j)
+      pairs.emplace_back((points.col(i) - points.col(j)).norm(), i, j);
+  std::sort(pairs.begin(), pairs.end());
+  double total = 0.0;
+  for (const auto& [length, i, j] : pairs)
+    total += parts.unite(i, j) ? length : 0.0;
+  return total;
+}
+
+TEST(PaperGraph, JoinsEachPointToItsKNearestInLongUntidyLists) {
+  const Positions points = randomSphere(300, 1);
+  for (const int k : {3, 7}) {
+    const NeighborLists lists = bruteForceNeighbors(points, k);
+    test::Edges expected;
+    for (Index i = 0; i < points.cols(); ++i)
+      for (const Index j : test::rowOf(lists, i))
+        expected.insert({std::pair(i, j), std::pair(j, i)});
+    const NeighborGraph result =
+        nearestNeighborGraph(points, test::untidy(bruteForceNeighbors(points, 20)), k);
+    test::expectConnectedGraphOf(points, result);
+    for (const Bridge& bridge : result.bridges)
+      expected.insert({std::pair(bridge.from, bridge.to), std::pair(bridge.to, bridge.from)});
+    EXPECT_EQ(edgesOf(result.graph), expected);
+  }
+}
+
+TEST(PaperGraph, ComponentsAreJoinedByTheirMinimumSpanningTree) {
+  Positions points(3, 0);
+  internal::UnionFind parts(180);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(-40.0, 40.0);
+  const Index pieces = 9;
+  for (Index piece = 0; piece < pieces; ++piece) {
+    Positions part = randomSphere(20, static_cast<std::uint64_t>(piece));
+    part.colwise() += Eigen::Vector3d(uniform(random), uniform(random), uniform(random));
+    points = test::horizontally(points, part);
+    for (Index i = 1; i < 20; ++i)
+      parts.unite(20 * piece, 20 * piece + i);
+  }
+  const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, 6), 6);
+  test::expectConnectedGraphOf(points, result);
+  ASSERT_EQ(result.bridges.size(), static_cast<std::size_t>(pieces) - 1);
+  double total = 0.0;
+  for (const Bridge& bridge : result.bridges) {
+    EXPECT_NE(bridge.from / 20, bridge.to / 20);
+    EXPECT_DOUBLE_EQ(bridge.length, (points.col(bridge.from) - points.col(bridge.to)).norm());
+    total += bridge.length;
+    EXPECT_EQ(edgesOf(result.graph).count({bridge.from, bridge.to}), 1U);
+  }
+  EXPECT_NEAR(total, shortestJoin(points, parts), 1e-9);
+}
+
+TEST(PaperGraph, OfEmptyListsIsTheMinimumSpanningTreeOfThePoints) {
+  const Positions points = test::cubeGrid(5);  // all ties
+  const NeighborGraph result = nearestNeighborGraph(points, bruteForceNeighbors(points, 0), 25);
+  test::expectConnectedGraphOf(points, result);
+  EXPECT_EQ(result.graph.edgeCount(), static_cast<std::size_t>(points.cols()) - 1);
+  EXPECT_EQ(result.bridges.size(), result.graph.edgeCount());
+  for (const double length : result.graph.lengths)
+    EXPECT_DOUBLE_EQ(length, 0.25);
+}
+
+constexpr EdgeWeights kAllWeights[] = {EdgeWeights::Uniform, EdgeWeights::InverseLength,
+                                       EdgeWeights::Adaptive};
+
+Graph nearestGraph(const Positions& points, int k) {
+  return nearestNeighborGraph(points, bruteForceNeighbors(points, k), k).graph;
+}
+
+Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
+                double tolerance, const internal::EmbeddingObserver& observer = {}) {
+  return internal::paper::embed(graph, points, options, tolerance, observer, {});
+}
+
+/// Figure 3 of the paper, word by word, without regard for speed: returns the state and the mean
+/// tangential Laplacian after each number of steps.
+std::vector<std::pair<Positions, double>> figure3(const Graph& graph, const Positions& p,
+                                                  EdgeWeights weights, double lambda, int steps) {
+  std::vector<std::pair<Positions, double>> states;
+  Positions u = p;
+  for (int step = 0; step <= steps; ++step) {
+    const Eigen::Vector3d mean = u.rowwise().mean();
+    u.colwise() -= mean;
+    u.colwise().normalize();
+    Positions next = u;
+    double residual = 0.0;
+    for (std::size_t i = 0; i < graph.size(); ++i) {
+      const Eigen::Vector3d ui = u.col(static_cast<Index>(i));
+      Eigen::Vector3d laplacian = Eigen::Vector3d::Zero();
+      double sum = 0.0;
+      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
+        const Eigen::Vector3d uj = u.col(graph.neighbors[e]);
+        const double length = (p.col(static_cast<Index>(i)) - p.col(graph.neighbors[e])).norm();
+        const double w = weights == EdgeWeights::Uniform         ? 1.0
+                         : weights == EdgeWeights::InverseLength ? 1.0 / length
+                                                                 : (ui - uj).norm() / length;
+        laplacian += w * (uj - ui);
+        sum += w;
+      }
+      laplacian /= sum;
+      const Eigen::Vector3d tangential = laplacian - laplacian.dot(ui) * ui;
+      residual += tangential.norm() / static_cast<double>(graph.size());
+      next.col(static_cast<Index>(i)) = (ui + lambda * tangential).normalized();
+    }
+    states.emplace_back(u, residual);
+    u = next;
+  }
+  return states;
+}
+
+TEST(PaperEmbedding, IsTheIterationOfFigure3) {
+  const Positions points = test::dentedCloud(300).points;
+  const Graph graph = nearestGraph(points, 8);
+  for (const EdgeWeights weights : kAllWeights)
+    for (const double lambda : {0.5, 0.2}) {
+      const int steps = 25;
+      const auto expected = figure3(graph, points, weights, lambda, steps);
+      PaperOptions options;
+      options.weights = weights;
+      options.damping = lambda;
+      options.max_iterations = steps;
+      const Embedding result = embed(graph, points, options, 0.0);
+      EXPECT_EQ(result.report.stop_reason, StopReason::IterationLimit);
+      EXPECT_EQ(result.report.iterations, steps);
+      ASSERT_EQ(result.report.residuals.size(), static_cast<std::size_t>(steps) + 1);
+      // Rounding of 25 steps of a contracting iteration.
+      for (std::size_t step = 0; step <= 25; ++step)
+        EXPECT_NEAR(result.report.residuals[step], expected[step].second, 1e-13);
+      EXPECT_LT((result.directions - expected.back().first).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_EQ(result.report.residual, result.report.residuals.back());
+      EXPECT_LT((result.directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 4e-15);
+      EXPECT_NEAR(result.report.residual,
+                  meanTangentialLaplacian(graph, result.directions, weights), 1e-14);
+    }
+}
+
+TEST(PaperEmbedding, ConvergesToTheToleranceWhereTheCloudIsSymmetric) {
+  // The centroid of a cloud that is symmetric to the origin stays there, so centring and
+  // Laplacian do not work against each other.
+  const Positions half = randomSphere(60, 3);
+  Positions points = test::horizontally(half, -half);
+  points.row(0) *= 1.5;
+  PaperOptions options;
+  options.max_iterations = 20000;
+  const Graph graph = nearestGraph(points, 10);
+  const Embedding result = embed(graph, points, options, 1e-10);
+  EXPECT_EQ(result.report.stop_reason, StopReason::Converged);
+  EXPECT_LE(meanTangentialLaplacian(graph, result.directions, options.weights), 1.01e-10);
+  EXPECT_LT(result.report.iterations, 20000);
+}
+
+/// A sphere of n points of radius 1 and one point far away: seen from the centroid, the sphere is
+/// one place and the far point the opposite one. Centring spreads the one place over the
+/// sphere again within a few steps.
+Positions sphereWithOutlier(Index n) {
+  return test::horizontally(spiralSphere(n), Eigen::Vector3d(1e6, 0.0, 0.0));
+}
+
+TEST(PaperEmbedding, CentringUndoesAPassingCollapse) {
+  const Positions points = sphereWithOutlier(400);
+  const Embedding result = embed(nearestGraph(points, 10), points, {}, 1e-8);
+  EXPECT_NE(result.report.stop_reason, StopReason::Collapsed);
+  EXPECT_LT(result.report.centroid_norm, 0.1);
+}
+
+TEST(PaperEmbedding, ObserversSeeEveryIteration) {
+  const Graph graph = test::dentedCloud(5000).graph;
+  PaperOptions options;
+  options.max_iterations = 12;
+  std::vector<internal::EmbeddingState> states;
+  std::vector<Positions> spheres;
+  const Embedding seen =
+      embed(graph, spiralSphere(5000), options, 1e-8, [&](const internal::EmbeddingState& state) {
+        states.push_back(state);
+        spheres.push_back(state.directions());
+      });
+  ASSERT_EQ(states.size(), 14U);
+  for (std::size_t i = 0; i < 13; ++i) {
+    EXPECT_EQ(states[i].step, EmbeddingStep::Iteration);
+    EXPECT_EQ(states[i].iteration, static_cast<int>(i));
+    EXPECT_EQ(states[i].residual, seen.report.residuals[i]);
+    // The residual reported is that of the state.
+    EXPECT_NEAR(meanTangentialLaplacian(graph, spheres[i], options.weights), *states[i].residual,
+                1e-9 * *states[i].residual);
+  }
+  EXPECT_EQ(states.back().step, EmbeddingStep::End);
+  EXPECT_EQ(spheres.back(), seen.directions);
+}
+
+TEST(PaperHull, IsThatOfQhullOrWhereItLeavesPointsOutTheExactOne) {
+  const Positions sphere = randomSphere(200, 1);
+  const Eigen::Vector3d pole = Eigen::Vector3d(0.3, -0.5, 0.7).normalized();
+  const Positions crowded = horizontally(sphere, test::cap(400, 1e-8, pole, 2));
+  EXPECT_EQ(internal::hullByQhull(sphere).cols(), 396);
+  ASSERT_EQ(internal::hullByQhull(crowded).cols(), 0) << "this cap does not put qhull to the test";
+  for (const Positions& points : {sphere, crowded, horizontally(sphere, sphere)}) {
+    const Triangles hull = internal::paper::convexHull(points, {});
+    EXPECT_TRUE(test::isSphereOverAll(hull, static_cast<Index>(points.cols())));
+    EXPECT_EQ(test::canonical(hull), test::canonical(triangulateSphere(points)));
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param
