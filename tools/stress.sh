@@ -32,7 +32,6 @@ work="$PWD/build/stress"
 rm -rf "$work"
 mkdir -p "$work"
 : >"$work/rows"
-sanitizer_options
 
 # part <step> <command>...: a step whose output has a row of the table.
 part() {

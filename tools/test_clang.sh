@@ -27,7 +27,6 @@ sanitized() {
     GTEST_SHARD_INDEX='{}' "$1" --gtest_brief=1 "--gtest_filter=$2"
 }
 
-sanitizer_options
 check "set-up" tools/setup.sh || finish
 use_compiler_cache
 programs=(test_core test_map test_pcl test_ros_seam test_cloud_reader test_faults)

@@ -22,7 +22,7 @@ struct Progress {
 
 /// How a computation is run. Only the time limit affects the result.
 struct Execution {
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  int threads = 0;  ///< 0: one for each processor; [0, 1024]
   /// Called at least every second during long work, from the calling thread only; may be empty.
   /// Returning false ends the work with Cancelled. qhull, a tolerance for the multilevel embedding
   /// and smoothing may take longer between two calls.

@@ -33,7 +33,7 @@ struct MeshMeasures {
 /// intersects itself, a region counts as often as the mesh winds around it.
 ///
 /// \param points    3 x n; \param triangles 3 x m, consistently oriented, each edge twice.
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
+/// \param threads 0: one for each processor; [0, 1024].
 /// \return all zero for a mesh without triangles; the same, bit by bit, for any number of threads.
 /// \throw InvalidInput for an index or threads out of range. Cost: O(m).
 MeshMeasures measureMesh(const Positions& points, const Triangles& triangles, int threads = 0);

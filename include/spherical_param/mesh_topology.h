@@ -47,7 +47,7 @@ struct MeshTopology {
 ///
 /// \param triangles    3 x m, any order, m at most 2^30.
 /// \param vertex_count vertices are [0, vertex_count).
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
+/// \param threads 0: one for each processor; [0, 1024].
 /// \return the same for any number of threads.
 /// \throw InvalidInput for an index or threads out of range, or too many triangles. Cost: O(m + n),
 /// and memory of 12 m + 8 n bytes.

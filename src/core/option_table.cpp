@@ -248,7 +248,7 @@ std::vector<OptionRow> runRows() {
           "seconds until the work ends with the best mesh so far; unset: no limit", Everybody, 0,
           kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
       number(
-          "threads", "threads", "threads; 0: as many as OpenMP would use", Expert, 0, 1024,
+          "threads", "threads", "threads; 0: one for each processor", Expert, 0, 1024,
           [](Options & o) -> auto& { return o.threads; }),
   };
 }

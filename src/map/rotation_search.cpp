@@ -399,7 +399,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
     const Problem medium(unit_first, unit_second, kMediumSamples);
     const int used = threadCount(threads, starts.size() * kMediumSamples, kParallelThreshold);
     forEachTask(starts.size(), used,
-                [&](std::size_t, std::size_t i) { ends[i] = medium.descend(starts[i], pairs, 1); });
+                [&](std::size_t i) { ends[i] = medium.descend(starts[i], pairs, 1); });
   }
   reportFraction(report, 0.0);
   std::stable_sort(ends.begin(), ends.end(),

@@ -69,10 +69,10 @@ SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles
   });
   const unsigned serial_levels = std::min(levels_, kSerialLevels);
   for (unsigned level = 0; level < serial_levels; ++level)
-    forEachTask(std::size_t{1} << level, threads, [&](std::size_t, std::size_t i) {
+    forEachTask(std::size_t{1} << level, threads, [&](std::size_t i) {
       split((std::size_t{1} << level) + i, level, level, centers);
     });
-  forEachTask(std::size_t{1} << serial_levels, threads, [&](std::size_t, std::size_t i) {
+  forEachTask(std::size_t{1} << serial_levels, threads, [&](std::size_t i) {
     split((std::size_t{1} << serial_levels) + i, serial_levels, levels_, centers);
   });
   for (std::size_t node = (std::size_t{1} << serial_levels) - 1; node > 0; --node)

@@ -360,7 +360,7 @@ private:
     const std::vector<Index> order = mortonOrder(points_);
     const std::array<std::vector<SphereLocation>*, 2> places{&overlay_.first, &overlay_.second};
     std::array<bool, 2> is_lost{};
-    forEachTask(2, std::min(threads_, 2), [&](std::size_t, std::size_t m) {
+    forEachTask(2, std::min(threads_, 2), [&](std::size_t m) {
       const std::vector<SphereLocation> found = locateAll(points_, *triangles_[m], order);
       is_lost[m] = found.size() != order.size();
       places[m]->resize(vertex_count_);

@@ -112,7 +112,7 @@ std::ptrdiff_t planPaths(std::vector<Path>& paths, const std::vector<std::size_t
   std::vector<double> conflicts(n);
   const auto examine = [&] {
     const int used = threadCount(threads, n * n, kParallelThreshold);
-    forEachTask(n, used, [&](std::size_t, std::size_t i) { conflicts[i] = conflict_of(i); });
+    forEachTask(n, used, [&](std::size_t i) { conflicts[i] = conflict_of(i); });
     return std::max_element(conflicts.begin(), conflicts.end()) - conflicts.begin();
   };
   std::ptrdiff_t worst = examine();

@@ -255,13 +255,12 @@ private:
   }
   template <typename Work>
   void forEachRing(int threads, const Work& work) const {
-    internal::forEachTask(count(), workers(threads),
-                          [&](std::size_t, std::size_t ring) { work(ring); });
+    internal::forEachTask(count(), workers(threads), [&](std::size_t ring) { work(ring); });
   }
   template <typename Work>
   void forEachOrder(int threads, const Work& work) const {
     internal::forEachTask(static_cast<std::size_t>(degree_) + 1, workers(threads),
-                          [&](std::size_t, std::size_t m) { work(static_cast<int>(m)); });
+                          [&](std::size_t m) { work(static_cast<int>(m)); });
   }
 
   int degree_;

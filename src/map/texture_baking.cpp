@@ -40,7 +40,7 @@ void checkOptions(const std::string& function, const BakeOptions& options) {
   };
   check("height", options.height, 16, 16384);
   check("gutter", options.gutter, 0, 256);
-  check("threads", options.threads, 0, internal::kMaxThreads);
+  internal::checkThreads(options.threads);
 }
 
 /// Refuses what no makeTextureAtlas() made.
@@ -88,13 +88,12 @@ public:
       for (int band = first / band_height; first <= last && band <= last / band_height; ++band)
         of_band[static_cast<std::size_t>(band)].push_back(static_cast<Index>(t));
     }
-    internal::forEachTask(static_cast<std::size_t>(bands), threads_,
-                          [&](std::size_t, std::size_t band) {
-                            const int first = static_cast<int>(band) * band_height;
-                            const int last = std::min(first + band_height, image_.height) - 1;
-                            for (const Index t : of_band[band])
-                              paintTriangle(t, first, last, color);
-                          });
+    internal::forEachTask(static_cast<std::size_t>(bands), threads_, [&](std::size_t band) {
+      const int first = static_cast<int>(band) * band_height;
+      const int last = std::min(first + band_height, image_.height) - 1;
+      for (const Index t : of_band[band])
+        paintTriangle(t, first, last, color);
+    });
   }
 
   /// Gives pixels up to so far away from the triangles the colour of the nearest in one.
@@ -175,7 +174,7 @@ private:
   template <typename Work>
   void forEachLine(int count, const Work& work) {
     const auto bands = static_cast<std::size_t>((count + band_height - 1) / band_height);
-    internal::forEachTask(bands, threads_, [&](std::size_t, std::size_t band) {
+    internal::forEachTask(bands, threads_, [&](std::size_t band) {
       const int first = static_cast<int>(band) * band_height;
       for (int line = first; line < std::min(first + band_height, count); ++line)
         work(line);

@@ -3,11 +3,8 @@
 #include "common/errors.h"
 #include "common/numbers.h"
 #include "common/text.h"
+#include "parallel.h"
 #include "spherical_param/option_table.h"
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include <algorithm>
 #include <cstdint>
@@ -88,11 +85,7 @@ Options parseOptions(const CommandLine& command_line) {
                        "leave -" + flagOf(row) + " out, or give -" + other + " " + needed);
     }
   }
-#ifdef _OPENMP
-  options.threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
-#else
-  options.threads = 1;
-#endif
+  options.threads = options.threads == 0 ? internal::processorCount() : options.threads;
   return options;
 }
 

@@ -9,7 +9,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -70,21 +69,6 @@ int print(const char* tool, const char* cause, const char* remedy) noexcept {
   return static_cast<int>(ExitCode::Failed);
 }
 
-/// The tool that works, if one does.
-std::atomic<const char*> working_tool{nullptr};
-
-/// OpenMP's runtime prints what it lacks and ends the program where it cannot start a thread.
-void endedByLibrary() {
-  const char* const tool = working_tool.exchange(nullptr);
-  if (tool == nullptr) {
-    return;
-  }
-  removeTemporaryFiles([] {});
-  print(tool, "a library has ended the program",
-        "allow more memory or processes, or give -threads 1");
-  std::_Exit(static_cast<int>(ExitCode::Failed));
-}
-
 int report(const std::string& tool, const ToolError& error) {
   std::fflush(stdout);
   std::fprintf(stderr, "%s: %s\n  remedy: %s\n", tool.c_str(), oneLine(error.what()).c_str(),
@@ -109,35 +93,27 @@ void occupyStandardStreams() {
 int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(const std::vector<std::string>&)>& body) {
   occupyStandardStreams();
-  std::atexit(endedByLibrary);
-  // Whatever comes of it, the end is ours.
-  const auto finished = [](int exit_code) {
-    working_tool = nullptr;
-    return exit_code;
-  };
   try {
     try {
       handleSignals();
-      working_tool = tool.c_str();
       body(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
-      return finished(static_cast<int>(ExitCode::Done));
+      return static_cast<int>(ExitCode::Done);
     } catch (const ToolError& error) {
-      return finished(report(tool, error));
+      return report(tool, error);
     } catch (const std::bad_alloc&) {
-      return finished(print(tool.c_str(), no_memory, fewer_points));
+      return print(tool.c_str(), no_memory, fewer_points);
     } catch (const std::filesystem::filesystem_error& error) {
-      return finished(report(tool, Failure(error.what(), "check that the directories of all paths, "
-                                                         "and the one you are in, exist")));
+      return report(tool, Failure(error.what(), "check that the directories of all paths, and the "
+                                                "one you are in, exist"));
     } catch (const std::system_error& error) {
-      return finished(
-          report(tool, Failure("the system refuses a resource: " + std::string(error.what()),
-                               "allow more memory or processes")));
+      return report(tool, Failure("the system refuses a resource: " + std::string(error.what()),
+                                  "allow more memory or processes"));
     } catch (const std::exception& error) {
-      return finished(report(tool, Failure(error.what(), kReportIt)));
+      return report(tool, Failure(error.what(), kReportIt));
     }
   } catch (const std::bad_alloc&) {
     // Not even enough for the message.
-    return finished(print(tool.c_str(), no_memory, fewer_points));
+    return print(tool.c_str(), no_memory, fewer_points);
   }
 }
 

@@ -21,13 +21,8 @@ use_compiler_cache() {
 }
 use_compiler_cache
 
-# How programs with sanitizers run: they say where, and nothing of what clang's OpenMP, which does not
-# free what it has for each thread, leaves behind.
-sanitizer_options() {
-  echo 'leak:libomp' >"$logs/leaks-of-others"
-  export UBSAN_OPTIONS=print_stacktrace=1
-  export LSAN_OPTIONS="suppressions=$PWD/$logs/leaks-of-others:print_suppressions=0"
-}
+# Programs with sanitizers say where.
+export UBSAN_OPTIONS=print_stacktrace=1
 
 report() { # <result> <seconds> <step>
   printf '%-6s %5ss  %s\n' "$1" "$2" "$3"

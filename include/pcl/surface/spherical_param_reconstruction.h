@@ -211,12 +211,12 @@ public:
   inline std::optional<double> getTimeLimit() const { return options_.time_limit; }
 
   /** \brief Set the number of threads. The result does not depend on it.
-   * \param[in] threads 0 (default): as many as OpenMP would use. */
+   * \param[in] threads 0 (default): one for each processor. */
   inline void setNumberOfThreads(unsigned int threads = 0) {
     options_.threads = static_cast<int>(threads);
   }
   /** \brief Get the number of threads.
-   * \return their number; 0: as many as OpenMP would use */
+   * \return their number; 0: one for each processor */
   inline unsigned int getNumberOfThreads() const {
     return static_cast<unsigned int>(options_.threads);
   }

@@ -99,7 +99,7 @@ struct UntanglingReport {
 ///
 /// \param surface that the mesh was sampled from.
 /// \param mesh    of resampleSurface(); changed in place. The best result is kept.
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \param threads 0: one for each processor; [0, 1024]
 /// \return the report.
 /// \throw InvalidInput for sizes that do not match, or threads out of range.
 /// The same, bit by bit, for any number of threads.
@@ -121,7 +121,7 @@ struct IntersectionRemoval {
 /// not change.
 ///
 /// \param mesh of resampleSurface(); changed in place.
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \param threads 0: one for each processor; [0, 1024]
 /// \return the report.
 /// \throw InvalidInput for a mesh unlike those of resampleSurface().
 /// The same for any number of threads.

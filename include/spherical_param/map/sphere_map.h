@@ -42,7 +42,7 @@ struct MapDistortion {
 ///
 /// \param points    3 x v, the mesh in space; \param sphere 3 x v, unit vectors.
 /// \param triangles 3 x m.
-/// \param threads   OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \param threads   0: one for each processor; [0, 1024]
 /// \return flips, distortion of angles and areas, stretch.
 /// \throw InvalidInput for sizes that do not match or an index out of range. Cost: O(m log m).
 MapDistortion measureMapDistortion(const Positions& points, const Triangles& triangles,

@@ -36,7 +36,7 @@ enum class SurfaceFit {
 /// Parameters of SphereSurface.
 struct SphereSurfaceOptions {
   SurfaceFit fit = SurfaceFit::Smooth;  ///< between the vertices
-  int threads = 0;      ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  int threads = 0;      ///< 0: one for each processor; [0, 1024]
   Positions caps = {};  ///< SphereMap::caps of a mesh with openings
 };
 

@@ -34,7 +34,7 @@ Eigen::VectorXd sphericalHarmonicsAt(const Eigen::Vector3d& direction, int degre
 ///
 /// \param surface with its map.
 /// \param degree largest l; [0, 512].
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \param threads 0: one for each processor; [0, 1024]
 /// \return the coefficients, and what the series leaves.
 /// \throw InvalidInput for a degree outside [0, 512].
 SphericalHarmonics computeSphericalHarmonics(const SphereSurface& surface, int degree,
@@ -44,7 +44,7 @@ SphericalHarmonics computeSphericalHarmonics(const SphereSurface& surface, int d
 ///
 /// \param harmonics  coefficients up to harmonics.degree.
 /// \param directions 3 x n, not zero.
-/// \param threads    OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+/// \param threads    0: one for each processor; [0, 1024]
 /// \return 3 x n, positions [unit of the input].
 Positions evaluateSphericalHarmonics(const SphericalHarmonics& harmonics,
                                      const Positions& directions, int threads = 0);

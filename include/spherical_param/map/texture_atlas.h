@@ -87,7 +87,7 @@ struct BakeOptions {
   /// Pixels around the triangles that get the colour of the nearest one, so that filtering finds
   /// no background; [0, 256].
   int gutter = 8;
-  int threads = 0;  ///< OpenMP threads; 0: as many as OpenMP would use; [0, 1024]
+  int threads = 0;  ///< 0: one for each processor; [0, 1024]
 };
 
 /// Paints the colours of a mesh's vertices into a texture, interpolated over its triangles.

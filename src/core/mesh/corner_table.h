@@ -83,20 +83,17 @@ private:
   template <typename Work>
   static void forEachCornerOfRange(const Triangles& triangles, int threads,
                                    std::size_t vertex_count, const Work& work) {
-    const auto count = static_cast<std::ptrdiff_t>(vertex_count);
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
-#endif
-    for (std::ptrdiff_t r = 0; r < threads; ++r) {
-      const auto begin = static_cast<Index>(count * r / threads);
-      const auto end = static_cast<Index>(count * (r + 1) / threads);
+    const auto parts = static_cast<std::size_t>(threads);
+    forEachTask(parts, threads, [&](std::size_t r) {
+      const auto begin = static_cast<Index>(vertex_count * r / parts);
+      const auto end = static_cast<Index>(vertex_count * (r + 1) / parts);
       for (Eigen::Index t = 0; t < triangles.cols(); ++t)
         for (Eigen::Index k = 0; k < 3; ++k) {
           const Index v = triangles(k, t);
           if (v >= begin && v < end)
             work(static_cast<std::size_t>(v), static_cast<std::uint32_t>(4 * t + k));
         }
-    }
+    });
   }
 
   std::vector<std::uint32_t> ends_;           // corners of v: [ends_[v], ends_[v + 1])

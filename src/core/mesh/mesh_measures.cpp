@@ -93,18 +93,14 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   SolidSums solid;
   SurfaceSums surface;
   // Each sum has one thread, which adds in the order of the triangles.
-  [[maybe_unused]] const int threads = std::min(
-      2, internal::threadCount(requested_threads, static_cast<std::size_t>(triangles.cols()),
-                               internal::kShortPassThreshold));
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
-#endif
-  for (int part = 0; part < 2; ++part) {
+  const int threads = internal::threadCount(
+      requested_threads, static_cast<std::size_t>(triangles.cols()), internal::kShortPassThreshold);
+  internal::forEachTask(2, threads, [&](std::size_t part) {
     if (part == 0)
       solid = sumOverSolid(points, triangles, origin);
     else
       surface = sumOverSurface(points, triangles, origin);
-  }
+  });
   measures.box_min = surface.box_min;
   measures.box_max = surface.box_max;
   measures.volume = solid.volume / 6.0;

@@ -1,24 +1,14 @@
 #pragma once
 
 #include "progress.h"
-#include "spherical_param/errors.h"
-#include "spherical_param/types.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <string>
+#include <functional>
 #include <vector>
-
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 namespace spherical_param::internal {
 
-/// Maximum number of threads: more would exhaust the system.
-inline constexpr int kMaxThreads = 1024;
 /// Items of a block. Work is distributed and summed by block: the same bits for any number of
 /// threads.
 inline constexpr std::size_t kBlockSize = 512;
@@ -33,73 +23,35 @@ inline constexpr std::size_t kReportedItems = 256 * kBlockSize;
 /// Approximate maximum of reports of a loop.
 inline constexpr std::size_t kMaxReports = 32;
 
+/// Processors that this process may use.
+int processorCount();
+
 /// \throw InvalidInput if a number of threads is out of range.
-inline void checkThreads(int requested) {
-  if (requested < 0 || requested > kMaxThreads)
-    throw InvalidInput("threads = " + std::to_string(requested) +
-                       " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
-}
+void checkThreads(int requested);
 
 /// Number of threads that pays for a number of items.
 ///
-/// \param requested 0: as many as OpenMP would use.
+/// \param requested 0: one for each processor.
 /// \param threshold minimum number of items for several threads.
 /// \throw InvalidInput if `requested` is out of range.
-inline int threadCount(int requested, [[maybe_unused]] std::size_t items,
-                       [[maybe_unused]] std::size_t threshold) {
-  checkThreads(requested);
-#ifdef _OPENMP
-  if (items >= threshold)
-    // OpenMP ends the process if it cannot start a thread; more threads than this gain nothing.
-    return std::min({requested > 0 ? requested : omp_get_max_threads(), 4 * omp_get_num_procs(),
-                     static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMaxThreads))});
-#endif
-  return 1;
-}
+int threadCount(int requested, std::size_t items, std::size_t threshold);
 
-/// Carries an exception, such as std::bad_alloc, out of a parallel region: leaving the region by
-/// itself would end the program, even on one thread.
-class ExceptionCarrier {
-public:
-  /// Runs a part of the work, unless another part has thrown.
-  template <typename Work>
-  void run(const Work& work) {
-    if (has_failed_.load(std::memory_order_relaxed))
-      return;
-    try {
-      work();
-    } catch (...) {
-      if (!has_failed_.exchange(true))
-        error_ = std::current_exception();
-    }
-  }
+/// Calls task(i) for each i in [0, count), on several threads. The calling thread does the first.
+/// An exception ends the work; tasks already begun are finished. A loop within a task of another
+/// one that has several threads has one thread.
+void forEachTask(std::size_t count, int threads, const std::function<void(std::size_t)>& task);
 
-  /// Rethrows the exception of a part. Call it after the region.
-  void rethrow() const {
-    if (error_)
-      std::rethrow_exception(error_);
-  }
+/// Number of the calling thread in the innermost loop that it works on, below the number of threads
+/// of that loop; 0 in the thread that called it.
+std::size_t threadNumber();
 
-private:
-  std::atomic<bool> has_failed_{false};
-  std::exception_ptr error_;
-};
-
-/// Calls work(block, begin, end) for the blocks of [0, count), on several threads. An exception
-/// ends the work; blocks already begun are finished.
+/// Calls work(block, begin, end) for the blocks of [0, count), as forEachTask() does.
 template <typename Work>
-void forEachBlock(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
-  const auto blocks = static_cast<std::ptrdiff_t>((count + kBlockSize - 1) / kBlockSize);
-  ExceptionCarrier carrier;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
-#endif
-  for (std::ptrdiff_t b = 0; b < blocks; ++b) {
-    const auto block = static_cast<std::size_t>(b);
-    carrier.run(
-        [&] { work(block, block * kBlockSize, std::min(count, (block + 1) * kBlockSize)); });
-  }
-  carrier.rethrow();
+void forEachBlock(std::size_t count, int threads, const Work& work) {
+  const auto task = [&](std::size_t block) {
+    work(block, block * kBlockSize, std::min(count, (block + 1) * kBlockSize));
+  };
+  forEachTask((count + kBlockSize - 1) / kBlockSize, threads, std::cref(task));
 }
 
 /// The same with reports: in a few dozen parallel regions, with the same blocks.
@@ -125,11 +77,7 @@ void forEachBlock(std::size_t count, int threads, const FractionReport& report, 
 template <typename Work>
 void forEachItem(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
-#ifdef _OPENMP
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-#else
-    const std::size_t thread = 0;
-#endif
+    const std::size_t thread = threadNumber();
     for (std::size_t i = begin; i < end; ++i)
       work(thread, i);
   });
@@ -138,26 +86,6 @@ void forEachItem(std::size_t count, int threads, const FractionReport& report, c
 template <typename Work>
 void forEachItem(std::size_t count, int threads, const Work& work) {
   forEachItem(count, threads, {}, work);
-}
-
-/// Calls work(thread, i) for each i in [0, count), where thread < threads: long tasks. The calling
-/// thread is number 0 and runs the first task. An exception ends the work; tasks already begun are
-/// finished.
-template <typename Work>
-void forEachTask(std::size_t count, [[maybe_unused]] int threads, const Work& work) {
-  ExceptionCarrier carrier;
-#ifdef _OPENMP
-#pragma omp parallel for num_threads(threads) schedule(static, 1) if (threads > 1)
-#endif
-  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(count); ++i) {
-#ifdef _OPENMP
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-#else
-    const std::size_t thread = 0;
-#endif
-    carrier.run([&] { work(thread, static_cast<std::size_t>(i)); });
-  }
-  carrier.rethrow();
 }
 
 /// The sum of term(begin, end) over the blocks of [0, count), in their order.

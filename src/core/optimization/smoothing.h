@@ -44,7 +44,7 @@ struct Smoothing {
 ///                  differ by 1e-90 to 1e90 at most, so that the volume is representable.
 /// \param triangles 3 x m, closed, manifold, consistently oriented, any genus and number of pieces.
 /// \param options filter, strength
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
+/// \param threads 0: one for each processor; [0, 1024].
 /// \return the points, the same, bit by bit, for any number of threads.
 /// Cost: O(n) per step of Umbrella; Biharmonic O(n sqrt(steps)), five steps as much as some thirty
 /// of Umbrella.

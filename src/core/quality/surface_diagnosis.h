@@ -32,7 +32,7 @@ struct DiagnosisOptions {
 /// \param bridges   edges of the graph that join parts (GraphReport::bridges).
 /// \param openings  of the graph, with the triangles over filled ones.
 /// \param options   lists, marks, cycles
-/// \param threads OpenMP threads; 0: as many as OpenMP would use; [0, 1024].
+/// \param threads 0: one for each processor; [0, 1024].
 /// \return the diagnosis, the same for any number of threads.
 /// Cost: O(n) for a sound surface.
 ///

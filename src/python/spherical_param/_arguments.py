@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import operator
-import os
 from typing import Any, SupportsFloat, SupportsIndex
 
 import numpy as np
@@ -15,31 +14,10 @@ FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.int32]
 ByteArray = NDArray[np.uint8]
 
-_openmp_used = False
-_openmp_lost = False
-
-
-def _after_fork() -> None:
-    global _openmp_lost
-    _openmp_lost = _openmp_used
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_after_fork)
-
 
 def thread_count(threads: SupportsIndex) -> int:
-    """The threads to work with: only one in a forked process.
-
-    OpenMP's threads stay in the parent, and the child would wait for them forever. The result
-    does not depend on the number.
-    """
-    global _openmp_used
-    count = integer("threads", threads, 0, 1024)
-    if _openmp_lost:
-        return 1
-    _openmp_used = True
-    return count
+    """The most threads to work with; 0: all processors."""
+    return integer("threads", threads, 0, 1024)
 
 
 def _numbers(name: str, value: ArrayLike, kinds: str, what: str, remedy: str) -> NDArray[Any]:

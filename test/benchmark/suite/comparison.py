@@ -113,7 +113,7 @@ def race(context, clouds):
     mesh = context.work / "race.ply"
     for cloud in clouds:
         ours = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
-        commands = [ours, ["env", "OMP_NUM_THREADS=1", *ours]]
+        commands = [ours, [*ours, "-threads", "1"]]
         if peer:
             report = mesh.with_suffix(".json")
             commands.append([peer, "advancing_front", cloud.points, mesh, report])

@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import os
 import pathlib
 import statistics
 import subprocess
@@ -29,16 +28,12 @@ class Run:
     output: str = ""
 
 
-def run(command, timeout=None, threads=None):
+def run(command, timeout=None):
     """Runs a command to its end, for at most `timeout` seconds."""
-    environment = dict(os.environ)
-    if threads:
-        environment["OMP_NUM_THREADS"] = str(threads)
     start = time.monotonic()
     try:
         done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, text=True,
-                              capture_output=True, env=environment, timeout=timeout,
-                              check=False)  # fmt: skip
+                              capture_output=True, timeout=timeout, check=False)  # fmt: skip
     except subprocess.TimeoutExpired:
         return Run(time.monotonic() - start, f"not done after {timeout:.0f} s")
     problem = ""
@@ -47,9 +42,9 @@ def run(command, timeout=None, threads=None):
     return Run(time.monotonic() - start, problem, done.stdout)
 
 
-def require(command, threads=None):
+def require(command):
     """run() of what must not fail."""
-    done = run(command, threads=threads)
+    done = run(command)
     if done.problem:
         line = " ".join(str(word) for word in command)
         raise Failure(f"'{line}' failed: {done.problem}", "run that command alone to see more")
@@ -123,7 +118,8 @@ class Programs:
         """Runs the tool: the process, and the tool's report."""
         command = [self.reconstruction, cloud.points, mesh, "-quiet", "-json", "-", *options]
         command += ["-sphere", sphere] if sphere else []
-        process = require(command, threads)
+        command += ["-threads", threads] if threads else []
+        process = require(command)
         return process, json.loads(process.output)
 
     def measure(self, mesh, cloud=None, sphere=None, over_cloud=True):

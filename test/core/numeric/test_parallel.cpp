@@ -76,7 +76,7 @@ TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
                              }),
                  std::bad_alloc);
     EXPECT_THROW(forEachTask(7, threads,
-                             [](std::size_t, std::size_t i) {
+                             [](std::size_t i) {
                                if (i >= 2)
                                  throw std::runtime_error("enough");
                              }),

@@ -1,0 +1,212 @@
+#include "parallel.h"
+
+#include "spherical_param/errors.h"
+
+#ifdef __linux__
+#include <sched.h>
+#endif
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Maximum number of threads: more would exhaust the system.
+constexpr int kMaxThreads = 1024;
+/// Maximum number of threads a processor. More gain nothing, and each takes address space.
+constexpr int kMaxThreadsOfProcessor = 4;
+
+thread_local std::size_t thread_number = 0;
+thread_local bool does_task_of_team = false;
+
+/// Sets the number of this thread for as long as it works on a loop.
+class NumberInLoop {
+public:
+  explicit NumberInLoop(std::size_t number) : outer_(thread_number) { thread_number = number; }
+  ~NumberInLoop() { thread_number = outer_; }
+  NumberInLoop(const NumberInLoop&) = delete;
+  NumberInLoop& operator=(const NumberInLoop&) = delete;
+
+private:
+  std::size_t outer_;
+};
+
+/// The tasks of a loop, taken one by one by the threads of a team.
+class Loop {
+public:
+  Loop(std::size_t count, const std::function<void(std::size_t)>& task)
+      : count_(count), task_(task) {}
+
+  /// Does tasks until there are no more.
+  void work(std::size_t number) noexcept {
+    const NumberInLoop number_in_loop(number);
+    does_task_of_team = true;
+    try {
+      for (std::size_t i = number == 0 ? 0 : next_++; i < count_; i = next_++)
+        task_(i);
+    } catch (...) {
+      next_ = count_;
+      if (!has_failed_.exchange(true))
+        error_ = std::current_exception();
+    }
+    does_task_of_team = false;
+  }
+
+  /// Rethrows the first exception of a task, after the end.
+  void rethrow() const {
+    if (error_)
+      std::rethrow_exception(error_);
+  }
+
+private:
+  std::size_t count_;
+  const std::function<void(std::size_t)>& task_;
+  std::atomic<std::size_t> next_{1};  ///< the first task is the calling thread's
+  std::atomic<bool> has_failed_{false};
+  std::exception_ptr error_;
+};
+
+/// Threads that sleep until the thread that owns them has a loop. The owner works, too, and waits
+/// only for tasks that have begun, not for threads that have not woken up: on a busy machine that
+/// can take longer than the loop.
+class Team {
+public:
+  Team() = default;
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+  ~Team() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_ending_ = true;
+    }
+    has_changed_.notify_all();
+    for (std::thread& thread : threads_)
+      thread.join();
+  }
+
+  /// False in a forked process, which has the memory of the team but not its threads.
+  bool isOfThisProcess() const { return process_ == getpid(); }
+
+  /// Does all tasks of a loop, with so many threads beside the calling one, or as many as the
+  /// system grants.
+  void run(Loop& loop, std::size_t helpers) {
+    try {
+      while (threads_.size() < helpers)
+        threads_.emplace_back([this, number = threads_.size() + 1] { help(number); });
+    } catch (const std::system_error&) {
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      loop_ = &loop;
+      helpers_ = helpers;
+      ++loop_count_;
+    }
+    has_changed_.notify_all();
+    loop.work(0);
+    std::unique_lock lock(mutex_);
+    loop_ = nullptr;
+    is_idle_.wait(lock, [this] { return working_ == 0; });
+  }
+
+private:
+  void help(std::size_t number) {
+    std::unique_lock lock(mutex_);
+    for (std::uint64_t last = 0;;) {
+      has_changed_.wait(lock, [&] {
+        return is_ending_ || (loop_ != nullptr && number <= helpers_ && loop_count_ != last);
+      });
+      if (is_ending_)
+        return;
+      last = loop_count_;
+      ++working_;
+      Loop& loop = *loop_;
+      lock.unlock();
+      loop.work(number);
+      lock.lock();
+      if (--working_ == 0)
+        is_idle_.notify_one();
+    }
+  }
+
+  const pid_t process_ = getpid();
+  std::vector<std::thread> threads_;
+  std::mutex mutex_;  ///< guards what follows
+  std::condition_variable has_changed_;
+  std::condition_variable is_idle_;
+  Loop* loop_ = nullptr;
+  std::size_t helpers_ = 0;
+  std::uint64_t loop_count_ = 0;
+  std::size_t working_ = 0;  ///< threads, without the owner
+  bool is_ending_ = false;
+};
+
+/// Leaves the memory of a parent's team alone: its end would wait for threads that do not exist.
+struct EndTeam {
+  void operator()(Team* team) const {
+    if (team->isOfThisProcess())
+      std::default_delete<Team>()(team);
+  }
+};
+
+/// The team of the calling thread, which ends with that thread.
+Team& ownTeam() {
+  thread_local std::unique_ptr<Team, EndTeam> team;
+  if (!team || !team->isOfThisProcess())
+    team.reset(std::make_unique<Team>().release());
+  return *team;
+}
+
+}  // namespace
+
+int processorCount() {
+#ifdef __linux__
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0)
+    return CPU_COUNT(&allowed);
+#endif
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+void checkThreads(int requested) {
+  if (requested < 0 || requested > kMaxThreads)
+    throw InvalidInput("threads = " + std::to_string(requested) +
+                       " is out of range; use 0 (all) to " + std::to_string(kMaxThreads));
+}
+
+int threadCount(int requested, std::size_t items, std::size_t threshold) {
+  checkThreads(requested);
+  if (items < threshold)
+    return 1;
+  const int processors = processorCount();
+  return std::min({requested > 0 ? requested : processors, kMaxThreadsOfProcessor * processors,
+                   static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMaxThreads))});
+}
+
+std::size_t threadNumber() {
+  return thread_number;
+}
+
+void forEachTask(std::size_t count, int threads, const std::function<void(std::size_t)>& task) {
+  if (threads <= 1 || count <= 1 || does_task_of_team) {
+    const NumberInLoop number_in_loop(0);
+    for (std::size_t i = 0; i < count; ++i)
+      task(i);
+    return;
+  }
+  Loop loop(count, task);
+  ownTeam().run(loop, std::min(count, static_cast<std::size_t>(threads)) - 1);
+  loop.rethrow();
+}
+
+}  // namespace spherical_param::internal
