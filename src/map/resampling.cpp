@@ -466,7 +466,7 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
   const int workers = internal::threadCount(
-      threads, static_cast<std::size_t>(mesh.triangles.cols()), internal::kShortPassThreshold);
+      threads, static_cast<std::size_t>(mesh.triangles.cols()), internal::kParallelThreshold);
   if (checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), workers)
           .isOpenSurface())
     return result;
@@ -576,7 +576,7 @@ ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
 
   const auto count = static_cast<std::size_t>(n);
   const internal::CornerTable corners(
-      mesh.triangles, count, internal::threadCount(0, count, internal::kShortPassThreshold));
+      mesh.triangles, count, internal::threadCount(0, count, internal::kParallelThreshold));
   mesh.normals = internal::vertexNormals(mesh.points, mesh.triangles, mesh.directions, corners, 0);
   return mesh;
 }

@@ -106,7 +106,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
 double areaOf(const Positions& points, const Eigen::Ref<const Triangles>& triangles, int threads) {
   const auto count = static_cast<std::size_t>(triangles.cols());
   return internal::sumOfBlocks(
-      count, internal::threadCount(threads, count, internal::kShortPassThreshold), 0.0,
+      count, internal::threadCount(threads, count, internal::kParallelThreshold), 0.0,
       [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -131,7 +131,7 @@ struct SphereSurface::Data {
         area(areaOf(points, triangles.leftCols(mesh_triangles), thread_limit)),
         locator(sphere, triangles, thread_limit) {
     const auto count = static_cast<std::size_t>(points.cols());
-    const int threads = internal::threadCount(thread_limit, count, internal::kShortPassThreshold);
+    const int threads = internal::threadCount(thread_limit, count, internal::kParallelThreshold);
     // Caps have no say in what the surface is like at their loops.
     const internal::CornerTable corners(triangles.leftCols(mesh_triangles), count, threads);
     normals = internal::vertexNormals(points, triangles, sphere, corners, thread_limit);

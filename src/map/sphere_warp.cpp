@@ -240,7 +240,7 @@ public:
   std::vector<Index> flipped(const Positions& sphere, int threads) const {
     const auto m = static_cast<std::size_t>(triangles_.cols());
     std::vector<std::vector<Index>> of_block((m + kBlockSize - 1) / kBlockSize);
-    forEachBlock(m, threadCount(threads, m, kShortPassThreshold),
+    forEachBlock(m, threadCount(threads, m, kParallelThreshold),
                  [&](std::size_t block, std::size_t begin, std::size_t end) {
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto corners = triangles_.col(static_cast<Eigen::Index>(t));
@@ -380,26 +380,25 @@ std::pair<double, std::size_t> steepestOf(const Field& field, const Positions& p
   constexpr int around = 6;
   const std::size_t near_count = static_cast<std::size_t>(n) * (2 * around + 1);
   std::vector<double> slopes(near_count + static_cast<std::size_t>(spread.cols()));
-  forEachItem(
-      slopes.size(),
-      threadCount(threads, slopes.size() * static_cast<std::size_t>(n), kShortPassThreshold),
-      [&](std::size_t, std::size_t s) {
-        if (s >= near_count) {
-          slopes[s] = field.slopeAt(spread.col(static_cast<Eigen::Index>(s - near_count)));
-          return;
-        }
-        const auto i = s / (2 * around + 1);
-        const auto k = static_cast<int>(s % (2 * around + 1));
-        Eigen::Vector3d x = places.col(static_cast<Eigen::Index>(i));
-        if (k > 0) {
-          const TangentBasis basis = tangentBasis(x);
-          const double angle = kPi / 3.0 * k;
-          const double far = nearest[i] * (k <= around ? 0.5 : 0.25);
-          x = (x + far * (std::cos(angle) * basis.col(0) + std::sin(angle) * basis.col(1)))
-                  .normalized();
-        }
-        slopes[s] = field.slopeAt(x);
-      });
+  forEachItem(slopes.size(),
+              threadCount(threads, slopes.size() * static_cast<std::size_t>(n), kParallelThreshold),
+              [&](std::size_t, std::size_t s) {
+                if (s >= near_count) {
+                  slopes[s] = field.slopeAt(spread.col(static_cast<Eigen::Index>(s - near_count)));
+                  return;
+                }
+                const auto i = s / (2 * around + 1);
+                const auto k = static_cast<int>(s % (2 * around + 1));
+                Eigen::Vector3d x = places.col(static_cast<Eigen::Index>(i));
+                if (k > 0) {
+                  const TangentBasis basis = tangentBasis(x);
+                  const double angle = kPi / 3.0 * k;
+                  const double far = nearest[i] * (k <= around ? 0.5 : 0.25);
+                  x = (x + far * (std::cos(angle) * basis.col(0) + std::sin(angle) * basis.col(1)))
+                          .normalized();
+                }
+                slopes[s] = field.slopeAt(x);
+              });
   const auto steepest = std::max_element(slopes.begin(), slopes.end());
   const auto s = static_cast<std::size_t>(steepest - slopes.begin());
   return {*steepest, s < near_count ? s / (2 * around + 1) : static_cast<std::size_t>(n)};
@@ -541,7 +540,7 @@ private:
   /// One step of all vertices.
   void carry(const Field& field) {
     const auto vertices = static_cast<std::size_t>(warp_.sphere.cols());
-    forEachItem(vertices, threadCount(threads_, vertices * active_.size(), kShortPassThreshold),
+    forEachItem(vertices, threadCount(threads_, vertices * active_.size(), kParallelThreshold),
                 [&](std::size_t, std::size_t v) {
                   const auto i = static_cast<Eigen::Index>(v);
                   const Eigen::Vector3d x = warp_.sphere.col(i);
@@ -592,7 +591,7 @@ private:
 
 Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads) {
   const auto m = static_cast<std::size_t>(triangles.cols());
-  return sumOfBlocks(m, threadCount(threads, m, kShortPassThreshold), Index{0},
+  return sumOfBlocks(m, threadCount(threads, m, kParallelThreshold), Index{0},
                      [&](std::size_t begin, std::size_t end) {
                        Index count = 0;
                        for (std::size_t t = begin; t < end; ++t) {

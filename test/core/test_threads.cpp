@@ -45,7 +45,7 @@ struct Stage {
   bool reports = true;
 };
 
-/// More points than short passes leave to a single thread, and what stages need of them.
+/// More points than are left to a single thread, and what stages need of them.
 struct Inputs {
   Positions points = test::withNoise(test::ellipsoid(40000), 0.001, 1);
   NeighborLists lists = findNearestNeighbors(points, 8);  // so few that more are searched for

@@ -51,7 +51,7 @@ double EmbeddingLevels::pull(std::size_t l, const Positions& u) const {
 
 double EmbeddingLevels::smooth(std::size_t l, int sweeps, const FractionReport& report,
                                Positions& u) const {
-  const int threads = threadCount(threads_, graph(l).size(), kShortPassThreshold);
+  const int threads = threadCount(threads_, graph(l).size(), kParallelThreshold);
   Positions moved(3, u.cols());
   double residual = 0.0;
   for (int i = 0; i < sweeps; ++i) {
@@ -67,7 +67,7 @@ Positions EmbeddingLevels::interpolated(std::size_t l, const Positions& coarse) 
   const auto n = static_cast<std::size_t>(weights.rows());
   Positions u(3, weights.rows());
   forEachBlock(
-      n, threadCount(threads_, n, kShortPassThreshold),
+      n, threadCount(threads_, n, kParallelThreshold),
       [&](std::size_t, std::size_t begin, std::size_t end) {
         for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
           Eigen::Vector3d sum = Eigen::Vector3d::Zero();

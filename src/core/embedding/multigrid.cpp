@@ -90,7 +90,7 @@ void smoothBackward(const BlockMatrix& matrix, const std::vector<Eigen::Matrix2d
 
 void multiply(const BlockMatrix& matrix, const TangentVector& x, TangentVector& y, int threads) {
   y.resize(2 * static_cast<Eigen::Index>(matrix.size()));
-  forEachBlock(matrix.size(), threadCount(threads, matrix.size(), kShortPassThreshold),
+  forEachBlock(matrix.size(), threadCount(threads, matrix.size(), kParallelThreshold),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
                    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -125,7 +125,7 @@ void MultigridPreconditioner::compute(const BlockMatrix& matrix,
     const std::size_t n = level.matrix->size();
     level.inverse_diagonal.resize(n);
     forEachBlock(
-        n, threadCount(threads_, n, kShortPassThreshold),
+        n, threadCount(threads_, n, kParallelThreshold),
         [&](std::size_t, std::size_t begin, std::size_t end) {
           BlockMatrix& prolongation = level.prolongation;
           for (std::size_t i = begin; i < end; ++i) {
@@ -208,7 +208,7 @@ void MultigridPreconditioner::multiplyGalerkin(std::size_t l) {
   const BlockMatrix& product = level.product;
   BlockMatrix& galerkin = levels_[l + 1].galerkin;
   const std::size_t n = matrix.size();
-  const int threads = threadCount(threads_, n, kShortPassThreshold);
+  const int threads = threadCount(threads_, n, kParallelThreshold);
   if (product_.size() < product.columns.size())
     product_.resize(product.columns.size());
   places_.resize(std::max(places_.size(), static_cast<std::size_t>(threads)));
@@ -261,7 +261,7 @@ void MultigridPreconditioner::cycle(std::size_t l, const TangentVector& b, Tange
   }
   Level& next = levels_[l + 1];
   const std::size_t n = level.matrix->size();
-  const int threads = threadCount(threads_, n, kShortPassThreshold);
+  const int threads = threadCount(threads_, n, kParallelThreshold);
   smoothFromZero(*level.matrix, level.diagonal, level.inverse_diagonal, b, x, level.residual,
                  threads);
   const std::size_t coarse = next.matrix->size();

@@ -94,7 +94,7 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   SurfaceSums surface;
   // Each sum has one thread, which adds in the order of the triangles.
   const int threads = internal::threadCount(
-      requested_threads, static_cast<std::size_t>(triangles.cols()), internal::kShortPassThreshold);
+      requested_threads, static_cast<std::size_t>(triangles.cols()), internal::kParallelThreshold);
   internal::forEachTask(2, threads, [&](std::size_t part) {
     if (part == 0)
       solid = sumOverSolid(points, triangles, origin);

@@ -245,7 +245,7 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
                            int requested_threads) {
   internal::checkTriangles("checkTopology", triangles, static_cast<Eigen::Index>(vertex_count));
   const int threads =
-      internal::threadCount(requested_threads, vertex_count, internal::kShortPassThreshold);
+      internal::threadCount(requested_threads, vertex_count, internal::kParallelThreshold);
   const auto m = static_cast<Index>(triangles.cols());
 
   const CornerTable corners(triangles, vertex_count, threads);

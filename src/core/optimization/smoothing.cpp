@@ -74,7 +74,7 @@ class Filter {
 public:
   Filter(const Fans& fans, int requested_threads)
       : fans_(fans), threads_(internal::threadCount(requested_threads, fans.size(),
-                                                    internal::kShortPassThreshold)) {}
+                                                    internal::kParallelThreshold)) {}
 
   /// Moves each point by a fraction of its Laplacian, all at once; `scratch` is overwritten.
   void step(Positions& points, double fraction, Positions& scratch) const {

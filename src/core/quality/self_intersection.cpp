@@ -575,7 +575,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   if (subset.empty())
     return {};
   const int threads =
-      internal::threadCount(execution.threads, mesh.size(), internal::kShortPassThreshold);
+      internal::threadCount(execution.threads, mesh.size(), internal::kParallelThreshold);
   const FractionReport report = internal::reportOf(execution, "intersections");
   const Tree tree(mesh, subset, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);

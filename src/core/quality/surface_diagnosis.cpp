@@ -528,7 +528,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   const Graph& sparse = is_dense ? thin : graph;
   const MeshAndGraph surface(
       points, triangles, sparse,
-      internal::threadCount(threads, graph.size(), internal::kShortPassThreshold));
+      internal::threadCount(threads, graph.size(), internal::kParallelThreshold));
   const Differences differences = surface.differences();
   SurfaceDiagnosis result;
   result.edges_outside_graph = static_cast<double>(differences.outside_graph) /
