@@ -52,6 +52,23 @@ TEST(Concurrency, ReconstructionsTriangulationsAndMapsAgreeWithSingleOnes) {
   expectTheSameAlone([&](std::size_t) { return shared.evaluate(directions).positions; });
 }
 
+TEST(Concurrency, CallsOfSeveralThreadsEachAgreeWithThoseOfOne) {
+  const auto run = [](std::size_t i, int threads) {
+    Options options;
+    options.threads = threads;
+    // Enough points for several threads.
+    return test::surfaceOf(Eigen::Vector3d(1.0, 0.8, 0.5).asDiagonal() *
+                               test::spiralSphere(5000 + 500 * static_cast<Index>(i)),
+                           options);
+  };
+  const auto together = test::runTogether(2, [&](std::size_t i) { return run(i, 3); });
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    const Surface alone = run(i, 1);
+    EXPECT_EQ(together[i].triangles, alone.triangles) << i;
+    EXPECT_EQ(together[i].sphere, alone.sphere) << i;
+  }
+}
+
 TEST(Concurrency, EndingOneCallLeavesTheOthersAlone) {
   struct Fault {};
   // 0: done, 1: its own exception, 2: cancelled; negative: reported from another thread.

@@ -2,6 +2,7 @@
 
 import gc
 import io
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -33,6 +34,11 @@ try:
 except KeyboardInterrupt as error:
     print(*(frame.name for frame in traceback.extract_tb(error.__traceback__)), flush=True)
 """
+
+
+def work_on_several_threads(points):
+    triangles = sp.reconstruct(points, threads=2).triangles.tobytes()
+    return triangles, len(os.listdir("/proc/self/task"))
 
 
 def in_thread(work, *arguments):
@@ -75,19 +81,15 @@ class Threads(unittest.TestCase):
             worker.join()
         self.assertEqual(found, dict.fromkeys((0, 1, 2), found[1]))
 
-    def test_a_forked_process_works_on_after_its_parent_has_worked(self):
-        points = shapes.bumpy(500)
+    def test_forked_processes_work_on_after_their_parent_has_worked(self):
+        points = shapes.bumpy(5000)  # enough for several threads
         expected = sp.reconstruct(points, threads=2).triangles.tobytes()
-        child = os.fork()
-        if child == 0:
-            # OpenMP's threads are not those of the child, which would wait for them forever.
-            signal.alarm(60)
-            try:
-                same = sp.reconstruct(points, threads=2).triangles.tobytes() == expected
-                os._exit(0 if same else 1)
-            finally:
-                os._exit(2)
-        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            works = [pool.apply_async(work_on_several_threads, (points,)) for _ in range(4)]
+            for work in works:
+                triangles, threads = work.get(timeout=60)
+                self.assertEqual(triangles, expected)
+                self.assertGreater(threads, 1)
 
 
 class Progress(unittest.TestCase):

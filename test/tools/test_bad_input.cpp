@@ -259,7 +259,7 @@ TEST_F(BadInput, FilesWithoutRightsAreAFailure) {
 }
 
 TEST_F(BadInput, AFullDiskIsAFailureAndKeepsTheOldFile) {
-  // Room for what OpenMP writes for itself, but for no output; or for a mesh, but not for more.
+  // Room for no output; or for a mesh, but not for more.
   constexpr std::size_t small = 4000;
   constexpr std::size_t medium = 30000;
   const std::string full = "File too large";

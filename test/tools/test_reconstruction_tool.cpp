@@ -262,7 +262,7 @@ TEST_F(ReconstructionTool, SmoothingMovesThePointsAloneAndTellsHowFar) {
 
 // Sanitizers take address space and memory of their own.
 #ifndef SPHERICAL_PARAM_SANITIZED
-// A thread takes address space; OpenMP ends the process where one cannot be had.
+// Each thread takes address space.
 TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
   write("large.xyz", linesOf(ellipsoid(20000)));
   RunOptions options;

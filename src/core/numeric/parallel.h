@@ -13,7 +13,7 @@ namespace spherical_param::internal {
 /// threads.
 inline constexpr std::size_t kBlockSize = 512;
 /// Below this many items several threads cost more than they gain. Ten times as many for short
-/// passes gained nothing on 14 models, beside busy processes or alone.
+/// passes gained nothing on three models, beside busy processes or alone.
 inline constexpr std::size_t kParallelThreshold = 4096;
 
 /// Minimum number of items between reports: each parallel region waits for its slowest thread.

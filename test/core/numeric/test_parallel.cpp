@@ -2,11 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <mutex>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -87,6 +96,80 @@ TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
     EXPECT_EQ(done, 3 * kBlockSize);
   }
 }
+
+/// Threads that do the tasks of a loop, each of which waits for the others.
+std::size_t threadsUsed(std::size_t threads) {
+  std::mutex mutex;
+  std::condition_variable has_come;
+  std::set<std::thread::id> used;
+  forEachTask(threads, static_cast<int>(threads), [&](std::size_t) {
+    std::unique_lock lock(mutex);
+    used.insert(std::this_thread::get_id());
+    has_come.notify_all();
+    has_come.wait_for(lock, std::chrono::seconds(60), [&] { return used.size() == threads; });
+  });
+  return used.size();
+}
+
+std::size_t threadsOfProcess() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
+}
+
+TEST(Parallel, ThreadsAreStartedOnceAndEndWithTheirOwner) {
+  const std::size_t before = threadsOfProcess();
+  std::thread([before] {
+    const std::size_t own = before + 1;
+    EXPECT_EQ(threadsUsed(1), 1U);
+    EXPECT_EQ(threadsOfProcess(), own);
+    for (int round = 0; round < 3; ++round) {
+      EXPECT_EQ(threadsUsed(3), 3U);
+      EXPECT_EQ(threadsOfProcess(), own + 2);
+    }
+    EXPECT_EQ(threadsUsed(2), 2U);
+    EXPECT_EQ(threadsOfProcess(), own + 2);
+  }).join();
+  EXPECT_EQ(threadsOfProcess(), before);
+}
+
+TEST(Parallel, ALoopInATaskOfAnotherHasOneThread) {
+  std::atomic<std::size_t> done{0};
+  forEachTask(32, 3, [&](std::size_t) {
+    const std::thread::id thread = std::this_thread::get_id();
+    const std::size_t number = threadNumber();
+    EXPECT_LT(number, 3U);
+    forEachItem(3 * kBlockSize, 2, [&](std::size_t inner, std::size_t) {
+      EXPECT_EQ(inner, 0U);
+      EXPECT_EQ(std::this_thread::get_id(), thread);
+      ++done;
+    });
+    EXPECT_EQ(threadNumber(), number);
+  });
+  EXPECT_EQ(done, 32 * 3 * kBlockSize);
+}
+
+TEST(ParallelDeathTest, AForkedProcessStartsThreadsOfItsOwnAndEnds) {
+  EXPECT_EQ(threadsUsed(3), 3U);
+  // Test programs fork for this; both ends must come.
+  EXPECT_EXIT(std::_Exit(threadsUsed(3) == 3 ? 0 : 1), testing::ExitedWithCode(0), "");
+#ifndef SPHERICAL_PARAM_SANITIZED  // they look for leaks in a process without its threads
+  EXPECT_EXIT(std::exit(0), testing::ExitedWithCode(0), "");
+#endif
+}
+
+#ifndef SPHERICAL_PARAM_SANITIZED
+TEST(ParallelDeathTest, WhereThreadsCannotBeStartedFewerDoTheWork) {
+  // A hundred stacks need more address space.
+  const auto limited = [] {
+    const rlimit limit = {200U << 20U, 200U << 20U};
+    setrlimit(RLIMIT_AS, &limit);
+    std::atomic<std::size_t> done{0};
+    forEachTask(1000, 500, [&](std::size_t) { ++done; });
+    return done == 1000 && threadsOfProcess() < 100;
+  };
+  EXPECT_EXIT(std::_Exit(limited() ? 0 : 1), testing::ExitedWithCode(0), "");
+}
+#endif
 
 }  // namespace
 }  // namespace spherical_param::internal
