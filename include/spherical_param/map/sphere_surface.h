@@ -36,8 +36,8 @@ enum class SurfaceFit {
 /// Parameters of SphereSurface.
 struct SphereSurfaceOptions {
   SurfaceFit fit = SurfaceFit::Smooth;  ///< between the vertices
-  int threads = 0;      ///< 0: one for each processor; [0, 1024]
-  Positions caps = {};  ///< SphereMap::caps of a mesh with openings
+  int threads = 0;                      ///< 0: one for each processor; [0, 1024]
+  Positions caps = {};                  ///< SphereMap::caps of a mesh with openings
 };
 
 /// Many points of a surface.

@@ -17,6 +17,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -42,41 +43,6 @@ private:
   std::size_t outer_;
 };
 
-/// The tasks of a loop, taken one by one by the threads of a team.
-class Loop {
-public:
-  Loop(std::size_t count, const std::function<void(std::size_t)>& task)
-      : count_(count), task_(task) {}
-
-  /// Does tasks until there are no more.
-  void work(std::size_t number) noexcept {
-    const NumberInLoop number_in_loop(number);
-    does_task_of_team = true;
-    try {
-      for (std::size_t i = number == 0 ? 0 : next_++; i < count_; i = next_++)
-        task_(i);
-    } catch (...) {
-      next_ = count_;
-      if (!has_failed_.exchange(true))
-        error_ = std::current_exception();
-    }
-    does_task_of_team = false;
-  }
-
-  /// Rethrows the first exception of a task, after the end.
-  void rethrow() const {
-    if (error_)
-      std::rethrow_exception(error_);
-  }
-
-private:
-  std::size_t count_;
-  const std::function<void(std::size_t)>& task_;
-  std::atomic<std::size_t> next_{1};  ///< the first task is the calling thread's
-  std::atomic<bool> has_failed_{false};
-  std::exception_ptr error_;
-};
-
 /// Threads that sleep until the thread that owns them has a loop. The owner works, too, and waits
 /// only for tasks that have begun, not for threads that have not woken up: on a busy machine that
 /// can take longer than the loop.
@@ -98,41 +64,58 @@ public:
   /// False in a forked process, which has the memory of the team but not its threads.
   bool isOfThisProcess() const { return process_ == getpid(); }
 
-  /// Does all tasks of a loop, with so many threads beside the calling one, or as many as the
-  /// system grants.
-  void run(Loop& loop, std::size_t helpers) {
+  /// Does all tasks, with `helpers` threads beside the calling one, or as many as the system
+  /// grants.
+  void run(std::size_t count, std::size_t helpers, const std::function<void(std::size_t)>& task) {
     try {
       while (threads_.size() < helpers)
         threads_.emplace_back([this, number = threads_.size() + 1] { help(number); });
     } catch (const std::system_error&) {
     }
-    {
-      const std::lock_guard lock(mutex_);
-      loop_ = &loop;
-      helpers_ = helpers;
-      ++loop_count_;
-    }
-    has_changed_.notify_all();
-    loop.work(0);
     std::unique_lock lock(mutex_);
-    loop_ = nullptr;
+    count_ = count;
+    task_ = &task;
+    next_ = 1;  // the first is the caller's
+    helpers_ = helpers;
+    ++loop_;
+    lock.unlock();
+    has_changed_.notify_all();
+    work(0);
+    lock.lock();
+    helpers_ = 0;
     is_idle_.wait(lock, [this] { return working_ == 0; });
+    if (error_)
+      std::rethrow_exception(std::exchange(error_, nullptr));
   }
 
 private:
+  /// Does tasks until there are no more.
+  void work(std::size_t number) noexcept {
+    const NumberInLoop number_in_loop(number);
+    does_task_of_team = true;
+    try {
+      for (std::size_t i = number == 0 ? 0 : next_++; i < count_; i = next_++)
+        (*task_)(i);
+    } catch (...) {
+      next_ = count_;
+      const std::lock_guard lock(mutex_);
+      if (!error_)
+        error_ = std::current_exception();
+    }
+    does_task_of_team = false;
+  }
+
   void help(std::size_t number) {
     std::unique_lock lock(mutex_);
-    for (std::uint64_t last = 0;;) {
-      has_changed_.wait(lock, [&] {
-        return is_ending_ || (loop_ != nullptr && number <= helpers_ && loop_count_ != last);
-      });
+    for (std::uint64_t last_loop = 0;;) {
+      has_changed_.wait(lock,
+                        [&] { return is_ending_ || (number <= helpers_ && loop_ != last_loop); });
       if (is_ending_)
         return;
-      last = loop_count_;
+      last_loop = loop_;
       ++working_;
-      Loop& loop = *loop_;
       lock.unlock();
-      loop.work(number);
+      work(number);
       lock.lock();
       if (--working_ == 0)
         is_idle_.notify_one();
@@ -141,13 +124,16 @@ private:
 
   const pid_t process_ = getpid();
   std::vector<std::thread> threads_;
-  std::mutex mutex_;  ///< guards what follows
+  std::atomic<std::size_t> next_{0};  ///< task to begin
+  std::mutex mutex_;                  ///< guards what follows
   std::condition_variable has_changed_;
   std::condition_variable is_idle_;
-  Loop* loop_ = nullptr;
-  std::size_t helpers_ = 0;
-  std::uint64_t loop_count_ = 0;
-  std::size_t working_ = 0;  ///< threads, without the owner
+  std::size_t count_ = 0;  ///< like the task, the same as long as threads work
+  const std::function<void(std::size_t)>* task_ = nullptr;
+  std::exception_ptr error_;
+  std::uint64_t loop_ = 0;
+  std::size_t helpers_ = 0;  ///< that may join the loop
+  std::size_t working_ = 0;  ///< helpers that have joined it
   bool is_ending_ = false;
 };
 
@@ -204,9 +190,7 @@ void forEachTask(std::size_t count, int threads, const std::function<void(std::s
       task(i);
     return;
   }
-  Loop loop(count, task);
-  ownTeam().run(loop, std::min(count, static_cast<std::size_t>(threads)) - 1);
-  loop.rethrow();
+  ownTeam().run(count, std::min(count, static_cast<std::size_t>(threads)) - 1, task);
 }
 
 }  // namespace spherical_param::internal
