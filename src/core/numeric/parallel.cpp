@@ -145,13 +145,8 @@ struct EndTeam {
   }
 };
 
-/// The team of the calling thread, which ends with that thread.
-Team& ownTeam() {
-  thread_local std::unique_ptr<Team, EndTeam> team;
-  if (!team || !team->isOfThisProcess())
-    team.reset(std::make_unique<Team>().release());
-  return *team;
-}
+/// The team of this thread, which ends with it.
+thread_local std::unique_ptr<Team, EndTeam> own_team;
 
 }  // namespace
 
@@ -190,7 +185,9 @@ void forEachTask(std::size_t count, int threads, const std::function<void(std::s
       task(i);
     return;
   }
-  ownTeam().run(count, std::min(count, static_cast<std::size_t>(threads)) - 1, task);
+  if (!own_team || !own_team->isOfThisProcess())
+    own_team.reset(std::make_unique<Team>().release());
+  own_team->run(count, std::min(count, static_cast<std::size_t>(threads)) - 1, task);
 }
 
 }  // namespace spherical_param::internal
