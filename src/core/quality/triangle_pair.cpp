@@ -1,5 +1,7 @@
 #include "triangle_pair.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -7,110 +9,114 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// The axis along which a triangle is projected without losing its area; 3 if it has none.
-int projectionAxis(const std::array<Vector3d, 3>& t) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto flat = [&](const Vector3d& p) {
-      return Vector2d(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-    };
-    if (orientation2d(flat(t[0]), flat(t[1]), flat(t[2])) != 0)
-      return axis;
+/// A triangle, and its plane seen along an axis.
+class ExactTriangle {
+public:
+  explicit ExactTriangle(const std::array<Vector3d, 3>& corners) : corners_(corners) {
+    while (axis_ < 3 && (turn_ = turn(corners[0], corners[1], corners[2])) == 0)
+      ++axis_;
   }
-  return 3;
-}
 
-/// A triangle with area, and its plane seen along an axis.
-struct ExactTriangle {
-  std::array<Vector3d, 3> corners;
-  int axis;  ///< of projectionAxis(), below 3
-
-  Vector2d flat(const Vector3d& p) const { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+  bool hasArea() const { return turn_ != 0; }
   /// Sign of the side of the plane that p is on.
-  int side(const Vector3d& p) const { return orientation3d(corners[0], corners[1], corners[2], p); }
+  int side(const Vector3d& p) const {
+    return orientation3d(corners_[0], corners_[1], corners_[2], p);
+  }
   /// Sign of the side of the line from a to b that c is on; all in the plane.
   int turn(const Vector3d& a, const Vector3d& b, const Vector3d& c) const {
     return orientation2d(flat(a), flat(b), flat(c));
   }
-  /// Whether a point of the plane is in the closed triangle.
-  bool contains(const Vector3d& p) const {
-    const int first = turn(corners[0], corners[1], p);
-    const int second = turn(corners[1], corners[2], p);
-    const int third = turn(corners[2], corners[0], p);
-    return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
+  /// Whether a point, a segment or a triangle in the plane shares no point with this triangle: then
+  /// a line along a side of one of the two separates them.
+  template <std::size_t N>
+  bool isApart(const std::array<Vector3d, N>& hull) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (std::all_of(hull.begin(), hull.end(), [&](const Vector3d& p) {
+            return turn(corners_[i], corners_[(i + 1) % 3], p) == -turn_;
+          }))
+        return true;
+    for (std::size_t i = 0; N > 1 && i < 2 * N - 3; ++i) {
+      const auto side_of = [&](const Vector3d& p) { return turn(hull[i], hull[(i + 1) % N], p); };
+      const int first = side_of(corners_[0]);
+      if (first != 0 && first == side_of(corners_[1]) && first == side_of(corners_[2]) &&
+          (N == 2 || first != side_of(hull[(i + 2) % N])))
+        return true;
+    }
+    return false;
   }
+
+  const std::array<Vector3d, 3>& corners() const { return corners_; }
+
+private:
+  Vector2d flat(const Vector3d& p) const { return {p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]}; }
+
+  std::array<Vector3d, 3> corners_;
+  int axis_ = 0;  ///< along which the triangle has an area; 3 if it has none
+  int turn_ = 0;  ///< sign of that area
 };
 
-/// Whether two closed segments in the plane of a triangle, both longer than zero, have a point in
-/// common, besides an end of the first inside the triangle that the second is a side of.
-bool segmentsCross(const ExactTriangle& plane, const Vector3d& p, const Vector3d& q,
-                   const Vector3d& a, const Vector3d& b) {
-  const int a_side = plane.turn(p, q, a);
-  const int b_side = plane.turn(p, q, b);
-  const int p_side = plane.turn(a, b, p);
-  const int q_side = plane.turn(a, b, q);
-  // On one line they overlap only if an end of one is in the other: of the two ends of the first,
-  // contains() knows; if those of the second are in the first, so is a corner, and with it a point
-  // of another side, which is not on this line.
-  return a_side * b_side <= 0 && p_side * q_side <= 0 && (a_side != 0 || b_side != 0);
-}
+/// A corner of a triangle, and the sign of the side of another triangle's plane that it is on.
+struct SidedCorner {
+  Vector3d at;
+  int side;
+};
 
 /// Whether a closed segment and a closed triangle have a point in common.
-bool segmentMeets(const Vector3d& p, const Vector3d& q, const ExactTriangle& t) {
-  const int p_side = t.side(p);
-  const int q_side = t.side(q);
-  if (p_side * q_side > 0)
+bool segmentMeets(const SidedCorner& p, const SidedCorner& q, const ExactTriangle& t) {
+  if (p.side * q.side > 0)
     return false;
-  if ((p_side == 0 && t.contains(p)) || (q_side == 0 && t.contains(q)))
-    return true;
-  const auto& [a, b, c] = t.corners;
-  if (p_side == 0 && q_side == 0)
-    return segmentsCross(t, p, q, a, b) || segmentsCross(t, p, q, b, c) ||
-           segmentsCross(t, p, q, c, a);
-  if (p_side == 0 || q_side == 0)
-    return false;
-  const int first = orientation3d(p, q, a, b);
-  const int second = orientation3d(p, q, b, c);
-  const int third = orientation3d(p, q, c, a);
+  if (p.side == 0 && q.side == 0)
+    return !t.isApart(std::array{p.at, q.at});
+  if (p.side == 0 || q.side == 0)
+    return !t.isApart(std::array{p.side == 0 ? p.at : q.at});
+  const auto& [a, b, c] = t.corners();
+  const int first = orientation3d(p.at, q.at, a, b);
+  const int second = orientation3d(p.at, q.at, b, c);
+  const int third = orientation3d(p.at, q.at, c, a);
   return std::min({first, second, third}) >= 0 || std::max({first, second, third}) <= 0;
 }
 
 }  // namespace
 
 bool intersectExactly(const Face& face_a, const Face& face_b) {
-  ExactTriangle a{face_a.corners, projectionAxis(face_a.corners)};
-  ExactTriangle b{face_b.corners, projectionAxis(face_b.corners)};
-  if (a.axis == 3 || b.axis == 3)
-    return false;
+  std::array<Vector3d, 3> of_a = face_a.corners;
+  std::array<Vector3d, 3> of_b = face_b.corners;
   // Common corners to the front, in the same order.
   std::size_t common = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = common; j < 3; ++j)
-      if (a.corners[i] == b.corners[j]) {
-        std::swap(a.corners[i], a.corners[common]);
-        std::swap(b.corners[j], b.corners[common]);
+      if (of_a[i] == of_b[j]) {
+        std::swap(of_a[i], of_a[common]);
+        std::swap(of_b[j], of_b[common]);
         ++common;
         break;
       }
-  switch (common) {
-  case 0:
-    // Where two triangles meet, a side of one of them meets the other.
-    for (std::size_t i = 0; i < 3; ++i)
-      if (segmentMeets(a.corners[i], a.corners[(i + 1) % 3], b) ||
-          segmentMeets(b.corners[i], b.corners[(i + 1) % 3], a))
-        return true;
+  const ExactTriangle a(of_a);
+  const ExactTriangle b(of_b);
+  if (!a.hasArea() || !b.hasArea())
     return false;
-  case 1:
-    return segmentMeets(a.corners[1], a.corners[2], b) ||
-           segmentMeets(b.corners[1], b.corners[2], a);
-  case 2:
-    // The cheap question first: in a flat mesh, neighbours lie on different sides.
-    return a.turn(a.corners[0], a.corners[1], a.corners[2]) *
-                   a.turn(a.corners[0], a.corners[1], b.corners[2]) >
-               0 &&
-           a.side(b.corners[2]) == 0;
-  default:
+  if (common == 3)
     return true;
+  if (common == 2)  // The cheap question first: in a flat mesh, neighbours lie on different sides.
+    return a.turn(of_a[0], of_a[1], of_a[2]) * a.turn(of_a[0], of_a[1], of_b[2]) > 0 &&
+           a.side(of_b[2]) == 0;
+  std::array<int, 3> a_sides{};
+  std::array<int, 3> b_sides{};
+  for (std::size_t i = common; i < 3; ++i) {
+    a_sides[i] = b.side(of_a[i]);
+    b_sides[i] = a.side(of_b[i]);
   }
+  if (common == 0 && b_sides == std::array{0, 0, 0})
+    return !a.isApart(of_b);
+  // Where two triangles meet, a side of one of them meets the other: from a common corner, the
+  // opposite one.
+  for (std::size_t i = common; i < 3 - common; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    if (segmentMeets({of_a[i], a_sides[i]}, {of_a[next], a_sides[next]}, b) ||
+        segmentMeets({of_b[i], b_sides[i]}, {of_b[next], b_sides[next]}, a))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace spherical_param::internal
