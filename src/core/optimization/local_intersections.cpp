@@ -1,17 +1,23 @@
 #include "local_intersections.h"
 
 #include <limits>
+#include <utility>
 
 namespace spherical_param::internal {
 
-void LocalIntersections::begin(std::size_t triangles) {
+void LocalIntersections::begin(std::size_t triangles, std::vector<Face> faces) {
   for (const Face& face : faces_)
     places_[at(face.triangle)] = -1;
-  faces_.clear();
-  counts_.clear();
-  has_counts_ = false;
-  boxes_.clear();
   places_.resize(triangles, -1);
+  faces_ = std::move(faces);
+  counts_.assign(faces_.size(), kUnknown);
+  has_counts_ = false;
+  std::vector<BoxGroup> groups((faces_.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    places_[at(faces_[i].triangle)] = static_cast<Index>(i);
+    groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, FloatBox(boxOf(faces_[i].corners)));
+  }
+  boxes_ = BoxTree(std::move(groups), 1);
 }
 
 void LocalIntersections::set(const Face& face) {
@@ -22,11 +28,9 @@ void LocalIntersections::set(const Face& face) {
     place = static_cast<Index>(faces_.size());
     faces_.push_back(face);
     counts_.push_back(kUnknown);
-    if (boxes_.size() * kGroupSize < faces_.size())
-      boxes_.emplace_back();
   }
   faces_[at(place)] = face;
-  boxes_[at(place) / kGroupSize].set(at(place) % kGroupSize, WideBox(boxOf(face.corners)));
+  boxes_.set(at(place), FloatBox(boxOf(face.corners)));
   counts_[at(place)] = addToCounts(face, 1);
 }
 
@@ -36,13 +40,12 @@ void LocalIntersections::remove(Index triangle) {
   const std::size_t last = faces_.size() - 1;
   faces_[at(place)] = faces_[last];
   counts_[at(place)] = counts_[last];
-  boxes_[at(place) / kGroupSize].set(at(place) % kGroupSize,
-                                     boxes_[last / kGroupSize].at(last % kGroupSize));
+  boxes_.set(at(place), boxes_.at(last));
   places_[at(faces_[last].triangle)] = place;
   place = -1;
   faces_.pop_back();
   counts_.pop_back();
-  boxes_[last / kGroupSize].clear(last % kGroupSize);
+  boxes_.set(last, FloatBox());
 }
 
 int LocalIntersections::addToCounts(const Face& face, int change) {

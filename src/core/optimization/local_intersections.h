@@ -1,6 +1,6 @@
 #pragma once
 
-#include "box_group.h"
+#include "box_tree.h"
 #include "spherical_param/types.h"
 #include "triangle_pair.h"
 
@@ -12,10 +12,11 @@ namespace spherical_param::internal {
 /// A changing set of triangles of a mesh, for counts of intersections.
 class LocalIntersections {
 public:
-  /// Begins with an empty set. Memory in proportion to the mesh is allocated only here.
+  /// Begins with a set. Memory in proportion to the mesh is allocated only here.
   ///
   /// \param triangles number of triangles of the mesh.
-  void begin(std::size_t triangles);
+  /// \param faces     the set; faster if faces that follow each other are near.
+  void begin(std::size_t triangles, std::vector<Face> faces = {});
   /// Adds or changes a triangle.
   void set(const Face& face);
   void remove(Index triangle);
@@ -28,11 +29,10 @@ public:
   /// returns false.
   template <typename Work>
   void forEachIn(const Box& box, const Work& work) const {
-    const WideBox wide(box);
-    for (std::size_t group = 0; group < boxes_.size(); ++group)
-      for (const std::size_t lane : Overlaps(boxes_[group], wide))
-        if (!work(faces_[group * kGroupSize + lane]))
-          return;
+    bool is_done = false;
+    boxes_.forEachOverlapping(
+        FloatBox(box), 0, [&](const FloatBox&) { return is_done; },
+        [&](std::size_t place) { is_done = !work(faces_[place]); });
   }
   /// Number of others that intersect one of the triangles. From the first call on, it is kept up to
   /// date.
@@ -66,7 +66,7 @@ private:
   std::vector<Face> faces_;
   std::vector<int> counts_;  ///< of each of faces_, or kUnknown
   bool has_counts_ = false;
-  std::vector<BoxGroup> boxes_;
+  BoxTree boxes_;              ///< of each of faces_
   std::vector<Index> places_;  ///< of each triangle of the mesh in faces_, or -1
 };
 

@@ -29,10 +29,6 @@ struct Box {
   Vector3d upper;
 
   double size() const { return (upper - lower).maxCoeff(); }
-  bool overlaps(const Box& other) const {
-    return (lower.array() <= other.upper.array()).all() &&
-           (other.lower.array() <= upper.array()).all();
-  }
 };
 
 inline Box boxOf(const std::array<Vector3d, 3>& corners) {

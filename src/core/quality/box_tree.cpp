@@ -1,0 +1,47 @@
+#include "box_tree.h"
+
+#include "parallel.h"
+
+#include <utility>
+
+namespace spherical_param::internal {
+
+BoxTree::BoxTree(std::vector<BoxGroup> groups, int threads) {
+  if (groups.empty())
+    return;
+  levels_.push_back(std::move(groups));
+  while (levels_.back().size() > 1) {
+    const std::vector<BoxGroup>& below = levels_.back();
+    std::vector<BoxGroup> level((below.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
+    static_assert(kBlockSize % BoxGroup::kSize == 0, "a group is in one block");
+    forEachBlock(below.size(), below.size() >= kParallelThreshold ? threads : 1,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (std::size_t i = begin; i < end; ++i)
+                     level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
+                 });
+    levels_.push_back(std::move(level));
+  }
+}
+
+void BoxTree::set(std::size_t i, const FloatBox& box) {
+  if (levels_.empty())
+    levels_.emplace_back();
+  FloatBox changed = box;
+  for (std::size_t level = 0;; ++level) {
+    std::vector<BoxGroup>& groups = levels_[level];
+    const std::size_t group = i / BoxGroup::kSize;
+    if (group == groups.size())
+      groups.emplace_back();
+    groups[group].set(i % BoxGroup::kSize, changed);
+    if (groups.size() == 1)
+      return;
+    i = group;
+    changed = groups[group].all();
+    if (level + 1 == levels_.size()) {
+      const FloatBox first = groups[0].all();
+      levels_.emplace_back(1).front().set(0, first);
+    }
+  }
+}
+
+}  // namespace spherical_param::internal

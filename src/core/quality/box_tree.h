@@ -1,0 +1,150 @@
+#pragma once
+
+#include "triangle_pair.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A box rounded to floats: half the memory. Rounding keeps the order of numbers, so that boxes
+/// that overlap still do.
+struct FloatBox {
+  Eigen::Array3f lower;
+  Eigen::Array3f upper;
+
+  /// Overlaps nothing.
+  FloatBox()
+      : lower(Eigen::Array3f::Constant(std::numeric_limits<float>::infinity())), upper(-lower) {}
+  FloatBox(const Eigen::Array3f& low, const Eigen::Array3f& high) : lower(low), upper(high) {}
+  explicit FloatBox(const Box& box)
+      : lower(box.lower.cast<float>()), upper(box.upper.cast<float>()) {}
+};
+
+/// Eight boxes side by side, to compare a box with all of them at once. Unused ones overlap
+/// nothing.
+struct BoxGroup {
+  static constexpr unsigned kBits = 3;
+  static constexpr std::size_t kSize = 1U << kBits;
+  using Lanes = Eigen::Array<float, kSize, 3>;
+
+  Lanes lower = Lanes::Constant(std::numeric_limits<float>::infinity());
+  Lanes upper = -lower;
+
+  void set(std::size_t lane, const FloatBox& box) {
+    lower.row(static_cast<Eigen::Index>(lane)) = box.lower;
+    upper.row(static_cast<Eigen::Index>(lane)) = box.upper;
+  }
+  FloatBox at(std::size_t lane) const {
+    return {lower.row(static_cast<Eigen::Index>(lane)), upper.row(static_cast<Eigen::Index>(lane))};
+  }
+  /// The box of all.
+  FloatBox all() const { return {lower.colwise().minCoeff(), upper.colwise().maxCoeff()}; }
+  /// Calls visit(lane) for each box that overlaps one.
+  template <typename Visit>
+  void forEachOverlapping(const FloatBox& box, const Visit& visit) const {
+    const auto gap = [&](int k) {
+      return (lower.col(k) - box.upper[k]).max(box.lower[k] - upper.col(k));
+    };
+    const Eigen::Array<float, kSize, 1> gaps = gap(0).max(gap(1)).max(gap(2));
+    for (std::size_t lane = 0; lane < kSize; ++lane)
+      if (gaps[static_cast<Eigen::Index>(lane)] <= 0.0F)
+        visit(lane);
+  }
+};
+
+/// Boxes in a packed tree: box i of a level is that of the boxes 8 i ... 8 i + 7 of the level below
+/// (I. Kamel and C. Faloutsos, "On packing R-trees", 1993). Queries are fast if boxes that follow
+/// each other are near.
+class BoxTree {
+public:
+  /// Boxes of a block: block i has the boxes from kBlock i on.
+  static constexpr unsigned kBlockLevel = 3;
+  static constexpr std::size_t kBlock = std::size_t{1} << kBlockLevel * BoxGroup::kBits;
+
+  BoxTree() = default;
+  BoxTree(std::vector<BoxGroup> groups, int threads);
+
+  FloatBox at(std::size_t i) const {
+    return levels_[0][i / BoxGroup::kSize].at(i % BoxGroup::kSize);
+  }
+  /// Changes a box, or adds one: i is at most the number of boxes.
+  void set(std::size_t i, const FloatBox& box);
+
+  /// Calls visit(i) for each box that overlaps one.
+  ///
+  /// \param first the first box of interest.
+  /// \param skips whether boxes within a box are of no interest.
+  template <typename Skips, typename Visit>
+  void forEachOverlapping(const FloatBox& box, std::size_t first, const Skips& skips,
+                          const Visit& visit) const {
+    if (!levels_.empty())
+      descend({levels_.size() - 1, 0}, 0, box, first, skips,
+              [&](std::size_t i, const FloatBox&) { visit(i); });
+  }
+
+  /// Calls visit(i, j) for each pair of overlapping boxes, i < j, with i in a block.
+  template <typename Visit>
+  void forEachPair(std::size_t block, const Visit& visit) const {
+    const std::size_t top = levels_.size() - 1;
+    if (top < kBlockLevel)
+      return join(top, 0, 0, levels_[top][0].all(), visit);
+    descend(
+        {top, 0}, kBlockLevel, levels_[kBlockLevel - 1][block].all(), block * kBlock,
+        [](const FloatBox&) { return false; },
+        [&](std::size_t other, const FloatBox& box) {
+          join(kBlockLevel - 1, block, other, box, visit);
+        });
+  }
+
+private:
+  struct Node {
+    std::size_t level;
+    std::size_t group;
+  };
+
+  /// Calls visit(i, its box) for boxes of the level `last`.
+  template <typename Skips, typename Visit>
+  void descend(const Node& node, std::size_t last, const FloatBox& box, std::size_t first,
+               const Skips& skips, const Visit& visit) const {
+    const BoxGroup& boxes = levels_[node.level][node.group];
+    boxes.forEachOverlapping(box, [&](std::size_t lane) {
+      const std::size_t i = node.group * BoxGroup::kSize + lane;
+      const FloatBox found = boxes.at(lane);
+      if (i < first >> BoxGroup::kBits * node.level || skips(found))
+        return;
+      if (node.level == last)
+        visit(i, found);
+      else
+        descend({node.level - 1, i}, last, box, first, skips, visit);
+    });
+  }
+
+  /// Calls visit(i, j) for the pairs of boxes of two groups, a <= b.
+  ///
+  /// \param box of b.
+  template <typename Visit>
+  void join(std::size_t level, std::size_t a, std::size_t b, const FloatBox& box,
+            const Visit& visit) const {
+    const BoxGroup& boxes = levels_[level][a];
+    const BoxGroup& others = levels_[level][b];
+    boxes.forEachOverlapping(box, [&](std::size_t lane) {
+      const std::size_t i = a * BoxGroup::kSize + lane;
+      others.forEachOverlapping(boxes.at(lane), [&](std::size_t other_lane) {
+        const std::size_t j = b * BoxGroup::kSize + other_lane;
+        if (level > 0 && i <= j)
+          join(level - 1, i, j, others.at(other_lane), visit);
+        else if (i < j)
+          visit(i, j);
+      });
+    });
+  }
+
+  std::vector<std::vector<BoxGroup>> levels_;  ///< from all boxes to one group
+};
+
+}  // namespace spherical_param::internal

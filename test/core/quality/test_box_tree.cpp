@@ -1,0 +1,143 @@
+#include "box_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::test {
+namespace {
+
+using internal::BoxGroup;
+using internal::BoxTree;
+using internal::FloatBox;
+using PlacePairs = std::set<std::pair<std::size_t, std::size_t>>;
+
+bool overlap(const FloatBox& a, const FloatBox& b) {
+  return (a.lower <= b.upper).all() && (b.lower <= a.upper).all();
+}
+
+BoxTree treeOf(const std::vector<FloatBox>& boxes) {
+  std::vector<BoxGroup> groups((boxes.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, boxes[i]);
+  return {std::move(groups), 1};
+}
+
+/// Boxes on a grid, so that many touch; most are small, a few as large as all, a few are equal.
+std::vector<FloatBox> randomBoxes(std::size_t count, std::mt19937& random) {
+  std::uniform_int_distribution<int> coordinate(0, 60);
+  std::uniform_int_distribution<int> size(0, 6);
+  std::vector<FloatBox> boxes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Array3f low =
+        Eigen::Array3i(coordinate(random), coordinate(random), 0).cast<float>();
+    const float extent = static_cast<float>(i % 50 == 49 ? 60 : size(random));
+    boxes.emplace_back(low, low + extent);
+    if (i % 20 == 19)
+      boxes[i] = boxes[i / 2];
+  }
+  return boxes;
+}
+
+void expectOverlaps(const BoxTree& tree, const std::vector<FloatBox>& boxes) {
+  for (const std::size_t first : {std::size_t{0}, boxes.size() / 3})
+    for (std::size_t i = 0; i < boxes.size(); i += 7) {
+      std::vector<std::size_t> found;
+      tree.forEachOverlapping(
+          boxes[i], first, [](const FloatBox&) { return false; },
+          [&](std::size_t j) { found.push_back(j); });
+      std::vector<std::size_t> expected;
+      for (std::size_t j = first; j < boxes.size(); ++j)
+        if (overlap(boxes[i], boxes[j]))
+          expected.push_back(j);
+      ASSERT_EQ(found, expected) << i;
+    }
+}
+
+TEST(BoxTree, FindsTheBoxesAndPairsThatOverlap) {
+  std::mt19937 random(1);
+  for (const std::size_t count : {1U, 2U, 8U, 9U, 64U, 65U, 512U, 513U, 1200U}) {
+    SCOPED_TRACE(count);
+    const std::vector<FloatBox> boxes = randomBoxes(count, random);
+    const BoxTree tree = treeOf(boxes);
+    expectOverlaps(tree, boxes);
+    PlacePairs pairs;
+    for (std::size_t block = 0; block * BoxTree::kBlock < count; ++block)
+      tree.forEachPair(block, [&](std::size_t i, std::size_t j) {
+        EXPECT_EQ(i / BoxTree::kBlock, block);
+        EXPECT_TRUE(pairs.emplace(i, j).second);
+      });
+    PlacePairs expected;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i + 1; j < count; ++j)
+        if (overlap(boxes[i], boxes[j]))
+          expected.emplace(i, j);
+    EXPECT_EQ(pairs, expected);
+  }
+}
+
+TEST(BoxTree, GrowsAndChanges) {
+  std::mt19937 random(2);
+  const std::vector<FloatBox> before = randomBoxes(600, random);
+  const std::vector<FloatBox> after = randomBoxes(600, random);
+  BoxTree tree;
+  expectOverlaps(tree, {});
+  std::vector<FloatBox> boxes;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    boxes.push_back(before[i]);
+    tree.set(i, before[i]);
+    if (i % 5 == 4) {
+      boxes[i / 2] = i % 2 == 0 ? after[i] : FloatBox();
+      tree.set(i / 2, boxes[i / 2]);
+    }
+    if (i < 10 || i % 60 == 4)
+      expectOverlaps(tree, boxes);
+  }
+}
+
+// What a query costs depends on what it finds, not on the number of boxes: flat, long, and doubled
+// ones as well.
+TEST(BoxTree, LooksAtFewBoxesBeyondThoseFound) {
+  constexpr std::size_t side = 64;
+  std::vector<FloatBox> boxes;
+  for (std::size_t i = 0; i < 2 * side * side; ++i) {
+    // Along a space-filling curve over a plane, each place twice.
+    Eigen::Array3f low = Eigen::Array3f::Zero();
+    for (unsigned bit = 0; bit < 6; ++bit) {
+      low.x() += static_cast<float>((i / 2 >> 2 * bit & 1U) << bit);
+      low.y() += static_cast<float>((i / 2 >> (2 * bit + 1) & 1U) << bit);
+    }
+    boxes.emplace_back(low, low + Eigen::Array3f(0.9F, 0.9F, 0.0F));
+  }
+  const BoxTree tree = treeOf(boxes);
+  std::size_t looks = 0;
+  std::size_t found = 0;
+  const auto ask = [&](const FloatBox& box, const auto& skips) {
+    tree.forEachOverlapping(
+        box, 0,
+        [&](const FloatBox& within) {
+          ++looks;
+          return skips(within);
+        },
+        [&](std::size_t) { ++found; });
+  };
+  for (const FloatBox& box : boxes)
+    ask(box, [](const FloatBox&) { return false; });
+  EXPECT_EQ(found, 2 * boxes.size());
+  EXPECT_LT(looks, 10 * boxes.size());
+  // One as large as all, of which only a diagonal is of interest.
+  looks = found = 0;
+  ask({Eigen::Array3f::Zero(), Eigen::Array3f::Constant(64.0F)}, [](const FloatBox& box) {
+    return box.upper.x() < box.lower.y() || box.upper.y() < box.lower.x();
+  });
+  EXPECT_EQ(found, 2 * side);
+  EXPECT_LT(looks, 12 * found);
+}
+
+}  // namespace
+}  // namespace spherical_param::test
