@@ -1,12 +1,14 @@
 #include "open_mesh.h"
 
+#include "local_intersections.h"
+#include "power_of_two.h"
 #include "sphere_mesh.h"
-#include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -26,8 +28,8 @@ class Opener {
 public:
   Opener(const Positions& points, const Triangles& triangles, const OpenPlaces& openings)
       : points_(points), openings_(openings),
-        mesh_(triangles, static_cast<std::size_t>(points.cols())),
-        is_open_(entry(mesh_.size()), 0) {
+        mesh_(triangles, static_cast<std::size_t>(points.cols())), is_open_(entry(mesh_.size()), 0),
+        scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
     for (Index t = 0; t < mesh_.size(); ++t)
       is_open_[entry(t)] =
           openings.isOpen(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)) ? 1 : 0;
@@ -55,8 +57,6 @@ public:
   }
 
 private:
-  using Box = Eigen::AlignedBox3d;
-
   bool isOpen(Index t) const { return is_open_[entry(t)] != 0; }
 
   double length(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
@@ -129,10 +129,9 @@ private:
               {length(v, mesh_.vertex(t, (k + 1) % 3)) + length(v, mesh_.vertex(t, (k + 2) % 3)), t,
                k});
     keepNearest(edges);
-    const std::vector<Index> near = surfaceIn(boxOf(v, edges));
-    std::size_t least = 0;
+    int least = 0;
     const auto edge = leastCrossing(
-        edges, [&](const Place& place) { return crossingsAt(v, place, near); }, least);
+        edges, [&](const Place& place, int most) { return crossingsAt(v, place, most); }, least);
     if (edge == edges.end()) {
       close(smallestAt(v));
       return;
@@ -158,9 +157,8 @@ private:
                               length(v, mesh_.vertex(t, 2)),
                           t, -1});
     keepNearest(covers);
-    const std::vector<Index> near = surfaceIn(boxOf(v, covers));
     const auto cover = std::find_if(covers.begin(), covers.end(), [&](const Place& place) {
-      return crossingsAt(v, place, near) == 0;
+      return crossingsAt(v, place, 0) == 0;
     });
     return cover == covers.end() ? std::nullopt : std::optional(cover->triangle);
   }
@@ -175,28 +173,14 @@ private:
     places.erase(end, places.end());
   }
 
-  /// Of a vertex and some places for it.
-  Box boxOf(Index v, const std::vector<Place>& places) const {
-    Box box(points_.col(v));
-    for (const Place& place : places)
-      for (int k = 0; k < 3; ++k)
-        if (k != place.corner)
-          box.extend(points_.col(mesh_.vertex(place.triangle, k)));
-    return box;
-  }
-
-  /// Number of triangles among some that those of a vertex would intersect at a place.
-  std::size_t crossingsAt(Index v, const Place& place, const std::vector<Index>& among) {
+  /// Number of triangles of the surface that those of a vertex would intersect at a place; counting
+  /// may stop beyond `most`.
+  int crossingsAt(Index v, const Place& place, int most) {
     const auto corner = [&](int k) { return mesh_.vertex(place.triangle, k % 3); };
     const auto with_side = [&](int k) {
-      return crossings({corner(k + 1), corner(k + 2), v}, among);
+      return crossings({corner(k + 1), corner(k + 2), v}, place.triangle, most);
     };
-    if (place.corner >= 0)
-      return with_side(place.corner);
-    open(place.triangle);
-    const std::size_t count = with_side(0) + with_side(1) + with_side(2);
-    close(place.triangle);
-    return count;
+    return place.corner >= 0 ? with_side(place.corner) : with_side(0) + with_side(1) + with_side(2);
   }
 
   /// Takes a vertex out of the mesh, if its triangles are open.
@@ -247,16 +231,11 @@ private:
                      [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
     for (Run& gap : gaps)
       gap = trimmed(v, std::move(gap));
-    Box box(points_.col(v));
-    for (const Run& gap : gaps)
-      for (const Index t : gap)
-        box.extend(boxOf(t));
-    const std::vector<Index> near = surfaceIn(box);
-    std::size_t least = 0;
-    const auto count_crossings = [&](const Run& run) {
-      std::size_t count = 0;
+    int least = 0;
+    const auto count_crossings = [&](const Run& run, int most) {
+      int count = 0;
       for (const Index t : run)
-        count += crossings({mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)}, near);
+        count += crossings(cornersOf(t), t, most - count);
       return count;
     };
     const auto gap = leastCrossing(gaps, count_crossings, least);
@@ -271,58 +250,50 @@ private:
 
   /// The first of the candidates that crosses nothing, or the one that crosses least.
   ///
+  /// \param crossings (candidate, most): the number; counting may stop beyond `most`.
   /// \param least what it crosses.
   template <typename Candidates, typename Crossings>
-  static typename Candidates::iterator
-  leastCrossing(Candidates& candidates, const Crossings& crossings, std::size_t& least) {
+  static typename Candidates::iterator leastCrossing(Candidates& candidates,
+                                                     const Crossings& crossings, int& least) {
     auto best = candidates.end();
-    least = 0;
-    for (auto candidate = candidates.begin(); candidate != candidates.end(); ++candidate) {
-      const std::size_t count = crossings(*candidate);
-      if (best != candidates.end() && count >= least)
-        continue;
-      best = candidate;
-      least = count;
-      if (least == 0)
-        break;
+    least = std::numeric_limits<int>::max();
+    for (auto candidate = candidates.begin(); candidate != candidates.end() && least > 0;
+         ++candidate) {
+      const int count = crossings(*candidate, least - 1);
+      if (count < least) {
+        best = candidate;
+        least = count;
+      }
     }
     return best;
   }
 
-  Box boxOf(Index t) const {
-    Box box(points_.col(mesh_.vertex(t, 0)));
-    box.extend(points_.col(mesh_.vertex(t, 1)));
-    return box.extend(points_.col(mesh_.vertex(t, 2)));
+  std::array<Index, 3> cornersOf(Index t) const {
+    return {mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)};
   }
 
-  /// The triangles of the surface whose boxes overlap one.
-  std::vector<Index> surfaceIn(const Box& box) const {
-    std::vector<Index> triangles;
+  /// Number of triangles of the surface, but for `without`, that one that is not on it would
+  /// intersect; counting may stop beyond `most`.
+  int crossings(const std::array<Index, 3>& corners, Index without, int most) {
+    if (!has_surface_)
+      gatherSurface();
+    return surface_.count(face(-1, corners), without, most);
+  }
+
+  void gatherSurface() {
+    has_surface_ = true;
+    std::vector<Face> faces;
     for (Index t = 0; t < mesh_.size(); ++t)
-      if (!isOpen(t) && boxOf(t).intersects(box))
-        triangles.push_back(t);
-    return triangles;
+      if (!isOpen(t))
+        faces.push_back(face(t, cornersOf(t)));
+    surface_.begin(is_open_.size(), std::move(faces));
   }
 
-  /// Number of triangles among some, those of the surface, that a triangle would intersect.
-  std::size_t crossings(const std::array<Index, 3>& corners,
-                        const std::vector<Index>& among) const {
-    Box box;
-    for (const Index v : corners)
-      box.extend(points_.col(v));
-    std::vector<Index> near(corners.begin(), corners.end());
-    for (const Index t : among)
-      if (!isOpen(t) && boxOf(t).intersects(box))
-        for (int k = 0; k < 3; ++k)
-          near.push_back(mesh_.vertex(t, k));
-    std::vector<Index> vertices = near;
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    Triangles part(3, static_cast<Eigen::Index>(near.size() / 3));
-    for (std::size_t i = 0; i < near.size(); ++i)
-      part(static_cast<Eigen::Index>(i)) = static_cast<Index>(
-          std::lower_bound(vertices.begin(), vertices.end(), near[i]) - vertices.begin());
-    return findSelfIntersectionsOf(points_(Eigen::all, vertices), part, {0}).size();
+  Face face(Index t, const std::array<Index, 3>& corners) const {
+    const std::array<Vector3d, 3> at{scale_ * points_.col(corners[0]),
+                                     scale_ * points_.col(corners[1]),
+                                     scale_ * points_.col(corners[2])};
+    return {at, boxOf(at).size(), corners, t};
   }
 
   /// Distance of the first and the last neighbour of a run.
@@ -351,13 +322,24 @@ private:
     return run;
   }
 
-  void open(Index t) { is_open_[entry(t)] = 1; }
-  void close(Index t) { is_open_[entry(t)] = 0; }
+  void open(Index t) {
+    is_open_[entry(t)] = 1;
+    if (has_surface_ && surface_.contains(t))
+      surface_.remove(t);
+  }
+  void close(Index t) {
+    is_open_[entry(t)] = 0;
+    if (has_surface_)
+      surface_.set(face(t, cornersOf(t)));
+  }
 
   const Positions& points_;
   const OpenPlaces& openings_;
   SphereMesh mesh_;
   std::vector<std::uint8_t> is_open_;
+  double scale_;  ///< brings the coordinates to at most 1
+  bool has_surface_ = false;
+  LocalIntersections surface_;  ///< its triangles, from the first question on
 };
 
 }  // namespace
