@@ -101,7 +101,8 @@ TEST_F(EveryTool, HelpListsEveryOptionAndHelpAndVersionSucceed) {
 TEST_F(EveryTool, ReportIsAloneOnStandardOutputAndHasEveryOption) {
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    const json report = reportOf(tool.program, with(tool.arguments, {"-seed", "7", "-starts", "9"}));
+    const json report =
+        reportOf(tool.program, with(tool.arguments, {"-seed", "7", "-starts", "9"}));
     ASSERT_TRUE(report.is_object());
     EXPECT_EQ(report["options"]["seed"], 7);
     EXPECT_EQ(report["options"]["starts"], 9);

@@ -111,8 +111,8 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"boolean",
        "/usable /closed /manifold /oriented /is_noisy /is_out_of_time /embedding/converged "
        "/embedding/fallback_start /diagnosis/looks_closed_genus0"},
-      {"string",
-       "/input /output /version /stages/0/name /embedding/stop_reason /embedding/barrier /verdict /diagnosis/kind"},
+      {"string", "/input /output /version /stages/0/name /embedding/stop_reason /embedding/barrier "
+                 "/verdict /diagnosis/kind"},
       {"array",
        "/stages /findings /self_intersecting_pairs /embedding/residuals /embedding/levels "
        "/diagnosis/handles /diagnosis/bridges /outliers /openings /boundary /left_out/not_finite "
@@ -192,8 +192,7 @@ TEST_F(ReconstructionTool, OptionsReachTheLibraryAndThoseWithoutEffectAreNull) {
   expectEntries(paper["options"], R"({"max_iterations": 3, "weights": "inverse", "k": 25,
                                       "starts": null, "tolerance": null, "surface": null})"_json);
   const json standard = reportOf({"in.ply", "out.ply", "-starts", "5"});
-  expectEntries(standard["options"],
-                {{"starts", 5}, {"max_iterations", nullptr}, {"k", nullptr}});
+  expectEntries(standard["options"], {{"starts", 5}, {"max_iterations", nullptr}, {"k", nullptr}});
   EXPECT_LT(standard["embedding"]["levels"][0]["edges"], 200 * 4);
 }
 
@@ -267,8 +266,7 @@ TEST_F(ReconstructionTool, AbsurdNumbersOfThreadsAreNotStarted) {
   write("large.xyz", linesOf(ellipsoid(20000)));
   RunOptions options;
   options.address_space_limit = std::size_t{3} << 30U;
-  const RunResult result =
-      tool({"large.xyz", "out.ply", "-threads", "1024"}, options);
+  const RunResult result = tool({"large.xyz", "out.ply", "-threads", "1024"}, options);
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_TRUE(exists("out.ply"));
 }
@@ -345,9 +343,9 @@ TEST_F(ReconstructionTool, ATerminalShowsABarOfWhatTakesLong) {
   RunOptions options;
   options.terminal = true;
   // Some seconds of work on any machine.
-  const RunResult result = tool({"in.ply", "out.ply", "-method", "paper", "-tolerance", "0",
-                                 "-max-iterations", "100000"},
-                                options);
+  const RunResult result = tool(
+      {"in.ply", "out.ply", "-method", "paper", "-tolerance", "0", "-max-iterations", "100000"},
+      options);
   EXPECT_NE(result.output.find("\r  embedding           ["), std::string::npos);
   // It does not stay.
   EXPECT_NE(result.output.find("\r\033[Kread"), std::string::npos);
