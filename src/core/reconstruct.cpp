@@ -6,7 +6,6 @@
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
-#include "open_mesh.h"
 #include "open_surface.h"
 #include "paper_method.h"
 #include "point_set.h"
@@ -123,9 +122,9 @@ MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, const Op
   if (is_smoothed && execution.time_limit)
     *execution.time_limit /= 2.0;
   clock.begin("optimization");
-  mesh.optimization = internal::optimizeMesh(
-      points, triangles, mesh.graph.graph, openings.places(),
-      OptimizationOptions{OptimizationMethod::Full, !is_smoothed}, options.seed, execution);
+  mesh.optimization =
+      optimizeMesh(points, triangles, mesh.graph.graph,
+                   OptimizationOptions{openings.places(), !is_smoothed, options.seed}, execution);
   return mesh;
 }
 

@@ -84,12 +84,10 @@ Numbers numbersOf(const MeshTopology& topology) {
 }
 
 Numbers numbersOf(const MeshOptimization& optimization) {
-  const OptimizationReport& report = optimization.report;
-  Numbers numbers(optimization.triangles, optimization.self_intersections, report.energy,
-                  report.rough, report.alignment, report.unevenness, report.noise_steps,
-                  report.smoothed_self_intersections);
-  for (const OptimizationPhase& phase : report.phases)
-    numbers.add(Numbers(phase.name, phase.tried, phase.moves, phase.energy_before, phase.energy));
+  Numbers numbers(optimization.triangles, optimization.self_intersections,
+                  optimization.report.noise_steps);
+  for (const OptimizationPhase& phase : optimization.report.phases)
+    numbers.add(Numbers(phase.name, phase.tried, phase.moves));
   return numbers;
 }
 
@@ -132,7 +130,7 @@ void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
   for (const test::Case& of :
        {test::noisySphere(2100, 0.3, 15), test::scrambledEllipsoid(2100, 0.6, 2500, 15)})
     stages.push_back({"optimization", [of](const Execution& e) {
-                        return numbersOf(optimizeMesh(of.points, of.triangles, of.graph, {}, 1, e));
+                        return numbersOf(optimizeMesh(of.points, of.triangles, of.graph, {}, e));
                       }});
   stages.push_back({"self-intersections", [&in](const Execution& e) {
                       return Numbers(

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "mesh_optimization.h"
 #include "open_places.h"
 #include "sphere_mesh.h"
 #include "spherical_param/types.h"
@@ -9,15 +8,6 @@
 #include <vector>
 
 namespace spherical_param::internal {
-
-/// optimizeMesh() of a surface with openings: open triangles do not bend and do not intersect. At
-/// the end, open triangles not connected to a loop become surface.
-///
-/// \param openings nullptr: the surface is closed.
-MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
-                              const Graph& graph, const OpenPlaces* openings,
-                              const OptimizationOptions& options, std::uint32_t seed,
-                              const Execution& execution);
 
 /// Open triangles that others do not connect to a loop: they are part of the surface.
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings);

@@ -16,26 +16,24 @@ namespace spherical_param::internal::optimization_constants {
 
 /// mu of equation (1), and that of the two kinds of polish. With 0.8 from the start the models'
 /// true edges fall to 0.9362, and 0 self-intersections of two random samples and raw scans become
-/// 2. With 0.3 in the polish true edges fall to 0.9352; with 0.8 instead of 4 in the polish of even
-/// samplings, those of the fandisk from 0.9605 to 0.9595. Without a polish they are 0.9347.
+/// 2. With 0.3 in the polish true edges fall to 0.9352; with 0.8 instead of 4 in even samplings,
+/// those of the fandisk from 0.9605 to 0.9595. Without a polish they are 0.9347.
 constexpr double kMu = 0.3;
 constexpr double kPolishMu = 0.8;
-constexpr double kEvenPolishMu = 4.0;
+constexpr double kEvenMu = 4.0;
 
-/// Up to this alignment and unevenness the sampling is even, and angles count only beyond typical
-/// angles. Simplified and designed models have an alignment of 0.19 to 0.63, scans and even or
+/// Up to this alignment and unevenness the sampling is even, and angles count only beyond the free
+/// angle. Simplified and designed models have an alignment of 0.19 to 0.63, scans and even or
 /// random samplings -0.01 to 0.13; scans and even samplings have an unevenness of 0.03 to 0.22,
-/// random samplings 0.33 to 0.39. All samplings taken as uneven: true edges of the fandisk fall
-/// from 0.9605 to 0.9560, of the bunny from 0.9994 to 0.9990. Without the first bound the models'
-/// fall to 0.9269; without the second the energy of random samples rises by 1 to 8 %.
+/// random samplings 0.33 to 0.39. With all samplings taken as uneven, the RMS of the 14 models
+/// rises by 15 % in the mean (fandisk by 290 %); with all taken as even, by 29 %.
 constexpr double kMaxUnalignedSampling = 0.16;
 constexpr double kMaxEvenSampling = 0.3;
-/// In an even sampling, angles up to this factor times the median around a vertex are typical, and
-/// all up to the minimum [rad], 10 degrees. With a factor of 3 or 8 the elephant as a raw scan
-/// has 3 % more self-intersections; 0 and 20 degrees change 2 and 3 models, without
-/// self-intersections before and after.
-constexpr double kTypicalAngleFactor = 5.0;
-constexpr double kMinTypicalAngle = 0.17453292519943295;
+/// Angles up to this one cost nothing in an even sampling [rad], 10 degrees, and its cosine. 0 and
+/// 20 degrees change 2 and 3 models, without self-intersections before and after. With 5 times the
+/// median angle around a vertex, where that is more, the models' RMS is 2 % higher.
+constexpr double kFreeAngle = 0.17453292519943295;
+constexpr double kCosineOfFreeAngle = 0.984807753012208;
 
 // --- Openings ------------------------------------------------------------------------------------
 
@@ -99,7 +97,7 @@ constexpr double kMaxFewIntersections = 1500.0;
 
 /// With 2 rounds the cheburashka keeps 7 intersections; with none the energy of the models is 0.1 %
 /// higher, and two noisy clouds keep 5 and 19.
-constexpr int kMaxRecreateRounds = 5;
+constexpr int kMaxUnfoldingRounds = 5;
 /// Vertices of a part around a folded edge, from the first size to the last, doubled. From 8 on the
 /// cheburashka keeps 9 intersections, up to 16 the noisy sphere 9.
 constexpr std::size_t kMinRuin = 4;

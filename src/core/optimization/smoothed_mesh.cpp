@@ -1,6 +1,6 @@
 #include "smoothed_mesh.h"
 
-#include "open_mesh.h"
+#include "mesh_intersections.h"
 #include "spherical_param/self_intersection.h"
 #include "time_left.h"
 
@@ -14,15 +14,13 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
   const TimeLeft time_left(execution.time_limit);
   Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
-  OptimizationOptions none;
-  none.method = OptimizationMethod::None;
-  auto pairs = optimizeMesh(result.points, triangles, graph, openings, none, seed, execution)
-                   .self_intersections;
+  auto pairs =
+      findIntersections(EnergyMesh(result.points, triangles, graph, execution.threads, openings));
   if (!pairs.empty() && optimizes) {
     Execution rest = execution;
     rest.time_limit = time_left();
     MeshOptimization outcome =
-        optimizeMesh(result.points, triangles, graph, openings, {}, seed, rest);
+        optimizeMesh(result.points, triangles, graph, {openings, true, seed}, rest);
     result.triangles = std::move(outcome.triangles);
     pairs = std::move(outcome.self_intersections);
     result.is_out_of_time = outcome.report.is_out_of_time;

@@ -46,6 +46,7 @@ struct RawFacet {
       radius = std::min(std::sqrt(ab2 * ac2 * bc2) / (2.0 * twice_area), radius);
   }
 
+  bool isOpen() const { return radius < 0.0; }
   /// Makes it an open triangle.
   void open() { radius *= -optimization_constants::kOpenTriangle; }
 
@@ -81,31 +82,13 @@ struct SurfaceEnergy {
   enum class Bend {
     Angle,   ///< the angle: together, the total absolute mean curvature
     Power,   ///< angle^1.5
-    Excess,  ///< the excess over the mean of the typical angles at its two vertices
+    Excess,  ///< the excess over kFreeAngle
   };
 
   Bend bend = Bend::Angle;
-  double mu = 0.3;
-  /// Of Bend::Excess: n entries, the typical angle at each vertex; must outlive this.
-  const double* typical_angle = nullptr;
-
+  double mu = optimization_constants::kMu;
   /// The openings of the surface, if any; must outlive this.
   const OpenPlaces* openings = nullptr;
-
-  /// Of Bend::Excess: edges whose normals have at least this cosine cost nothing. From flatFrom(),
-  /// or above 1.
-  double flat_cosine = 2.0;
-
-  /// The flat_cosine for typical angles of at least `least` [rad].
-  static double flatFrom(double least) {
-    // acos falls at least as fast as its argument rises; the margin is that of fastAcos() and more.
-    return std::cos(least) + 1e-6;
-  }
-
-  bool operator==(const SurfaceEnergy& other) const {
-    return bend == other.bend && mu == other.mu && typical_angle == other.typical_angle &&
-           openings == other.openings;
-  }
 
   /// Cost of a triangle.
   double cost(double radius) const { return mu * std::abs(radius); }
@@ -116,7 +99,7 @@ struct SurfaceEnergy {
     if (facet.isOpen() || other.isOpen())
       return openEdge(v, w, p, q, facet.isOpen() && other.isOpen());
     const double cosine = facet.normal.dot(other.normal);
-    if (cosine >= flat_cosine)
+    if (bend == Bend::Excess && cosine >= optimization_constants::kCosineOfFreeAngle)
       return 0.0;
     const double length = (p - q).norm();
     const double angle = fastAcos(cosine);
@@ -128,7 +111,7 @@ struct SurfaceEnergy {
     case Bend::Excess:
       break;
     }
-    return length * std::max(0.0, angle - (typical_angle[v] + typical_angle[w]) / 2.0);
+    return length * std::max(0.0, angle - optimization_constants::kFreeAngle);
   }
 
 private:

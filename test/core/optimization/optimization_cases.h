@@ -1,6 +1,7 @@
 #pragma once
 
 #include "embedding_starts.h"
+#include "energy_mesh.h"
 #include "graph.h"
 #include "graphs.h"
 #include "helpers.h"
@@ -71,9 +72,31 @@ inline Case noisySphere(Index n, double noise, std::uint64_t seed) {
   return {points, hull, graphOfMesh(points, hull)};
 }
 
+/// Clouds on which all moves have something to do.
+inline std::vector<Case> roughCases() {
+  return {scrambledEllipsoid(300, 0.3, 400, 1), noisySphere(300, 0.5, 2),
+          radialStart(withNoise(bentTube(12.0, 2.5, 10).points, 0.02, 3))};
+}
+
+/// The mesh of a sphere on other points, in a cube: nearly all of its triangles intersect others.
+inline Case tangle(Index n) {
+  Case of = ellipsoid(n, 1.0, 1.0);
+  of.points = randomCube(n, 31);
+  return of;
+}
+
+inline internal::EnergyMesh meshOf(const Case& of, Bend bend = Bend::Angle, double mu = 0.3) {
+  internal::EnergyMesh mesh(of.points, of.triangles, of.graph, 1);
+  internal::SurfaceEnergy energy;
+  energy.bend = bend;
+  energy.mu = mu;
+  mesh.setEnergy(energy);
+  return mesh;
+}
+
 /// Equation (1) of optimizeMesh(), or its variants.
 inline double energyOf(const Positions& points, const Triangles& triangles, Bend bend = Bend::Angle,
-                       double mu = 0.3, const std::vector<double>& usual = {}) {
+                       double mu = 0.3) {
   std::map<std::pair<Index, Index>, Eigen::Vector3d> normal_left_of;
   double sum = 0.0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
@@ -99,9 +122,7 @@ inline double energyOf(const Positions& points, const Triangles& triangles, Bend
     else if (bend == Bend::Power)
       sum += length * std::pow(angle, 1.5);
     else
-      sum += length * std::max(0.0, angle - (usual[static_cast<std::size_t>(v)] +
-                                             usual[static_cast<std::size_t>(w)]) /
-                                                2.0);
+      sum += length * std::max(0.0, angle - kPi / 18.0);
   }
   return sum;
 }

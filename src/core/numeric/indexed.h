@@ -1,0 +1,42 @@
+#pragma once
+
+#include "spherical_param/types.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A vector with an entry for each vertex or triangle, which Index numbers.
+template <typename T>
+class Indexed : public std::vector<T> {
+public:
+  using std::vector<T>::vector;
+
+  T& operator[](Index i) { return std::vector<T>::operator[](static_cast<std::size_t>(i)); }
+  const T& operator[](Index i) const {
+    return std::vector<T>::operator[](static_cast<std::size_t>(i));
+  }
+};
+
+/// A set of vertices or triangles that is cleared in constant time.
+class IndexSet {
+public:
+  explicit IndexSet(std::size_t size) : stamps_(size, 0) {}
+
+  void clear() { ++stamp_; }
+  bool contains(Index i) const { return stamps_[i] == stamp_; }
+  /// Returns whether it was not in the set.
+  bool insert(Index i) {
+    const bool is_new = !contains(i);
+    stamps_[i] = stamp_;
+    return is_new;
+  }
+
+private:
+  Indexed<std::uint32_t> stamps_;  ///< equal to stamp_: in the set
+  std::uint32_t stamp_ = 1;
+};
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,208 @@
+#include "energy_mesh.h"
+
+#include "optimization_constants.h"
+#include "parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace spherical_param::internal {
+
+namespace tuned = optimization_constants;
+
+EnergyMesh::EnergyMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
+                       int threads, const OpenPlaces* openings, const FractionReport& report)
+    : points_(&points), graph_(graph), openings_(openings),
+      threads_(
+          threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
+      mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
+      facets_(static_cast<std::size_t>(triangles.cols())) {
+  const double lengths = std::accumulate(graph.lengths.begin(), graph.lengths.end(), 0.0);
+  if (lengths > 0.0)
+    unit_ = lengths / static_cast<double>(graph.lengths.size());
+  setEnergy({});
+  updateAll(report);
+}
+
+RawFacet EnergyMesh::facetOf(Index a, Index b, Index c) const {
+  RawFacet facet(points_->col(a), points_->col(b), points_->col(c));
+  if (openings_ != nullptr && openings_->isOpen(a, b, c))
+    facet.open();
+  return facet;
+}
+
+void EnergyMesh::appendNeighbors(Index v, std::vector<Index>& neighbors) const {
+  mesh_.forEachAround(
+      v, [&](Index t, int corner) { neighbors.push_back(mesh_.vertex(t, (corner + 1) % 3)); });
+  const auto row = static_cast<std::size_t>(v);
+  neighbors.insert(neighbors.end(), graph_.neighbors.data() + graph_.offsets[row],
+                   graph_.neighbors.data() + graph_.offsets[row + 1]);
+}
+
+void EnergyMesh::setEnergy(const SurfaceEnergy& energy) {
+  energy_ = energy;
+  energy_.openings = openings_;
+}
+
+void EnergyMesh::setPoints(const Positions& points) {
+  points_ = &points;
+  updateAll();
+}
+
+void EnergyMesh::reset(const Triangles& triangles) {
+  mesh_ = SphereMesh(triangles, static_cast<std::size_t>(points_->cols()), threads_);
+  updateAll();
+}
+
+void EnergyMesh::save(Index t) {
+  if (!open_.empty())
+    old_facets_.emplace_back(t, facets_[t]);
+}
+
+void EnergyMesh::update(Index t) {
+  save(t);
+  facets_[t] = facetOf(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)).facet();
+}
+
+void EnergyMesh::updateAll(const FractionReport& report) {
+  forEachBlock(facets_.size(), threads_, report,
+               [&](std::size_t, std::size_t begin, std::size_t end) {
+                 for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
+                   update(t);
+               });
+}
+
+double EnergyMesh::flipGain(Index t, int corner, double floor) const {
+  // (c, a, b) and (d, b, a) would become (c, a, d) and (c, d, b).
+  const Index o = mesh_.neighbor(t, corner);
+  const int l = mesh_.oppositeCorner(t, corner);
+  const Index c = mesh_.vertex(t, corner);
+  const Index a = mesh_.vertex(t, (corner + 1) % 3);
+  const Index b = mesh_.vertex(t, (corner + 2) % 3);
+  const Index d = mesh_.vertex(o, l);
+  if (c == d)
+    return floor;
+  const Facet& cab = facets_[t];
+  const Facet& dba = facets_[o];
+  const Facet& bc = facets_[mesh_.neighbor(t, (corner + 1) % 3)];
+  const Facet& ca = facets_[mesh_.neighbor(t, (corner + 2) % 3)];
+  const Facet& ad = facets_[mesh_.neighbor(o, (l + 1) % 3)];
+  const Facet& db = facets_[mesh_.neighbor(o, (l + 2) % 3)];
+  const double before = cost(cab) + cost(dba) + edge(a, b, cab, dba) + edge(b, c, cab, bc) +
+                        edge(c, a, cab, ca) + edge(a, d, dba, ad) + edge(d, b, dba, db);
+  // No term is negative, and rounding is monotone: once some of them leave no more than the floor,
+  // all of them leave no more either, to the last bit.
+  const RawFacet raw_cad = facetOf(c, a, d);
+  const RawFacet raw_cdb = facetOf(c, d, b);
+  double after = energy_.cost(raw_cad.radius) + energy_.cost(raw_cdb.radius);
+  if (before - after <= floor)
+    return floor;
+  const Facet cad = raw_cad.facet();
+  const Facet cdb = raw_cdb.facet();
+  after += edge(c, d, cad, cdb) + edge(b, c, cdb, bc) + edge(c, a, cad, ca) + edge(a, d, cad, ad) +
+           edge(d, b, cdb, db);
+  const double gain = std::abs(before - after) > tuned::kRounding * before ? before - after : 0.0;
+  // Beyond the range of double the difference is no number, and no gain.
+  return gain > floor ? gain : floor;
+}
+
+bool EnergyMesh::flip(Index t, int corner, double gain) {
+  const Index o = mesh_.neighbor(t, corner);
+  if (!mesh_.flip(t, corner))
+    return false;
+  update(t);
+  update(o);
+  change_ -= gain;
+  return true;
+}
+
+double EnergyMesh::splitCost(Index t, Index v, double ceiling) const {
+  const Index a = mesh_.vertex(t, 0);
+  const Index b = mesh_.vertex(t, 1);
+  const Index c = mesh_.vertex(t, 2);
+  const Facet& abc = facets_[t];
+  const Facet& bc = facets_[mesh_.neighbor(t, 0)];
+  const Facet& ca = facets_[mesh_.neighbor(t, 1)];
+  const Facet& ab = facets_[mesh_.neighbor(t, 2)];
+  const double before = cost(abc) + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
+  // As in flipGain(): the rest only adds to it.
+  const RawFacet raw_vbc = facetOf(v, b, c);
+  const RawFacet raw_vca = facetOf(v, c, a);
+  const RawFacet raw_vab = facetOf(v, a, b);
+  double after =
+      energy_.cost(raw_vbc.radius) + energy_.cost(raw_vca.radius) + energy_.cost(raw_vab.radius);
+  if (after - before >= ceiling)
+    return ceiling;
+  const Facet vbc = raw_vbc.facet();
+  const Facet vca = raw_vca.facet();
+  const Facet vab = raw_vab.facet();
+  after += edge(b, c, vbc, bc) + edge(c, a, vca, ca) + edge(a, b, vab, ab) + edge(v, a, vca, vab) +
+           edge(v, b, vab, vbc) + edge(v, c, vbc, vca);
+  return std::min(after - before, ceiling);
+}
+
+std::array<Index, 3> EnergyMesh::split(Index t, Index v, double cost) {
+  const std::array<Index, 3> parts = mesh_.split(t, v);
+  for (const Index part : parts)
+    update(part);
+  change_ += cost;
+  return parts;
+}
+
+bool EnergyMesh::merge(Index v) {
+  std::array<Index, 3> fan{};
+  std::size_t count = 0;
+  if (mesh_.degree(v) == 3)
+    mesh_.forEachAround(v, [&](Index t, int) { fan[count++] = t; });
+  const Index merged = mesh_.merge(v);
+  if (merged < 0)
+    return false;
+  for (const Index t : fan)
+    if (t != merged)
+      save(t);
+  update(merged);
+  change_ -= splitCost(merged, v, std::numeric_limits<double>::infinity());
+  return true;
+}
+
+void EnergyMesh::begin() {
+  if (open_.empty())
+    change_ = 0.0;
+  open_.push_back({mesh_.record(), old_facets_.size(), change_});
+}
+
+void EnergyMesh::commit() {
+  open_.pop_back();
+  if (!open_.empty())
+    return;
+  mesh_.commit();
+  old_facets_.clear();
+}
+
+void EnergyMesh::rollBack() {
+  const Before& before = open_.back();
+  mesh_.rollBack(before.moves);
+  for (; old_facets_.size() > before.facets; old_facets_.pop_back())
+    facets_[old_facets_.back().first] = old_facets_.back().second;
+  change_ = before.change;
+  open_.pop_back();
+  if (!open_.empty())
+    mesh_.record();
+}
+
+std::vector<Index> EnergyMesh::changed() const {
+  std::vector<Index> changed;
+  for (std::size_t i = open_.back().facets; i < old_facets_.size(); ++i)
+    changed.push_back(old_facets_[i].first);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+
+bool isGain(double change) {
+  return change < -tuned::kMinGain;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "graph.h"
+#include "indexed.h"
+#include "progress.h"
+#include "sphere_mesh.h"
+#include "spherical_param/types.h"
+#include "surface_energy.h"
+
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// A closed genus-0 mesh on fixed points, with the energy of its changes. Changes can be rolled
+/// back bit by bit.
+class EnergyMesh {
+public:
+  /// The points, the graph and the openings must outlive this.
+  ///
+  /// \param graph    of the neighbours of each point.
+  /// \param openings of the surface; nullptr: it is closed.
+  EnergyMesh(const Positions& points, const Triangles& triangles, const Graph& graph, int threads,
+             const OpenPlaces* openings = nullptr, const FractionReport& report = {});
+
+  const SphereMesh& mesh() const { return mesh_; }
+  const Positions& points() const { return *points_; }
+  const Graph& graph() const { return graph_; }
+  int threads() const { return threads_; }
+  /// Mean length of the graph's edges, the unit of change().
+  double unit() const { return unit_; }
+  const Facet& facet(Index t) const { return facets_[t]; }
+  RawFacet facetOf(Index a, Index b, Index c) const;
+  /// Appends the neighbours of a vertex in mesh and graph.
+  void appendNeighbors(Index v, std::vector<Index>& neighbors) const;
+
+  void setEnergy(const SurfaceEnergy& energy);
+  /// Other points, or other places of the openings.
+  void setPoints(const Positions& points);
+  /// Other triangles, as many.
+  void reset(const Triangles& triangles);
+
+  /// Gain of the flip of the side opposite to a corner, or `floor` if the gain is at most that.
+  double flipGain(Index t, int corner, double floor) const;
+  /// \param gain from flipGain(). Returns whether the flip was possible.
+  bool flip(Index t, int corner, double gain);
+  /// Cost of a split by a vertex that is not in the mesh, or `ceiling` if the cost is at least
+  /// that.
+  double splitCost(Index t, Index v, double ceiling) const;
+  /// \param cost from splitCost(). Returns the three parts.
+  std::array<Index, 3> split(Index t, Index v, double cost);
+  /// Removes a vertex of degree 3. Returns whether that was possible.
+  bool merge(Index v);
+
+  /// Begins a change; may be nested.
+  void begin();
+  void commit();
+  void rollBack();
+  /// Change of the energy since begin() [unit()].
+  double change() const { return (change_ - open_.back().change) / unit_; }
+  /// Triangles that have changed since begin(), ascending.
+  std::vector<Index> changed() const;
+
+private:
+  double cost(const Facet& facet) const { return energy_.cost(facet.radius); }
+  double edge(Index v, Index w, const Facet& f, const Facet& g) const {
+    return energy_.edge(v, w, points_->col(v), points_->col(w), f, g);
+  }
+  void save(Index t);
+  void update(Index t);
+  void updateAll(const FractionReport& report = {});
+
+  /// The state at a begin().
+  struct Before {
+    std::size_t moves;
+    std::size_t facets;
+    double change;
+  };
+
+  const Positions* points_;
+  const Graph& graph_;
+  const OpenPlaces* openings_;
+  int threads_;
+  SphereMesh mesh_;
+  SurfaceEnergy energy_;
+  double unit_ = 1.0;
+  double change_ = 0.0;  ///< of the energy since the first begin()
+  Indexed<Facet> facets_;
+  std::vector<Before> open_;
+  std::vector<std::pair<Index, Facet>> old_facets_;
+};
+
+/// Whether a change of the energy is a gain beyond rounding [EnergyMesh::unit()].
+bool isGain(double change);
+
+}  // namespace spherical_param::internal

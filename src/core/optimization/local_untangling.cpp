@@ -1,0 +1,221 @@
+#include "local_untangling.h"
+
+#include "optimization_constants.h"
+#include "power_of_two.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace spherical_param::internal {
+namespace {
+
+/// Steps over sides that two flips reach, and the triangles beyond those.
+constexpr int kReach = 3;
+
+}  // namespace
+
+LocalUntangling::LocalUntangling(EnergyMesh& mesh)
+    : mesh_(mesh), scale_(scaleToUnit(mesh.points().cwiseAbs().maxCoeff())),
+      seen_(static_cast<std::size_t>(mesh.mesh().size())) {}
+
+Face LocalUntangling::face(Index t, Index a, Index b, Index c) const {
+  const Positions& points = mesh_.points();
+  Face face{
+      {scale_ * points.col(a), scale_ * points.col(b), scale_ * points.col(c)}, 0.0, {a, b, c}, t};
+  face.size = boxOf(face.corners).size();
+  return face;
+}
+
+Face LocalUntangling::face(Index t) const {
+  const SphereMesh& mesh = mesh_.mesh();
+  return face(t, mesh.vertex(t, 0), mesh.vertex(t, 1), mesh.vertex(t, 2));
+}
+
+void LocalUntangling::watch(const std::vector<Index>& vertices) {
+  local_.begin(static_cast<std::size_t>(mesh_.mesh().size()));
+  for (const Index v : vertices)
+    mesh_.mesh().forEachAround(v, [&](Index t, int) {
+      if (!mesh_.facet(t).isOpen() && !local_.contains(t))
+        local_.set(face(t));
+    });
+}
+
+int LocalUntangling::flipApart() {
+  std::vector<Index> bad;
+  for (const Face& face : local_.faces())
+    if (intersects(face.triangle))
+      bad.push_back(face.triangle);
+  return flipApart(std::move(bad));
+}
+
+int LocalUntangling::flipChangedApart() {
+  const std::vector<Index> changed = mesh_.changed();
+  int difference = 0;
+  for (const Index t : changed)
+    if (local_.contains(t)) {
+      difference -= local_.count(local_.face(t), t, std::numeric_limits<int>::max());
+      local_.remove(t);
+    }
+  std::vector<Index> bad;
+  for (const Index t : changed) {
+    if (mesh_.facet(t).isOpen())
+      continue;
+    const Face face_of_t = face(t);
+    const std::size_t before = bad.size();
+    local_.appendIntersecting(face_of_t, bad);
+    if (bad.size() > before) {
+      difference += static_cast<int>(bad.size() - before);
+      bad.push_back(t);
+    }
+    local_.set(face_of_t);
+  }
+  std::sort(bad.begin(), bad.end());
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  return difference - flipApart(std::move(bad));
+}
+
+int LocalUntangling::flipApart(std::vector<Index> bad) {
+  int fewer = 0;
+  for (std::size_t i = 0; i < bad.size(); ++i)
+    while (intersects(bad[i])) {
+      const Repairs repairs = bestRepairs(bad[i]);
+      if (repairs.first.triangle < 0)
+        break;
+      fewer -= repairs.pairs;
+      const auto apply = [&](const Repair& repair) {
+        bad.push_back(repair.triangle);
+        bad.push_back(mesh_.mesh().neighbor(repair.triangle, repair.corner));
+        flip(repair);
+      };
+      apply(repairs.first);
+      if (repairs.second)
+        apply(*repairs.second);
+    }
+  return fewer;
+}
+
+void LocalUntangling::gatherNear(Index t) {
+  seen_.clear();
+  seen_.insert(t);
+  std::vector<Index> ring{t};
+  Box box = boxOf(face(t).corners);
+  for (std::size_t i = 0, end = 1, steps = 0; steps < kReach; ++steps, end = ring.size())
+    for (; i < end; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Index o = mesh_.mesh().neighbor(ring[i], k);
+        if (!seen_.insert(o))
+          continue;
+        ring.push_back(o);
+        const Box other = boxOf(face(o).corners);
+        box.lower = box.lower.cwiseMin(other.lower);
+        box.upper = box.upper.cwiseMax(other.upper);
+      }
+  near_.begin(static_cast<std::size_t>(mesh_.mesh().size()));
+  local_.forEachIn(box, [&](const Face& face) {
+    near_.set(face);
+    return true;
+  });
+}
+
+std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int corner, int most) {
+  const SphereMesh& mesh = mesh_.mesh();
+  const Index o = mesh.neighbor(t, corner);
+  if (!near_.contains(t) || !near_.contains(o))
+    return std::nullopt;
+  int before = near_.countOf(t) + near_.countOf(o);
+  if (before + most < 0)
+    return std::nullopt;
+  before -= intersect(near_.face(t), near_.face(o)) ? 1 : 0;
+  const Index c = mesh.vertex(t, corner);
+  const Index a = mesh.vertex(t, (corner + 1) % 3);
+  const Index b = mesh.vertex(t, (corner + 2) % 3);
+  const Index d = mesh.vertex(o, mesh.oppositeCorner(t, corner));
+  if (before + most < 0 || c == d || mesh.areJoined(c, d) || mesh_.facetOf(c, a, d).isOpen() ||
+      mesh_.facetOf(c, d, b).isOpen())
+    return std::nullopt;
+  const Face cad = face(t, c, a, d);
+  const Face cdb = face(o, c, d, b);
+  int left = before + most;
+  left -= near_.count(cad, o, left);
+  if (left >= 0)
+    left -= near_.count(cdb, t, left);
+  if (left >= 0)
+    left -= intersect(cad, cdb) ? 1 : 0;
+  if (left < 0)
+    return std::nullopt;
+  return Repair{t, corner, most - left,
+                -mesh_.flipGain(t, corner, -std::numeric_limits<double>::infinity())};
+}
+
+void LocalUntangling::update(Index t, Index o) {
+  for (const Index changed : {t, o}) {
+    local_.set(face(changed));
+    near_.set(face(changed));
+  }
+}
+
+void LocalUntangling::flip(const Repair& repair) {
+  const Index o = mesh_.mesh().neighbor(repair.triangle, repair.corner);
+  mesh_.flip(repair.triangle, repair.corner, -repair.cost);
+  update(repair.triangle, o);
+}
+
+void LocalUntangling::consider(Index t, int corner, const Repair* first, Repairs& best) {
+  const Repair none;
+  const Repair& before = first != nullptr ? *first : none;
+  const auto repair = repairOf(t, corner, std::min(best.pairs, -1) - before.pairs);
+  if (!repair)
+    return;
+  const int pairs = before.pairs + repair->pairs;
+  const double cost = before.cost + repair->cost;
+  if (std::tie(pairs, cost) >= std::tie(best.pairs, best.cost))
+    return;
+  if (first != nullptr)
+    best = {*first, repair, pairs, cost};
+  else
+    best = {*repair, std::nullopt, pairs, cost};
+}
+
+std::vector<std::pair<Index, int>> LocalUntangling::sidesNear(Index t) const {
+  const SphereMesh& mesh = mesh_.mesh();
+  std::vector<std::pair<Index, int>> sides;
+  for (int k = 0; k < 3; ++k) {
+    sides.emplace_back(t, k);
+    const Index o = mesh.neighbor(t, k);
+    for (int l = 0; l < 3; ++l)
+      if (mesh.neighbor(o, l) != t)
+        sides.emplace_back(o, l);
+  }
+  return sides;
+}
+
+LocalUntangling::Repairs LocalUntangling::bestRepairs(Index t) {
+  gatherNear(t);
+  ++work_;
+  Repairs best;
+  for (int k = 0; k < 3; ++k)
+    consider(t, k, nullptr, best);
+  if (best.first.triangle >= 0)
+    return best;
+  work_ += optimization_constants::kWorkOfTwoFlips;
+  for (const auto& [u, k] : sidesNear(t)) {
+    const auto first = repairOf(u, k, 1);
+    if (!first)
+      continue;
+    const Index o = mesh_.mesh().neighbor(u, k);
+    mesh_.begin();
+    flip(*first);
+    for (int l = 0; l < 3; ++l) {
+      consider(u, l, &*first, best);
+      consider(o, l, &*first, best);
+      if (t != u && t != o)
+        consider(t, l, &*first, best);
+    }
+    mesh_.rollBack();
+    update(u, o);
+  }
+  return best;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "energy_mesh.h"
+#include "indexed.h"
+#include "local_intersections.h"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Flips edges among a few watched triangles so that fewer of them intersect. Open triangles do not
+/// count.
+class LocalUntangling {
+public:
+  /// \param mesh must outlive this.
+  explicit LocalUntangling(EnergyMesh& mesh);
+
+  /// Watches the triangles around some vertices.
+  void watch(const std::vector<Index>& vertices);
+  /// Flips one or two sides of watched triangles at a time, so that fewer triangles intersect; ties
+  /// by the least cost. Returns by how many pairs the number falls.
+  int flipApart();
+  /// The same for triangles changed since EnergyMesh::begin(), which followed watch(). Returns by
+  /// how many pairs the number has changed since then; pairs of unwatched triangles count as new.
+  int flipChangedApart();
+
+  /// Searches so far [vertices taken out and put back in the same time].
+  std::size_t work() const { return work_; }
+
+private:
+  /// A flip and its effect: change of the number of intersecting pairs, and of the energy.
+  struct Repair {
+    Index triangle = -1;
+    int corner = 0;
+    int pairs = 0;
+    double cost = 0.0;
+  };
+  /// The effect of one flip, or of two: `second` is after `first`.
+  struct Repairs {
+    Repair first;
+    std::optional<Repair> second;
+    int pairs = 0;
+    double cost = 0.0;
+  };
+
+  Face face(Index t, Index a, Index b, Index c) const;
+  Face face(Index t) const;
+  bool intersects(Index t) const { return local_.contains(t) && local_.intersects(face(t)); }
+  int flipApart(std::vector<Index> bad);
+  /// Fills near_ with the watched triangles that two flips near a triangle may affect.
+  void gatherNear(Index t);
+  /// The flip of a side, unless it is impossible or changes the number of pairs by more than
+  /// `most`.
+  std::optional<Repair> repairOf(Index t, int corner, int most);
+  /// Keeps a flip, perhaps after another one, in `best` if it is better.
+  void consider(Index t, int corner, const Repair* first, Repairs& best);
+  /// The best one or two flips of an intersecting triangle; without a triangle if none helps.
+  Repairs bestRepairs(Index t);
+  std::vector<std::pair<Index, int>> sidesNear(Index t) const;
+  void flip(const Repair& repair);
+  void update(Index t, Index o);
+
+  EnergyMesh& mesh_;
+  double scale_;  ///< brings the coordinates to at most 1
+  std::size_t work_ = 0;
+  LocalIntersections local_;  ///< the watched triangles
+  LocalIntersections near_;   ///< a part of local_
+  IndexSet seen_;             ///< working memory of gatherNear()
+};
+
+}  // namespace spherical_param::internal

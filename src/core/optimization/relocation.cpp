@@ -1,0 +1,102 @@
+#include "relocation.h"
+
+#include "optimization_constants.h"
+#include "parallel.h"
+
+#include <algorithm>
+
+namespace spherical_param::internal {
+namespace {
+
+namespace tuned = optimization_constants;
+
+/// Whether a vertex is in a ring, or joined to one of its vertices.
+bool isNear(const SphereMesh& mesh, const std::vector<Index>& ring, Index w) {
+  const auto is_in_ring = [&](Index u) {
+    return std::find(ring.begin(), ring.end(), u) != ring.end();
+  };
+  bool is_near = is_in_ring(w);
+  if (!is_near)
+    mesh.forEachAround(w, [&](Index t, int corner) {
+      is_near = is_near || is_in_ring(mesh.vertex(t, (corner + 1) % 3));
+    });
+  return is_near;
+}
+
+/// \param ring working memory
+bool isRough(const EnergyMesh& of, Index v, std::vector<Index>& ring) {
+  const SphereMesh& mesh = of.mesh();
+  ring.clear();
+  bool is_sharp = false;
+  double lengths = 0.0;
+  mesh.forEachAround(v, [&](Index t, int corner) {
+    const int k = (corner + 1) % 3;
+    const Index w = mesh.vertex(t, k);
+    ring.push_back(w);
+    lengths += (of.points().col(v) - of.points().col(w)).norm();
+    is_sharp = is_sharp ||
+               Facet::cosine(of.facet(t), of.facet(mesh.neighbor(t, k))) < tuned::kMinSmoothCosine;
+  });
+  // In a graph of many neighbours, most of them are far.
+  const double far = tuned::kMaxNearNeighbor * lengths / static_cast<double>(ring.size());
+  const Graph& graph = of.graph();
+  const auto row = static_cast<std::size_t>(v);
+  for (std::size_t e = graph.offsets[row]; e < graph.offsets[row + 1] && !is_sharp; ++e)
+    if (graph.lengths[e] <= far && !isNear(mesh, ring, graph.neighbors[e]))
+      return true;
+  return is_sharp;
+}
+
+/// Rough vertices near some vertices, ascending.
+std::vector<Index> roughNear(const EnergyMesh& mesh, const std::vector<Index>& vertices) {
+  std::vector<Index> near;
+  for (const Index v : vertices) {
+    near.push_back(v);
+    mesh.mesh().forEachAround(v, [&](Index t, int corner) {
+      mesh.appendNeighbors(mesh.mesh().vertex(t, (corner + 1) % 3), near);
+    });
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::vector<Index> ring;
+  near.erase(
+      std::remove_if(near.begin(), near.end(), [&](Index v) { return !isRough(mesh, v, ring); }),
+      near.end());
+  return near;
+}
+
+}  // namespace
+
+std::vector<Index> roughVertices(const EnergyMesh& mesh, const FractionReport& report) {
+  const auto n = static_cast<std::size_t>(mesh.points().cols());
+  std::vector<std::vector<Index>> found((n + kBlockSize - 1) / kBlockSize);
+  forEachBlock(n, mesh.threads(), report,
+               [&](std::size_t block, std::size_t begin, std::size_t end) {
+                 std::vector<Index> ring;
+                 for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v)
+                   if (isRough(mesh, v, ring))
+                     found[block].push_back(v);
+               });
+  std::vector<Index> rough;
+  for (const std::vector<Index>& part : found)
+    rough.insert(rough.end(), part.begin(), part.end());
+  return rough;
+}
+
+void relocate(Workbench& bench, std::vector<Index> rough) {
+  for (int round = 0; round < tuned::kMaxRelocateRounds && !rough.empty() && !bench.isOutOfTime();
+       ++round) {
+    OptimizationPhase& phase = bench.begin("relocate");
+    std::vector<Index> moved;
+    for (; phase.tried < rough.size() && !bench.isOutOfTime(); ++phase.tried) {
+      bench.reportItem(phase.tried, rough.size(), 256);
+      if (bench.ruins.relocate(rough[phase.tried]))
+        moved.push_back(rough[phase.tried]);
+    }
+    phase.moves = moved.size();
+    // Only vertices near those that moved may have become rough.
+    rough = roughNear(bench.mesh, moved);
+  }
+}
+
+}  // namespace spherical_param::internal

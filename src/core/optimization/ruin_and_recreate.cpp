@@ -1,0 +1,148 @@
+#include "ruin_and_recreate.h"
+
+#include "bit_mixing.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace spherical_param::internal {
+
+RuinAndRecreate::RuinAndRecreate(EnergyMesh& mesh, Flips& flips, std::uint64_t seed)
+    : mesh_(mesh), flips_(flips), random_(seed),
+      seen_triangles_(static_cast<std::size_t>(mesh.mesh().size())),
+      seen_vertices_(static_cast<std::size_t>(mesh.points().cols())) {}
+
+std::size_t RuinAndRecreate::random(std::size_t end) {
+  random_ = splitmix64(random_);
+  return random_ % end;
+}
+
+bool RuinAndRecreate::remove(Index v) {
+  const SphereMesh& mesh = mesh_.mesh();
+  while (mesh.degree(v) > 3) {
+    // Of the flips that take an edge from the vertex, the one that costs least.
+    double best = -std::numeric_limits<double>::infinity();
+    Index triangle = -1;
+    int corner = 0;
+    mesh.forEachAround(v, [&](Index t, int corner_of_v) {
+      const int k = (corner_of_v + 1) % 3;
+      const Index c = mesh.vertex(t, k);
+      const Index d = mesh.vertex(mesh.neighbor(t, k), mesh.oppositeCorner(t, k));
+      if (c == d || mesh.areJoined(c, d))
+        return;
+      const double gain = mesh_.flipGain(t, k, best);
+      if (gain > best) {
+        best = gain;
+        triangle = t;
+        corner = k;
+      }
+    });
+    if (triangle < 0 || !mesh_.flip(triangle, corner, best))
+      return false;
+  }
+  return mesh_.merge(v);
+}
+
+bool RuinAndRecreate::insert(Index v, const std::vector<Index>& neighbors) {
+  const SphereMesh& mesh = mesh_.mesh();
+  seen_triangles_.clear();
+  double least = std::numeric_limits<double>::infinity();
+  Index best = -1;
+  for (const Index w : neighbors) {
+    if (mesh.triangleAt(w) < 0)
+      continue;
+    mesh.forEachAround(w, [&](Index t, int) {
+      if (!seen_triangles_.insert(t))
+        return;
+      const double cost = mesh_.splitCost(t, v, least);
+      if (cost < least) {
+        least = cost;
+        best = t;
+      }
+    });
+  }
+  if (best < 0)
+    return false;
+  std::vector<Index> changed;
+  for (const Index t : mesh_.split(best, v, least)) {
+    changed.push_back(t);
+    changed.push_back(mesh.neighbor(t, 0));
+  }
+  flips_.flipAround(changed);
+  return true;
+}
+
+bool RuinAndRecreate::recreate(const std::vector<Index>& vertices, const Accept& accept) {
+  struct Removed {
+    Index vertex;
+    std::vector<Index> neighbors;
+  };
+  std::vector<Removed> removed;
+  for (const Index v : vertices) {
+    removed.push_back({v, {}});
+    mesh_.appendNeighbors(v, removed.back().neighbors);
+  }
+  mesh_.begin();
+  std::vector<Removed> out;
+  for (Removed& vertex : removed)
+    if (remove(vertex.vertex))
+      out.push_back(std::move(vertex));
+  for (std::size_t i = out.size(); i > 1; --i)
+    std::swap(out[i - 1], out[random(i)]);
+  // Vertices none of whose neighbours are back yet wait for them.
+  while (!out.empty()) {
+    std::vector<Removed> waiting;
+    for (Removed& vertex : out)
+      if (!insert(vertex.vertex, vertex.neighbors))
+        waiting.push_back(std::move(vertex));
+    if (waiting.size() == out.size())
+      break;
+    out = std::move(waiting);
+  }
+  const bool is_accepted = out.empty() && accept(mesh_.change());
+  if (is_accepted)
+    mesh_.commit();
+  else
+    mesh_.rollBack();
+  return is_accepted;
+}
+
+bool RuinAndRecreate::relocate(Index v) {
+  return recreate({v}, isGain);
+}
+
+std::vector<Index> RuinAndRecreate::spread(const std::vector<Index>& seeds, std::size_t count) {
+  seen_vertices_.clear();
+  std::vector<Index> front;
+  const auto add = [&](Index v) {
+    if (seen_vertices_.insert(v))
+      front.push_back(v);
+  };
+  for (const Index v : seeds)
+    add(v);
+  // The seeds come first, in their order.
+  std::vector<Index> region = std::move(front);
+  region.resize(std::min(region.size(), count));
+  front.clear();
+  std::vector<Index> neighbors;
+  const auto add_neighbors = [&](Index v) {
+    neighbors.clear();
+    mesh_.appendNeighbors(v, neighbors);
+    for (const Index w : neighbors)
+      add(w);
+  };
+  for (const Index v : region)
+    add_neighbors(v);
+  while (!front.empty() && region.size() < count) {
+    const std::size_t pick = random(front.size());
+    const Index v = front[pick];
+    front[pick] = front.back();
+    front.pop_back();
+    region.push_back(v);
+    add_neighbors(v);
+  }
+  return region;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,105 @@
+#include "energy_mesh.h"
+
+#include "helpers.h"
+#include "optimization_cases.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace spherical_param::test {
+namespace {
+
+using internal::EnergyMesh;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Flips, merges and splits at random.
+void moveAtRandom(EnergyMesh& mesh, std::mt19937_64& random) {
+  for (int i = 0; i < 200; ++i) {
+    const auto t = static_cast<Index>(random() % static_cast<std::uint64_t>(mesh.mesh().size()));
+    const auto k = static_cast<int>(random() % 3);
+    mesh.flip(t, k, mesh.flipGain(t, k, -kInfinity));
+    const Index v = mesh.mesh().vertex(t, k);
+    const Index w = mesh.mesh().vertex(t, (k + 1) % 3);
+    if (!mesh.merge(v))
+      continue;
+    const Index at = mesh.mesh().triangleAt(w);
+    mesh.split(at, v, mesh.splitCost(at, v, kInfinity));
+  }
+}
+
+TEST(EnergyMesh, TheChangeIsThatOfTheEnergyByItsDefinition) {
+  for (const Case& of : roughCases())
+    for (const Bend bend : {Bend::Angle, Bend::Power, Bend::Excess}) {
+      SCOPED_TRACE(static_cast<int>(bend));
+      EnergyMesh mesh = meshOf(of, bend, 0.8);
+      std::mt19937_64 random(5);
+      for (int round = 0; round < 3; ++round) {
+        const double before = energyOf(of.points, mesh.mesh().triangles(), bend, 0.8);
+        mesh.begin();
+        moveAtRandom(mesh, random);
+        const double change = mesh.change() * mesh.unit();
+        mesh.commit();
+        const Triangles triangles = mesh.mesh().triangles();
+        const double after = energyOf(of.points, triangles, bend, 0.8);
+        // acos near folds and flat edges loses half of the digits against atan2.
+        EXPECT_NEAR(change, after - before, 1e-7 * (before + after));
+        EXPECT_NE(change, 0.0);
+        EXPECT_TRUE(isSphereOverAll(triangles, static_cast<Index>(of.points.cols())));
+      }
+    }
+}
+
+TEST(EnergyMesh, WhatIsRolledBackLeavesEverythingBitByBit) {
+  const Case of = roughCases().front();
+  EnergyMesh mesh = meshOf(of);
+  const auto gains = [&] {
+    std::vector<double> all;
+    for (Index t = 0; t < mesh.mesh().size(); ++t)
+      for (int k = 0; k < 3; ++k)
+        all.push_back(mesh.flipGain(t, k, -kInfinity));
+    return all;
+  };
+  std::mt19937_64 random(6);
+  const Triangles triangles = mesh.mesh().triangles();
+  const std::vector<double> before = gains();
+  mesh.begin();
+  moveAtRandom(mesh, random);
+  const Triangles moved = mesh.mesh().triangles();
+  const std::vector<double> between = gains();
+  const double change = mesh.change();
+  EXPECT_FALSE(mesh.changed().empty());
+  mesh.begin();
+  moveAtRandom(mesh, random);
+  EXPECT_NE(mesh.mesh().triangles(), moved);
+  mesh.rollBack();
+  EXPECT_EQ(mesh.mesh().triangles(), moved);
+  EXPECT_EQ(gains(), between);
+  EXPECT_EQ(mesh.change(), change);
+  mesh.rollBack();
+  EXPECT_EQ(mesh.mesh().triangles(), triangles);
+  EXPECT_EQ(gains(), before);
+}
+
+TEST(EnergyMesh, BoundsOfGainsAndCostsChangeNoneBeyondThem) {
+  for (const Case& of : roughCases()) {
+    EnergyMesh mesh = meshOf(of);
+    const Index v = 7;
+    for (Index t = 0; t < mesh.mesh().size(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const double gain = mesh.flipGain(t, k, -kInfinity);
+        EXPECT_EQ(mesh.flipGain(t, k, 0.0), gain > 0.0 ? gain : 0.0);
+      }
+    for (Index t = 0; t < mesh.mesh().size(); ++t) {
+      const double cost = mesh.splitCost(t, v, kInfinity);
+      EXPECT_EQ(mesh.splitCost(t, v, 0.1), std::min(cost, 0.1));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spherical_param::test

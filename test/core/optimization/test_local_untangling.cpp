@@ -1,0 +1,59 @@
+#include "local_untangling.h"
+
+#include "helpers.h"
+#include "optimization_cases.h"
+#include "spherical_param/self_intersection.h"
+
+#include <gtest/gtest.h>
+
+namespace spherical_param::test {
+namespace {
+
+using internal::EnergyMesh;
+using internal::LocalUntangling;
+
+int pairsOf(const Case& of, const EnergyMesh& mesh) {
+  return static_cast<int>(findSelfIntersections(of.points, mesh.mesh().triangles()).size());
+}
+
+TEST(LocalUntangling, FlipsApartAreCountedAndKeepASphere) {
+  int all = 0;
+  for (const Case& of : roughCases()) {
+    EnergyMesh mesh = meshOf(of);
+    LocalUntangling local(mesh);
+    const int before = pairsOf(of, mesh);
+    local.watch({});
+    EXPECT_EQ(local.flipApart(), 0);
+    local.watch(range(0, of.points.cols()));
+    const int fewer = local.flipApart();
+    all += fewer;
+    EXPECT_EQ(pairsOf(of, mesh), before - fewer);
+    EXPECT_TRUE(isSphereOverAll(mesh.mesh().triangles(), static_cast<Index>(of.points.cols())));
+  }
+  EXPECT_GT(all, 0);
+}
+
+TEST(LocalUntangling, AChangeIsCountedWithWhatFlipsMakeOfIt) {
+  int repaired = 0;
+  for (const Case& of : roughCases()) {
+    EnergyMesh mesh = meshOf(of);
+    LocalUntangling local(mesh);
+    for (Index t = 0; t < mesh.mesh().size(); t += 20) {
+      const int before = pairsOf(of, mesh);
+      local.watch(range(0, of.points.cols()));
+      mesh.begin();
+      for (int k = 0; k < 3; ++k)
+        mesh.flip(t, k, 0.0);
+      const int tangled = pairsOf(of, mesh);
+      const int difference = local.flipChangedApart();
+      EXPECT_EQ(pairsOf(of, mesh), before + difference);
+      EXPECT_LE(before + difference, tangled);
+      repaired += before + difference < tangled ? 1 : 0;
+      mesh.rollBack();
+    }
+  }
+  EXPECT_GT(repaired, 5);
+}
+
+}  // namespace
+}  // namespace spherical_param::test

@@ -1,0 +1,94 @@
+#include "ruin_and_recreate.h"
+
+#include "helpers.h"
+#include "optimization_cases.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace spherical_param::test {
+namespace {
+
+using internal::EnergyMesh;
+using internal::Flips;
+using internal::RuinAndRecreate;
+
+TEST(RuinAndRecreate, MovesThatGainAreKeptAndOthersLeaveTheMesh) {
+  int relocated = 0;
+  int recreated = 0;
+  for (const Case& of : roughCases())
+    for (const Bend bend : {Bend::Angle, Bend::Power, Bend::Excess}) {
+      EnergyMesh mesh = meshOf(of, bend, 0.8);
+      Flips flips(mesh);
+      RuinAndRecreate ruins(mesh, flips, 4);
+      flips.flipAll();
+      // Whether a move was kept, which takes a gain.
+      const auto is_kept = [&](const auto& move) {
+        const Triangles triangles = mesh.mesh().triangles();
+        const double before = energyOf(of.points, triangles, bend, 0.8);
+        if (!move()) {
+          EXPECT_EQ(mesh.mesh().triangles(), triangles);
+          return 0;
+        }
+        EXPECT_LT(energyOf(of.points, mesh.mesh().triangles(), bend, 0.8), before * (1.0 + 1e-9));
+        return 1;
+      };
+      const auto n = static_cast<Index>(of.points.cols());
+      for (Index v = 0; v < n; v += 3)
+        relocated += is_kept([&] { return ruins.relocate(v); });
+      for (Index v = 0; v < n; v += 7)
+        recreated +=
+            is_kept([&] { return ruins.recreate(ruins.spread({v}, 12), internal::isGain); });
+      EXPECT_TRUE(isSphereOverAll(mesh.mesh().triangles(), n));
+    }
+  EXPECT_GT(relocated, 50);
+  EXPECT_GT(recreated, 20);
+}
+
+TEST(RuinAndRecreate, WhatIsAcceptedIsUpToTheCaller) {
+  const Case of = noisySphere(300, 0.5, 2);
+  EnergyMesh mesh = meshOf(of);
+  Flips flips(mesh);
+  RuinAndRecreate ruins(mesh, flips, 4);
+  for (std::size_t size = 1; size <= 256; size *= 2) {
+    const std::vector<Index> part = ruins.spread({static_cast<Index>(size)}, size);
+    const Triangles before = mesh.mesh().triangles();
+    const double energy = energyOf(of.points, before);
+    EXPECT_FALSE(ruins.recreate(part, [](double) { return false; }));
+    EXPECT_EQ(mesh.mesh().triangles(), before);
+    double change = 0.0;
+    ruins.recreate(part, [&](double reported) {
+      change = reported;
+      return true;
+    });
+    EXPECT_NEAR(energyOf(of.points, mesh.mesh().triangles()) - energy, change * mesh.unit(),
+                1e-7 * energy);
+    EXPECT_TRUE(isSphereOverAll(mesh.mesh().triangles(), 300));
+  }
+}
+
+TEST(RuinAndRecreate, SpreadsFromTheSeedsOverTheEdges) {
+  const Case of = ellipsoid(300, 0.8, 0.6);
+  EnergyMesh mesh = meshOf(of);
+  Flips flips(mesh);
+  RuinAndRecreate ruins(mesh, flips, 1);
+  const std::vector<Index> part = ruins.spread({5, 9, 5}, 40);
+  ASSERT_EQ(part.size(), 40U);
+  EXPECT_EQ(part[0], 5);
+  EXPECT_EQ(part[1], 9);
+  for (std::size_t i = 2; i < part.size(); ++i) {
+    EXPECT_EQ(std::count(part.begin(), part.end(), part[i]), 1);
+    std::vector<Index> neighbors;
+    mesh.appendNeighbors(part[i], neighbors);
+    EXPECT_TRUE(
+        std::any_of(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(i), [&](Index v) {
+          return std::find(neighbors.begin(), neighbors.end(), v) != neighbors.end();
+        }));
+  }
+  EXPECT_EQ(ruins.spread({5}, 1000).size(), 300U);
+  EXPECT_EQ(ruins.spread({5, 6, 7}, 2).size(), 2U);
+}
+
+}  // namespace
+}  // namespace spherical_param::test
