@@ -16,14 +16,14 @@ constexpr int kNearSteps = 2;
 
 OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings)
     : points_(points), is_near_(graph.size(), 0), nearest_(graph.size(), 0),
-      spacing_(openings.spacing) {
+      spacing_(openings.spacing.begin(), openings.spacing.end()) {
   std::vector<Index> ring;
   const auto add = [&](Index v, std::uint8_t mark, Index opening) {
-    std::uint8_t& is_near = is_near_[static_cast<std::size_t>(v)];
+    std::uint8_t& is_near = is_near_[v];
     if (is_near != 0)
       return;
     is_near = mark;
-    nearest_[static_cast<std::size_t>(v)] = opening;
+    nearest_[v] = opening;
     ring.push_back(v);
   };
   for (std::size_t o = 0; o < openings.openings.size(); ++o) {
@@ -43,7 +43,7 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
     for (const Index v : last) {
       const auto i = static_cast<std::size_t>(v);
       for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        add(graph.neighbors[e], kNear, nearest_[i]);
+        add(graph.neighbors[e], kNear, nearest_[v]);
     }
   }
 }
@@ -51,23 +51,22 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
 std::optional<std::size_t> OpenPlaces::openingOver(Index a, Index b, Index c) const {
   if (!isOpen(a, b, c))
     return std::nullopt;
-  const Index of_a = nearest_[static_cast<std::size_t>(a)];
-  const Index of_b = nearest_[static_cast<std::size_t>(b)];
-  const Index of_c = nearest_[static_cast<std::size_t>(c)];
+  const Index of_a = nearest_[a];
+  const Index of_b = nearest_[b];
+  const Index of_c = nearest_[c];
   return static_cast<std::size_t>(of_b == of_c ? of_b : of_a);
 }
 
 bool OpenPlaces::isLong(Index a, Index b) const {
-  const double longest = tuned::kMaxSurfaceEdge * std::max(spacing_[static_cast<std::size_t>(a)],
-                                                           spacing_[static_cast<std::size_t>(b)]);
+  const double longest = tuned::kMaxSurfaceEdge * std::max(spacing_[a], spacing_[b]);
   return (points_.col(a) - points_.col(b)).squaredNorm() > longest * longest;
 }
 
 bool OpenPlaces::close(const std::vector<Index>& vertices) {
   bool has_changed = false;
   for (const Index v : vertices)
-    if (is_near_[static_cast<std::size_t>(v)] == kNear) {
-      is_near_[static_cast<std::size_t>(v)] = 0;
+    if (is_near_[v] == kNear) {
+      is_near_[v] = 0;
       has_changed = true;
     }
   return has_changed;

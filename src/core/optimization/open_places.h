@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "openings.h"
 #include "spherical_param/types.h"
 
@@ -28,9 +29,7 @@ public:
   /// Whether a triangle is over an opening: its vertices are within two steps of loops, and a side
   /// is longer than edges of the surface; close() excludes vertices.
   bool isOpen(Index a, Index b, Index c) const {
-    return is_near_[static_cast<std::size_t>(a)] != 0 &&
-           is_near_[static_cast<std::size_t>(b)] != 0 &&
-           is_near_[static_cast<std::size_t>(c)] != 0 &&
+    return is_near_[a] != 0 && is_near_[b] != 0 && is_near_[c] != 0 &&
            (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
@@ -47,9 +46,9 @@ private:
   bool isLong(Index a, Index b) const;
 
   const Positions& points_;
-  std::vector<std::uint8_t> is_near_;  ///< kNear, kLoop (in a loop) or 0
-  std::vector<Index> nearest_;         ///< of near vertices, the opening of the nearest loop
-  std::vector<double> spacing_;
+  Indexed<std::uint8_t> is_near_;  ///< kNear, kLoop (in a loop) or 0
+  Indexed<Index> nearest_;         ///< of near vertices, the opening of the nearest loop
+  Indexed<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
 };
 

@@ -54,7 +54,7 @@ std::size_t forEachPair(Workbench& bench, const char* name, Pairs& pairs, const 
 }
 
 /// Flips near intersecting triangles, and rebuilds small parts there: flips alone may leave the
-/// surface crumpled.
+/// surface crumpled. Without those parts, a cube of 8 points keeps a corner cut off.
 void flipApart(Workbench& bench, Pairs& pairs) {
   forEachPair(bench, "flip apart", pairs,
               [&](const auto& seeds, const auto& is_there, OptimizationPhase& phase) {
@@ -93,14 +93,13 @@ Pairs untangle(Workbench& bench, Pairs pairs, int rounds_by_energy) {
   for (int round = 0; round < rounds_by_energy && is_due(); ++round)
     if (rebuild(bench, false, tuned::kMaxUntangledByEnergy, pairs) == 0)
       break;
-  int idle = 0;  // rounds in a row without a gain
-  for (int round = 0; round < tuned::kMaxUntangleRounds && idle < tuned::kMaxIdleRounds && is_due();
-       ++round) {
+  // Rounds in a row without a gain. Small parts gain more in the same time: large ones once nothing
+  // else helps.
+  for (int idle = 0; idle < tuned::kMaxIdleRounds && is_due();) {
     if (idle == 0)
       flipApart(bench, pairs);
     if (!is_due())
       break;
-    // Small parts gain more in the same time: large ones once nothing else helps.
     const std::size_t largest = std::min(tuned::kMaxUntangled, tuned::kMaxFirstUntangled << idle);
     idle = rebuild(bench, true, largest, pairs) == 0 ? idle + 1 : 0;
   }
