@@ -13,6 +13,9 @@ namespace spherical_param::internal {
 
 /// Flips edges among a few watched triangles so that fewer of them intersect. Open triangles do not
 /// count.
+///
+/// Without, 4 of 112 clouds more keep intersections, 236 pairs instead of 48 in all; with single
+/// flips only, 2 more and 89 pairs, and it takes longer.
 class LocalUntangling {
 public:
   /// \param mesh must outlive this.

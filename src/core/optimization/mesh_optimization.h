@@ -60,19 +60,17 @@ struct MeshOptimization {
 /// with the angle between the normals of an edge's triangles [rad], the circumradius R, and mu =
 /// 0.3: the total absolute mean curvature, and a penalty on needles.
 ///
-/// | phase | file |
-/// |---|---|
-/// | flips: the edge that gains most, until none gains; with the energy of the polish, but mu = 0.3
-/// instead of 0.8 | `flips` |
-/// | relocate: takes out vertices at sharp edges, or far on the mesh from their neighbours in the
-/// graph, and puts them back where they cost least | `relocation` |
-/// | unfold: ruin and recreate; takes out parts of 4 to 32 vertices around folded edges and puts
-/// them back in random order | `unfolding` | | flip apart: before untangling by number, flips one
-/// or two edges near intersecting triangles at a time, so that fewer intersect | `local_untangling`
-/// | | untangle: ruin and recreate with parts of up to 96 vertices around intersecting triangles,
-/// by energy, then by the number of intersections | `untangling` | | polish: flips and relocation
-/// with an energy that suits the sampling; then untangles again, or goes back to the mesh before |
-/// `polish` |
+/// - flips: the edge that gains most, until none gains; with the energy of the polish, but mu = 0.3
+///   instead of 0.8
+/// - relocate: takes out vertices at sharp edges, or far on the mesh from their neighbours in the
+///   graph, and puts them back where they cost least
+/// - unfold: takes out parts of 4 to 32 vertices around folded edges and puts them back in random
+///   order
+/// - untangle: the same with up to 96 vertices around intersecting triangles, by energy, then by
+/// the
+///   number of intersections that are left after flips
+/// - polish: flips and relocation with an energy that suits the sampling; then untangles again, or
+///   goes back to the mesh before
 ///
 /// If the sampling follows the surface's curvature (simplified and designed models) or is random,
 /// the polish has angle^1.5 and mu = 0.8. Otherwise (scans, even samplings) angles count beyond 10
