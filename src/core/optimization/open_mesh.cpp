@@ -1,5 +1,6 @@
 #include "open_mesh.h"
 
+#include "indexed.h"
 #include "local_intersections.h"
 #include "power_of_two.h"
 #include "sphere_mesh.h"
@@ -20,18 +21,51 @@ namespace {
 /// nearest.
 constexpr std::size_t kMaxPlaces = 64;
 
-std::size_t entry(Index i) {
-  return static_cast<std::size_t>(i);
+/// Where a bare vertex may get triangles: an edge of the boundary or a triangle of the surface.
+struct Place {
+  double distance;  ///< sum over its corners
+  Index triangle;   ///< the open one at the edge, or that of the surface
+  int corner;       ///< opposite to the edge; -1: the triangle
+};
+
+void keepNearest(std::vector<Place>& places) {
+  const auto end =
+      places.begin() + static_cast<std::ptrdiff_t>(std::min(places.size(), kMaxPlaces));
+  std::partial_sort(places.begin(), end, places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.distance, a.triangle, a.corner) < std::tie(b.distance, b.triangle, b.corner);
+  });
+  places.erase(end, places.end());
+}
+
+/// The first of the candidates that crosses nothing, or the one that crosses least.
+///
+/// \param crossings (candidate, most): the number; counting may stop beyond `most`.
+/// \param least what it crosses.
+template <typename Candidates, typename Crossings>
+typename Candidates::iterator leastCrossing(Candidates& candidates, const Crossings& crossings,
+                                            int& least) {
+  auto best = candidates.end();
+  least = std::numeric_limits<int>::max();
+  for (auto candidate = candidates.begin(); candidate != candidates.end() && least > 0;
+       ++candidate) {
+    const int count = crossings(*candidate, least - 1);
+    if (count < least) {
+      best = candidate;
+      least = count;
+    }
+  }
+  return best;
 }
 
 class Opener {
 public:
   Opener(const Positions& points, const Triangles& triangles, const OpenPlaces& openings)
       : points_(points), openings_(openings),
-        mesh_(triangles, static_cast<std::size_t>(points.cols())), is_open_(entry(mesh_.size()), 0),
+        mesh_(triangles, static_cast<std::size_t>(points.cols())),
+        is_open_(static_cast<std::size_t>(mesh_.size()), 0),
         scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
     for (Index t = 0; t < mesh_.size(); ++t)
-      is_open_[entry(t)] =
+      is_open_[t] =
           openings.isOpen(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)) ? 1 : 0;
   }
 
@@ -57,7 +91,7 @@ public:
   }
 
 private:
-  bool isOpen(Index t) const { return is_open_[entry(t)] != 0; }
+  bool isOpen(Index t) const { return is_open_[t] != 0; }
 
   double length(Index v, Index w) const { return (points_.col(v) - points_.col(w)).norm(); }
 
@@ -111,13 +145,6 @@ private:
     return changes > 2;
   }
 
-  /// Where a bare vertex may get triangles: an edge of the boundary or a triangle of the surface.
-  struct Place {
-    double distance;  ///< sum over its corners
-    Index triangle;   ///< the open one at the edge, or that of the surface
-    int corner;       ///< opposite to the edge; -1: the triangle
-  };
-
   /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
   /// the surface: the nearest place where that intersects nothing, edges first.
   void attach(Index v) {
@@ -161,16 +188,6 @@ private:
       return crossingsAt(v, place, 0) == 0;
     });
     return cover == covers.end() ? std::nullopt : std::optional(cover->triangle);
-  }
-
-  static void keepNearest(std::vector<Place>& places) {
-    const auto end =
-        places.begin() + static_cast<std::ptrdiff_t>(std::min(places.size(), kMaxPlaces));
-    std::partial_sort(places.begin(), end, places.end(), [](const Place& a, const Place& b) {
-      return std::tie(a.distance, a.triangle, a.corner) <
-             std::tie(b.distance, b.triangle, b.corner);
-    });
-    places.erase(end, places.end());
   }
 
   /// Number of triangles of the surface that those of a vertex would intersect at a place; counting
@@ -248,26 +265,6 @@ private:
     return vertices;
   }
 
-  /// The first of the candidates that crosses nothing, or the one that crosses least.
-  ///
-  /// \param crossings (candidate, most): the number; counting may stop beyond `most`.
-  /// \param least what it crosses.
-  template <typename Candidates, typename Crossings>
-  static typename Candidates::iterator leastCrossing(Candidates& candidates,
-                                                     const Crossings& crossings, int& least) {
-    auto best = candidates.end();
-    least = std::numeric_limits<int>::max();
-    for (auto candidate = candidates.begin(); candidate != candidates.end() && least > 0;
-         ++candidate) {
-      const int count = crossings(*candidate, least - 1);
-      if (count < least) {
-        best = candidate;
-        least = count;
-      }
-    }
-    return best;
-  }
-
   std::array<Index, 3> cornersOf(Index t) const {
     return {mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)};
   }
@@ -323,12 +320,12 @@ private:
   }
 
   void open(Index t) {
-    is_open_[entry(t)] = 1;
+    is_open_[t] = 1;
     if (has_surface_ && surface_.contains(t))
       surface_.remove(t);
   }
   void close(Index t) {
-    is_open_[entry(t)] = 0;
+    is_open_[t] = 0;
     if (has_surface_)
       surface_.set(face(t, cornersOf(t)));
   }
@@ -336,7 +333,7 @@ private:
   const Positions& points_;
   const OpenPlaces& openings_;
   SphereMesh mesh_;
-  std::vector<std::uint8_t> is_open_;
+  Indexed<std::uint8_t> is_open_;
   double scale_;  ///< brings the coordinates to at most 1
   bool has_surface_ = false;
   LocalIntersections surface_;  ///< its triangles, from the first question on
@@ -349,13 +346,13 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
     return openings.isOpen(mesh.vertex(t, 0), mesh.vertex(t, 1), mesh.vertex(t, 2));
   };
   std::vector<Index> found;
-  std::vector<std::uint8_t> is_seen(entry(mesh.size()), 0);
+  Indexed<std::uint8_t> is_seen(static_cast<std::size_t>(mesh.size()), 0);
   std::vector<Index> piece;
   for (Index first = 0; first < mesh.size(); ++first) {
-    if (is_seen[entry(first)] != 0 || !is_open(first))
+    if (is_seen[first] != 0 || !is_open(first))
       continue;
     piece.assign(1, first);
-    is_seen[entry(first)] = 1;
+    is_seen[first] = 1;
     bool has_loop = false;
     for (std::size_t head = 0; head < piece.size(); ++head)
       for (int k = 0; k < 3; ++k) {
@@ -363,9 +360,9 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
         const Index next = mesh.neighbor(t, k);
         has_loop =
             has_loop || openings.isRim(mesh.vertex(t, (k + 1) % 3), mesh.vertex(t, (k + 2) % 3));
-        if (is_seen[entry(next)] != 0 || !is_open(next))
+        if (is_seen[next] != 0 || !is_open(next))
           continue;
-        is_seen[entry(next)] = 1;
+        is_seen[next] = 1;
         piece.push_back(next);
       }
     if (!has_loop)
