@@ -86,8 +86,8 @@ std::vector<double> EmbeddingLevels::solve(std::size_t l, const Solution& soluti
   options.relative_tolerance = solution.relative_tolerance;
   options.tolerance = solution.tolerance.value_or(1.0);
   options.progress = solution.progress;
-  if (solution.has_barrier)
-    energy.addBarrier(u);
+  if (solution.barrier_of != nullptr)
+    energy.addBarrier(*solution.barrier_of);
   else
     options.collapses = [&](const Positions& directions) {
       return isCollapsed(centroid(l, directions));

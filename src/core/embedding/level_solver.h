@@ -43,7 +43,8 @@ public:
   struct Solution {
     double relative_tolerance;        ///< of the residual in units of each node's mean edge
     std::optional<double> tolerance;  ///< of the mean tangential Laplacian [radius]
-    bool has_barrier = false;         ///< keeps the embedding from collapsing
+    /// Sets the strength of a barrier that keeps the embedding from collapsing; nullptr: none.
+    const Positions* barrier_of = nullptr;
     /// Called with (iteration, residual) before each step; throws to end the work.
     std::function<void(int, double)> progress;
   };

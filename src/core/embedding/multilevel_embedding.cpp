@@ -120,13 +120,17 @@ private:
     return best;
   }
 
-  /// Solves a planar start.
+  /// Solves a planar start. Its barrier is that of the start before the sweeps, which is stronger:
+  /// with that after them, a cut penguin has 42 intersections instead of 12 (mean of five seeds).
   void solveStart(const std::function<void(int, double)>& progress, Positions& u) {
+    const Positions planar = u;
     levels_.smooth(attempt_.level, kStartSweeps, {}, u);
     LevelReport& work = result_.report.levels[attempt_.level];
     work.sweeps = kStartSweeps;
-    levels_.solve(attempt_.level,
-                  {kStartTolerance, std::nullopt, hasBarrier(attempt_.level), progress}, u, work);
+    levels_.solve(
+        attempt_.level,
+        {kStartTolerance, std::nullopt, hasBarrier(attempt_.level) ? &planar : nullptr, progress},
+        u, work);
   }
 
   /// Takes the embedding to the next finer level.
@@ -151,8 +155,8 @@ private:
       reportFraction(report_, 0.0);
       record(l, EmbeddingStep::Newton, iteration, residual, u);
     };
-    return levels_.solve(l, {relative_tolerance, tolerance, hasBarrier(l), progress}, u,
-                         result_.report.levels[l]);
+    return levels_.solve(l, {relative_tolerance, tolerance, hasBarrier(l) ? &u : nullptr, progress},
+                         u, result_.report.levels[l]);
   }
 
   /// Whether there is a barrier on a level. A graph without coarser levels has it as its start.
@@ -198,7 +202,7 @@ std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int star
   const auto few = static_cast<std::size_t>(starts);
   std::vector<EmbeddingAttempt> attempts = {
       {coarsest, EmbeddingBarrier::None, few, few},
-      {coarsest, EmbeddingBarrier::CoarseLevels, kBarrierRounds * few, 1}};
+      {coarsest, EmbeddingBarrier::CoarseLevels, kBarrierRounds * few, few}};
   for (std::size_t l = coarsest; l-- > 0 && levels.graph(l).size() <= kMaxStartSize;)
     attempts.push_back({l, EmbeddingBarrier::None, few, 1});
   attempts.push_back({coarsest, EmbeddingBarrier::Everywhere, few, few});
