@@ -1,7 +1,7 @@
 #include "mesh_intersections.h"
 
 #include "indexed.h"
-#include "self_intersection_of_fans.h"
+#include "spherical_param/self_intersection.h"
 
 namespace spherical_param::internal {
 
@@ -15,7 +15,14 @@ std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
       surface.push_back(t);
     }
   triangles.conservativeResize(3, static_cast<Eigen::Index>(surface.size()));
-  auto pairs = findSelfIntersections(mesh.points(), triangles, {}, mesh.threads(), report);
+  Execution execution;
+  execution.threads = mesh.threads();
+  if (report)
+    execution.progress = [&](const Progress& progress) {
+      report(progress.fraction);
+      return true;
+    };
+  auto pairs = findSelfIntersections(mesh.points(), triangles, execution);
   for (auto& [t, u] : pairs) {
     t = surface[t];
     u = surface[u];

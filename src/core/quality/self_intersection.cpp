@@ -5,7 +5,6 @@
 #include "power_of_two.h"
 #include "progress.h"
 #include "radix_sort.h"
-#include "self_intersection_of_fans.h"
 #include "space_filling_curve.h"
 #include "spherical_param/errors.h"
 #include "triangle_pair.h"
@@ -40,11 +39,8 @@ using Pairs = std::vector<std::array<Index, 2>>;
 class Mesh {
 public:
   /// \param scale a power of two; coordinates times it are at most 1.
-  /// \param fans for each point, whether it is known that the triangles around it do not
-  /// intersect; none: nothing is known.
-  Mesh(const Positions& points, const Triangles& triangles, double scale,
-       const std::vector<std::uint8_t>& fans)
-      : points_(points), triangles_(triangles), scale_(scale), fans_(fans) {}
+  Mesh(const Positions& points, const Triangles& triangles, double scale)
+      : points_(points), triangles_(triangles), scale_(scale) {}
 
   std::size_t size() const { return static_cast<std::size_t>(triangles_.cols()); }
 
@@ -52,23 +48,6 @@ public:
   Face face(Index triangle) const {
     const std::array<Vector3d, 3> at = corners(triangle);
     return {at, boxOf(at).size(), vertices(triangle), triangle};
-  }
-  /// The triangle's vertices whose triangles are known not to intersect, and -1 for the others.
-  std::array<Index, 3> centersOfFans(Index triangle) const {
-    std::array<Index, 3> centers = vertices(triangle);
-    for (Index& v : centers)
-      if (fans_.empty() || fans_[static_cast<std::size_t>(v)] == 0)
-        v = -1;
-    return centers;
-  }
-  /// Whether a triangle has one of some vertices.
-  bool hasAny(Index triangle, const std::array<Index, 3>& of) const {
-    // Without branches: it depends on chance how many are equal.
-    unsigned equal = 0;
-    for (const Index v : vertices(triangle))
-      for (const Index w : of)
-        equal |= static_cast<unsigned>(v == w);
-    return equal != 0;
   }
 
 private:
@@ -84,7 +63,6 @@ private:
   const Positions& points_;
   const Triangles& triangles_;
   double scale_;
-  const std::vector<std::uint8_t>& fans_;
 };
 
 /// The box of some triangles, and the sum of their sizes.
@@ -201,14 +179,13 @@ void TriangleTree::findPairs(std::size_t block, Pairs& pairs) const {
   struct Own {
     Face face;
     Plane plane;
-    std::array<Index, 3> fans;
   };
   std::vector<Own> own;
   own.reserve(BoxTree::kBlock);
   const std::size_t begin = block * BoxTree::kBlock;
   for (std::size_t i = begin; i < std::min(order_.size(), begin + BoxTree::kBlock); ++i) {
     const Face face = mesh_.face(order_[i]);
-    own.push_back({face, Plane(face), mesh_.centersOfFans(order_[i])});
+    own.push_back({face, Plane(face)});
   }
   if (begin < large_) {
     for (std::size_t i = 0; i < own.size(); ++i)
@@ -216,10 +193,7 @@ void TriangleTree::findPairs(std::size_t block, Pairs& pairs) const {
     return;
   }
   tree_.forEachPair(block, [&](std::size_t i, std::size_t j) {
-    const auto& [a, plane, fans] = own[i - begin];
-    // Most are neighbours of which that is known.
-    if (mesh_.hasAny(order_[j], fans))
-      return;
+    const auto& [a, plane] = own[i - begin];
     const Face b = j - begin < own.size() ? own[j - begin].face : mesh_.face(order_[j]);
     if (intersect(a, plane, b))
       append(a, b, pairs);
@@ -290,22 +264,15 @@ Pairs pairsWithin(const TriangleTree& tree, int threads, const FractionReport& r
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {
-  return internal::findSelfIntersections(points, triangles, {}, execution.threads,
-                                         internal::reportOf(execution, "intersections"));
-}
-
-std::vector<std::array<Index, 2>>
-internal::findSelfIntersections(const Positions& points, const Triangles& triangles,
-                                const std::vector<std::uint8_t>& fans, int requested_threads,
-                                const FractionReport& report) {
-  checkThreads(requested_threads);
-  const Mesh mesh(points, triangles, checkedScale(points, triangles), fans);
+  internal::checkThreads(execution.threads);
+  const Mesh mesh(points, triangles, checkedScale(points, triangles));
   std::vector<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
   if (all.empty())
     return {};
   const int threads =
-      internal::threadCount(requested_threads, all.size(), internal::kParallelThreshold);
+      internal::threadCount(execution.threads, all.size(), internal::kParallelThreshold);
+  const FractionReport report = internal::reportOf(execution, "intersections");
   const TriangleTree tree(mesh, all, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);
   std::sort(pairs.begin(), pairs.end());
@@ -317,8 +284,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const std::vector<Index>& of,
                                                           const Execution& execution) {
   internal::checkThreads(execution.threads);
-  const std::vector<std::uint8_t> no_fans;
-  const Mesh mesh(points, triangles, checkedScale(points, triangles), no_fans);
+  const Mesh mesh(points, triangles, checkedScale(points, triangles));
   std::vector<char> in_set(mesh.size(), 0);
   for (const Index t : of) {
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
