@@ -24,7 +24,7 @@ struct Progress {
 struct Execution {
   int threads = 0;  ///< 0: one for each processor; [0, 1024]
   /// Called at least every second during long work, from the calling thread only; may be empty.
-  /// Returning false ends the work with Cancelled. qhull, a tolerance for the multilevel embedding
+  /// Returning false ends the work with Cancelled. The convex hull of Method::Paper, a tolerance
   /// and smoothing may take longer between two calls.
   std::function<bool(const Progress&)> progress = {};
   /// Wall time after which the work ends with the best mesh so far [s]; [0, 1e9]. Unset: no limit.

@@ -59,7 +59,7 @@ const OptionRow& findOption(const std::string& name);
 /// \throw InvalidInput for an unknown name, or a value of another kind or out of range.
 void setOption(Options& options, const std::string& name, const OptionValue& value);
 
-/// The range of an option in words, such as "an integer from 3 up" or "delaunay or knn".
+/// The range of an option in words, such as "an integer from 3 up" or "default or paper".
 ///
 /// \param row of the option.
 /// \return the words.

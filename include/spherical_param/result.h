@@ -145,7 +145,7 @@ enum class StopReason {
 enum class EmbeddingBarrier {
   None,          ///< nowhere: it holds by itself
   CoarseLevels,  ///< on all levels but the graph itself
-  Everywhere,    ///< on the graph itself, too: the tangential Laplacian does not vanish
+  Everywhere,    ///< on all levels that are solved
 };
 
 /// Work on one level of the embedding.

@@ -204,6 +204,10 @@ TEST(Reconstruct, AskingForDetailsChangesNoBit) {
     EXPECT_EQ(alone.self_intersections, seen.self_intersections);
     EXPECT_EQ(alone.verdict, seen.verdict);
     EXPECT_EQ(alone.embedding.residual, seen.embedding.residual);
+    EXPECT_EQ(alone.embedding.iterations, seen.embedding.iterations);
+    for (std::size_t l = 0; l < alone.embedding.levels.size(); ++l)
+      EXPECT_EQ(alone.embedding.levels[l].newton_iterations,
+                seen.embedding.levels[l].newton_iterations);
   }
 }
 

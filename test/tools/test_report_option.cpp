@@ -113,15 +113,14 @@ TEST_F(ReportOption, PageLoadsNothingAndHoldsTheReportOfJson) {
   EXPECT_EQ(page.data["tool"]["name"], "pcl_spherical_param_reconstruction");
   EXPECT_EQ(
       shellWords(page.data["command"]),
-      (Words{"pcl_spherical_param_reconstruction", input, output, "-starts", "7", "-smoothing",
-             "2", "-seed", "1", "-report", "page.HTML", "-json", "report.json", "-quiet"}));
+      (Words{"pcl_spherical_param_reconstruction", input, output, "-starts", "7", "-smoothing", "2",
+             "-seed", "1", "-report", "page.HTML", "-json", "report.json", "-quiet"}));
 }
 
 TEST_F(ReportOption, ItsCommandRepeatsTheRun) {
   write("-it's in.ply", content("in.ply"));
-  for (const Words& options :
-       {Words{"-seed", "3", "-outliers", "9"},
-        Words{"-method", "paper", "-max-iterations", "20"}}) {
+  for (const Words& options : {Words{"-seed", "3", "-outliers", "9"},
+                               Words{"-method", "paper", "-max-iterations", "20"}}) {
     tool(tool_test::with(options,
                          {"-report", "page.html", "-quiet", "--", "-it's in.ply", "out.ply"}));
     const Page first = decodedPage(content("page.html"));

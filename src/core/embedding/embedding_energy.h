@@ -33,8 +33,6 @@ public:
   /// masses would fold limbs of tiny area on the sphere.
   void addBarrier(const Positions& u);
 
-  bool hasBarrier() const { return masses_.size() > 0; }
-
   double value(const Positions& u) const;
 
   /// How far an embedding is from a critical point: means over the nodes.
@@ -56,7 +54,6 @@ public:
 
   /// Second derivatives along geodesics, in tangent bases.
   struct Hessian {
-
     BlockMatrix matrix;         ///< positive semi-definite part, in the pattern of the graph
     Eigen::VectorXd curvature;  ///< n entries: matrix - diag(curvature) is the Hessian ...
     Eigen::Matrix3d barrier;    ///< ... with this in the centroid of the ambient vectors, if any

@@ -15,7 +15,7 @@ namespace {
 /// times as long.
 constexpr std::size_t kMaxDirectSize = 2000;
 
-/// The share of each node in the area of the surface.
+/// The fraction of the surface's area of each node.
 Eigen::VectorXd areasOf(const Graph& graph) {
   Eigen::VectorXd areas(static_cast<Eigen::Index>(graph.size()));
   for (std::size_t i = 0; i < graph.size(); ++i) {

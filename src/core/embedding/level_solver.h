@@ -58,7 +58,7 @@ private:
   const Graph& graph_;
   const GraphHierarchy& hierarchy_;
   int threads_;
-  std::vector<Eigen::VectorXd> masses_;  ///< the share of each node of each level in the surface
+  std::vector<Eigen::VectorXd> masses_;  ///< the fraction of the surface of each node of each level
 };
 
 }  // namespace spherical_param::internal

@@ -13,8 +13,8 @@ namespace spherical_param::internal {
 struct EmbeddingAttempt {
   std::size_t level;         ///< on which it starts: 0 is the graph itself
   EmbeddingBarrier barrier;  ///< where it has one
-  std::size_t starts;        ///< at most so many are tried
-  std::size_t compared;      ///< the best of so many that are accepted is kept
+  std::size_t starts;        ///< maximum number of starts
+  std::size_t compared;      ///< number of accepted starts of which the best is kept
 };
 
 /// The attempts at an embedding, in the order in which they are made.
@@ -24,15 +24,13 @@ struct EmbeddingAttempt {
 ///    graphs of a few nodes and with wide gaps, on which all starts collapse.
 /// 3. Starts on finer and finer levels: the fewer nodes are around a limb, the easier the sphere
 ///    slips off it.
-/// 4. The barrier also on the graph itself, whatever comes of it.
+/// 4. The barrier also on the graph itself, however hard it pulls.
 std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int starts);
 
 /// An embedding from coarse to fine. \see embed
 ///
-/// \param history whose states are recorded, see EmbeddingOptions.
-/// \return the embedding of the first attempt that is accepted; EmbeddingReport::attempt says
-/// which.
-///         Without columns if none is.
+/// \return the embedding of the first attempt that is accepted; `start_level` and `barrier` of its
+///         report say which. Without columns if none is.
 Embedding embedByLevels(const Graph& graph, const GraphHierarchy& hierarchy,
                         const EmbeddingOptions& options, const Execution& execution);
 

@@ -15,7 +15,6 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -68,9 +67,10 @@ public:
   /// grants.
   void run(std::size_t count, std::size_t helpers, const std::function<void(std::size_t)>& task) {
     try {
-      while (threads_.size() < helpers)
+      while (threads_.size() < std::min(helpers, most_))
         threads_.emplace_back([this, number = threads_.size() + 1] { help(number); });
-    } catch (const std::system_error&) {
+    } catch (const std::exception&) {  // no thread, or no memory for one
+      most_ = threads_.size();
     }
     std::unique_lock lock(mutex_);
     count_ = count;
@@ -123,6 +123,7 @@ private:
   }
 
   const pid_t process_ = getpid();
+  std::size_t most_ = kMaxThreads;  ///< threads that the system grants
   std::vector<std::thread> threads_;
   std::atomic<std::size_t> next_{0};  ///< task to begin
   std::mutex mutex_;                  ///< guards what follows

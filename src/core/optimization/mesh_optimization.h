@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,8 +68,8 @@ struct MeshOptimization {
 /// - untangle: the same with up to 96 vertices around intersecting triangles, by energy, then by
 /// the
 ///   number of intersections that are left after flips
-/// - polish: flips and relocation with an energy that suits the sampling; then untangles again, or
-///   goes back to the mesh before
+/// - polish: flips, and relocation where the sampling is not even, with an energy that suits the
+///   sampling; then untangles again, or goes back to the mesh before
 ///
 /// If the sampling follows the surface's curvature (simplified and designed models) or is random,
 /// the polish has angle^1.5 and mu = 0.8. Otherwise (scans, even samplings) angles count beyond 10

@@ -20,8 +20,6 @@ public:
   /// \param openings to be left open.
   OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings);
 
-  bool areAny() const { return !rim_edges_.empty(); }
-
   /// The opening under a triangle, as an index of `openings`: its loop is nearest to most of the
   /// vertices. Empty: no opening.
   std::optional<std::size_t> openingOver(Index a, Index b, Index c) const;

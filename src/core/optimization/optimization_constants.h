@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 
 /// All tuned constants of the optimisation, each with the experiment that set it.
@@ -106,12 +105,12 @@ constexpr int kMaxUnfoldingRounds = 5;
 constexpr std::size_t kMinRuin = 4;
 constexpr std::size_t kMaxRuin = 32;
 /// Maximum work of all repairs [vertices taken out and put back]: the first, plus the second for
-/// each point. A search for two flips counts as the third, because it takes as long. A vertex takes
-/// 10 to 16 us, a point of the first mesh some 20: on 112 clouds repairs took at most 9 times as
-/// long as all the rest. With 1 for the third, subsampled and cut clouds take more than twice as
-/// long. With a first of 2,000 a tube from a bad start keeps its spikes. 49 of the
-/// 56 runs below end without intersections, with 5 for each point 44, in 0.9 times as long, with
-/// 5,000 and 5, 40.
+/// each point. A search for two flips counts as the third in addition, because it takes as long. A
+/// vertex takes 10 to 16 us, a point of the first mesh some 20: on 112 clouds repairs took at most
+/// 9 times as long as all the rest. With 1 for the third, subsampled and cut clouds take more than
+/// twice as long. With a first of 2,000 a tube from a bad start keeps its spikes. 49 of the 56 runs
+/// below end without intersections, with 5 for each point 44, in 0.9 times as long, with 5,000 and
+/// 5, 40.
 constexpr std::size_t kMaxWork = 10000;
 constexpr std::size_t kMaxWorkOfPoint = 10;
 constexpr std::size_t kWorkOfTwoFlips = 8;

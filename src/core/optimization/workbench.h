@@ -7,7 +7,6 @@
 #include "open_places.h"
 #include "progress.h"
 #include "ruin_and_recreate.h"
-#include "sampling_analysis.h"
 #include "spherical_param/execution.h"
 
 #include <chrono>

@@ -9,8 +9,8 @@
 
 /// The method as published: M. Zwicker and C. Gotsman, "Meshing Point Clouds Using Spherical
 /// Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Its three steps are the
-/// three functions. Nothing of the default method is in them, so that each can be judged by the
-/// other.
+/// three functions. They share equation 2 and the damped sweep with the default method, and its
+/// exact triangulation where qhull leaves out points.
 namespace spherical_param::internal::paper {
 
 /// Section 3: the k-nearest-neighbour graph. Its components are joined along their minimum spanning

@@ -41,8 +41,9 @@ TEST(SphereTriangulation, IsTheConvexHullOfRandomPoints) {
       const Positions points = randomSphere(n, seed);
       const Triangles result = triangulateSphere(points);
       expectSound(points, result);
-      if (n == 40)
+      if (n == 40) {
         EXPECT_EQ(test::canonical(result), bruteForceHull(points));
+      }
     }
 }
 
