@@ -129,7 +129,7 @@ TEST(OpenMesh, PutsManyVerticesIntoALargeFlatSurface) {
   openings.openings.emplace_back().loop = loop;
   const Triangles surface = internal::surfaceOf(
       internal::openMesh(points, triangles, OpenPlaces(points, graph, openings)));
-  const MeshTopology topology = checkTopology(surface, points.cols());
+  const MeshTopology topology = checkTopology(surface, static_cast<std::size_t>(points.cols()));
   EXPECT_TRUE(topology.manifold());
   EXPECT_TRUE(topology.unused_vertices.empty());
   // A few vertices find no such triangle, or cannot be taken out: theirs cross many.
