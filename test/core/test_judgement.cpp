@@ -118,7 +118,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
         marks.begin(), marks.end(), [bit](std::uint8_t mark) { return (mark & bit) != 0; }));
   };
   const Positions rough = test::noisySphere(300, 1.0);
-  const Surface tangled = mesh(rough, watched());
+  const Surface tangled = mesh(rough, watched(quick()));
   std::set<Index> intersecting;
   for (const auto& pair : tangled.self_intersections)
     intersecting.insert(pair.begin(), pair.end());

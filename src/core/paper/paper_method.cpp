@@ -27,9 +27,9 @@ std::vector<Index> nearestOf(const Positions& points, const NeighborLists& lists
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   candidates.resize(std::min(candidates.size(), static_cast<std::size_t>(k)));
-  std::vector<Index> nearest;
-  for (const auto& [distance, j] : candidates)
-    nearest.push_back(j);
+  std::vector<Index> nearest(candidates.size());
+  std::transform(candidates.begin(), candidates.end(), nearest.begin(),
+                 [](const auto& candidate) { return candidate.second; });
   return nearest;
 }
 
