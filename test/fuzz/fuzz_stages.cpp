@@ -1,6 +1,7 @@
 // Every public function but reconstruct(): the first byte picks one. It is given any arguments.
 
 #include "fuzz_stages.h"
+#include "paper_method.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/reconstruct.h"
