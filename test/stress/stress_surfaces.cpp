@@ -125,12 +125,10 @@ void checkOpenings(const std::vector<Opening>& all, const Truth& truth, double s
       complaints.push_back("an opening was found " + std::to_string(hits[i]) + " times");
 }
 
-Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options, bool quick) {
+Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options) {
   // Rounded as by a file.
   const Positions points = generateScan(scan_options).points.cast<float>().cast<double>();
-  Options options;
-  if (quick && truth.kind != SurfaceKind::ClosedGenus0 && truth.openings.empty())
-    options.time_limit = 0.0;  // all of the optimisation takes long in vain
+  const Options options;
   const Surface result = reconstruct(points, options).surface();
   const SurfaceDiagnosis& found = result.diagnosis;
   Complaints complaints;
@@ -180,7 +178,7 @@ int main(int argc, char** argv) {
         options.noise = noise;
         options.seed = arguments.seed;
         ++tried;
-        for (const std::string& complaint : complaintsAbout(truth, options, arguments.quick)) {
+        for (const std::string& complaint : complaintsAbout(truth, options)) {
           ++found;
           std::printf("%s, %zu points, noise %g: %s\n", shape.name.c_str(), points, noise,
                       complaint.c_str());
