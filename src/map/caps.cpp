@@ -170,7 +170,7 @@ OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
                        const std::function<bool(const Vector3d&)>& is_open) {
   const auto count = static_cast<std::size_t>(directions.cols());
   std::vector<Side> sides(count, Side::Surface);
-  forEachItem(count, threadCount(0, count, kParallelThreshold), [&](std::size_t, std::size_t i) {
+  forEachItem(count, threadCount(0, count), [&](std::size_t, std::size_t i) {
     if (is_open(directions.col(static_cast<Eigen::Index>(i))))
       sides[i] = Side::Open;
   });

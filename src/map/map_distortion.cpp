@@ -258,7 +258,7 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
   checkPositions(points, triangles, sphere);
   MapDistortion distortion;
   const auto m = static_cast<std::size_t>(triangles.cols());
-  threads = internal::threadCount(threads, m, internal::kParallelThreshold);
+  threads = internal::threadCount(threads, m);
   if (m == 0)
     return distortion;
   const double extent = points.cwiseAbs().maxCoeff();

@@ -357,7 +357,7 @@ private:
   void findCandidates(Index most_neighbors) {
     constexpr Index none = -1;
     found_.resize(alive_.size());
-    const int threads = threadCount(requested_threads_, alive_.size(), kParallelThreshold);
+    const int threads = threadCount(requested_threads_, alive_.size());
     forEachBlock(alive_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
       std::vector<Index> ring;
       for (std::size_t i = begin; i < end; ++i) {
@@ -499,7 +499,7 @@ private:
 MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
                                const FractionReport& report) {
   const auto n = static_cast<std::size_t>(points.cols());
-  const int most = threadCount(threads, n, kParallelThreshold);
+  const int most = threadCount(threads, n);
   // Squares of lengths are in the range of double, whatever the unit.
   const Vector3d center = 0.5 * points.rowwise().minCoeff() + 0.5 * points.rowwise().maxCoeff();
   const double extent = (points.colwise() - center).cwiseAbs().maxCoeff();

@@ -295,7 +295,7 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
                     const std::vector<float>& masses, Index vertex_count, int requested) {
   const auto n = static_cast<std::size_t>(vertex_count);
   const auto m = static_cast<std::size_t>(triangles.cols());
-  const int threads = threadCount(requested, n, kParallelThreshold);
+  const int threads = threadCount(requested, n);
   std::vector<std::array<float, 3>> cotangents(m);
   forEachItem(m, threads, [&](std::size_t, std::size_t i) {
     const auto t = static_cast<Eigen::Index>(i);
@@ -399,7 +399,7 @@ template <typename Term>
 double sumOverTriangles(const Positions& sphere, const MapRows& rows, int requested,
                         const Term& term) {
   const std::size_t n = rows.vertices.size();
-  const int threads = threadCount(requested, n, kParallelThreshold);
+  const int threads = threadCount(requested, n);
   return sumOfBlocks(
              n, threads, 0.0,
              [&](std::size_t begin, std::size_t end) {

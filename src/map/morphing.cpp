@@ -261,17 +261,16 @@ void cutOpenings(const OpenPart& open, MorphResult& morph) {
 Positions positionsAt(const SphereSurface& surface, const std::vector<SphereLocation>& places,
                       int threads) {
   Positions positions(3, static_cast<Eigen::Index>(places.size()));
-  internal::forEachItem(
-      places.size(), internal::threadCount(threads, places.size(), internal::kParallelThreshold),
-      [&](std::size_t, std::size_t i) {
-        const SphereLocation& place = places[i];
-        Eigen::Index corner = 0;
-        const bool is_vertex = place.weights.maxCoeff(&corner) == 1.0;
-        positions.col(static_cast<Eigen::Index>(i)) =
-            is_vertex
-                ? Eigen::Vector3d(surface.points().col(surface.triangles()(corner, place.triangle)))
-                : surface.evaluate(place).position;
-      });
+  internal::forEachItem(places.size(), internal::threadCount(threads, places.size()),
+                        [&](std::size_t, std::size_t i) {
+                          const SphereLocation& place = places[i];
+                          Eigen::Index corner = 0;
+                          const bool is_vertex = place.weights.maxCoeff(&corner) == 1.0;
+                          positions.col(static_cast<Eigen::Index>(i)) =
+                              is_vertex ? Eigen::Vector3d(surface.points().col(
+                                              surface.triangles()(corner, place.triangle)))
+                                        : surface.evaluate(place).position;
+                        });
   return positions;
 }
 
@@ -422,8 +421,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     internal::reportFraction(report, 0.0);
     internal::SphereOverlay overlay = internal::overlaySpheres(
         first.sphere(), first.triangles(), sphere, second.triangles(), partner,
-        internal::threadCount(options.threads, static_cast<std::size_t>(sphere.cols()),
-                              internal::kParallelThreshold));
+        internal::threadCount(options.threads, static_cast<std::size_t>(sphere.cols())));
     internal::reportFraction(report, 0.0);
     morph.first_places = std::move(overlay.first);
     morph.second_places = std::move(overlay.second);

@@ -284,23 +284,21 @@ SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std:
   SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
                        Positions(3, static_cast<Eigen::Index>(count)),
                        std::vector<SphereLocation>(count)};
-  internal::forEachItem(count, internal::threadCount(0, count, internal::kParallelThreshold),
-                        [&](std::size_t, std::size_t i) {
-                          const double place = (static_cast<double>(i) + random.at(3 * i)) /
-                                               static_cast<double>(count) * sums.back();
-                          // The last triangle that begins at or before the place: one with an area.
-                          const auto next =
-                              std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
-                          SphereLocation location;
-                          location.triangle = static_cast<Index>(next - sums.begin() - 1);
-                          const double root = std::sqrt(random.at(3 * i + 1));
-                          const double fraction = random.at(3 * i + 2);
-                          location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
-                          const SurfaceSample sample = surface.evaluate(location);
-                          result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
-                          result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
-                          result.locations[i] = location;
-                        });
+  internal::forEachItem(count, internal::threadCount(0, count), [&](std::size_t, std::size_t i) {
+    const double place =
+        (static_cast<double>(i) + random.at(3 * i)) / static_cast<double>(count) * sums.back();
+    // The last triangle that begins at or before the place: one with an area.
+    const auto next = std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
+    SphereLocation location;
+    location.triangle = static_cast<Index>(next - sums.begin() - 1);
+    const double root = std::sqrt(random.at(3 * i + 1));
+    const double fraction = random.at(3 * i + 2);
+    location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
+    const SurfaceSample sample = surface.evaluate(location);
+    result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
+    result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
+    result.locations[i] = location;
+  });
   return result;
 }
 
@@ -465,8 +463,8 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   options.threads = threads;
   auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
-  const int workers = internal::threadCount(
-      threads, static_cast<std::size_t>(mesh.triangles.cols()), internal::kParallelThreshold);
+  const int workers =
+      internal::threadCount(threads, static_cast<std::size_t>(mesh.triangles.cols()));
   if (checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), workers)
           .isOpenSurface())
     return result;
@@ -575,8 +573,7 @@ ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
   point(f, f) = 0.25 * ((at(f, f) + at(-f, f)) + (at(f, -f) + at(-f, -f)));
 
   const auto count = static_cast<std::size_t>(n);
-  const internal::CornerTable corners(
-      mesh.triangles, count, internal::threadCount(0, count, internal::kParallelThreshold));
+  const internal::CornerTable corners(mesh.triangles, count, internal::threadCount(0, count));
   mesh.normals = internal::vertexNormals(mesh.points, mesh.triangles, mesh.directions, corners, 0);
   return mesh;
 }

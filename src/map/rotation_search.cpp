@@ -142,7 +142,7 @@ class PositionTable {
 public:
   PositionTable(const UnitSurface& surface, int threads)
       : positions_(static_cast<std::size_t>(kSide * kSide)) {
-    forEachItem(positions_.size(), threadCount(threads, positions_.size(), kParallelThreshold),
+    forEachItem(positions_.size(), threadCount(threads, positions_.size()),
                 [&](std::size_t, std::size_t i) {
                   const std::size_t row = i / kSide;
                   const std::size_t column = i % kSide;
@@ -249,7 +249,7 @@ public:
     const std::size_t count = of_first_.size();
     const double weight = 0.5 / static_cast<double>(count);
     LocalModel model = sumOfBlocks(
-        2 * count, threadCount(threads, 2 * count, kParallelThreshold), LocalModel(),
+        2 * count, threadCount(threads, 2 * count), LocalModel(),
         [&](std::size_t begin, std::size_t end) {
           LocalModel part;
           Eigen::Matrix3d by_direction;
@@ -334,21 +334,19 @@ std::vector<RankedRotation> rankRotations(const UnitSurface& first, const UnitSu
   const PositionTable table_second(second, threads);
   const Problem coarse(first, second, kCoarseSamples);
   std::vector<RankedRotation> candidates(kRotations);
-  forEachItem(
-      kRotations, threadCount(threads, kRotations, kParallelThreshold),
-      [&](std::size_t, std::size_t i) {
-        const Eigen::Matrix3d rotation = rotationOf(i);
-        double sum = 0.0;
-        for (const Sample& sample : coarse.ofFirst())
-          sum += (table_second.at(rotation * sample.direction) - sample.position).squaredNorm();
-        for (const Sample& sample : coarse.ofSecond())
-          sum += (table_first.at(rotation.transpose() * sample.direction) - sample.position)
-                     .squaredNorm();
-        double error = 0.5 * sum / static_cast<double>(kCoarseSamples);
-        for (const auto& [from, to] : pairs)
-          error += (rotation * from - to).squaredNorm() / static_cast<double>(pairs.size());
-        candidates[i] = {error, i};
-      });
+  forEachItem(kRotations, threadCount(threads, kRotations), [&](std::size_t, std::size_t i) {
+    const Eigen::Matrix3d rotation = rotationOf(i);
+    double sum = 0.0;
+    for (const Sample& sample : coarse.ofFirst())
+      sum += (table_second.at(rotation * sample.direction) - sample.position).squaredNorm();
+    for (const Sample& sample : coarse.ofSecond())
+      sum +=
+          (table_first.at(rotation.transpose() * sample.direction) - sample.position).squaredNorm();
+    double error = 0.5 * sum / static_cast<double>(kCoarseSamples);
+    for (const auto& [from, to] : pairs)
+      error += (rotation * from - to).squaredNorm() / static_cast<double>(pairs.size());
+    candidates[i] = {error, i};
+  });
   std::sort(candidates.begin(), candidates.end());
   return candidates;
 }
@@ -397,7 +395,7 @@ Eigen::Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& 
   std::vector<std::pair<double, Eigen::Matrix3d>> ends(starts.size());
   {
     const Problem medium(unit_first, unit_second, kMediumSamples);
-    const int used = threadCount(threads, starts.size() * kMediumSamples, kParallelThreshold);
+    const int used = threadCount(threads, starts.size() * kMediumSamples);
     forEachTask(starts.size(), used,
                 [&](std::size_t i) { ends[i] = medium.descend(starts[i], pairs, 1); });
   }

@@ -190,7 +190,7 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
   };
 
   std::vector<double> weights(n);
-  forEachItem(n, threadCount(threads, n, kParallelThreshold), [&](std::size_t, std::size_t i) {
+  forEachItem(n, threadCount(threads, n), [&](std::size_t, std::size_t i) {
     double sum = 0.0;
     for_each_near(i, [&](std::size_t, double weight) { sum += weight; });
     weights[i] = sum;

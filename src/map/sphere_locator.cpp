@@ -59,7 +59,7 @@ SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles
   std::iota(order_.begin(), order_.end(), Index{0});
   boxes_.resize(std::size_t{2} << levels_);
   Positions centers(3, triangles.cols());
-  threads = threadCount(threads, count, kParallelThreshold);
+  threads = threadCount(threads, count);
   forEachBlock(count, threads, [&](std::size_t, std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const auto t = static_cast<Eigen::Index>(i);

@@ -259,8 +259,7 @@ private:
 
   void insert(Index first, Index end) {
     const auto count = static_cast<std::size_t>(end - first);
-    const int threads =
-        internal::threadCount(options_.threads, count, internal::kParallelThreshold);
+    const int threads = internal::threadCount(options_.threads, count);
     std::atomic<Index> failed{0};
     internal::forEachBlock(count, threads, [&](std::size_t, std::size_t begin, std::size_t stop) {
       Insertion work;

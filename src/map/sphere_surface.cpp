@@ -66,7 +66,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
                        "openings; see checkTopology()");
 
   const auto count = static_cast<std::size_t>(triangles.cols());
-  const int workers = internal::threadCount(threads, count, internal::kParallelThreshold);
+  const int workers = internal::threadCount(threads, count);
   struct Covering {
     double angle = 0.0;
     std::size_t flipped = 0;
@@ -106,8 +106,7 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
 double areaOf(const Positions& points, const Eigen::Ref<const Triangles>& triangles, int threads) {
   const auto count = static_cast<std::size_t>(triangles.cols());
   return internal::sumOfBlocks(
-      count, internal::threadCount(threads, count, internal::kParallelThreshold), 0.0,
-      [&](std::size_t begin, std::size_t end) {
+      count, internal::threadCount(threads, count), 0.0, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t i = begin; i < end; ++i) {
           const auto t = static_cast<Eigen::Index>(i);
@@ -131,7 +130,7 @@ struct SphereSurface::Data {
         area(areaOf(points, triangles.leftCols(mesh_triangles), thread_limit)),
         locator(sphere, triangles, thread_limit) {
     const auto count = static_cast<std::size_t>(points.cols());
-    const int threads = internal::threadCount(thread_limit, count, internal::kParallelThreshold);
+    const int threads = internal::threadCount(thread_limit, count);
     // Caps have no say in what the surface is like at their loops.
     const internal::CornerTable corners(triangles.leftCols(mesh_triangles), count, threads);
     normals = internal::vertexNormals(points, triangles, sphere, corners, thread_limit);
@@ -285,8 +284,7 @@ SurfaceSamples SphereSurface::evaluate(const Positions& directions) const {
   samples.normals.resize(3, directions.cols());
   samples.locations.resize(count);
   internal::forEachItem(
-      count, internal::threadCount(data_->thread_limit, count, internal::kParallelThreshold),
-      [&](std::size_t, std::size_t i) {
+      count, internal::threadCount(data_->thread_limit, count), [&](std::size_t, std::size_t i) {
         const auto column = static_cast<Eigen::Index>(i);
         const internal::SphereHit hit = data_->locator.locate(directions.col(column));
         samples.locations[i] = {hit.triangle, hit.weights};

@@ -111,7 +111,7 @@ std::ptrdiff_t planPaths(std::vector<Path>& paths, const std::vector<std::size_t
   };
   std::vector<double> conflicts(n);
   const auto examine = [&] {
-    const int used = threadCount(threads, n * n, kParallelThreshold);
+    const int used = threadCount(threads, n * n);
     forEachTask(n, used, [&](std::size_t i) { conflicts[i] = conflict_of(i); });
     return std::max_element(conflicts.begin(), conflicts.end()) - conflicts.begin();
   };
@@ -240,7 +240,7 @@ public:
   std::vector<Index> flipped(const Positions& sphere, int threads) const {
     const auto m = static_cast<std::size_t>(triangles_.cols());
     std::vector<std::vector<Index>> of_block((m + kBlockSize - 1) / kBlockSize);
-    forEachBlock(m, threadCount(threads, m, kParallelThreshold),
+    forEachBlock(m, threadCount(threads, m),
                  [&](std::size_t block, std::size_t begin, std::size_t end) {
                    for (std::size_t t = begin; t < end; ++t) {
                      const auto corners = triangles_.col(static_cast<Eigen::Index>(t));
@@ -380,8 +380,7 @@ std::pair<double, std::size_t> steepestOf(const Field& field, const Positions& p
   constexpr int around = 6;
   const std::size_t near_count = static_cast<std::size_t>(n) * (2 * around + 1);
   std::vector<double> slopes(near_count + static_cast<std::size_t>(spread.cols()));
-  forEachItem(slopes.size(),
-              threadCount(threads, slopes.size() * static_cast<std::size_t>(n), kParallelThreshold),
+  forEachItem(slopes.size(), threadCount(threads, slopes.size() * static_cast<std::size_t>(n)),
               [&](std::size_t, std::size_t s) {
                 if (s >= near_count) {
                   slopes[s] = field.slopeAt(spread.col(static_cast<Eigen::Index>(s - near_count)));
@@ -540,7 +539,7 @@ private:
   /// One step of all vertices.
   void carry(const Field& field) {
     const auto vertices = static_cast<std::size_t>(warp_.sphere.cols());
-    forEachItem(vertices, threadCount(threads_, vertices * active_.size(), kParallelThreshold),
+    forEachItem(vertices, threadCount(threads_, vertices * active_.size()),
                 [&](std::size_t, std::size_t v) {
                   const auto i = static_cast<Eigen::Index>(v);
                   const Eigen::Vector3d x = warp_.sphere.col(i);
@@ -591,15 +590,14 @@ private:
 
 Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads) {
   const auto m = static_cast<std::size_t>(triangles.cols());
-  return sumOfBlocks(m, threadCount(threads, m, kParallelThreshold), Index{0},
-                     [&](std::size_t begin, std::size_t end) {
-                       Index count = 0;
-                       for (std::size_t t = begin; t < end; ++t) {
-                         const auto corners = triangles.col(static_cast<Eigen::Index>(t));
-                         count += isFlipped(sphere, corners[0], corners[1], corners[2]) ? 1 : 0;
-                       }
-                       return count;
-                     });
+  return sumOfBlocks(m, threadCount(threads, m), Index{0}, [&](std::size_t begin, std::size_t end) {
+    Index count = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto corners = triangles.col(static_cast<Eigen::Index>(t));
+      count += isFlipped(sphere, corners[0], corners[1], corners[2]) ? 1 : 0;
+    }
+    return count;
+  });
 }
 
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,

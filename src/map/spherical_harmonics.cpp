@@ -250,8 +250,7 @@ private:
     }
   }
   int workers(int threads) const {
-    return internal::threadCount(threads, count() * static_cast<std::size_t>(around_),
-                                 internal::kParallelThreshold);
+    return internal::threadCount(threads, count() * static_cast<std::size_t>(around_));
   }
   template <typename Work>
   void forEachRing(int threads, const Work& work) const {

@@ -66,7 +66,7 @@ public:
     image_.width = widthOf(atlas.chart, options.height);
     image_.pixels.assign(3 * size(), 0);
     image_.covered.assign(size(), 0);
-    threads_ = internal::threadCount(options.threads, size(), internal::kParallelThreshold);
+    threads_ = internal::threadCount(options.threads, size());
   }
 
   /// \param color of a triangle and weights of its corners.

@@ -169,8 +169,7 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int
                        std::to_string(mesh.directions.cols()) +
                        " directions; give a mesh of resampleSurface()");
   internal::checkTriangles("untangle", mesh.triangles, n);
-  const int most =
-      internal::threadCount(threads, static_cast<std::size_t>(n), internal::kParallelThreshold);
+  const int most = internal::threadCount(threads, static_cast<std::size_t>(n));
   return Sliding(surface, mesh, most).run();
 }
 

@@ -56,7 +56,7 @@ VertexQuadrics::VertexQuadrics(const Positions& points, const Triangles& triangl
                                const Positions& normals, const CornerTable& corners, int threads)
     : points_(points), triangles_(triangles), normals_(normals),
       quadrics_(static_cast<std::size_t>(points.cols())) {
-  forEachBlock(quadrics_.size(), threadCount(threads, quadrics_.size(), kParallelThreshold),
+  forEachBlock(quadrics_.size(), threadCount(threads, quadrics_.size()),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  std::vector<Index> around;
                  for (std::size_t i = begin; i < end; ++i)

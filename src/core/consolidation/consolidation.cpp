@@ -211,7 +211,7 @@ class NoisyCloud {
 public:
   NoisyCloud(Positions points, const Execution& execution)
       : points_(std::move(points)), lists_(findNearestNeighbors(points_, kNeighbors, execution)),
-        threads_(internal::threadCount(execution.threads, size(), internal::kParallelThreshold)),
+        threads_(internal::threadCount(execution.threads, size())),
         report_(internal::reportOf(execution, "consolidation")),
         fits_(static_cast<std::size_t>(threads_)) {
     tryScales();

@@ -19,7 +19,7 @@ std::vector<TangentBasis> tangentBases(const Positions& directions) {
 }
 
 EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, int threads)
-    : graph_(graph), threads_(threadCount(threads, graph.size(), kParallelThreshold)) {}
+    : graph_(graph), threads_(threadCount(threads, graph.size())) {}
 
 double EmbeddingEnergy::value(const Positions& u) const {
   const double sum =

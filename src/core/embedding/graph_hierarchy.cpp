@@ -309,7 +309,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
 
 HierarchyLevel coarsened(const Graph& graph, std::uint32_t seed, int requested_threads,
                          const FractionReport& report) {
-  const int threads = threadCount(requested_threads, graph.size(), kParallelThreshold);
+  const int threads = threadCount(requested_threads, graph.size());
   HierarchyLevel level;
   level.seeds = independentSet(graph, seed, threads, report);
   Aggregates cells = geodesicCells(graph, level.seeds, threads, report);

@@ -51,7 +51,7 @@ double EmbeddingLevels::pull(std::size_t l, const Positions& u) const {
 
 double EmbeddingLevels::smooth(std::size_t l, int sweeps, const FractionReport& report,
                                Positions& u) const {
-  const int threads = threadCount(threads_, graph(l).size(), kParallelThreshold);
+  const int threads = threadCount(threads_, graph(l).size());
   Positions moved(3, u.cols());
   double residual = 0.0;
   for (int i = 0; i < sweeps; ++i) {
@@ -66,16 +66,14 @@ Positions EmbeddingLevels::interpolated(std::size_t l, const Positions& coarse) 
   const auto& weights = hierarchy_.levels[l].prolongation;
   const auto n = static_cast<std::size_t>(weights.rows());
   Positions u(3, weights.rows());
-  forEachBlock(
-      n, threadCount(threads_, n, kParallelThreshold),
-      [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
-          Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-          for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
-            sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
-          u.col(i) = sum.normalized();
-        }
-      });
+  forEachBlock(n, threadCount(threads_, n), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
+        sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
+      u.col(i) = sum.normalized();
+    }
+  });
   return u;
 }
 

@@ -90,7 +90,7 @@ void smoothBackward(const BlockMatrix& matrix, const std::vector<Eigen::Matrix2d
 
 void multiply(const BlockMatrix& matrix, const TangentVector& x, TangentVector& y, int threads) {
   y.resize(2 * static_cast<Eigen::Index>(matrix.size()));
-  forEachBlock(matrix.size(), threadCount(threads, matrix.size(), kParallelThreshold),
+  forEachBlock(matrix.size(), threadCount(threads, matrix.size()),
                [&](std::size_t, std::size_t begin, std::size_t end) {
                  for (std::size_t i = begin; i < end; ++i) {
                    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -124,18 +124,16 @@ void MultigridPreconditioner::compute(const BlockMatrix& matrix,
     const double* const weights = next.prolongation.valuePtr();
     const std::size_t n = level.matrix->size();
     level.inverse_diagonal.resize(n);
-    forEachBlock(
-        n, threadCount(threads_, n, kParallelThreshold),
-        [&](std::size_t, std::size_t begin, std::size_t end) {
-          BlockMatrix& prolongation = level.prolongation;
-          for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t e = prolongation.offsets[i]; e < prolongation.offsets[i + 1]; ++e) {
-              const auto c = static_cast<std::size_t>(prolongation.columns[e]);
-              prolongation.blocks[e] = weights[e] * (fine[i].transpose() * level.coarse_bases[c]);
-            }
-            level.inverse_diagonal[i] = regularizedInverse(level.matrix->blocks[level.diagonal[i]]);
-          }
-        });
+    forEachBlock(n, threadCount(threads_, n), [&](std::size_t, std::size_t begin, std::size_t end) {
+      BlockMatrix& prolongation = level.prolongation;
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t e = prolongation.offsets[i]; e < prolongation.offsets[i + 1]; ++e) {
+          const auto c = static_cast<std::size_t>(prolongation.columns[e]);
+          prolongation.blocks[e] = weights[e] * (fine[i].transpose() * level.coarse_bases[c]);
+        }
+        level.inverse_diagonal[i] = regularizedInverse(level.matrix->blocks[level.diagonal[i]]);
+      }
+    });
     multiplyGalerkin(l);
   }
   has_patterns_ = true;
@@ -208,7 +206,7 @@ void MultigridPreconditioner::multiplyGalerkin(std::size_t l) {
   const BlockMatrix& product = level.product;
   BlockMatrix& galerkin = levels_[l + 1].galerkin;
   const std::size_t n = matrix.size();
-  const int threads = threadCount(threads_, n, kParallelThreshold);
+  const int threads = threadCount(threads_, n);
   if (product_.size() < product.columns.size())
     product_.resize(product.columns.size());
   places_.resize(std::max(places_.size(), static_cast<std::size_t>(threads)));
@@ -261,7 +259,7 @@ void MultigridPreconditioner::cycle(std::size_t l, const TangentVector& b, Tange
   }
   Level& next = levels_[l + 1];
   const std::size_t n = level.matrix->size();
-  const int threads = threadCount(threads_, n, kParallelThreshold);
+  const int threads = threadCount(threads_, n);
   smoothFromZero(*level.matrix, level.diagonal, level.inverse_diagonal, b, x, level.residual,
                  threads);
   const std::size_t coarse = next.matrix->size();

@@ -149,7 +149,7 @@ namespace internal {
 
 Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& execution) {
   const std::size_t n = stars.size();
-  const int threads = threadCount(execution.threads, n, kParallelThreshold);
+  const int threads = threadCount(execution.threads, n);
   const FractionReport report = reportOf(execution, "graph");
   Graph graph;
   graph.offsets.assign(n + 1, 0);

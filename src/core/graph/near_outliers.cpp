@@ -86,7 +86,7 @@ std::vector<double> nearOutliers(const Positions& points, const NeighborLists& l
   const std::size_t n = lists.size();
   using Around = std::array<Index, kFittedNeighbors>;
   const auto for_each_point = [&](const auto& visit) {
-    forEachItem(n, threadCount(threads, n, kParallelThreshold), [&](std::size_t, std::size_t i) {
+    forEachItem(n, threadCount(threads, n), [&](std::size_t, std::size_t i) {
       Around around{};
       if (others(lists, i, around))
         visit(i, around);

@@ -92,8 +92,7 @@ NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int c
   for (std::size_t i = 0; i < lists.offsets.size(); ++i)
     lists.offsets[i] = i * size;
   lists.indices.resize(points.size() * size);
-  const int threads =
-      internal::threadCount(execution.threads, points.size(), internal::kParallelThreshold);
+  const int threads = internal::threadCount(execution.threads, points.size());
   internal::forEachBlock(points.size(), threads, internal::reportOf(execution, "neighbors"),
                          [&](std::size_t, std::size_t begin, std::size_t end) {
                            tree.find(points.data() + begin, points.data() + end, size,

@@ -451,8 +451,7 @@ bool hasNoCyclesLeft(const Positions& points, const Graph& graph, const Openings
 }  // namespace
 
 Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution) {
-  const int threads =
-      internal::threadCount(execution.threads, graph.size(), internal::kParallelThreshold);
+  const int threads = internal::threadCount(execution.threads, graph.size());
   std::vector<double> spacing(graph.size());
   std::vector<std::vector<double>> scratch(static_cast<std::size_t>(threads));
   internal::forEachItem(graph.size(), threads, [&](std::size_t thread, std::size_t v) {

@@ -100,7 +100,7 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   OrderedPoints result;
   if (n == 0)
     return result;
-  threads = threadCount(threads, n, kParallelThreshold);
+  threads = threadCount(threads, n);
   const Eigen::Vector3d low = points.rowwise().minCoeff();
   const Eigen::Vector3d high = points.rowwise().maxCoeff();
   // An axis along which nothing differs may be so far away that it would not stay finite.

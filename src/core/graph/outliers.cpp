@@ -63,7 +63,7 @@ public:
   Scoring(const Positions& points, const NeighborLists& lists, const Execution& execution)
       : points_(points), begin_(lists.offsets), count_(lists.size()), used_(lists.size()),
         neighbors_(lists.indices), mean_distance_(lists.size()), scores_(lists.size(), 0.0),
-        threads_(threadCount(execution.threads, lists.size(), kParallelThreshold)) {
+        threads_(threadCount(execution.threads, lists.size())) {
     forEachItem(lists.size(), threads_, [&](std::size_t, std::size_t i) { sortByDistance(i); });
   }
 

@@ -347,7 +347,7 @@ void searchForMore(const Positions& points, const NeighborSearch& search, int th
 /// neighbours where they want them.
 void findAll(const Positions& points, const std::vector<Index>& subset, const NeighborLists& lists,
              const NeighborSearch& search, const Execution& execution, Stars& stars) {
-  const int threads = threadCount(execution.threads, stars.size(), kParallelThreshold);
+  const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "graph");
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
   findStars(points, subset, lists, threads, scratch, report, stars);

@@ -93,8 +93,8 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   SolidSums solid;
   SurfaceSums surface;
   // Each sum has one thread, which adds in the order of the triangles.
-  const int threads = internal::threadCount(
-      requested_threads, static_cast<std::size_t>(triangles.cols()), internal::kParallelThreshold);
+  const int threads =
+      internal::threadCount(requested_threads, static_cast<std::size_t>(triangles.cols()));
   internal::forEachTask(2, threads, [&](std::size_t part) {
     if (part == 0)
       solid = sumOverSolid(points, triangles, origin);

@@ -244,8 +244,7 @@ void collect(std::size_t count, int threads, Findings& all, const Examine& exami
 MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
                            int requested_threads) {
   internal::checkTriangles("checkTopology", triangles, static_cast<Eigen::Index>(vertex_count));
-  const int threads =
-      internal::threadCount(requested_threads, vertex_count, internal::kParallelThreshold);
+  const int threads = internal::threadCount(requested_threads, vertex_count);
   const auto m = static_cast<Index>(triangles.cols());
 
   const CornerTable corners(triangles, vertex_count, threads);

@@ -92,8 +92,7 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
     neighbors_[static_cast<std::size_t>(side.triangle)][side.corner] = other.triangle;
     neighbors_[static_cast<std::size_t>(other.triangle)][other.corner] = side.triangle;
   };
-  const std::size_t parts =
-      std::min(kMaxParts, static_cast<std::size_t>(threadCount(threads, m, kParallelThreshold)));
+  const std::size_t parts = std::min(kMaxParts, static_cast<std::size_t>(threadCount(threads, m)));
   std::vector<std::vector<SidePairing::Side>> left(parts);
   // A block of nothing but its number for each part.
   forEachBlock(
@@ -162,7 +161,7 @@ bool SphereMesh::isSphere(int threads) const {
   const auto n = triangle_at_.size();
   if (n < 4 || m != 2 * n - 4 || !is_paired_)
     return false;
-  threads = threadCount(threads, m, kParallelThreshold);
+  threads = threadCount(threads, m);
   if (sumOfBlocks(m, threads, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
         std::size_t wrong = 0;
         for (std::size_t t = begin; t < end; ++t) {

@@ -19,24 +19,23 @@ inline Positions vertexNormals(const Positions& points, const Triangles& triangl
                                const Positions& sphere, const CornerTable& corners, int threads) {
   const auto count = static_cast<std::size_t>(points.cols());
   Positions normals(3, points.cols());
-  forEachItem(
-      count, threadCount(threads, count, kParallelThreshold), [&](std::size_t, std::size_t i) {
-        const auto v = static_cast<Index>(i);
-        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-        corners.forEachCorner(v, [&](Index t, Index k) {
-          const Eigen::Vector3d a = points.col(triangles(nextCorner(k), t)) - points.col(v);
-          const Eigen::Vector3d b = points.col(triangles(previousCorner(k), t)) - points.col(v);
-          const Eigen::Vector3d normal = a.cross(b);
-          const double length = normal.norm();
-          if (length > 0.0)
-            sum += std::atan2(length, a.dot(b)) / length * normal;
-        });
-        const double length = sum.norm();
-        if (length > 0.0)
-          normals.col(v) = sum / length;
-        else
-          normals.col(v) = sphere.col(v);
-      });
+  forEachItem(count, threadCount(threads, count), [&](std::size_t, std::size_t i) {
+    const auto v = static_cast<Index>(i);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      const Eigen::Vector3d a = points.col(triangles(nextCorner(k), t)) - points.col(v);
+      const Eigen::Vector3d b = points.col(triangles(previousCorner(k), t)) - points.col(v);
+      const Eigen::Vector3d normal = a.cross(b);
+      const double length = normal.norm();
+      if (length > 0.0)
+        sum += std::atan2(length, a.dot(b)) / length * normal;
+    });
+    const double length = sum.norm();
+    if (length > 0.0)
+      normals.col(v) = sum / length;
+    else
+      normals.col(v) = sphere.col(v);
+  });
   return normals;
 }
 

@@ -32,7 +32,7 @@ void checkThreads(int requested);
 /// \param requested 0: one for each processor.
 /// \param threshold minimum number of items for several threads.
 /// \throw InvalidInput if `requested` is out of range.
-int threadCount(int requested, std::size_t items, std::size_t threshold);
+int threadCount(int requested, std::size_t items, std::size_t threshold = kParallelThreshold);
 
 /// Calls task(i) for each i in [0, count), on several threads. The calling thread does the first.
 /// An exception ends the work; tasks already begun are finished. A loop within a task of another

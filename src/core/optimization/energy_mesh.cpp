@@ -15,8 +15,7 @@ namespace tuned = optimization_constants;
 EnergyMesh::EnergyMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
                        int threads, const OpenPlaces* openings, const FractionReport& report)
     : points_(&points), graph_(graph), openings_(openings),
-      threads_(
-          threadCount(threads, static_cast<std::size_t>(triangles.cols()), kParallelThreshold)),
+      threads_(threadCount(threads, static_cast<std::size_t>(triangles.cols()))),
       mesh_(triangles, static_cast<std::size_t>(points.cols()), threads_),
       facets_(static_cast<std::size_t>(triangles.cols())) {
   const double lengths = std::accumulate(graph.lengths.begin(), graph.lengths.end(), 0.0);

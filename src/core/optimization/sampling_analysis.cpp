@@ -132,8 +132,8 @@ Sampling analyzeSampling(const Positions& points, const Graph& graph, int thread
   const std::size_t step = std::max<std::size_t>(1, n / optimization_constants::kTypicalSamples);
   const std::size_t samples = n / step;
   // A sample is some eight times the work of other loops' items.
-  const Sums sums = sumOfBlocks(samples, threadCount(threads, 8 * samples, kParallelThreshold),
-                                Sums{}, [&](std::size_t begin, std::size_t end) {
+  const Sums sums = sumOfBlocks(samples, threadCount(threads, 8 * samples), Sums{},
+                                [&](std::size_t begin, std::size_t end) {
                                   Sums part;
                                   std::vector<Index> wide;
                                   for (std::size_t s = begin; s < end; ++s) {

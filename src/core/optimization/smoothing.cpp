@@ -73,8 +73,7 @@ Fans collectFans(const Triangles& triangles, std::size_t n) {
 class Filter {
 public:
   Filter(const Fans& fans, int requested_threads)
-      : fans_(fans), threads_(internal::threadCount(requested_threads, fans.size(),
-                                                    internal::kParallelThreshold)) {}
+      : fans_(fans), threads_(internal::threadCount(requested_threads, fans.size())) {}
 
   /// Moves each point by a fraction of its Laplacian, all at once; `scratch` is overwritten.
   void step(Positions& points, double fraction, Positions& scratch) const {

@@ -64,7 +64,7 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
 Embedding embed(const Graph& graph, const Positions& points, const PaperOptions& options,
                 double tolerance, const EmbeddingObserver& observer, const Execution& execution) {
   const FractionReport progress = reportOf(execution, "embedding");
-  const int threads = threadCount(execution.threads, graph.size(), kParallelThreshold);
+  const int threads = threadCount(execution.threads, graph.size());
   Embedding result;
   EmbeddingReport& report = result.report;
   Positions& u = result.directions;

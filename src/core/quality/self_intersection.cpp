@@ -270,8 +270,7 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
   std::iota(all.begin(), all.end(), Index{0});
   if (all.empty())
     return {};
-  const int threads =
-      internal::threadCount(execution.threads, all.size(), internal::kParallelThreshold);
+  const int threads = internal::threadCount(execution.threads, all.size());
   const FractionReport report = internal::reportOf(execution, "intersections");
   const TriangleTree tree(mesh, all, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);
@@ -298,8 +297,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
       subset.push_back(static_cast<Index>(t));
   if (subset.empty())
     return {};
-  const int threads =
-      internal::threadCount(execution.threads, mesh.size(), internal::kParallelThreshold);
+  const int threads = internal::threadCount(execution.threads, mesh.size());
   const FractionReport report = internal::reportOf(execution, "intersections");
   const TriangleTree tree(mesh, subset, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);

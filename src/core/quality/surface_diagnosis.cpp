@@ -526,9 +526,8 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   const bool is_dense = graph.neighbors.size() > kMaxMeanDegree * graph.size();
   const Graph thin = is_dense ? thinned(graph, bridge_edges) : Graph();
   const Graph& sparse = is_dense ? thin : graph;
-  const MeshAndGraph surface(
-      points, triangles, sparse,
-      internal::threadCount(threads, graph.size(), internal::kParallelThreshold));
+  const MeshAndGraph surface(points, triangles, sparse,
+                             internal::threadCount(threads, graph.size()));
   const Differences differences = surface.differences();
   SurfaceDiagnosis result;
   result.edges_outside_graph = static_cast<double>(differences.outside_graph) /
