@@ -11,13 +11,6 @@
 
 namespace spherical_param::internal {
 
-std::vector<TangentBasis> tangentBases(const Positions& directions) {
-  std::vector<TangentBasis> bases(static_cast<std::size_t>(directions.cols()));
-  for (Eigen::Index i = 0; i < directions.cols(); ++i)
-    bases[static_cast<std::size_t>(i)] = tangentBasis(directions.col(i));
-  return bases;
-}
-
 EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, int threads)
     : graph_(graph), threads_(threadCount(threads, graph.size())) {}
 
@@ -96,70 +89,74 @@ EmbeddingEnergy::Residual EmbeddingEnergy::gradient(const Positions& u, Position
   return residual;
 }
 
-void EmbeddingEnergy::buildPattern(BlockMatrix& matrix) const {
-  matrix.offsets.assign(1, 0);
-  matrix.columns.clear();
-  matrix.columns.reserve(graph_.neighbors.size() + graph_.size());
-  for (std::size_t i = 0; i < graph_.size(); ++i) {
-    const auto begin = graph_.neighbors.begin() + static_cast<std::ptrdiff_t>(graph_.offsets[i]);
-    const auto end = graph_.neighbors.begin() + static_cast<std::ptrdiff_t>(graph_.offsets[i + 1]);
-    const auto after = std::lower_bound(begin, end, static_cast<Index>(i));
-    matrix.columns.insert(matrix.columns.end(), begin, after);
-    matrix.columns.push_back(static_cast<Index>(i));
-    matrix.columns.insert(matrix.columns.end(), after, end);
-    matrix.offsets.push_back(matrix.columns.size());
-  }
-  matrix.blocks.resize(matrix.columns.size());
-}
-
-void EmbeddingEnergy::hessian(const Positions& u, const std::vector<TangentBasis>& bases,
-                              Hessian& result) const {
-  const std::size_t n = graph_.size();
-  BlockMatrix& matrix = result.matrix;
-  if (matrix.size() != n)
-    buildPattern(matrix);
+void EmbeddingEnergy::multiplyHessian(const Positions& u, const Positions& x,
+                                      Positions& product) const {
   const bool has_barrier = masses_.size() > 0;
   Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-  result.masses = masses_;
+  Eigen::Vector3d change = Eigen::Vector3d::Zero();  // of the pull along x
   if (has_barrier) {
     const Eigen::Vector3d centroid = u * masses_;
+    const Eigen::Vector3d moved = x * masses_;
     const double gap = 1.0 - centroid.squaredNorm();
-    result.barrier = 2.0 * barrier_ / gap *
-                     (Eigen::Matrix3d::Identity() + 2.0 / gap * centroid * centroid.transpose());
     pull = 2.0 * barrier_ / gap * centroid;
+    change = 2.0 * barrier_ / gap * (moved + 2.0 / gap * centroid.dot(moved) * centroid);
   }
-  result.curvature.resize(static_cast<Eigen::Index>(n));
-  forEachBlock(n, threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
+  product.resize(3, u.cols());
+  forEachBlock(graph_.size(), threads_, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d center = u.col(static_cast<Eigen::Index>(i));
-      const TangentBasis& own = bases[i];
-      Eigen::Matrix2d diagonal = Eigen::Matrix2d::Zero();
-      std::size_t diagonal_place = 0;
-      double curvature =
-          has_barrier ? masses_[static_cast<Eigen::Index>(i)] * pull.dot(center) : 0.0;
-      std::size_t e = graph_.offsets[i];
-      for (std::size_t b = matrix.offsets[i]; b < matrix.offsets[i + 1]; ++b) {
-        const auto j = static_cast<std::size_t>(matrix.columns[b]);
-        if (j == i) {
-          diagonal_place = b;
-          continue;
-        }
-        const Eigen::Vector3d edge = center - u.col(static_cast<Eigen::Index>(j));
-        const double squared = edge.squaredNorm();
-        const double w = edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e++], std::sqrt(squared));
-        const Eigen::Vector2d along = own.transpose() * edge;
-        const Eigen::Vector2d other_along = bases[j].transpose() * edge;
-        const double second = squared > 0.0 ? w / squared : 0.0;
-        diagonal += second * along * along.transpose();
-        diagonal.diagonal().array() += w;
-        curvature += w * squared / 2.0;
-        matrix.blocks[b] =
-            -w * (own.transpose() * bases[j]) - second * along * other_along.transpose();
+      const auto column = static_cast<Eigen::Index>(i);
+      const Eigen::Vector3d center = u.col(column);
+      const Eigen::Vector3d own = x.col(column);
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      double curvature = 0.0;
+      if (has_barrier) {
+        sum = masses_[column] * change;
+        curvature = masses_[column] * pull.dot(center);
       }
-      matrix.blocks[diagonal_place] = diagonal;
-      result.curvature[static_cast<Eigen::Index>(i)] = curvature;
+      for (std::size_t e = graph_.offsets[i]; e < graph_.offsets[i + 1]; ++e) {
+        const Eigen::Vector3d edge = center - u.col(graph_.neighbors[e]);
+        const Eigen::Vector3d difference = own - x.col(graph_.neighbors[e]);
+        const double squared = edge.squaredNorm();
+        if (squared == 0.0)
+          continue;
+        const double w = edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e], std::sqrt(squared));
+        sum += w * difference + w / squared * edge.dot(difference) * edge;
+        curvature += w * squared / 2.0;
+      }
+      product.col(column) = sum - sum.dot(center) * center - curvature * own;
     }
   });
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor, Index>
+EmbeddingEnergy::laplacian(const Positions& u) const {
+  // Stretching an edge is twice as stiff as turning it.
+  constexpr double stiffness = 1.5;
+  const auto n = static_cast<Eigen::Index>(graph_.size());
+  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> matrix(n, n);
+  matrix.reserve(static_cast<Eigen::Index>(graph_.neighbors.size()) + n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    matrix.startVec(i);
+    double* diagonal = nullptr;
+    double sum = 0.0;
+    const auto insert_diagonal = [&] { diagonal = &matrix.insertBack(i, i); };
+    for (std::size_t e = graph_.offsets[row]; e < graph_.offsets[row + 1]; ++e) {
+      const Index j = graph_.neighbors[e];
+      if (j > i && diagonal == nullptr)
+        insert_diagonal();
+      const double squared = (u.col(i) - u.col(j)).squaredNorm();
+      const double w = edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e], std::sqrt(squared));
+      matrix.insertBack(i, j) = -stiffness * w;
+      sum += w * (stiffness + squared / 2.0);
+    }
+    if (diagonal == nullptr)
+      insert_diagonal();
+    // A node whose neighbours are all at its own place has no stiffness: it stays.
+    *diagonal = sum > 0.0 ? sum : 1.0;
+  }
+  matrix.finalize();
+  return matrix;
 }
 
 }  // namespace spherical_param::internal

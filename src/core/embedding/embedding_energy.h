@@ -1,18 +1,12 @@
 #pragma once
 
-#include "block_matrix.h"
 #include "graph.h"
 #include "spherical_param/types.h"
-#include "tangent_basis.h"
 
 #include <Eigen/Core>
-
-#include <vector>
+#include <Eigen/SparseCore>
 
 namespace spherical_param::internal {
-
-/// \param directions 3 x n, unit vectors.
-std::vector<TangentBasis> tangentBases(const Positions& directions);
 
 /// The energy of an embedding u of a graph of points p,
 ///
@@ -52,18 +46,16 @@ public:
   /// \param gradient 3 x n, tangent at u.
   Residual gradient(const Positions& u, Positions& gradient) const;
 
-  /// Second derivatives along geodesics, in tangent bases.
-  struct Hessian {
-    BlockMatrix matrix;         ///< positive semi-definite part, in the pattern of the graph
-    Eigen::VectorXd curvature;  ///< n entries: matrix - diag(curvature) is the Hessian ...
-    Eigen::Matrix3d barrier;    ///< ... with this in the centroid of the ambient vectors, if any
-    Eigen::VectorXd masses;     ///< of that centroid; empty without barrier
-  };
-  void hessian(const Positions& u, const std::vector<TangentBasis>& bases, Hessian& result) const;
+  /// Second derivatives along geodesics: product = Hessian at u * x.
+  ///
+  /// \param x, product 3 x n, tangent at u.
+  void multiplyHessian(const Positions& u, const Positions& x, Positions& product) const;
+
+  /// The weights' Laplacian, n x n, with what the curvature of the sphere adds: on each coordinate
+  /// of tangent vectors about the Hessian, without the barrier. Positive definite.
+  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> laplacian(const Positions& u) const;
 
 private:
-  void buildPattern(BlockMatrix& matrix) const;
-
   const Graph& graph_;
   double barrier_ = 0.0;
   Eigen::VectorXd masses_;  ///< n entries, sum 1; empty without barrier

@@ -26,26 +26,15 @@ constexpr int kRefinements = 4;
 /// self-intersections of two spheres grow by a seventh.
 constexpr double kMaxResidualRatio = 0.9;
 
-TangentVector inBases(const std::vector<TangentBasis>& bases, const Positions& ambient) {
-  TangentVector result(2 * ambient.cols());
-  for (Eigen::Index i = 0; i < ambient.cols(); ++i)
-    result.segment<2>(2 * i) = bases[static_cast<std::size_t>(i)].transpose() * ambient.col(i);
-  return result;
+double dot(const Positions& x, const Positions& y) {
+  return x.cwiseProduct(y).sum();
 }
 
-/// Length of the longest of the nodes' vectors.
-double longest(const TangentVector& x) {
-  return Eigen::Map<const Eigen::Matrix2Xd>(x.data(), 2, x.size() / 2).colwise().norm().maxCoeff();
-}
-
-Positions moved(const Positions& u, const std::vector<TangentBasis>& bases,
-                const TangentVector& step, double fraction) {
-  Positions result(3, u.cols());
-  for (Eigen::Index i = 0; i < u.cols(); ++i)
-    result.col(i) =
-        (u.col(i) + bases[static_cast<std::size_t>(i)] * (fraction * step.segment<2>(2 * i)))
-            .normalized();
-  return result;
+/// Takes vectors to the tangent planes of the directions.
+void project(const Positions& directions, Positions& x) {
+  // Evaluated before x changes: what is left of a normal part would spoil the products.
+  const Eigen::RowVectorXd heights = directions.cwiseProduct(x).colwise().sum();
+  x -= directions * heights.asDiagonal();
 }
 
 /// An embedding with what Newton's method knows of it.
@@ -62,13 +51,12 @@ struct Iterate {
 /// \param expected decrease of the energy by the whole step, to first order.
 /// \return nothing if rounding leaves no such step.
 std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& current,
-                                  const std::vector<TangentBasis>& bases, const TangentVector& step,
-                                  double expected) {
+                                  const Positions& step, double expected) {
   const double rounding = 1e-14 * std::abs(current.value) + 1e-300;
-  double fraction = std::min(1.0, kMaxStep / longest(step));
+  double fraction = std::min(1.0, kMaxStep / step.colwise().norm().maxCoeff());
   for (int halving = 0; halving < kMaxHalvings; ++halving, fraction /= 2.0) {
     Iterate trial;
-    trial.directions = moved(current.directions, bases, step, fraction);
+    trial.directions = (current.directions + fraction * step).colwise().normalized();
     trial.value = energy.value(trial.directions);
     if (!std::isfinite(trial.value))
       continue;
@@ -85,11 +73,58 @@ std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& 
   return std::nullopt;
 }
 
+/// Stopping rules of conjugateGradients().
+struct LinearTolerance {
+  double reduction;  ///< of the residual, in the norm of the preconditioner
+  int refinements;   ///< V-cycles afterwards, each on the remaining residual
+};
+
+/// Solves Hessian x = -gradient by preconditioned conjugate gradients. Ends early at a direction of
+/// negative curvature (T. Steihaug, 1983). The result is always a descent direction.
+///
+/// \param iterations is increased by those that are done.
+Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& iterate,
+                             const LaplacianCycle& preconditioner, const LinearTolerance& tolerance,
+                             int& iterations) {
+  const Positions& u = iterate.directions;
+  const auto precondition = [&](const Positions& b) {
+    Positions x = preconditioner.apply(b);
+    project(u, x);
+    return x;
+  };
+  Positions x = Positions::Zero(3, u.cols());
+  Positions residual = -iterate.gradient;
+  Positions direction = precondition(residual);
+  Positions product;
+  double square = dot(residual, direction);
+  const double goal = tolerance.reduction * tolerance.reduction * square;
+  for (int i = 0; i < kMaxLinearIterations && square > goal; ++i) {
+    energy.multiplyHessian(u, direction, product);
+    const double curvature = dot(direction, product);
+    if (!(curvature > 0.0)) {
+      if (i == 0)
+        x = direction;
+      break;
+    }
+    x += square / curvature * direction;
+    residual -= square / curvature * product;
+    ++iterations;
+    const Positions preconditioned = precondition(residual);
+    const double next = dot(residual, preconditioned);
+    direction = preconditioned + next / square * direction;
+    square = next;
+  }
+  for (int i = 0; i < tolerance.refinements; ++i) {
+    energy.multiplyHessian(u, x, product);
+    x += precondition(-iterate.gradient - product);
+  }
+  return x;
+}
+
 }  // namespace
 
-NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
-                              MultigridPreconditioner& preconditioner, const NewtonOptions& options,
-                              Positions& directions) {
+NewtonReport minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
+                              const NewtonOptions& options, Positions& directions) {
   NewtonReport report;
   Iterate current;
   current.residual = energy.gradient(directions, current.gradient);
@@ -97,7 +132,6 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
   current.directions = directions;
   double reduction = 0.1;
   int refinements = 0;
-  EmbeddingEnergy::Hessian hessian;
   for (;;) {
     const EmbeddingEnergy::Residual& residual = current.residual;
     report.residuals.push_back(residual.absolute);
@@ -109,15 +143,10 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
     if (converged || collapses || report.iterations >= options.max_iterations)
       break;
 
-    const std::vector<TangentBasis> bases = tangentBases(current.directions);
-    energy.hessian(current.directions, bases, hessian);
-    preconditioner.compute(hessian.matrix, bases);
-    const TangentVector slope = inBases(bases, current.gradient);
-    const LinearSolution solution = conjugateGradients(
-        hessian, bases, preconditioner, slope, {reduction, refinements, kMaxLinearIterations});
-    report.linear_iterations += solution.iterations;
-    std::optional<Iterate> next =
-        searchLine(energy, current, bases, solution.x, slope.dot(solution.x));
+    preconditioner.compute(energy.laplacian(current.directions));
+    const Positions step = conjugateGradients(energy, current, preconditioner,
+                                              {reduction, refinements}, report.linear_iterations);
+    std::optional<Iterate> next = searchLine(energy, current, step, dot(current.gradient, step));
     if (!next)
       break;
     // S. C. Eisenstat, H. F. Walker: "Choosing the Forcing Terms in an Inexact Newton Method",

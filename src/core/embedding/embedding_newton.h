@@ -1,7 +1,7 @@
 #pragma once
 
 #include "embedding_energy.h"
-#include "multigrid.h"
+#include "laplacian_cycle.h"
 #include "spherical_param/types.h"
 
 #include <functional>
@@ -29,8 +29,7 @@ struct NewtonReport {
 /// search: steps in the tangent planes, then back to the sphere. Ends if both residuals reach their
 /// tolerances, if rounding leaves no step that lowers energy or residual, or if the embedding
 /// collapses.
-NewtonReport minimizeByNewton(const EmbeddingEnergy& energy,
-                              MultigridPreconditioner& preconditioner, const NewtonOptions& options,
-                              Positions& directions);
+NewtonReport minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
+                              const NewtonOptions& options, Positions& directions);
 
 }  // namespace spherical_param::internal

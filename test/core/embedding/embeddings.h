@@ -18,8 +18,6 @@ namespace spherical_param::test {
 using internal::buildGraphHierarchy;
 using internal::EmbeddingEnergy;
 using internal::GraphHierarchy;
-using internal::TangentBasis;
-using internal::TangentVector;
 
 /// An ellipsoid with dents and its true edges.
 struct Cloud {
@@ -59,21 +57,19 @@ inline Setting converging(double tolerance) {
 }
 
 /// Moves unit vectors along tangent vectors.
-inline Positions moved(const Positions& u, const std::vector<TangentBasis>& bases,
-                       const TangentVector& step, double fraction) {
-  Positions result = u;
-  for (Eigen::Index i = 0; i < u.cols(); ++i)
-    result.col(i) += bases[static_cast<std::size_t>(i)] * (fraction * step.segment<2>(2 * i));
-  result.colwise().normalize();
-  return result;
+inline Positions moved(const Positions& u, const Positions& step, double fraction) {
+  return (u + fraction * step).colwise().normalized();
 }
 
-inline TangentVector randomTangent(Eigen::Index n, unsigned seed) {
+/// A vector in the tangent plane of each unit vector.
+inline Positions randomTangent(const Positions& u, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal;
-  TangentVector result(2 * n);
-  for (double& entry : result)
+  Positions result(3, u.cols());
+  for (double& entry : result.reshaped())
     entry = normal(generator);
+  for (Eigen::Index i = 0; i < u.cols(); ++i)
+    result.col(i) -= u.col(i).dot(result.col(i)) * u.col(i);
   return result;
 }
 

@@ -1,8 +1,8 @@
 #include "embedding_energy.h"
 
 #include "embeddings.h"
-#include "multigrid.h"
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 namespace spherical_param {
@@ -10,47 +10,62 @@ namespace {
 
 using namespace test;
 
+double dot(const Positions& x, const Positions& y) {
+  return x.cwiseProduct(y).sum();
+}
+
 void expectDerivativesOfDifferences(bool barrier) {
   const Cloud cloud = dentedCloud(60);
   EmbeddingEnergy energy(cloud.graph, 1);
   if (barrier)
     energy.addBarrier(randomSphere(60, 8));
   const Positions u = randomSphere(60, 3);
-  const std::vector<TangentBasis> bases = internal::tangentBases(u);
   Positions gradient;
   energy.gradient(u, gradient);
-  EmbeddingEnergy::Hessian hessian;
-  energy.hessian(u, bases, hessian);
   const double scale = energy.value(u);
   constexpr double h = 1e-4;
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const TangentVector step = randomTangent(60, seed);
-    double slope = 0.0;
-    for (Eigen::Index i = 0; i < 60; ++i)
-      slope += gradient.col(i).dot(bases[static_cast<std::size_t>(i)] * step.segment<2>(2 * i));
-    const double forward = energy.value(moved(u, bases, step, h));
-    const double backward = energy.value(moved(u, bases, step, -h));
-    EXPECT_NEAR((forward - backward) / (2.0 * h), slope, 1e-5 * scale);
+    const Positions step = randomTangent(u, seed);
+    const double forward = energy.value(moved(u, step, h));
+    const double backward = energy.value(moved(u, step, -h));
+    EXPECT_NEAR((forward - backward) / (2.0 * h), dot(gradient, step), 1e-5 * scale);
 
     // To second order the normalised path is a geodesic.
-    TangentVector product;
-    internal::multiply(hessian.matrix, step, product, 1);
-    double second = step.dot(product);
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = 0; i < 60; ++i) {
-      second -= hessian.curvature[i] * step.segment<2>(2 * i).squaredNorm();
-      if (barrier)
-        mean += hessian.masses[i] * bases[static_cast<std::size_t>(i)] * step.segment<2>(2 * i);
-    }
-    if (barrier)
-      second += mean.dot(hessian.barrier * mean);
-    EXPECT_NEAR((forward - 2.0 * energy.value(u) + backward) / (h * h), second, 1e-4 * scale);
+    Positions product;
+    energy.multiplyHessian(u, step, product);
+    EXPECT_NEAR((forward - 2.0 * energy.value(u) + backward) / (h * h), dot(step, product),
+                1e-4 * scale);
+    EXPECT_LT(u.cwiseProduct(product).colwise().sum().norm(), 1e-12 * product.norm());
+    const Positions other = randomTangent(u, 10 + seed);
+    Positions other_product;
+    energy.multiplyHessian(u, other, other_product);
+    EXPECT_NEAR(dot(other, product), dot(step, other_product), 1e-12 * product.norm());
   }
 }
 
 TEST(EmbeddingEnergy, DerivativesAgreeWithDifferences) {
   expectDerivativesOfDifferences(false);
   expectDerivativesOfDifferences(true);
+}
+
+TEST(EmbeddingEnergy, LaplacianIsPositiveDefiniteAndNearTheHessian) {
+  const Cloud cloud = dentedCloud(60);
+  const EmbeddingEnergy energy(cloud.graph, 1);
+  Positions u = solve(cloud.graph).directions;
+  const Eigen::MatrixXd laplacian = energy.laplacian(u);
+  EXPECT_TRUE(laplacian.isApprox(laplacian.transpose(), 1e-14));
+  EXPECT_GT(laplacian.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0);
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Positions step = randomTangent(u, seed);
+    Positions product;
+    energy.multiplyHessian(u, step, product);
+    const double ratio = dot(step, product) / dot(step, step * laplacian);
+    EXPECT_GT(ratio, 1.0 / 1.5);
+    EXPECT_LT(ratio, 2.0 / 1.5);
+  }
+  // A node at the place of all its neighbours has no stiffness: it stays.
+  u.colwise() = Eigen::Vector3d::UnitX().eval();
+  EXPECT_TRUE(Eigen::MatrixXd(energy.laplacian(u)).isIdentity());
 }
 
 }  // namespace
