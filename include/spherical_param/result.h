@@ -168,7 +168,7 @@ struct EmbeddingReport {
   /// empty without a tolerance.
   std::vector<double> residuals;
   double centroid_norm = 0.0;  ///< length of the mean direction, in [0, 1]; 1: collapsed
-  /// The embedding collapsed and was replaced by a start that cannot collapse.
+  /// The embedding collapsed and was replaced by the directions from the centroid.
   bool fallback_start = false;
 
   // Only of Method::Default.

@@ -258,7 +258,7 @@ void visitFields(const EmbeddingReport*, const Visit& visit) {
   visit({"residuals", "the same before each step and at the end [radius]"}, &Of::residuals);
   visit({"centroid_norm", "length of the mean direction, in [0, 1]; 1: collapsed"},
         &Of::centroid_norm);
-  visit({"fallback_start", "it collapsed and was replaced by a start that cannot collapse"},
+  visit({"fallback_start", "it collapsed and was replaced by the directions from the centroid"},
         &Of::fallback_start);
   visit({"start_level", "level on which it started; 0 is the graph itself"}, &Of::start_level);
   visit({"barrier", "where a barrier keeps it from collapsing"}, &Of::barrier);

@@ -23,7 +23,7 @@ Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOpti
   if (embedding.directions.cols() > 0)
     return embedding;
   EmbeddingReport& report = embedding.report;
-  embedding.directions = internal::projectByRank(points);
+  embedding.directions = internal::projectFromCentroid(points);
   report.fallback_start = true;
   report.residual = meanTangentialLaplacian(graph, embedding.directions, EdgeWeights::Adaptive);
   report.centroid_norm = embedding.directions.rowwise().mean().norm();

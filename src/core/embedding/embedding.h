@@ -44,7 +44,7 @@ struct Embedding {
 /// the sphere. Then a barrier -b log(1 - |c|^2) is added, with the energy b and the centroid c of
 /// the nodes, weighted by their areas on the sphere (both from the start of each level), or finer
 /// levels are tried, \see attemptsOf. An embedding that still collapses is replaced, \see
-/// internal::projectByRank.
+/// internal::projectFromCentroid.
 ///
 /// \param graph   n nodes, connected, with positive edge lengths.
 /// \param points  3 x n, finite: the points that the nodes stand for.

@@ -2,15 +2,9 @@
 
 #include "pi.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 namespace {
@@ -46,35 +40,6 @@ Positions projectFromCentroid(const Positions& points) {
     const double length = centered.stableNorm();
     directions.col(i) =
         length > 0.0 ? Eigen::Vector3d((centered / length).normalized()) : anyDirection(i, n);
-  }
-  return directions;
-}
-
-Positions projectByRank(const Positions& points) {
-  const auto n = static_cast<Index>(points.cols());
-  if (n == 0)
-    return points;
-  const Positions centered = scaledAndCentered(points);
-  const Eigen::Matrix3d covariance = centered * centered.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-  // Ascending eigenvalues: the last axis is the longest.
-  const Positions local = axes.eigenvectors().transpose() * centered;
-  std::vector<Index> order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index i, Index j) {
-    return std::pair(local(2, i), i) < std::pair(local(2, j), j);
-  });
-  Positions directions(3, n);
-  for (Index rank = 0; rank < n; ++rank) {
-    const Index i = order[static_cast<std::size_t>(rank)];
-    const double height = (2.0 * rank + 1.0) / n - 1.0;
-    const double radius = std::sqrt(1.0 - height * height);
-    const Eigen::Vector2d around = local.col(i).head<2>().stableNormalized();
-    if (around.squaredNorm() > 0.5)
-      directions.col(i) << radius * around.x(), radius * around.y(), height;
-    else
-      directions.col(i) << radius, 0.0, height;
-    directions.col(i).normalize();
   }
   return directions;
 }

@@ -21,10 +21,6 @@ namespace {
 /// a hub with n neighbours could be as many as these. No cloud has any: 0.6 and 1 change nothing.
 constexpr double kMaxKeptFraction = 0.9;
 
-/// A graph of more neighbours a node is far from planar, as one of k nearest neighbours is, and no
-/// start for an embedding: its aggregates touch only where the surface does.
-constexpr int kPlanarDegree = 12;
-
 /// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
 /// turning, scaling or renumbering the points changes them only where rounding decides.
 std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
@@ -325,11 +321,8 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
                                    const Execution& execution) {
   GraphHierarchy hierarchy;
   const Graph* finest = &graph;
-  const auto is_dense = [](const Graph& level) {
-    return level.neighbors.size() > static_cast<std::size_t>(kPlanarDegree) * level.size();
-  };
   const FractionReport report = reportOf(execution, "embedding");
-  while (finest->size() > static_cast<std::size_t>(coarsest_size) || is_dense(*finest)) {
+  while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
     HierarchyLevel level = coarsened(*finest, seed, execution.threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >

@@ -7,19 +7,6 @@ namespace spherical_param {
 namespace {
 
 using test::randomSphere;
-using test::spiralSphere;
-
-TEST(EmbeddingStart, RankStartIsNeverCollapsed) {
-  for (const Positions& points :
-       {test::horizontally(spiralSphere(400), Eigen::Vector3d(1e6, 0.0, 0.0)),
-        Positions(randomSphere(100, 1) * 1e-300), Positions(Positions::Constant(3, 50, 2.0)),
-        test::dentedCloud(1000).points}) {
-    const Positions directions = internal::projectByRank(points);
-    EXPECT_LT((directions.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-14);
-    // All on one meridian: the mean radius is pi / 4.
-    EXPECT_LT(directions.rowwise().mean().norm(), 0.8);
-  }
-}
 
 TEST(EmbeddingStart, ProjectionGivesEveryPointADirection) {
   Positions points = test::horizontally(randomSphere(10, 1), -randomSphere(10, 1));
