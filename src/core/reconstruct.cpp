@@ -185,7 +185,7 @@ Surface meshAsIs(Selection& selection, std::size_t part, Neighborhoods& neighbor
   if (is_flat && !mayBeOpen(options))
     refuseFlat(options);
   NeighborGraph graph = buildGraph(neighborhoods, options, clock.execution());
-  selection.release(part);
+  neighborhoods.release();
   return meshNodes(neighborhoods.nodes(), std::move(graph), is_flat, options, clock);
 }
 

@@ -46,23 +46,22 @@ void Selection::leaveOutOutliers() {
   clock_.begin("outliers");
   const std::vector<StrayPoint> stray =
       strayPoints(cloud_->points(), cloud_->agreed(), cloud_->stars());
-  left_out_.outliers =
-      cloud_->inputsOf(markOutliers(options_.outliers, options_.outlier_sigma, cloud_->points(),
-                                    cloud_->neighbors(), stray, clock_.execution()));
+  left_out_.outliers = cloud_->inputsOf(markOutliers(options_.outliers, options_.outlier_sigma,
+                                                     cloud_->points(), stray, clock_.execution()));
   if (left_out_.outliers.empty())
     return;
   inputs_ = without(inputs_, left_out_.outliers);
   clock_.begin("neighbors");
-  kept_ = std::make_unique<Neighborhoods>(points_, inputs_, options_, *cloud_, clock_.execution());
+  cloud_ =
+      std::make_unique<Neighborhoods>(points_, inputs_, options_, search_of_, clock_.execution());
   clock_.begin("graph");
-  kept_->findStars(clock_.execution());
+  cloud_->findStars(clock_.execution());
 }
 
 void Selection::takeApart() {
   clock_.begin("parts");
-  const Neighborhoods& all = whole();
-  parts_ = all.groupInputs(partsOf(all.points(), all.agreed(), all.stars(),
-                                   static_cast<std::size_t>(options_.min_points)));
+  parts_ = cloud_->groupInputs(partsOf(cloud_->points(), cloud_->agreed(), cloud_->stars(),
+                                       static_cast<std::size_t>(options_.min_points)));
   if (parts_.empty())
     return;
   if (options_.parts == PartsMode::Largest)
@@ -83,28 +82,13 @@ Positions Selection::pointsOf(std::size_t part) const {
 
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
   clock_.begin("neighbors");
-  if (!cloud_)
-    cloud_ =
-        std::make_unique<Neighborhoods>(points_, inputs_, options_, search_of_, clock_.execution());
-  if (!isWhole(part))
-    part_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_, whole(),
-                                            clock_.execution());
-  Neighborhoods& neighborhoods = isWhole(part) ? whole() : *part_;
+  if (!cloud_ || parts_[part].size() != inputs_.size())
+    cloud_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_, search_of_,
+                                             clock_.execution());
   clock_.begin("graph");
   if (options_.method == Method::Default)
-    neighborhoods.findStars(clock_.execution());
-  return neighborhoods;
-}
-
-void Selection::release(std::size_t part) {
-  if (part_)
-    part_->release();
-  if (part + 1 < parts_.size())
-    return;
-  if (cloud_)
-    cloud_->release();
-  if (kept_)
-    kept_->release();
+    cloud_->findStars(clock_.execution());
+  return *cloud_;
 }
 
 }  // namespace spherical_param::internal

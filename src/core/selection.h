@@ -27,15 +27,10 @@ public:
   Positions pointsOf(std::size_t part) const;
   /// The neighbours of the points of a part, valid until the next call.
   Neighborhoods& neighborhoodsOf(std::size_t part);
-  /// Frees memory that the graphs of later parts do not need.
-  void release(std::size_t part);
 
 private:
   void leaveOutOutliers();
   void takeApart();
-  bool isWhole(std::size_t part) const { return parts_[part].size() == inputs_.size(); }
-  /// Of all inputs.
-  Neighborhoods& whole() { return kept_ ? *kept_ : *cloud_; }
 
   const Positions& points_;
   const Options& options_;
@@ -43,9 +38,7 @@ private:
   StageClock& clock_;
   LeftOut& left_out_;
   std::vector<Index> inputs_;             ///< all finite points without outliers
-  std::unique_ptr<Neighborhoods> cloud_;  ///< of the finite points
-  std::unique_ptr<Neighborhoods> kept_;   ///< without outliers, if there were some
-  std::unique_ptr<Neighborhoods> part_;   ///< of a part, if it is not the whole
+  std::unique_ptr<Neighborhoods> cloud_;  ///< of the inputs, then of one part after the other
   std::vector<std::vector<Index>> parts_;
 };
 

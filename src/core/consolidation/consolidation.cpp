@@ -3,12 +3,9 @@
 #include "median.h"
 #include "neighbor_search.h"
 #include "ordered_points.h"
-#include "parallel.h"
 #include "progress.h"
-#include "quadric.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "quadric_fit.h"
+#include "rows.h"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +17,8 @@
 #include <vector>
 
 namespace spherical_param {
+namespace internal {
 namespace {
-
-using internal::FractionReport;
-using internal::Quadric;
 
 // The experiments are on 14 models, of each eight merged depth images with noise and registration
 // errors ("scans"), and the vertices with noise of a quarter of an edge ("noise"); and on four
@@ -73,65 +68,14 @@ constexpr std::size_t kClusterNeighbors = 6;
 constexpr std::size_t kMinPoints = 20;
 /// Fewer cannot be meshed.
 constexpr Eigen::Index kMinLeft = 4;
-/// Of the normal equations, so that they are regular whatever the neighbours.
-constexpr double kRidge = 1e-9;
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
-/// The nearest neighbours of a point, itself among them, nearest first.
-class Neighborhood {
-public:
-  Neighborhood(const NeighborLists& lists, std::size_t point)
-      : begin_(lists.indices.data() + lists.offsets[point]),
-        end_(lists.indices.data() + lists.offsets[point + 1]) {}
-
-  const Index* begin() const { return begin_; }
-  const Index* end() const { return end_; }
-  std::size_t size() const { return static_cast<std::size_t>(end_ - begin_); }
-  /// The nearest alone.
-  Neighborhood first(std::size_t count) const {
-    Neighborhood result = *this;
-    result.end_ = begin_ + std::min(count, size());
-    return result;
-  }
-
-private:
-  const Index* begin_;
-  const Index* end_;
-};
-
 /// A quadric of least squares through neighbours, with Gaussian weights.
 class SurfaceFit {
 public:
   /// \param point    where the weights are greatest.
   /// \param left_out no neighbour is, or -1.
   /// \param width    standard deviation of the weights.
-  void compute(const Positions& points, const Neighborhood& neighbors, const Eigen::Vector3d& point,
+  void compute(const Positions& points, const Row<Index>& neighbors, const Eigen::Vector3d& point,
                Index left_out, double width) {
-    gather(points, neighbors, point, left_out, width);
-    height_ = 0.0;
-    noise_ = 0.0;
-    roundness_ = 1.0;
-    normal_.setZero();
-    if (weights_.size() < static_cast<std::size_t>(Quadric::SizeAtCompileTime))
-      return;
-    findPlane();
-    fit();
-  }
-
-  /// From the quadric to the point, along the normal.
-  Eigen::Vector3d offset() const { return height_ * normal_; }
-  double height() const { return height_; }
-  /// Root mean square distance of the neighbours from the quadric.
-  double noise() const { return noise_; }
-  /// 0 if they are in a plane, 1 if all directions are alike.
-  double roundness() const { return roundness_; }
-
-private:
-  void gather(const Positions& points, const Neighborhood& neighbors, const Eigen::Vector3d& point,
-              Index left_out, double width) {
     width_ = width;
     weights_.clear();
     offsets_.clear();
@@ -146,64 +90,22 @@ private:
     const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
     for (double& weight : weights_)
       weight /= total;
+    quadric_.fit(offsets_, weights_);
   }
 
-  void findPlane() {
-    mean_.setZero();
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < weights_.size(); ++k) {
-      mean_ += weights_[k] * offsets_[k];
-      covariance += weights_[k] * offsets_[k] * offsets_[k].transpose();
-    }
-    covariance -= mean_ * mean_.transpose();
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
-    axes.computeDirect(covariance);
-    normal_ = axes.eigenvectors().col(0);
-    across_ = axes.eigenvectors().rightCols<2>();
-    const Eigen::Vector3d& variances = axes.eigenvalues();
-    if (variances[1] > 0.0)
-      roundness_ = std::sqrt(std::max(variances[0], 0.0) / variances[1]);
-  }
+  /// From the quadric to the point, along the normal; 0 without enough neighbours.
+  Eigen::Vector3d offset() const { return height() * quadric_.normal(); }
+  double height() const { return quadric_.height() * width_; }
+  /// Root mean square distance of the neighbours from the quadric.
+  double noise() const { return quadric_.residual() * width_; }
+  /// 0 if they are in a plane, 1 if all directions are alike.
+  double roundness() const { return quadric_.roundness(); }
 
-  void fit() {
-    rows_.resize(Quadric::SizeAtCompileTime, static_cast<Eigen::Index>(weights_.size()));
-    heights_.resize(weights_.size());
-    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-    Quadric right = Quadric::Zero();
-    for (std::size_t k = 0; k < weights_.size(); ++k) {
-      const Quadric row = monomialsAt(offsets_[k]);
-      heights_[k] = normal_.dot(offsets_[k] - mean_);
-      rows_.col(static_cast<Eigen::Index>(k)) = row;
-      matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weights_[k]);
-      right += weights_[k] * heights_[k] * row;
-    }
-    matrix.diagonal().array() += kRidge;
-    const Quadric quadric = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    double squares = 0.0;
-    for (std::size_t k = 0; k < weights_.size(); ++k) {
-      const double residual = heights_[k] - quadric.dot(rows_.col(static_cast<Eigen::Index>(k)));
-      squares += weights_[k] * residual * residual;
-    }
-    noise_ = std::sqrt(squares) * width_;
-    height_ = (-normal_.dot(mean_) - quadric.dot(monomialsAt(Eigen::Vector3d::Zero()))) * width_;
-  }
-
-  Quadric monomialsAt(const Eigen::Vector3d& offset) const {
-    const Eigen::Vector2d place = across_.transpose() * (offset - mean_);
-    return internal::monomials(place.x(), place.y());
-  }
-
+private:
   double width_ = 0.0;
   std::vector<double> weights_;           ///< of sum 1
   std::vector<Eigen::Vector3d> offsets_;  ///< from the point [width]
-  Eigen::Vector3d mean_;                  ///< of the offsets
-  Eigen::Vector3d normal_;
-  Eigen::Matrix<double, 3, 2> across_;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> rows_;
-  std::vector<double> heights_;
-  double height_ = 0.0;
-  double noise_ = 0.0;
-  double roundness_ = 1.0;
+  QuadricFit quadric_;
 };
 
 /// A noisy cloud, its neighbourhoods and their fits.
@@ -211,13 +113,12 @@ class NoisyCloud {
 public:
   NoisyCloud(Positions points, const Execution& execution)
       : points_(std::move(points)), lists_(findNearestNeighbors(points_, kNeighbors, execution)),
-        threads_(internal::threadCount(execution.threads, size())),
-        report_(internal::reportOf(execution, "consolidation")),
-        fits_(static_cast<std::size_t>(threads_)) {
+        threads_(threadCount(execution.threads, lists_.size())),
+        report_(reportOf(execution, "consolidation")), errors_(lists_.size()),
+        scale_radii_(lists_.size()) {
     tryScales();
   }
 
-  std::size_t size() const { return static_cast<std::size_t>(points_.cols()); }
   const Positions& points() const { return points_; }
   /// Whether the noise is above what neighbourhoods can tell from the surface.
   bool isThick() const { return roundness_ > kMinThickRoundness; }
@@ -225,18 +126,18 @@ public:
   /// Clusters of neighbours, of some three points each.
   ///
   /// \return the number of clusters.
-  Index clusters(std::vector<Index>& cluster) const {
-    cluster.assign(size(), -1);
+  Index clusters(Indexed<Index>& cluster) const {
+    cluster.assign(lists_.size(), -1);
     Index count = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    for (const Index i : indicesOf(cluster)) {
       if (cluster[i] >= 0)
         continue;
       int taken = 0;
       // The point is the first of its own neighbours, or one at the same place.
       cluster[i] = count;
-      for (const Index j : around(i).first(kClusterNeighbors + 1))
-        if (cluster[at(j)] < 0 && ++taken < kClusterSize)
-          cluster[at(j)] = count;
+      for (const Index j : listOf(lists_, i).first(kClusterNeighbors + 1))
+        if (cluster[j] < 0 && ++taken < kClusterSize)
+          cluster[j] = count;
       ++count;
     }
     return count;
@@ -246,110 +147,104 @@ public:
   ///
   /// \param part of each point, the number of the point it is part of.
   /// \return the points that are left.
-  Positions onSurface(std::vector<Index>& part, double& noise) {
-    chooseRadii();
-    std::vector<double> deviations(size());
+  Positions onSurface(Indexed<Index>& part, double& noise) {
+    const Indexed<double> radii = chooseRadii();
+    Indexed<double> deviations(lists_.size());
     Positions moved(3, points_.cols());
-    internal::forEachItem(size(), threads_, report_, [&](std::size_t thread, std::size_t i) {
-      SurfaceFit& fit = fits_[thread];
-      const Eigen::Vector3d point = points_.col(static_cast<Eigen::Index>(i));
+    forEachIndex<SurfaceFit>(lists_.size(), threads_, report_, [&](SurfaceFit& fit, Index i) {
+      const Eigen::Vector3d point = points_.col(i);
       Eigen::Vector3d place = point;
       for (int k = 0; k < kFits; ++k) {
-        fit.compute(points_, around(i), place, -1, kWidth * radii_[i]);
+        fit.compute(points_, listOf(lists_, i), place, -1, kWidth * radii[i]);
         place -= fit.offset();
       }
       deviations[i] = fit.noise();
-      const bool stays = !((place - point).norm() <= kMaxMove * radii_[i]);
-      moved.col(static_cast<Eigen::Index>(i)) = stays ? point : place;
+      const bool stays = !((place - point).norm() <= kMaxMove * radii[i]);
+      moved.col(i) = stays ? point : place;
     });
     Positions left = merged(moved, deviations, part);
-    noise = internal::medianOf(deviations);
+    noise = medianOf(deviations);
     return left;
   }
 
 private:
-  Neighborhood around(std::size_t i) const { return {lists_, i}; }
-
   /// How well the points are predicted by their neighbours, by each scale.
   void tryScales() {
-    std::vector<double> roundness(size());
-    errors_.resize(size());
-    scale_radii_.resize(size());
-    internal::forEachItem(size(), threads_, report_, [&](std::size_t thread, std::size_t i) {
-      SurfaceFit& fit = fits_[thread];
-      const Eigen::Vector3d point = points_.col(static_cast<Eigen::Index>(i));
-      const Neighborhood all = around(i);
+    Indexed<double> roundness(lists_.size());
+    forEachIndex<SurfaceFit>(lists_.size(), threads_, report_, [&](SurfaceFit& fit, Index i) {
+      const Eigen::Vector3d point = points_.col(i);
+      const Row<Index> all = listOf(lists_, i);
       for (std::size_t s = 0; s < kScales.size(); ++s) {
         const std::size_t last = std::min(kScales[s], all.size() - 1);
         scale_radii_[i][s] = (points_.col(*(all.begin() + last)) - point).norm();
-        fit.compute(points_, all.first(last + last / 2 + 1), point, static_cast<Index>(i),
+        fit.compute(points_, all.first(last + last / 2 + 1), point, i,
                     kTrialWidth * scale_radii_[i][s]);
         errors_[i][s] = std::abs(fit.height());
         if (s == kScales.size() / 2)
           roundness[i] = fit.roundness();
       }
     });
-    roundness_ = internal::medianOf(roundness);
+    roundness_ = medianOf(roundness);
   }
 
   /// The radius of the best scale around each point, smoothly.
-  void chooseRadii() {
-    radii_.resize(size());
-    internal::forEachItem(size(), threads_, [&](std::size_t, std::size_t i) {
-      std::array<double, kScales.size()> sums{};
-      for (const Index j : around(i).first(kJury))
+  Indexed<double> chooseRadii() const {
+    Indexed<double> radii(lists_.size());
+    forEachIndex(radii.size(), threads_, {}, [&](Index i) {
+      ScaleValues sums{};
+      for (const Index j : listOf(lists_, i).first(kJury))
         for (std::size_t s = 0; s < kScales.size(); ++s)
-          sums[s] += errors_[at(j)][s];
-      const auto best = std::min_element(sums.begin(), sums.end()) - sums.begin();
-      radii_[i] = scale_radii_[i][static_cast<std::size_t>(best)];
+          sums[s] += errors_[j][s];
+      radii[i] =
+          *(scale_radii_[i].begin() + (std::min_element(sums.begin(), sums.end()) - sums.begin()));
     });
-    std::vector<double> means(size());
+    Indexed<double> means(radii.size());
     for (int round = 0; round < kAverageRounds; ++round) {
-      internal::forEachItem(size(), threads_, [&](std::size_t, std::size_t i) {
-        const Neighborhood nearest = around(i).first(kAveraged);
+      forEachIndex(radii.size(), threads_, {}, [&](Index i) {
+        const Row<Index> nearest = listOf(lists_, i).first(kAveraged);
         double sum = 0.0;
         for (const Index j : nearest)
-          sum += radii_[at(j)];
+          sum += radii[j];
         means[i] = sum / static_cast<double>(nearest.size());
       });
-      radii_.swap(means);
+      radii.swap(means);
     }
+    return radii;
   }
 
-  Positions merged(const Positions& moved, const std::vector<double>& deviations,
-                   std::vector<Index>& part) const {
-    part.assign(size(), -1);
+  Positions merged(const Positions& moved, const Indexed<double>& deviations,
+                   Indexed<Index>& part) const {
+    part.assign(lists_.size(), -1);
     Positions left(3, moved.cols());
     Index count = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
+    for (const Index i : indicesOf(part)) {
       if (part[i] >= 0)
         continue;
-      const auto point = moved.col(static_cast<Eigen::Index>(i));
-      for (const Index j : around(i))
-        if (part[at(j)] < 0 && (moved.col(j) - point).norm() <= kMergeDistance * deviations[i])
-          part[at(j)] = count;
+      for (const Index j : listOf(lists_, i))
+        if (part[j] < 0 && (moved.col(j) - moved.col(i)).norm() <= kMergeDistance * deviations[i])
+          part[j] = count;
       part[i] = count;
-      left.col(count++) = point;
+      left.col(count++) = moved.col(i);
     }
     return left.leftCols(count);
   }
+
+  using ScaleValues = std::array<double, kScales.size()>;
 
   Positions points_;
   NeighborLists lists_;
   int threads_;
   FractionReport report_;
-  std::vector<SurfaceFit> fits_;  ///< of each thread
-  std::vector<std::array<double, kScales.size()>> errors_;
-  std::vector<std::array<double, kScales.size()>> scale_radii_;
-  std::vector<double> radii_;
+  Indexed<ScaleValues> errors_;
+  Indexed<ScaleValues> scale_radii_;
   double roundness_ = 0.0;
 };
 
-Positions meansOf(const Positions& points, const std::vector<Index>& cluster, Index count) {
+Positions meansOf(const Positions& points, const Indexed<Index>& cluster, Index count) {
   Positions means = Positions::Zero(3, count);
   Eigen::RowVectorXd sizes = Eigen::RowVectorXd::Zero(count);
-  for (std::size_t i = 0; i < cluster.size(); ++i) {
-    means.col(cluster[i]) += points.col(static_cast<Eigen::Index>(i));
+  for (const Index i : indicesOf(cluster)) {
+    means.col(cluster[i]) += points.col(i);
     sizes[cluster[i]] += 1.0;
   }
   return means.array().rowwise() / sizes.array();
@@ -357,66 +252,64 @@ Positions meansOf(const Positions& points, const std::vector<Index>& cluster, In
 
 /// The points, and of each node the one that it is part of.
 struct ConsolidatedNodes {
+  /// Each node is a point of its own.
+  explicit ConsolidatedNodes(const Positions& nodes)
+      : points(nodes), point_of_node(static_cast<std::size_t>(nodes.cols())) {
+    std::iota(point_of_node.begin(), point_of_node.end(), Index{0});
+  }
+
   Positions points;
-  std::vector<Index> point_of_node;
+  Indexed<Index> point_of_node;
   double noise = 0.0;
 };
 
-/// Each node is a point of its own.
-std::vector<Index> unmerged(const Positions& nodes) {
-  std::vector<Index> point_of_node(static_cast<std::size_t>(nodes.cols()));
-  std::iota(point_of_node.begin(), point_of_node.end(), Index{0});
-  return point_of_node;
-}
-
 ConsolidatedNodes consolidated(const Positions& nodes, const Execution& execution) {
-  ConsolidatedNodes result;
-  result.point_of_node = unmerged(nodes);
-  const auto pass_on = [&](const std::vector<Index>& part) {
+  ConsolidatedNodes result(nodes);
+  Indexed<Index> part;
+  const auto pass_on = [&] {
     for (Index& point : result.point_of_node)
-      point = part[at(point)];
+      point = part[point];
   };
-  std::vector<Index> part;
   NoisyCloud given(nodes, execution);
   std::optional<NoisyCloud> clustered;
   NoisyCloud* cloud = &given;
   while (cloud->isThick()) {
     const Index count = cloud->clusters(part);
     if (count < kMinClusters) {
-      result.point_of_node = unmerged(nodes);
+      result = ConsolidatedNodes(nodes);
       cloud = &given;
       break;
     }
     cloud = &clustered.emplace(meansOf(cloud->points(), part, count), execution);
-    pass_on(part);
+    pass_on();
   }
   result.points = cloud->onSurface(part, result.noise);
-  pass_on(part);
+  pass_on();
   return result;
 }
 
 /// The points in the order and the unit of the input.
-Consolidation toInput(const Positions& input, const internal::OrderedPoints& nodes,
+Consolidation toInput(const Positions& input, const OrderedPoints& nodes,
                       const ConsolidatedNodes& consolidated) {
   Consolidation result;
-  const std::vector<Index> node_of_input = internal::nodesOfInput(nodes);
-  std::vector<Index> number(static_cast<std::size_t>(consolidated.points.cols()), -1);
+  const Indexed<Index> node_of_input = nodesOfInput(nodes);
+  Indexed<Index> number(static_cast<std::size_t>(consolidated.points.cols()), -1);
   result.points.resize(3, consolidated.points.cols());
   Index count = 0;
   Eigen::VectorXd moved(input.cols());
-  for (Eigen::Index i = 0; i < input.cols(); ++i) {
-    const Index point = consolidated.point_of_node[at(node_of_input[static_cast<std::size_t>(i)])];
-    if (number[at(point)] < 0) {
-      number[at(point)] = count++;
-      result.points.col(number[at(point)]) = consolidated.points.col(point).unaryExpr(
+  for (const Index i : indicesOf(node_of_input)) {
+    const Index point = consolidated.point_of_node[node_of_input[i]];
+    if (number[point] < 0) {
+      number[point] = count++;
+      result.points.col(number[point]) = consolidated.points.col(point).unaryExpr(
           [&](double x) { return std::ldexp(x, nodes.exponent); });
     }
-    result.point_of_input.push_back(number[at(point)]);
-    moved[i] = (result.points.col(result.point_of_input.back()) - input.col(i)).norm();
+    result.point_of_input.push_back(number[point]);
+    moved[i] = (result.points.col(number[point]) - input.col(i)).norm();
   }
   ConsolidationReport& report = result.report;
   report.noise = std::ldexp(consolidated.noise, nodes.exponent);
-  report.merged = nodes.input_of_node.size() - at(count);
+  report.merged = nodes.input_of_node.size() - number.size();
   if (input.cols() > 0) {
     report.max_displacement = moved.maxCoeff();
     report.mean_displacement = moved.mean();
@@ -426,17 +319,18 @@ Consolidation toInput(const Positions& input, const internal::OrderedPoints& nod
 }
 
 }  // namespace
+}  // namespace internal
 
 Consolidation consolidate(const Positions& points, const Execution& execution) {
   internal::checkThreads(execution.threads);
   internal::checkFinite("consolidate", points);
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
-  if (nodes.input_of_node.size() >= kMinPoints) {
-    const ConsolidatedNodes result = consolidated(nodes.points, execution);
-    if (result.points.cols() >= kMinLeft)
-      return toInput(points, nodes, result);
+  if (nodes.input_of_node.size() >= internal::kMinPoints) {
+    const internal::ConsolidatedNodes result = internal::consolidated(nodes.points, execution);
+    if (result.points.cols() >= internal::kMinLeft)
+      return internal::toInput(points, nodes, result);
   }
-  return toInput(points, nodes, {nodes.points, unmerged(nodes.points), 0.0});
+  return internal::toInput(points, nodes, internal::ConsolidatedNodes(nodes.points));
 }
 
 }  // namespace spherical_param

@@ -2,117 +2,90 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace spherical_param::internal {
-namespace {
-
-/// For the few that are ever excluded.
-bool contains(const std::vector<Index>& nodes, Index i) {
-  return std::find(nodes.begin(), nodes.end(), i) != nodes.end();
-}
-
-}  // namespace
 
 ComponentTree::ComponentTree(const Positions& points)
-    : points_(points), order_(static_cast<std::size_t>(points.cols())),
-      component_(order_.size(), 0) {
+    : points_(points), order_(static_cast<std::size_t>(points.cols())) {
   std::iota(order_.begin(), order_.end(), Index{0});
+  component_ = order_;
   nodes_.reserve(order_.size() / 2 + 1);
-  Node root;
-  root.end = static_cast<Index>(order_.size());
-  nodes_.push_back(root);
+  nodes_.push_back({{}, 0, static_cast<Index>(order_.size())});
   // Children are appended behind their parent, so this visits every node after its parent.
-  for (std::size_t node = 0; node < nodes_.size(); ++node)
-    build(static_cast<Index>(node));
+  for (Index node = 0; node < static_cast<Index>(nodes_.size()); ++node)
+    build(nodes_[node]);
 }
 
-void ComponentTree::build(Index node) {
-  Node& parent = nodes_[static_cast<std::size_t>(node)];
-  const auto begin = order_.begin() + parent.begin;
-  const auto end = order_.begin() + parent.end;
-  std::for_each(begin, end, [&](Index i) { parent.box.extend(points_.col(i)); });
-  if (parent.end - parent.begin <= kLeafSize)
+void ComponentTree::build(Node& node) {
+  const auto begin = order_.begin() + node.begin;
+  const auto end = order_.begin() + node.end;
+  std::for_each(begin, end, [&](Index i) { node.box.extend(points_.col(i)); });
+  if (node.end - node.begin <= kLeafSize)
     return;
   Eigen::Index axis = 0;
-  parent.box.sizes().maxCoeff(&axis);
-  const auto middle = begin + (end - begin) / 2;
-  std::nth_element(begin, middle, end, [&](Index i, Index j) {
+  node.box.sizes().maxCoeff(&axis);
+  const Index middle = node.begin + (node.end - node.begin) / 2;
+  std::nth_element(begin, order_.begin() + middle, end, [&](Index i, Index j) {
     return std::pair(points_(axis, i), i) < std::pair(points_(axis, j), j);
   });
-  Node left;
-  left.begin = parent.begin;
-  left.end = static_cast<Index>(middle - order_.begin());
-  Node right;
-  right.begin = left.end;
-  right.end = parent.end;
-  parent.left = static_cast<Index>(nodes_.size());
-  nodes_.push_back(left);  // ends the validity of `parent`
+  node.left = static_cast<Index>(nodes_.size());
+  const Node left{{}, node.begin, middle};
+  const Node right{{}, middle, node.end};
+  nodes_.push_back(left);  // ends the validity of `node`
   nodes_.push_back(right);
 }
 
 void ComponentTree::setComponents(const std::vector<Index>& component) {
-  component_ = component;
+  std::copy(component.begin(), component.end(), component_.begin());
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node) {
     if (node->left != 0) {
-      const Index left = nodes_[static_cast<std::size_t>(node->left)].component;
-      const Index right = nodes_[static_cast<std::size_t>(node->left) + 1].component;
-      node->component = left == right ? left : kMixed;
+      const Index left = nodes_[node->left].component;
+      node->component = left == nodes_[node->left + 1].component ? left : kMixed;
       continue;
     }
-    const auto component_at = [&](Index position) {
-      return component_[static_cast<std::size_t>(order_[static_cast<std::size_t>(position)])];
-    };
-    node->component = component_at(node->begin);
+    node->component = component_[order_[node->begin]];
     for (Index position = node->begin; position < node->end; ++position)
-      if (component_at(position) != node->component)
+      if (component_[order_[position]] != node->component)
         node->component = kMixed;
   }
 }
 
 void ComponentTree::nearestOther(Index i, const std::vector<Index>& excluded, Pair& best) const {
-  const Index own = componentOf(i);
   visit(
-      0, i, [&](Index component) { return component != own; },
-      [&](Index j) { return componentOf(j) != own && !contains(excluded, j); }, best);
+      nodes_[0], i, excluded, [own = component_[i]](Index other) { return other != own; }, best);
 }
 
 void ComponentTree::nearestIn(Index component, Index i, const std::vector<Index>& excluded,
                               Pair& best) const {
   visit(
-      0, i, [&](Index other) { return other == component || other == kMixed; },
-      [&](Index j) { return componentOf(j) == component && !contains(excluded, j); }, best);
+      nodes_[0], i, excluded,
+      [component](Index other) { return other == component || other == kMixed; }, best);
 }
 
-void ComponentTree::nearestExcept(Index i, const std::vector<Index>& excluded, Pair& best) const {
-  visit(
-      0, i, [](Index) { return true; }, [&](Index j) { return j != i && !contains(excluded, j); },
-      best);
-}
-
-template <typename MayHold, typename Accepts>
-void ComponentTree::visit(Index node_index, Index i, const MayHold& may_hold,
+template <typename Accepts>
+void ComponentTree::visit(const Node& node, Index i, const std::vector<Index>& excluded,
                           const Accepts& accepts, Pair& best) const {
-  const Node& node = nodes_[static_cast<std::size_t>(node_index)];
   const auto point = points_.col(i);
   // A node at exactly the best distance may still hold the tie with lower indices.
-  if (!may_hold(node.component) || node.box.squaredExteriorDistance(point) > best.squared_distance)
+  if (!accepts(node.component) || node.box.squaredExteriorDistance(point) > best.squared_distance)
     return;
   if (node.left == 0) {
     for (Index position = node.begin; position < node.end; ++position) {
-      const Index j = order_[static_cast<std::size_t>(position)];
-      if (!accepts(j))
-        continue;
-      const Pair pair{(point - points_.col(j)).squaredNorm(), std::min(i, j), std::max(i, j)};
-      best = std::min(best, pair);
+      const Index j = order_[position];
+      if (accepts(component_[j]) &&
+          std::find(excluded.begin(), excluded.end(), j) == excluded.end())
+        best = std::min(
+            best, Pair{(point - points_.col(j)).squaredNorm(), std::min(i, j), std::max(i, j)});
     }
     return;
   }
-  const auto distance = [&](Index child) {
-    return nodes_[static_cast<std::size_t>(child)].box.squaredExteriorDistance(point);
-  };
-  const bool right_first = distance(node.left + 1) < distance(node.left);
-  visit(node.left + (right_first ? 1 : 0), i, may_hold, accepts, best);
-  visit(node.left + (right_first ? 0 : 1), i, may_hold, accepts, best);
+  const Node& left = nodes_[node.left];
+  const Node& right = nodes_[node.left + 1];
+  const bool right_first =
+      right.box.squaredExteriorDistance(point) < left.box.squaredExteriorDistance(point);
+  visit(right_first ? right : left, i, excluded, accepts, best);
+  visit(right_first ? left : right, i, excluded, accepts, best);
 }
 
 }  // namespace spherical_param::internal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Geometry>
@@ -30,7 +31,7 @@ public:
   /// \param points 3 x n, finite, n >= 1; must outlive the tree.
   explicit ComponentTree(const Positions& points);
 
-  /// \param component n entries, the component of each point.
+  /// \param component n entries, >= 0: the component of each point. Before, each is one by itself.
   void setComponents(const std::vector<Index>& component);
 
   /// Lowers `best` to point i and its nearest point in another component, except those in
@@ -40,10 +41,6 @@ public:
   /// Lowers `best` to point i and its nearest point in `component`, except those in `excluded`, if
   /// that pair is less.
   void nearestIn(Index component, Index i, const std::vector<Index>& excluded, Pair& best) const;
-
-  /// Lowers `best` to point i and its nearest other point, except those in `excluded`, if that pair
-  /// is less.
-  void nearestExcept(Index i, const std::vector<Index>& excluded, Pair& best) const;
 
 private:
   static constexpr Index kLeafSize = 8;
@@ -57,20 +54,17 @@ private:
     Index component = kMixed;
   };
 
-  void build(Index node);
+  void build(Node& node);
 
-  Index componentOf(Index i) const { return component_[static_cast<std::size_t>(i)]; }
-
-  /// \param may_hold whether points of this component, or of several, may be accepted
-  /// \param accepts  whether a point is accepted
-  template <typename MayHold, typename Accepts>
-  void visit(Index node, Index i, const MayHold& may_hold, const Accepts& accepts,
+  /// \param accepts whether points of this component, or of kMixed, are accepted
+  template <typename Accepts>
+  void visit(const Node& node, Index i, const std::vector<Index>& excluded, const Accepts& accepts,
              Pair& best) const;
 
   const Positions& points_;
-  std::vector<Index> order_;
-  std::vector<Index> component_;
-  std::vector<Node> nodes_;
+  Indexed<Index> order_;
+  Indexed<Index> component_;
+  Indexed<Node> nodes_;
 };
 
 }  // namespace spherical_param::internal

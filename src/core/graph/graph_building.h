@@ -1,8 +1,7 @@
 #pragma once
 
+#include "indexed.h"
 #include "neighbor_graph.h"
-#include "spherical_param/types.h"
-
 #include "union_find.h"
 
 #include <cstddef>
@@ -14,17 +13,23 @@ namespace spherical_param::internal {
 /// Length of an edge; positive for distinct points even where the squares underflow.
 double edgeLength(const Positions& points, Index i, Index j);
 
+/// Point spacing at a node: the median length of its edges, robust against long edges across an
+/// opening; 0 without edges.
+///
+/// \param lengths working memory.
+double nodeSpacing(const Graph& graph, Index node, std::vector<double>& lengths);
+
 /// The connected components of a graph.
 UnionFind connectedComponents(const Graph& graph);
 
 /// The representative of the set of each of 0 ... n - 1.
-std::vector<Index> representatives(UnionFind& sets, std::size_t n);
+Indexed<Index> representatives(UnionFind& sets, std::size_t n);
 
 /// Number of disjoint sets, by their representatives.
-Index countSets(const std::vector<Index>& representative);
+Index countSets(const Indexed<Index>& representative);
 
 /// Number of elements of each set, at its representative; 0 elsewhere.
-std::vector<std::size_t> setSizes(const std::vector<Index>& representative);
+Indexed<std::size_t> setSizes(const Indexed<Index>& representative);
 
 /// Minimum spanning tree of the components by their closest pairs of points (Boruvka 1926): in each
 /// round every component but the largest finds its shortest edge to another one.
@@ -41,7 +46,7 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
 /// \param points 3 x n.
 /// \param part   n entries: a node that represents the component of each point before joining.
 /// \param joints one bridge for each two joined components.
-std::vector<Bridge> furtherBridges(const Positions& points, const std::vector<Index>& part,
+std::vector<Bridge> furtherBridges(const Positions& points, const Indexed<Index>& part,
                                    const std::vector<Bridge>& joints, int count);
 
 /// Up to `count` bridges for each leaf of the block-cut tree, a biconnected component that hangs by
@@ -52,7 +57,8 @@ std::vector<Bridge> furtherBridges(const Positions& points, const std::vector<In
 /// \param graph  n nodes, connected.
 std::vector<Bridge> articulationBridges(const Positions& points, const Graph& graph, int count);
 
-/// The graph with further edges, which may repeat each other or edges of the graph.
+/// The graph with further edges. Of those that repeat each other the shortest is added, and none
+/// that repeats one of the graph.
 Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges);
 
 }  // namespace spherical_param::internal

@@ -1,70 +1,57 @@
 #include "graph_cycles.h"
 
+#include "indexed.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 namespace {
 
-/// The edges of a graph's power, both ways, with one number for both.
-struct PowerEdges {
-  std::vector<std::size_t> offsets{0};
-  std::vector<Index> neighbors;      ///< of each node ascending
+/// A graph's power, with one number for both entries of an edge.
+struct PowerGraph : NeighborRows {
   std::vector<std::uint32_t> edges;  ///< the number of each entry's edge
-  std::uint32_t count = 0;
-
-  std::size_t nodes() const { return offsets.size() - 1; }
+  std::uint32_t count = 0;           ///< of edges
 };
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
-/// Neighbours that a node of the power has, on average, of which no more is asked: at a reach of 3
-/// it has some 40 on a surface. Memory and time would grow with their number and its square.
-constexpr std::size_t kMaxNeighbors = 64;
-
-/// None if there are too many.
-std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
-  PowerEdges power;
-  std::vector<Index> seen_from(graph.size(), -1);
+/// None if a node has more than 64 neighbours on average, or an edge is stored at one end only. At
+/// a reach of 3 there are some 40 on a surface; memory and time grow with the number and its
+/// square.
+std::optional<PowerGraph> powerOf(const Graph& graph, int reach) {
+  PowerGraph power;
+  Indexed<Index> seen_from(graph.size(), -1);
   std::vector<Index> disc;
-  for (std::size_t v = 0; v < graph.size(); ++v) {
-    const auto center = static_cast<Index>(v);
+  for (const Index center : graph.nodes()) {
     disc.assign(1, center);
-    seen_from[v] = center;
+    seen_from[center] = center;
     std::size_t begin = 0;
     for (int step = 0; step < reach; ++step)
       for (const std::size_t end = disc.size(); begin < end; ++begin)
-        for (std::size_t e = graph.offsets[at(disc[begin])]; e < graph.offsets[at(disc[begin]) + 1];
-             ++e) {
-          const Index w = graph.neighbors[e];
-          if (seen_from[at(w)] != center)
+        for (const Index w : graph.row(disc[begin]))
+          if (std::exchange(seen_from[w], center) != center)
             disc.push_back(w);
-          seen_from[at(w)] = center;
-        }
+    std::sort(disc.begin() + 1, disc.end());
     power.neighbors.insert(power.neighbors.end(), disc.begin() + 1, disc.end());
-    std::sort(power.neighbors.begin() + static_cast<std::ptrdiff_t>(power.offsets.back()),
-              power.neighbors.end());
-    power.offsets.push_back(power.neighbors.size());
-    if (power.neighbors.size() > kMaxNeighbors * graph.size())
+    power.endRow();
+    if (power.neighbors.size() > 64 * graph.size())
       return std::nullopt;
   }
   power.edges.resize(power.neighbors.size());
   // Each row meets its lower neighbours in their order: the next free entry of theirs is its own.
-  std::vector<std::size_t> next(power.offsets.begin(), power.offsets.end() - 1);
-  for (std::size_t v = 0; v < power.nodes(); ++v)
-    for (std::size_t e = power.offsets[v]; e < power.offsets[v + 1]; ++e) {
-      const auto w = at(power.neighbors[e]);
+  Indexed<std::size_t> next(power.offsets.begin(), power.offsets.end() - 1);
+  for (const Index v : power.nodes())
+    for (const std::size_t e : power.entries(v)) {
+      const Index w = power.neighbors[e];
       if (w < v)
         continue;
       // Not so in a graph with edges of one direction.
-      if (next[w] == power.offsets[w + 1] || at(power.neighbors[next[w]]) != v)
+      if (next[w] == power.end(w) || power.neighbors[next[w]] != v)
         return std::nullopt;
       power.edges[e] = power.count;
       power.edges[next[w]++] = power.count++;
@@ -78,9 +65,9 @@ std::optional<PowerEdges> powerOf(const Graph& graph, int reach) {
 /// independent. What is left of them is the number of cycles.
 class Cocycles {
 public:
-  explicit Cocycles(const PowerEdges& power)
+  explicit Cocycles(const PowerGraph& power)
       : power_(power), known_(power.count, 0), value_(power.count, 0),
-        edge_to_(power.nodes(), kNone) {}
+        edge_to_(power.size(), kNone) {}
 
   /// \return none if there are more symbols than are kept.
   std::optional<int> count() {
@@ -111,32 +98,27 @@ private:
   }
 
   void spanForest() {
-    std::vector<char> seen(power_.nodes(), 0);
+    Indexed<char> seen(power_.size(), 0);
     std::vector<Index> queue;
-    for (std::size_t root = 0; root < power_.nodes(); ++root) {
-      if (seen[root] != 0)
+    for (const Index root : power_.nodes()) {
+      if (std::exchange(seen[root], 1) != 0)
         continue;
-      seen[root] = 1;
-      queue.assign(1, static_cast<Index>(root));
+      queue.assign(1, root);
       for (std::size_t i = 0; i < queue.size(); ++i)
-        for (std::size_t e = power_.offsets[at(queue[i])]; e < power_.offsets[at(queue[i]) + 1];
-             ++e) {
-          const Index w = power_.neighbors[e];
-          if (seen[at(w)] != 0)
-            continue;
-          seen[at(w)] = 1;
-          set(power_.edges[e], 0);
-          queue.push_back(w);
-        }
+        for (const std::size_t e : power_.entries(queue[i]))
+          if (std::exchange(seen[power_.neighbors[e]], 1) == 0) {
+            set(power_.edges[e], 0);
+            queue.push_back(power_.neighbors[e]);
+          }
     }
   }
 
   std::vector<Edge> endsOfEdges() const {
     std::vector<Edge> ends(power_.count);
-    for (std::size_t v = 0; v < power_.nodes(); ++v)
-      for (std::size_t e = power_.offsets[v]; e < power_.offsets[v + 1]; ++e)
-        if (at(power_.neighbors[e]) > v)
-          ends[power_.edges[e]] = {static_cast<Index>(v), power_.neighbors[e]};
+    for (const Index v : power_.nodes())
+      for (const std::size_t e : power_.entries(v))
+        if (power_.neighbors[e] > v)
+          ends[power_.edges[e]] = {v, power_.neighbors[e]};
     return ends;
   }
 
@@ -149,8 +131,8 @@ private:
       if (marked_ != b)
         mark(a);
       const Index other = marked_ == a ? b : a;
-      for (std::size_t e = power_.offsets[at(other)]; e < power_.offsets[at(other) + 1]; ++e) {
-        const std::uint32_t to_marked = edge_to_[at(power_.neighbors[e])];
+      for (const std::size_t e : power_.entries(other)) {
+        const std::uint32_t to_marked = edge_to_[power_.neighbors[e]];
         if (to_marked == kNone)
           continue;
         const std::uint32_t to_other = power_.edges[e];
@@ -169,10 +151,10 @@ private:
     if (marked_ == node)
       return;
     if (marked_ >= 0)
-      for (std::size_t e = power_.offsets[at(marked_)]; e < power_.offsets[at(marked_) + 1]; ++e)
-        edge_to_[at(power_.neighbors[e])] = kNone;
-    for (std::size_t e = power_.offsets[at(node)]; e < power_.offsets[at(node) + 1]; ++e)
-      edge_to_[at(power_.neighbors[e])] = power_.edges[e];
+      for (const Index w : power_.row(marked_))
+        edge_to_[w] = kNone;
+    for (const std::size_t e : power_.entries(node))
+      edge_to_[power_.neighbors[e]] = power_.edges[e];
     marked_ = node;
   }
 
@@ -190,12 +172,12 @@ private:
     }
   }
 
-  const PowerEdges& power_;
+  const PowerGraph& power_;
   std::vector<char> known_;
   std::vector<std::uint64_t> value_;
   std::vector<std::uint32_t> pending_;
   Index marked_ = -1;
-  std::vector<std::uint32_t> edge_to_;  ///< from each node to the marked one, or kNone
+  Indexed<std::uint32_t> edge_to_;  ///< from each node to the marked one, or kNone
   std::array<std::uint64_t, kMaxSymbols> relation_{};  ///< by their lowest symbol
   int symbols_ = 0;
   int relations_ = 0;
@@ -204,7 +186,7 @@ private:
 }  // namespace
 
 std::optional<int> countCycles(const Graph& graph, int reach) {
-  const std::optional<PowerEdges> power = powerOf(graph, reach);
+  const std::optional<PowerGraph> power = powerOf(graph, reach);
   return power ? Cocycles(*power).count() : std::nullopt;
 }
 

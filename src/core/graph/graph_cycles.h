@@ -13,8 +13,8 @@ namespace spherical_param::internal {
 ///
 /// \param reach at least 1.
 /// \return unset if there may be more than 64 cycles (some 32 handles), if the power has more than
-/// 64
-///         neighbours a node on average, unlike a surface, or if an edge is stored at one end only.
+///         64 neighbours a node on average, unlike a surface, or if an edge is stored at one end
+///         only.
 /// Cost: O(n) for a surface, below 1.2 KB of memory a node.
 std::optional<int> countCycles(const Graph& graph, int reach);
 

@@ -1,8 +1,7 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/types.h"
-
-#include <vector>
 
 namespace spherical_param::internal {
 
@@ -15,6 +14,6 @@ constexpr int kFittedNeighbors = 20;
 /// \param lists   n lists of the kFittedNeighbors nearest others of each point, with or without the
 ///                point itself; shorter ones give 0.
 /// \return n entries: 0 for a point of the surface, else its distance [spacing there].
-std::vector<double> nearOutliers(const Positions& points, const NeighborLists& lists, int threads);
+Indexed<double> nearOutliers(const Positions& points, const NeighborLists& lists, int threads);
 
 }  // namespace spherical_param::internal

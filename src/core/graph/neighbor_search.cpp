@@ -40,8 +40,9 @@ struct SquaredDistance {
 class KdTree {
 public:
   explicit KdTree(const Positions& points)
-      : points_(points), index_(flann::Matrix<double>(points_.data(), size(), 3),
-                                flann::KDTreeSingleIndexParams(kLeafSize)) {
+      : points_(points),
+        index_(flann::Matrix<double>(points_.data(), size(), 3),
+               flann::KDTreeSingleIndexParams(15)) {  // points of a leaf, as in PCL
     index_.buildIndex();
   }
   KdTree(const KdTree& other) = delete;  // the tree points into the coordinates
@@ -56,24 +57,18 @@ public:
     flann::KNNSimpleResultSet<double> nearest(count);
     std::vector<std::size_t> points(count);
     std::vector<double> distances(count);
-    for (const Index* query = begin; query != end; ++query, found += count) {
+    for (const Index* query = begin; query != end; ++query) {
       nearest.clear();
       index_.findNeighbors(nearest, points_.col(*query).data(), parameters);
       nearest.copy(points.data(), distances.data(), count, true);
-      std::transform(points.begin(), points.end(), found,
-                     [](std::size_t point) { return static_cast<Index>(point); });
+      found = std::copy(points.begin(), points.end(), found);
     }
   }
 
 private:
-  static constexpr int kLeafSize = 15;  ///< as in PCL
-
   Positions points_;
   flann::KDTreeSingleIndex<SquaredDistance> index_;
 };
-
-/// Entries of all lists together.
-constexpr std::size_t kMaxEntries = std::size_t{1} << 31;
 
 NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int count,
                      const Execution& execution) {
@@ -83,14 +78,14 @@ NeighborLists search(const KdTree& tree, const std::vector<Index>& points, int c
   // One more, since a point is its own neighbour.
   const std::size_t size =
       std::min(static_cast<std::size_t>(std::max(count, 0)), tree.size() - 1) + 1;
-  if (size * points.size() > kMaxEntries)
+  constexpr std::size_t max_entries = std::size_t{1} << 31;
+  if (size * points.size() > max_entries)
     throw InvalidInput("makeNeighborSearch: " + std::to_string(count) + " neighbours of each of " +
                        std::to_string(points.size()) +
                        " points do not fit into memory; use a smaller k");
   NeighborLists lists;
-  lists.offsets.resize(points.size() + 1);
-  for (std::size_t i = 0; i < lists.offsets.size(); ++i)
-    lists.offsets[i] = i * size;
+  for (std::size_t i = 1; i <= points.size(); ++i)
+    lists.offsets.push_back(i * size);
   lists.indices.resize(points.size() * size);
   const int threads = internal::threadCount(execution.threads, points.size());
   internal::forEachBlock(points.size(), threads, internal::reportOf(execution, "neighbors"),
@@ -113,11 +108,31 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
   };
 }
 
+NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count) {
+  std::vector<Index> all(n);
+  std::iota(all.begin(), all.end(), Index{0});
+  return search(all, count);
+}
+
+void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
+  if (lists.offsets.size() != count + 1 || lists.offsets.front() != 0 ||
+      lists.offsets.back() != lists.indices.size() ||
+      !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
+    throw InvalidInput("reconstruct: the neighbour lists of the search do not fit " +
+                       std::to_string(count) +
+                       " points; give one more offset than points, ascending from 0 to the number "
+                       "of indices");
+  for (const Index j : lists.indices)
+    if (j < 0 || static_cast<std::size_t>(j) >= n)
+      throw InvalidInput("reconstruct: the search answers with neighbour " + std::to_string(j) +
+                         " of " + std::to_string(n) + " points; indices must be in [0, n)");
+}
+
 NeighborLists findNearestNeighbors(const Positions& points, int count, const Execution& execution) {
   internal::checkThreads(execution.threads);
-  std::vector<Index> all(static_cast<std::size_t>(points.cols()));
-  std::iota(all.begin(), all.end(), Index{0});
-  return all.empty() ? NeighborLists() : makeNeighborSearch(points, execution)(all, count);
+  return points.cols() == 0 ? NeighborLists()
+                            : searchAll(makeNeighborSearch(points, execution),
+                                        static_cast<std::size_t>(points.cols()), count);
 }
 
 }  // namespace spherical_param

@@ -3,7 +3,7 @@
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
-#include <functional>
+#include <cstddef>
 #include <vector>
 
 namespace spherical_param {
@@ -21,6 +21,19 @@ namespace spherical_param {
 /// \throw InvalidInput for no points; std::bad_alloc.
 /// Cost: O(n log n), and O(log n) for each query, typically.
 NeighborSearch makeNeighborSearch(const Positions& points, const Execution& execution = {});
+
+/// The answer of a search among n points for the `count` nearest neighbours of each.
+NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count);
+
+/// Checks the answer of a caller's search: `count` lists of indices in [0, n).
+/// \throw InvalidInput
+void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n);
+
+/// Neighbour lists of all nodes, and a search for longer lists.
+struct Neighbors {
+  NeighborLists lists;
+  NeighborSearch search;  ///< may be empty
+};
 
 /// The `count` nearest neighbours of all points. \see makeNeighborSearch
 ///

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "graph.h"
+#include "indexed.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/result.h"
 
@@ -14,8 +15,8 @@ namespace spherical_param {
 
 /// The openings of a sampled surface.
 struct Openings {
-  std::vector<Opening> openings;  ///< the longest boundary first
-  std::vector<double> spacing;    ///< n entries: median length of the edges of each node
+  std::vector<Opening> openings;      ///< the longest boundary first
+  internal::Indexed<double> spacing;  ///< n entries: median length of the edges of each node
   /// Edges {lower, higher} of the graph that are not on the surface, ascending: across an opening,
   /// or from its loop to another sheet.
   std::vector<std::array<Index, 2>> false_edges;

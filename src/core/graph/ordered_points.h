@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "point_set.h"
 #include "spherical_param/types.h"
 
@@ -15,9 +16,9 @@ struct OrderedPoints {
   /// points stay distinct, and later products do not overflow.
   Positions points;
   int exponent = 0;
-  std::vector<Index> input_of_node;   ///< v entries, the first input point there
-  std::vector<Index> vertex_of_node;  ///< v entries, a permutation
-  DistinctPoints distinct;            ///< the same points, numbered by the first input point
+  Indexed<Index> input_of_node;   ///< v entries, the first input point there
+  Indexed<Index> vertex_of_node;  ///< v entries, a permutation
+  DistinctPoints distinct;        ///< the same points, numbered by the first input point
 };
 
 /// Finds the distinct points and puts them in the order of mortonOrder(), at the cost of one sort.
@@ -35,6 +36,6 @@ OrderedPoints orderCheckedPoints(const Positions& points, int threads);
 void checkFinite(const std::string& function, const Positions& points);
 
 /// The node of each input point.
-std::vector<Index> nodesOfInput(const OrderedPoints& nodes);
+Indexed<Index> nodesOfInput(const OrderedPoints& nodes);
 
 }  // namespace spherical_param::internal

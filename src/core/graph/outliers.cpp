@@ -1,8 +1,9 @@
 #include "outliers.h"
 
 #include "near_outliers.h"
-#include "parallel.h"
+#include "neighbor_search.h"
 #include "progress.h"
+#include "rows.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -15,9 +16,9 @@ namespace spherical_param::internal {
 namespace {
 
 /// Neighbours that make the surface of a point.
-constexpr std::size_t kNeighbors = 16;
+constexpr int kNeighbors = 16;
 /// Fewer span no plane.
-constexpr std::size_t kMinNeighbors = 3;
+constexpr int kMinNeighbors = 3;
 /// Nothing nearer to the surface of its neighbours is an outlier [their mean distances].
 constexpr double kMinScore = 1.0;
 /// Neighbours with mean distances longer than this number of times their median may be outliers.
@@ -60,189 +61,146 @@ double distanceFromPlane(const Positions& points, const Eigen::Vector3d& point,
 /// The points' neighbours, of which outliers are taken out, and their scores.
 class Scoring {
 public:
-  Scoring(const Positions& points, const NeighborLists& lists, const Execution& execution)
-      : points_(points), begin_(lists.offsets), count_(lists.size()), used_(lists.size()),
-        neighbors_(lists.indices), mean_distance_(lists.size()), scores_(lists.size(), 0.0),
-        threads_(threadCount(execution.threads, lists.size())) {
-    forEachItem(lists.size(), threads_, [&](std::size_t, std::size_t i) { sortByDistance(i); });
+  Scoring(const Positions& points, const NeighborLists& lists, int threads)
+      : scores(lists.size(), 0.0), points_(points), threads_(threads), neighbors_(lists.size()),
+        mean_distance_(lists.size()) {
+    forEachIndex(lists.size(), threads_, {}, [&](Index i) { sortByDistance(listOf(lists, i), i); });
   }
 
   /// Takes the given points out of all lists, and computes the scores of the others.
-  void compute(const std::vector<char>& is_outlier) {
-    forEachItem(used_.size(), threads_, [&](std::size_t, std::size_t i) {
-      const auto begin = neighbors_.begin() + static_cast<std::ptrdiff_t>(begin_[i]);
-      const auto end = begin + static_cast<std::ptrdiff_t>(count_[i]);
-      const auto rest = std::count_if(
-          begin, end, [&](Index j) { return is_outlier[static_cast<std::size_t>(j)] == 0; });
+  void compute(const Indexed<char>& is_outlier) {
+    forEachIndex(scores.size(), threads_, {}, [&](Index i) {
+      std::vector<Index>& around = neighbors_[i];
+      const auto rest = std::stable_partition(around.begin(), around.end(),
+                                              [&](Index j) { return is_outlier[j] == 0; });
       // With too few left, those that were there are better than none.
-      if (rest < end - begin && rest >= static_cast<std::ptrdiff_t>(kMinNeighbors)) {
-        std::stable_partition(
-            begin, end, [&](Index j) { return is_outlier[static_cast<std::size_t>(j)] == 0; });
-        count_[i] = static_cast<std::size_t>(rest);
-      }
-      used_[i] = std::min(count_[i], kNeighbors);
-      double sum = 0.0;
-      for (std::size_t c = 0; c < used_[i]; ++c)
-        sum += distance(i, begin[static_cast<std::ptrdiff_t>(c)]);
-      mean_distance_[i] = used_[i] > 0 ? sum / static_cast<double>(used_[i]) : 0.0;
+      if (rest - around.begin() >= kMinNeighbors)
+        around.erase(rest, around.end());
+      const Row<Index> used = usedOf(i);
+      const double sum = std::accumulate(used.begin(), used.end(), 0.0, [&](double total, Index j) {
+        return total + distance(i, j);
+      });
+      mean_distance_[i] = used.size() > 0 ? sum / static_cast<double>(used.size()) : 0.0;
     });
-    forEachBlock(used_.size(), threads_, [&](std::size_t, std::size_t first, std::size_t last) {
-      std::vector<Neighbor> around;
-      for (std::size_t i = first; i < last; ++i)
-        if (is_outlier[i] == 0)
-          scores_[i] = score(i, around);
-    });
+    forEachIndex<std::vector<Neighbor>>(scores.size(), threads_, {},
+                                        [&](std::vector<Neighbor>& around, Index i) {
+                                          if (is_outlier[i] == 0)
+                                            scores[i] = score(i, around);
+                                        });
   }
 
-  const std::vector<double>& scores() const { return scores_; }
-  int threads() const { return threads_; }
+  Indexed<double> scores;
 
 private:
-  double distance(std::size_t i, Index j) const {
-    return (points_.col(j) - points_.col(static_cast<Eigen::Index>(i))).norm();
+  double distance(Index i, Index j) const { return (points_.col(j) - points_.col(i)).norm(); }
+
+  /// The k nearest of the neighbours that are left.
+  Row<Index> usedOf(Index i) const {
+    const std::vector<Index>& all = neighbors_[i];
+    return Row<Index>(all.data(), all.data() + all.size()).first(kNeighbors);
   }
 
   /// The entries of a list without the point itself and repetitions, nearest first, ties by index.
-  void sortByDistance(std::size_t i) {
+  void sortByDistance(const Row<Index>& list, Index i) {
     std::vector<std::pair<double, Index>> entries;
-    for (std::size_t e = begin_[i]; e < begin_[i + 1]; ++e)
-      if (static_cast<std::size_t>(neighbors_[e]) != i)
-        entries.emplace_back(distance(i, neighbors_[e]), neighbors_[e]);
+    for (const Index j : list)
+      if (j != i)
+        entries.emplace_back(distance(i, j), j);
     std::sort(entries.begin(), entries.end());
     entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-    count_[i] = entries.size();
-    for (std::size_t c = 0; c < entries.size(); ++c)
-      neighbors_[begin_[i] + c] = entries[c].second;
+    for (const auto& entry : entries)
+      neighbors_[i].push_back(entry.second);
   }
 
-  double score(std::size_t i, std::vector<Neighbor>& around) const {
-    if (used_[i] < kMinNeighbors)
+  double score(Index i, std::vector<Neighbor>& around) const {
+    const Row<Index> used = usedOf(i);
+    if (used.size() < kMinNeighbors)
       return 0.0;
     around.clear();
-    for (std::size_t c = 0; c < used_[i]; ++c) {
-      const Index j = neighbors_[begin_[i] + c];
-      around.push_back({mean_distance_[static_cast<std::size_t>(j)], c, j});
-    }
+    for (const Index j : used)
+      around.push_back({mean_distance_[j], around.size(), j});
     std::sort(around.begin(), around.end());
     const double scale = around[around.size() / 2].mean_distance;
     if (!(scale > 0.0))
       return 0.0;  // neighbours in one place have no scale
     while (around.back().mean_distance > kMaxDistanceRatio * scale)
       around.pop_back();
-    return distanceFromPlane(points_, points_.col(static_cast<Eigen::Index>(i)), around) / scale;
+    return distanceFromPlane(points_, points_.col(i), around) / scale;
   }
 
   const Positions& points_;
-  const std::vector<std::size_t>& begin_;
-  std::vector<std::size_t> count_;  ///< entries of each list that are left
-  std::vector<std::size_t> used_;   ///< of these, the k nearest
-  std::vector<Index> neighbors_;
-  std::vector<double> mean_distance_;
-  std::vector<double> scores_;
   int threads_;
+  Indexed<std::vector<Index>> neighbors_;
+  Indexed<double> mean_distance_;
 };
-
-/// The points that are not stray.
-struct Others {
-  Positions points;
-  NodeSubset subset;
-};
-
-Others withoutStray(const Positions& points, const std::vector<StrayPoint>& stray) {
-  Others others;
-  others.subset.new_of_old.assign(static_cast<std::size_t>(points.cols()), 0);
-  for (const StrayPoint& each : stray)
-    others.subset.new_of_old[static_cast<std::size_t>(each.point)] = -1;
-  for (std::size_t i = 0; i < others.subset.new_of_old.size(); ++i)
-    if (others.subset.new_of_old[i] == 0) {
-      others.subset.new_of_old[i] = static_cast<Index>(others.subset.old_of_new.size());
-      others.subset.old_of_new.push_back(static_cast<Index>(i));
-    }
-  others.points = points(Eigen::all, others.subset.old_of_new);
-  return others;
-}
-
-/// The nearest neighbours of all of the others, among themselves: those of a net have each other
-/// for neighbours, and stray points between two sheets are in the plane of both.
-NeighborLists listsOf(const Others& others, const Neighbors& neighbors, int count) {
-  std::vector<Index> all(others.subset.old_of_new.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  return searchWithin(others.points, neighbors.search, others.subset)(all, count);
-}
 
 }  // namespace
 
 DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& lists, double sigma,
                                 const Execution& execution) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  DeviatingPoints result;
-  Scoring scoring(points, lists, execution);
-  std::vector<char> is_outlier(n, 0);
-  std::size_t left = n;
+  const int threads = threadCount(execution.threads, lists.size());
   const FractionReport report = reportOf(execution, "outliers");
-  bool found = left > 0;
-  while (found) {
+  DeviatingPoints result;
+  Scoring scoring(points, lists, threads);
+  Indexed<char> is_outlier(lists.size(), 0);
+  for (std::size_t left = lists.size(), before = 0; left != before && left > kMinNeighbors;) {
     reportFraction(report, 0.0);
     scoring.compute(is_outlier);
-    const std::vector<double>& scores = scoring.scores();
     const auto mean_over_rest = [&](const auto& value) {
-      return sumOfBlocks(n, scoring.threads(), 0.0,
-                         [&](std::size_t begin, std::size_t end) {
-                           double sum = 0.0;
-                           for (std::size_t i = begin; i < end; ++i)
-                             if (is_outlier[i] == 0)
-                               sum += value(std::min(scores[i], 1.0));
-                           return sum;
-                         }) /
-             static_cast<double>(left);
+      const auto term = [&](std::size_t begin, std::size_t end) {
+        double sum = 0.0;
+        for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i)
+          if (is_outlier[i] == 0)
+            sum += value(std::min(scoring.scores[i], 1.0));
+        return sum;
+      };
+      return sumOfBlocks(is_outlier.size(), threads, 0.0, term) / static_cast<double>(left);
     };
     const double mean = mean_over_rest([](double score) { return score; });
     const double deviation =
         std::sqrt(mean_over_rest([&](double score) { return (score - mean) * (score - mean); }));
     result.threshold = std::max(mean + sigma * deviation, kMinScore);
-    found = false;
-    for (std::size_t i = 0; i < n; ++i)
-      if (is_outlier[i] == 0 && scores[i] > result.threshold) {
+    before = left;
+    for (const Index i : indicesOf(is_outlier))
+      if (is_outlier[i] == 0 && scoring.scores[i] > result.threshold) {
         is_outlier[i] = 1;
         --left;
-        found = true;
       }
-    found = found && left > kMinNeighbors;
   }
   reportFraction(report, 1.0);
-  result.scores = scoring.scores();
-  for (std::size_t i = 0; i < n; ++i)
+  result.scores = std::move(scoring.scores);
+  for (const Index i : indicesOf(is_outlier))
     if (is_outlier[i] != 0)
-      result.indices.push_back(static_cast<Index>(i));
+      result.indices.push_back(i);
   return result;
 }
 
-std::vector<char> markOutliers(OutlierMode mode, double sigma, const Positions& points,
-                               const Neighbors& neighbors, const std::vector<StrayPoint>& stray,
-                               const Execution& execution) {
-  std::vector<char> marked(static_cast<std::size_t>(points.cols()), 0);
-  const Others others = withoutStray(points, stray);
-  const auto mark_other = [&](std::size_t other) {
-    marked[static_cast<std::size_t>(others.subset.old_of_new[other])] = 1;
-  };
-  double threshold = 0.0;  // of stray points
-  if (mode == OutlierMode::Auto) {
-    const std::vector<double> near = nearOutliers(
-        others.points, listsOf(others, neighbors, kFittedNeighbors), execution.threads);
-    for (std::size_t i = 0; i < near.size(); ++i)
-      if (near[i] > 0.0)
-        mark_other(i);
-  } else {
-    const DeviatingPoints found =
-        deviatingPoints(others.points, listsOf(others, neighbors, 2 * static_cast<int>(kNeighbors)),
-                        sigma, execution);
-    threshold = found.threshold;
-    for (const Index i : found.indices)
-      mark_other(static_cast<std::size_t>(i));
-  }
+Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& points,
+                           const std::vector<StrayPoint>& stray, const Execution& execution) {
+  Indexed<char> marked(static_cast<std::size_t>(points.cols()), 0);
   for (const StrayPoint& each : stray)
-    if (each.distance > threshold)
-      marked[static_cast<std::size_t>(each.point)] = 1;
+    marked[each.point] = 1;
+  Indexed<Index> others;
+  for (const Index i : indicesOf(marked))
+    if (marked[i] == 0)
+      others.push_back(i);
+  // Among themselves: those of a net have each other for neighbours, and stray points between two
+  // sheets are in the plane of both.
+  const Positions rest = points(Eigen::all, others);
+  if (mode == OutlierMode::Auto) {
+    const Indexed<double> distances = nearOutliers(
+        rest, findNearestNeighbors(rest, kFittedNeighbors, execution), execution.threads);
+    for (const Index i : indicesOf(distances))
+      if (distances[i] > 0.0)
+        marked[others[i]] = 1;
+    return marked;
+  }
+  const DeviatingPoints found = deviatingPoints(
+      rest, findNearestNeighbors(rest, 2 * kNeighbors, execution), sigma, execution);
+  for (const Index i : found.indices)
+    marked[others[i]] = 1;
+  for (const StrayPoint& each : stray)
+    marked[each.point] = each.distance > found.threshold ? 1 : 0;
   return marked;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "indexed.h"
 #include "neighbor_graph.h"
-#include "neighbors.h"
+#include "spherical_param/execution.h"
 #include "spherical_param/options.h"
 
 #include <vector>
@@ -17,14 +18,12 @@ namespace spherical_param::internal {
 /// OutlierMode::Deviation: points too far from the average of their neighbours (Zwicker and Gotsman
 /// 2004, section 4.2), \see deviatingPoints, and stray points beyond the same threshold.
 ///
-/// \param points    3 x n, the nodes.
-/// \param neighbors of all nodes, with a search for more.
-/// \param stray     the stray points.
+/// \param points 3 x n, the nodes.
+/// \param stray  the stray points.
 /// \return n entries, not 0 for an outlier; the same for any number of threads.
 /// Cost: that of a search and a fit for each point.
-std::vector<char> markOutliers(OutlierMode mode, double sigma, const Positions& points,
-                               const Neighbors& neighbors, const std::vector<StrayPoint>& stray,
-                               const Execution& execution);
+Indexed<char> markOutliers(OutlierMode mode, double sigma, const Positions& points,
+                           const std::vector<StrayPoint>& stray, const Execution& execution);
 
 /// Points that are off the surface of their neighbours.
 struct DeviatingPoints {

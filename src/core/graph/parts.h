@@ -1,10 +1,10 @@
 #pragma once
 
 #include "graph.h"
+#include "indexed.h"
 #include "tangent_stars.h"
 
 #include <cstddef>
-#include <vector>
 
 namespace spherical_param::internal {
 
@@ -20,7 +20,7 @@ namespace spherical_param::internal {
 /// \param agreed see agreedGraph().
 /// \param stars  of the nodes.
 /// \return n entries: a node that represents the part of each node; -1: no part.
-std::vector<Index> partsOf(const Positions& points, const Graph& agreed, const Stars& stars,
-                           std::size_t min_points);
+Indexed<Index> partsOf(const Positions& points, const Graph& agreed, const Stars& stars,
+                       std::size_t min_points);
 
 }  // namespace spherical_param::internal

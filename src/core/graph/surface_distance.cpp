@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <vector>
 
 namespace spherical_param::internal {
 namespace {
@@ -18,32 +20,21 @@ constexpr double kMaxRoughnesses = 6.0;
 /// Points of a surface that show its roughness.
 constexpr std::size_t kPatch = 12;
 
-std::size_t place(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Mean length of the edges at a node that has some.
 double spacingAt(const Graph& graph, Index i) {
-  double sum = 0.0;
-  for (std::size_t e = graph.offsets[place(i)]; e < graph.offsets[place(i) + 1]; ++e)
-    sum += graph.lengths[e];
-  return sum / static_cast<double>(graph.offsets[place(i) + 1] - graph.offsets[place(i)]);
+  const Row<double> lengths = graph.lengthsOf(i);
+  return std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size());
 }
 
 /// Root mean square distance of a node and those around it, kPatch at least, from their plane.
 double roughnessAt(const Positions& points, const Graph& graph, Index i) {
   std::vector<Index> patch{i};
-  for (std::size_t done = 0; done < patch.size() && patch.size() < kPatch;) {
-    const std::size_t ring_end = patch.size();
-    for (; done < ring_end; ++done)
-      for (std::size_t e = graph.offsets[place(patch[done])];
-           e < graph.offsets[place(patch[done]) + 1]; ++e)
-        if (std::find(patch.begin(), patch.end(), graph.neighbors[e]) == patch.end())
-          patch.push_back(graph.neighbors[e]);
-  }
-  Eigen::Matrix3Xd offsets(3, static_cast<Eigen::Index>(patch.size()));
-  for (std::size_t k = 0; k < patch.size(); ++k)
-    offsets.col(static_cast<Eigen::Index>(k)) = points.col(patch[k]) - points.col(i);
+  for (std::size_t done = 0; done < patch.size() && patch.size() < kPatch;)
+    for (const std::size_t ring_end = patch.size(); done < ring_end; ++done)
+      for (const Index j : graph.row(patch[done]))
+        if (std::find(patch.begin(), patch.end(), j) == patch.end())
+          patch.push_back(j);
+  Eigen::Matrix3Xd offsets = points(Eigen::all, patch).colwise() - points.col(i);
   offsets.colwise() -= offsets.rowwise().mean().eval();
   const Eigen::Matrix3d covariance =
       offsets * offsets.transpose() / static_cast<double>(patch.size());
@@ -53,7 +44,7 @@ double roughnessAt(const Positions& points, const Graph& graph, Index i) {
 
 }  // namespace
 
-void SurfaceDistance::setSurfaces(const std::vector<char>& on_surface) {
+void SurfaceDistance::setSurfaces(const Indexed<char>& on_surface) {
   tree_.setComponents({on_surface.begin(), on_surface.end()});
 }
 

@@ -2,9 +2,8 @@
 
 #include "component_tree.h"
 #include "graph.h"
+#include "indexed.h"
 #include "spherical_param/types.h"
-
-#include <vector>
 
 namespace spherical_param::internal {
 
@@ -17,7 +16,7 @@ public:
       : points_(points), agreed_(agreed), tree_(points) {}
 
   /// \param on_surface n entries; not all 0.
-  void setSurfaces(const std::vector<char>& on_surface);
+  void setSurfaces(const Indexed<char>& on_surface);
 
   /// The nearest point on a surface. \param i not on a surface
   Index nearest(Index i) const;

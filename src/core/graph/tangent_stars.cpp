@@ -1,6 +1,5 @@
 #include "tangent_stars.h"
 
-#include "parallel.h"
 #include "power_of_two.h"
 #include "progress.h"
 
@@ -8,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 namespace spherical_param::internal {
 namespace {
@@ -33,13 +32,13 @@ constexpr double kMinWidthRatio = 0.01;
 /// Nearest neighbours that span the tangent plane; more where these are on a line. With 6 the
 /// awkward clouds have 111,926 self-intersections instead of 61,815, with 12 a model has 799
 /// instead of 0.
-constexpr int kTangentNeighbors = 10;
+constexpr Index kTangentNeighbors = 10;
 /// Candidates steeper than this to the tangent plane are on another sheet [sine of the angle]. With
 /// 1 a model has 2 self-intersections, with 0.7 two have 2 and 412.
 constexpr double kMaxCandidateSlope = 0.85;
 /// Nearest neighbours used of a list, and searched for, at most. With 12 or 24 a sphere scanned in
 /// lines has some 20,000 self-intersections instead of 3; with 64, 0, but the search takes longer.
-constexpr int kMaxCandidates = 32;
+constexpr Index kMaxCandidates = 32;
 
 struct Candidate {
   double squared_distance;
@@ -56,13 +55,6 @@ struct Candidate {
 class VoronoiCell {
 public:
   static constexpr Index kBox = -1;
-
-  void reserve(std::size_t sites) {
-    // Each cut adds one corner at most.
-    corners_.reserve(sites + 4);
-    cut_.reserve(sites + 4);
-    sides_.reserve(sites + 4);
-  }
 
   /// A square, in place of the unbounded cell.
   void reset(double half_size) {
@@ -143,27 +135,17 @@ private:
   double squared_radius_ = 0.0;
 };
 
-/// What one thread works with.
-struct Scratch {
-  std::vector<Candidate> candidates;
-  VoronoiCell cell;
-};
-
 /// The nearest candidates of a list, sorted; in units of their own if squares would underflow.
-void collectCandidates(const Positions& points, Index i, const Index* begin, const Index* end,
-                       int most, std::vector<Candidate>& candidates) {
+void collectCandidates(const Positions& points, Index i, const Row<Index>& list,
+                       std::vector<Candidate>& candidates) {
   candidates.clear();
-  const Eigen::Vector3d point = points.col(i);
   double extent = 0.0;
-  for (const Index* j = begin; j != end; ++j) {
-    if (*j == i)
+  for (const Index j : list) {
+    if (j == i)
       continue;
-    Candidate candidate;
-    candidate.node = *j;
-    candidate.offset = points.col(*j) - point;
-    candidate.squared_distance = candidate.offset.squaredNorm();
-    extent = std::max(extent, candidate.offset.cwiseAbs().maxCoeff());
-    candidates.push_back(candidate);
+    const Eigen::Vector3d offset = points.col(j) - points.col(i);
+    extent = std::max(extent, offset.cwiseAbs().maxCoeff());
+    candidates.push_back({offset.squaredNorm(), j, offset});
   }
   constexpr double safe = 1e-100;
   if (extent > 0.0 && (extent < safe || extent > 1.0 / safe)) {
@@ -180,8 +162,8 @@ void collectCandidates(const Positions& points, Index i, const Index* begin, con
       std::unique(candidates.begin(), candidates.end(),
                   [](const Candidate& a, const Candidate& b) { return a.node == b.node; }),
       candidates.end());
-  if (candidates.size() > static_cast<std::size_t>(most))
-    candidates.erase(candidates.begin() + most, candidates.end());
+  if (candidates.size() > kMaxCandidates)
+    candidates.erase(candidates.begin() + kMaxCandidates, candidates.end());
 }
 
 /// Axes of the `count` nearest candidates about their centroid, by ascending variance. False if
@@ -256,60 +238,49 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, 
   kind.candidates = static_cast<Index>(candidates.size());
   count = 0;
   const bool complete = candidates.size() >= others;
-  const auto tangent_neighbors = std::size_t{kTangentNeighbors};
-  if (candidates.size() < tangent_neighbors) {
-    kind.wants_more = !complete;
-    findGabrielNeighbors(candidates, star, count);
+  Eigen::Matrix3d axes;
+  bool is_line = true;  // or too few points, of which more are wanted as well
+  // Where the nearest are on a scan line, those of the next ones may be among some more.
+  const std::size_t all = candidates.size() < kTangentNeighbors ? 0 : candidates.size();
+  for (std::size_t span = 0; is_line && span < all;) {
+    span = std::min(std::max(2 * span, std::size_t{kTangentNeighbors}), all);
+    kind.tangent_plane = findTangentPlane(candidates, span, axes, is_line);
+  }
+  if (kind.tangent_plane) {
+    kind.certified =
+        findVoronoiNeighbors(candidates, axes, kMaxCandidateSlope, cell, star, count) || complete;
+    kind.wants_more = !kind.certified;
   } else {
-    Eigen::Matrix3d axes;
-    bool is_line = true;
-    // Where the nearest are on a scan line, those of the next ones may be among some more.
-    for (std::size_t span = tangent_neighbors; is_line; span *= 2) {
-      span = std::min(span, candidates.size());
-      kind.tangent_plane = findTangentPlane(candidates, span, axes, is_line);
-      if (span == candidates.size())
-        break;
-    }
-    if (kind.tangent_plane) {
-      const bool certified =
-          findVoronoiNeighbors(candidates, axes, kMaxCandidateSlope, cell, star, count);
-      kind.certified = certified || complete;
-      kind.wants_more = !kind.certified;
-    } else {
-      kind.wants_more = is_line && !complete;
-      findGabrielNeighbors(candidates, star, count);
-    }
+    kind.wants_more = is_line && !complete;
+    findGabrielNeighbors(candidates, star, count);
   }
   std::sort(star, star + count);
   return kind;
 }
 
-/// Finds the stars of the points in `subset` (empty: of all) from lists in its order. Lists that
-/// are no longer than the one before change nothing.
-void findStars(const Positions& points, const std::vector<Index>& subset,
-               const NeighborLists& lists, int threads, std::vector<Scratch>& scratch,
-               const FractionReport& report, Stars& stars) {
+/// Working memory.
+struct Scratch {
+  std::vector<Candidate> candidates;
+  VoronoiCell cell;
+};
+
+/// Finds the stars of some nodes from lists in their order. Lists that are no longer than the one
+/// before change nothing.
+void findStarsOf(const std::vector<Index>& nodes, const Positions& points,
+                 const NeighborLists& lists, int threads, const FractionReport& report,
+                 Stars& stars) {
+  const Indexed<Index> node_of_list(nodes.begin(), nodes.end());
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
-  std::size_t longest = 0;
-  for (std::size_t q = 0; q < lists.size(); ++q)
-    longest = std::max(longest, lists.offsets[q + 1] - lists.offsets[q]);
-  for (Scratch& memory : scratch) {
-    memory.candidates.reserve(longest);
-    memory.cell.reserve(longest);
-  }
-  const std::size_t others = stars.size() - 1;
   reportFraction(report, 0.0);
-  forEachItem(lists.size(), threads, report, [&](std::size_t thread, std::size_t q) {
-    const Index node = subset.empty() ? static_cast<Index>(q) : subset[q];
-    const auto i = static_cast<std::size_t>(node);
-    std::vector<Candidate>& candidates = scratch[thread].candidates;
-    collectCandidates(points, node, lists.indices.data() + lists.offsets[q],
-                      lists.indices.data() + lists.offsets[q + 1], kMaxCandidates, candidates);
+  forEachIndex<Scratch>(lists.size(), threads, report, [&](Scratch& scratch, Index list) {
+    const Index i = node_of_list[list];
+    std::vector<Candidate>& candidates = scratch.candidates;
+    collectCandidates(points, i, listOf(lists, list), candidates);
     if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
       return;
-    stars.begin[i] = base + lists.offsets[q];
-    stars.kind[i] = findStar(candidates, others, scratch[thread].cell,
+    stars.begin[i] = base + lists.offsets[static_cast<std::size_t>(list)];
+    stars.kind[i] = findStar(candidates, stars.size() - 1, scratch.cell,
                              stars.nodes.data() + stars.begin[i], stars.count[i]);
     for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
       stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
@@ -318,100 +289,46 @@ void findStars(const Positions& points, const std::vector<Index>& subset,
 
 /// Asks for more neighbours of the points that want them.
 void searchForMore(const Positions& points, const NeighborSearch& search, int threads,
-                   std::vector<Scratch>& scratch, const FractionReport& report, Stars& stars) {
-  const int most =
-      static_cast<int>(std::min(static_cast<std::size_t>(kMaxCandidates), stars.size() - 1));
-  int count = 0;
+                   const FractionReport& report, Stars& stars) {
+  const Index most = std::min(kMaxCandidates, static_cast<Index>(stars.size()) - 1);
+  Index count = kTangentNeighbors / 2;
   for (const StarKind& kind : stars.kind)
-    count = std::max(count, static_cast<int>(kind.candidates));
-  count = std::max(count, kTangentNeighbors / 2);
-  std::vector<Index> open;
+    count = std::max(count, kind.candidates);
   while (count < most) {
     count = std::min(2 * count, most);
-    open.clear();
-    for (std::size_t i = 0; i < stars.size(); ++i)
+    std::vector<Index> open;
+    for (const Index i : indicesOf(stars.kind))
       if (stars.kind[i].wants_more)
-        open.push_back(static_cast<Index>(i));
+        open.push_back(i);
     if (open.empty())
       break;
-    const NeighborLists lists = search(open, count);
-    checkLists(lists, open.size(), stars.size());
-    findStars(points, open, lists, threads, scratch, {}, stars);
-    for (const Index i : open)
-      stars.kind[static_cast<std::size_t>(i)].is_beyond_list = true;
+    findStarsOf(open, points, search(open, count), threads, {}, stars);
     reportFraction(report, static_cast<double>(count) / most);
   }
 }
 
-/// Finds the stars of the nodes in `subset` (empty: of all) from lists in its order, then from more
-/// neighbours where they want them.
-void findAll(const Positions& points, const std::vector<Index>& subset, const NeighborLists& lists,
-             const NeighborSearch& search, const Execution& execution, Stars& stars) {
-  const int threads = threadCount(execution.threads, stars.size());
-  const FractionReport report = reportOf(execution, "graph");
-  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
-  findStars(points, subset, lists, threads, scratch, report, stars);
-  if (search)
-    searchForMore(points, search, threads, scratch, report, stars);
-}
-
 }  // namespace
 
-bool Stars::holds(Index i, Index j) const {
-  const auto first =
-      nodes.begin() + static_cast<std::ptrdiff_t>(begin[static_cast<std::size_t>(i)]);
-  const auto last = first + count[static_cast<std::size_t>(i)];
-  return std::find(first, last, j) != last;
-}
-
-std::vector<char> Stars::inStarsOf(const std::vector<char>& given) const {
-  std::vector<char> result(size(), 0);
-  for (std::size_t i = 0; i < size(); ++i)
+Indexed<char> Stars::inStarsOf(const Indexed<char>& given) const {
+  Indexed<char> result(size(), 0);
+  for (const Index i : indicesOf(given))
     if (given[i] != 0)
-      for (std::size_t e = begin[i]; e < endOf(i); ++e)
-        result[static_cast<std::size_t>(nodes[e])] = 1;
+      for (const Index j : of(i))
+        result[j] = 1;
   return result;
 }
 
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution) {
   Stars stars(static_cast<std::size_t>(points.cols()));
-  if (stars.size() > 0)
-    findAll(points, {}, neighbors.lists, neighbors.search, execution, stars);
-  return stars;
-}
-
-Stars findStars(const Positions& points, const Neighbors& neighbors, const Stars& all,
-                const NodeSubset& subset, const Execution& execution) {
-  Stars stars(static_cast<std::size_t>(points.cols()));
-  const auto renumbered = [&](Index node) {
-    return node < 0 ? node : subset.new_of_old[static_cast<std::size_t>(node)];
-  };
-  std::vector<Index> changed;
-  NeighborLists lists;
-  for (std::size_t i = 0; i < stars.size(); ++i) {
-    const auto old = static_cast<std::size_t>(subset.old_of_new[i]);
-    const auto list =
-        neighbors.lists.indices.begin() + static_cast<std::ptrdiff_t>(neighbors.lists.offsets[i]);
-    const auto end = neighbors.lists.indices.begin() +
-                     static_cast<std::ptrdiff_t>(neighbors.lists.offsets[i + 1]);
-    // A star of more candidates than its list may have lost one that the list does not show.
-    if (subset.has_lost[i] != 0 || all.kind[old].is_beyond_list) {
-      changed.push_back(static_cast<Index>(i));
-      lists.indices.insert(lists.indices.end(), list, end);
-      lists.offsets.push_back(lists.indices.size());
-      continue;
-    }
-    stars.begin[i] = stars.nodes.size();
-    stars.count[i] = all.count[old];
-    stars.kind[i] = all.kind[old];
-    for (std::size_t e = all.begin[old]; e < all.endOf(old); ++e)
-      stars.nodes.push_back(renumbered(all.nodes[e]));
-    std::sort(stars.nodes.begin() + static_cast<std::ptrdiff_t>(stars.begin[i]), stars.nodes.end());
-    std::transform(all.nearest[old].begin(), all.nearest[old].end(), stars.nearest[i].begin(),
-                   renumbered);
-  }
-  if (!changed.empty())
-    findAll(points, changed, lists, neighbors.search, execution, stars);
+  if (stars.size() == 0)
+    return stars;
+  const int threads = threadCount(execution.threads, stars.size());
+  const FractionReport report = reportOf(execution, "graph");
+  std::vector<Index> all(stars.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  findStarsOf(all, points, neighbors.lists, threads, report, stars);
+  if (neighbors.search)
+    searchForMore(points, neighbors.search, threads, report, stars);
   return stars;
 }
 

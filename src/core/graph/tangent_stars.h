@@ -1,6 +1,8 @@
 #pragma once
 
-#include "neighbors.h"
+#include "indexed.h"
+#include "neighbor_search.h"
+#include "rows.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
@@ -12,11 +14,10 @@ namespace spherical_param::internal {
 
 /// How the star of a point was found.
 struct StarKind {
-  Index candidates = -1;        ///< number of known nearest points; -1: not processed
-  bool tangent_plane = false;   ///< the tangent plane is reliable
-  bool certified = false;       ///< no further point can change the star
-  bool wants_more = false;      ///< more candidates may help
-  bool is_beyond_list = false;  ///< neighbours beyond its list were searched
+  Index candidates = -1;       ///< number of known nearest points; -1: not processed
+  bool tangent_plane = false;  ///< the tangent plane is reliable
+  bool certified = false;      ///< no further point can change the star
+  bool wants_more = false;     ///< more candidates may help
 };
 
 /// The star of each node: its Voronoi neighbours in its tangent plane, or its neighbours in the
@@ -25,18 +26,22 @@ struct StarKind {
 struct Stars {
   explicit Stars(std::size_t n = 0) : begin(n), count(n), kind(n), nearest(n) {}
 
-  std::vector<std::size_t> begin;
-  std::vector<Index> count;
+  Indexed<std::size_t> begin;
+  Indexed<Index> count;
   std::vector<Index> nodes;
-  std::vector<StarKind> kind;
-  std::vector<std::array<Index, 3>> nearest;  ///< the three nearest; -1: unknown
+  Indexed<StarKind> kind;
+  Indexed<std::array<Index, 3>> nearest;  ///< the three nearest; -1: unknown
 
   std::size_t size() const { return begin.size(); }
-  std::size_t endOf(std::size_t i) const { return begin[i] + static_cast<std::size_t>(count[i]); }
-  /// Whether j is in the star of i.
-  bool holds(Index i, Index j) const;
+  /// Positions of a star in `nodes`.
+  NumberRange<std::size_t> entries(Index i) const {
+    return {begin[i], begin[i] + static_cast<std::size_t>(count[i])};
+  }
+  Row<Index> of(Index i) const {
+    return {nodes.data() + begin[i], nodes.data() + begin[i] + count[i]};
+  }
   /// Marks nodes in the star of a given node (n entries each).
-  std::vector<char> inStarsOf(const std::vector<char>& given) const;
+  Indexed<char> inStarsOf(const Indexed<char>& given) const;
 };
 
 /// Finds the stars of all nodes. A star is certified if no point beyond the list can change it: the
@@ -51,16 +56,5 @@ struct Stars {
 /// \return the stars; the same, bit by bit, for any number of threads.
 /// Cost: O(n c log c) for lists of c points.
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution);
-
-/// The stars of a subset: stars that removed nodes may have changed are found again, others are
-/// kept.
-///
-/// \param points    3 x m, the nodes of the subset.
-/// \param neighbors of these nodes.
-/// \param all       the stars of all nodes.
-/// \param subset    the nodes among all.
-/// \param execution threads, progress
-Stars findStars(const Positions& points, const Neighbors& neighbors, const Stars& all,
-                const NodeSubset& subset, const Execution& execution);
 
 }  // namespace spherical_param::internal

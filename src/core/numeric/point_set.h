@@ -1,8 +1,7 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/types.h"
-
-#include <vector>
 
 namespace spherical_param {
 
@@ -12,9 +11,9 @@ namespace spherical_param {
 /// Partition of points by exact equality of their coordinates (-0 equals +0).
 struct DistinctPoints {
   /// n entries: vertex of each input point, in [0, input_of_vertex.size()).
-  std::vector<Index> vertex_of_input;
+  internal::Indexed<Index> vertex_of_input;
   /// One entry per distinct position: the first input point at that position, ascending.
-  std::vector<Index> input_of_vertex;
+  internal::Indexed<Index> input_of_vertex;
 };
 
 /// Tells whether all points lie exactly in one plane (or line, or point), in exact arithmetic on

@@ -1,8 +1,8 @@
 #include "surface_diagnosis.h"
 
 #include "corner_table.h"
+#include "graph_building.h"
 #include "graph_cycles.h"
-#include "node_spacing.h"
 #include "parallel.h"
 #include "union_find.h"
 
@@ -121,7 +121,7 @@ public:
   /// Distance of the points around v in the graph.
   double spacing(Index v) const {
     std::vector<double> lengths;
-    return internal::nodeSpacing(graph_, at(v), lengths);
+    return internal::nodeSpacing(graph_, v, lengths);
   }
 
   Differences differences() const {
