@@ -1,7 +1,7 @@
 #pragma once
 
 #include "embedding.h"
-#include "neighbor_graph.h"
+#include "graph.h"
 #include "open_surface.h"
 #include "smoothed_mesh.h"
 #include "spherical_param/options.h"

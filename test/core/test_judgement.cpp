@@ -1,6 +1,6 @@
 #include "embedding.h"
+#include "graph.h"
 #include "graphs.h"
-#include "neighbor_graph.h"
 #include "paper_method.h"
 #include "reconstructions.h"
 

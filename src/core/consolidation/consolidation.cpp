@@ -28,15 +28,12 @@ namespace {
 
 /// Neighbourhoods that are tried: they reach to this neighbour.
 constexpr std::array<std::size_t, 3> kScales{10, 20, 40};
-/// Neighbours that are searched for: 1.5 times the largest scale, as far as its weights go.
-constexpr int kNeighbors = 60;
 /// Which neighbourhood is best is decided by the errors at this number of nearest points together.
 /// With one decision for all points, normals on the scans are 2 % worse.
 constexpr std::size_t kJury = 48;
 /// The radii of neighbourhoods are averaged over this number of nearest points, twice: the surface
 /// is as smooth as they are. Without, normals on the scans are 5 % worse.
 constexpr std::size_t kAveraged = 20;
-constexpr int kAverageRounds = 2;
 /// Standard deviation of the weights [radius of the neighbourhood], in trials without the point
 /// itself, and for the fit with it, which needs fewer others. With 0.4 normals with noise are 12 %
 /// worse; with 0.5 better by 7 %, but those of three scans are worse than Poisson's.
@@ -44,14 +41,6 @@ constexpr double kTrialWidth = 0.5;
 constexpr double kWidth = 0.45;
 /// Beyond this number of standard deviations weights are 0.
 constexpr double kReach = 3.0;
-/// Fits of each point, each where the last one has moved it. With 1, normals on the scans are 3 %
-/// worse, with 3 the same.
-constexpr int kFits = 2;
-/// Points that would move farther stay: no surface is near [radius].
-constexpr double kMaxMove = 1.0;
-/// Points that end nearer to each other than this become one [noise]. With 0 the meshes are as
-/// good, but have triangles far below the noise, with 2, normals on the scans are 2 % worse.
-constexpr double kMergeDistance = 1.0;
 /// Above this median roundness of neighbourhoods, 0 for a plane, noise hides the surface from them.
 /// Scans have 0.17 to 0.30, points with noise up to 0.38, dense ones 0.42 to 0.62, and 0.22 to 0.38
 /// after one round of merging. Without a bound, normals of dense clouds are off by 14 to 42 degrees
@@ -66,8 +55,6 @@ constexpr int kClusterSize = 4;
 constexpr std::size_t kClusterNeighbors = 6;
 /// Fewer points have no noise to speak of.
 constexpr std::size_t kMinPoints = 20;
-/// Fewer cannot be meshed.
-constexpr Eigen::Index kMinLeft = 4;
 /// A quadric of least squares through neighbours, with Gaussian weights.
 class SurfaceFit {
 public:
@@ -112,7 +99,8 @@ private:
 class NoisyCloud {
 public:
   NoisyCloud(Positions points, const Execution& execution)
-      : points_(std::move(points)), lists_(findNearestNeighbors(points_, kNeighbors, execution)),
+      : points_(std::move(points)),  // 1.5 times the largest scale: as far as its weights go
+        lists_(findNearestNeighbors(points_, 60, execution)),
         threads_(threadCount(execution.threads, lists_.size())),
         report_(reportOf(execution, "consolidation")), errors_(lists_.size()),
         scale_radii_(lists_.size()) {
@@ -154,12 +142,15 @@ public:
     forEachIndex<SurfaceFit>(lists_.size(), threads_, report_, [&](SurfaceFit& fit, Index i) {
       const Eigen::Vector3d point = points_.col(i);
       Eigen::Vector3d place = point;
-      for (int k = 0; k < kFits; ++k) {
+      // The second fit is where the first has moved the point. With one, normals on the scans are 3
+      // % worse, with three the same.
+      for (int k = 0; k < 2; ++k) {
         fit.compute(points_, listOf(lists_, i), place, -1, kWidth * radii[i]);
         place -= fit.offset();
       }
       deviations[i] = fit.noise();
-      const bool stays = !((place - point).norm() <= kMaxMove * radii[i]);
+      // Where the surface is farther than the neighbourhood, there is none.
+      const bool stays = !((place - point).norm() <= radii[i]);
       moved.col(i) = stays ? point : place;
     });
     Positions left = merged(moved, deviations, part);
@@ -199,7 +190,7 @@ private:
           *(scale_radii_[i].begin() + (std::min_element(sums.begin(), sums.end()) - sums.begin()));
     });
     Indexed<double> means(radii.size());
-    for (int round = 0; round < kAverageRounds; ++round) {
+    for (int round = 0; round < 2; ++round) {
       forEachIndex(radii.size(), threads_, {}, [&](Index i) {
         const Row<Index> nearest = listOf(lists_, i).first(kAveraged);
         double sum = 0.0;
@@ -212,6 +203,9 @@ private:
     return radii;
   }
 
+  /// Merges points that are nearer to each other than their noise. Without, the meshes are as good,
+  /// but have triangles far below the noise; at twice that distance normals on the scans are 2 %
+  /// worse.
   Positions merged(const Positions& moved, const Indexed<double>& deviations,
                    Indexed<Index>& part) const {
     part.assign(lists_.size(), -1);
@@ -221,7 +215,7 @@ private:
       if (part[i] >= 0)
         continue;
       for (const Index j : listOf(lists_, i))
-        if (part[j] < 0 && (moved.col(j) - moved.col(i)).norm() <= kMergeDistance * deviations[i])
+        if (part[j] < 0 && (moved.col(j) - moved.col(i)).norm() <= deviations[i])
           part[j] = count;
       part[i] = count;
       left.col(count++) = moved.col(i);
@@ -327,7 +321,7 @@ Consolidation consolidate(const Positions& points, const Execution& execution) {
   const internal::OrderedPoints nodes = internal::orderPoints(points, execution.threads);
   if (nodes.input_of_node.size() >= internal::kMinPoints) {
     const internal::ConsolidatedNodes result = internal::consolidated(nodes.points, execution);
-    if (result.points.cols() >= internal::kMinLeft)
+    if (result.points.cols() >= 4)  // fewer cannot be meshed
       return internal::toInput(points, nodes, result);
   }
   return internal::toInput(points, nodes, internal::ConsolidatedNodes(nodes.points));

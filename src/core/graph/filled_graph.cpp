@@ -1,8 +1,8 @@
 #include "filled_graph.h"
 
+#include "graph.h"
 #include "graph_building.h"
 #include "indexed.h"
-#include "neighbor_graph.h"
 #include "pi.h"
 #include "ringed_disc.h"
 

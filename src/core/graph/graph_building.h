@@ -1,7 +1,7 @@
 #pragma once
 
+#include "graph.h"
 #include "indexed.h"
-#include "neighbor_graph.h"
 #include "union_find.h"
 
 #include <cstddef>

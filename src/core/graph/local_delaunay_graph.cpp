@@ -6,6 +6,7 @@
 #include "stray_points.h"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -40,47 +41,29 @@ void joinWithoutPlane(const Positions& points, const Stars& stars, Graph& graph)
     graph = withEdges(graph, edges);
 }
 
-std::vector<Index> pointsOfLowDegree(const Graph& graph) {
-  std::vector<Index> result;
-  for (const Index i : graph.nodes())
-    if (graph.row(i).size() < kMinDegree)
-      result.push_back(i);
-  return result;
-}
-
-/// Gives points of low degree their whole star and their nearest neighbours.
+/// Gives points of low degree their whole star and their nearest points.
 void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
-  const std::vector<Index> weak = pointsOfLowDegree(graph);
-  if (weak.empty())
-    return;
   std::vector<Bridge> edges;
-  for (const Index i : weak) {
+  std::optional<ComponentTree> tree;
+  for (const Index i : graph.nodes()) {
+    if (graph.row(i).size() >= kMinDegree)
+      continue;
     for (const Index j : stars.of(i))
       edges.push_back(edgeBetween(points, i, j));
-    for (const Index j : stars.nearest[i])
-      if (j >= 0)
-        edges.push_back(edgeBetween(points, i, j));
-  }
-  graph = withEdges(graph, edges);
-
-  // Lists of fewer than three points leave some behind.
-  const std::vector<Index> poor = pointsOfLowDegree(graph);
-  if (poor.empty())
-    return;
-  edges.clear();
-  const ComponentTree tree(points);
-  for (const Index i : poor) {
-    std::vector<Index> found;
-    while (found.size() < kMinDegree) {
+    if (!tree)
+      tree.emplace(points);
+    std::vector<Index> nearest;
+    while (nearest.size() < kMinDegree) {
       ComponentTree::Pair pair;
-      tree.nearestOther(i, found, pair);
+      tree->nearestOther(i, nearest, pair);
       if (pair.from < 0)
-        break;  // all points are found
-      found.push_back(pair.from == i ? pair.to : pair.from);
-      edges.push_back(edgeBetween(points, i, found.back()));
+        break;  // there are no others
+      nearest.push_back(pair.from == i ? pair.to : pair.from);
+      edges.push_back(edgeBetween(points, i, nearest.back()));
     }
   }
-  graph = withEdges(graph, edges);
+  if (!edges.empty())
+    graph = withEdges(graph, edges);
 }
 
 /// Joins the components by edges of stars that found no agreement, the shortest first, and what is

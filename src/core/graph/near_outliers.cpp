@@ -19,17 +19,13 @@ constexpr double kMinDistance = 0.25;
 /// none of the 56 clouds loses a point, and 108 of 196 stray points near the surface are found;
 /// with 6, 14 clouds lose 22 points, and 135 are found.
 constexpr double kMinDeviations = 10.0;
-/// The spacing at a point is the distance of its fourth neighbour, the median of six.
-constexpr int kSpacingRank = 3;
-/// Of an outlier, seen along the normal, a neighbour is as near as this [spacing].
-constexpr double kMaxGap = 1.0;
 /// Distance of the origin from the quadric of least squares through its neighbours; 0 if they do
 /// not show an outlier.
 double distanceOff(const std::vector<Eigen::Vector3d>& neighbors, QuadricFit& quadric) {
   constexpr double n = kFittedNeighbors;
   quadric.fit(neighbors, std::vector<double>(kFittedNeighbors, 1.0 / n));
-  // In a gap between the neighbours there is nothing to be off.
-  if (quadric.gap() > kMaxGap)
+  // In a gap between the neighbours, wider than a spacing, there is nothing to be off.
+  if (quadric.gap() > 1.0)
     return 0.0;
   // The fit itself is less certain where it is not held by neighbours.
   const double distance = std::abs(quadric.height()) / std::sqrt(1.0 + quadric.leverage() / n);
@@ -64,9 +60,9 @@ Indexed<double> nearOutliers(const Positions& points, const NeighborLists& lists
       memory.values.push_back((points.col(j) - points.col(i)).norm());
     if (memory.values.empty())
       return;
-    const auto rank = memory.values.begin() + kSpacingRank;
-    std::nth_element(memory.values.begin(), rank, memory.values.end());
-    spacing[i] = *rank;
+    const auto fourth = memory.values.begin() + 3;  // the median of six
+    std::nth_element(memory.values.begin(), fourth, memory.values.end());
+    spacing[i] = *fourth;
   });
   Indexed<double> distances(lists.size(), 0.0);
   forEachIndex<FitMemory>(lists.size(), threads, {}, [&](FitMemory& memory, Index i) {

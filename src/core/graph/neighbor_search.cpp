@@ -114,20 +114,6 @@ NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count) 
   return search(all, count);
 }
 
-void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
-  if (lists.offsets.size() != count + 1 || lists.offsets.front() != 0 ||
-      lists.offsets.back() != lists.indices.size() ||
-      !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
-    throw InvalidInput("reconstruct: the neighbour lists of the search do not fit " +
-                       std::to_string(count) +
-                       " points; give one more offset than points, ascending from 0 to the number "
-                       "of indices");
-  for (const Index j : lists.indices)
-    if (j < 0 || static_cast<std::size_t>(j) >= n)
-      throw InvalidInput("reconstruct: the search answers with neighbour " + std::to_string(j) +
-                         " of " + std::to_string(n) + " points; indices must be in [0, n)");
-}
-
 NeighborLists findNearestNeighbors(const Positions& points, int count, const Execution& execution) {
   internal::checkThreads(execution.threads);
   return points.cols() == 0 ? NeighborLists()

@@ -25,10 +25,6 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
 /// The answer of a search among n points for the `count` nearest neighbours of each.
 NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count);
 
-/// Checks the answer of a caller's search: `count` lists of indices in [0, n).
-/// \throw InvalidInput
-void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n);
-
 /// Neighbour lists of all nodes, and a search for longer lists.
 struct Neighbors {
   NeighborLists lists;

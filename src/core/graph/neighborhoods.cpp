@@ -18,6 +18,21 @@ OrderedPoints orderInputs(const Positions& cloud, const std::vector<Index>& inpu
              : orderCheckedPoints(cloud(Eigen::all, inputs), threads);
 }
 
+/// Checks the answer of a caller's search: `count` lists of indices in [0, n).
+void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
+  if (lists.offsets.size() != count + 1 || lists.offsets.front() != 0 ||
+      lists.offsets.back() != lists.indices.size() ||
+      !std::is_sorted(lists.offsets.begin(), lists.offsets.end()))
+    throw InvalidInput("reconstruct: the neighbour lists of the search do not fit " +
+                       std::to_string(count) +
+                       " points; give one more offset than points, ascending from 0 to the number "
+                       "of indices");
+  for (const Index j : lists.indices)
+    if (j < 0 || static_cast<std::size_t>(j) >= n)
+      throw InvalidInput("reconstruct: the search answers with neighbour " + std::to_string(j) +
+                         " of " + std::to_string(n) + " points; indices must be in [0, n)");
+}
+
 /// Points that a caller's search is asked for at once: between two questions progress is reported.
 constexpr std::size_t kQuestion = 4096;
 

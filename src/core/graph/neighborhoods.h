@@ -1,7 +1,7 @@
 #pragma once
 
+#include "graph.h"
 #include "indexed.h"
-#include "neighbor_graph.h"
 #include "neighbor_search.h"
 #include "ordered_points.h"
 #include "spherical_param/options.h"

@@ -34,23 +34,17 @@ constexpr double kMinCorner = 0.65 * kPi;
 /// two sheets join.
 constexpr double kMinRoundness = 0.2;
 constexpr double kMinSlitWidth = 4.0;
-/// Edges between sheets are steeper than this [sine], and join normals of a smaller cosine.
+/// Edges between sheets are steeper than this [sine], and join normals of a smaller cosine. Normals
+/// of opposite sheets are as far apart, and to different sides.
 constexpr double kMaxSheetSlope = 0.6;
 constexpr double kMinSheetCosine = 0.5;
-/// Opposite sheets have normals of a smaller cosine.
-constexpr double kMaxOppositeCosine = -0.5;
 /// Neighbours on one sheet for sure have normals of a larger cosine, but for the sign, and an edge
-/// that is less steep to both planes [sine].
+/// that is half as steep as between sheets.
 constexpr double kMinOneSheetCosine = 0.9;
-constexpr double kMaxOneSheetSlope = 0.3;
 /// The least number of such neighbours across which a surface has one side only.
 constexpr std::size_t kMinTwisted = 10;
-/// Cycles of up to three times this number of points do not count.
-constexpr int kReach = 2;
 /// How far the moments of directions are taken about their mean, not about 0.
 constexpr double kCentered = 0.5;
-/// From this width on an opening is certain [spacing].
-constexpr double kCertainWidth = 9.0;
 /// A narrower flat patch is a line [spacing].
 constexpr double kMinPatchWidth = 0.1;
 /// Loops nearer to a plane are flat [spacing].
@@ -95,7 +89,7 @@ public:
   /// Edges between neighbours on one sheet that have normals to opposite sides.
   std::size_t countTwisted() const {
     return countEdges(edges_, [&](Index v, Index w) {
-      return cosine(v, w) < -kMinOneSheetCosine && slope(v, w) < kMaxOneSheetSlope;
+      return cosine(v, w) < -kMinOneSheetCosine && slope(v, w) < kMaxSheetSlope / 2.0;
     });
   }
 
@@ -151,7 +145,7 @@ private:
   /// Cosine between the normals of two nodes.
   double cosine(Index v, Index w) const { return normals_.col(v).dot(normals_.col(w)); }
 
-  bool areOpposite(Index v, Index w) const { return cosine(v, w) < kMaxOppositeCosine; }
+  bool areOpposite(Index v, Index w) const { return cosine(v, w) < -kMinSheetCosine; }
 
   /// Of an edge to the steeper of the planes of its ends [sine].
   double slope(Index v, Index w) const {
@@ -327,8 +321,8 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
       std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
   opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < kMaxFlat * opening.spacing;
-  opening.certainty = std::clamp(
-      (opening.width / opening.spacing - kMinWidth) / (kCertainWidth - kMinWidth), 0.0, 1.0);
+  opening.certainty =
+      std::clamp((opening.width / opening.spacing - kMinWidth) / (2.0 * kMinWidth), 0.0, 1.0);
   return opening;
 }
 
@@ -394,9 +388,10 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   return result;
 }
 
-/// Whether the openings are all that there are: the graph has no cycles when they are filled.
+/// Whether the openings are all that there are: the graph has no cycles when they are filled, but
+/// for those of up to six points.
 bool hasNoCyclesLeft(const Positions& points, const Graph& graph, const Openings& found) {
-  return countCycles(fillOpenings(points, graph, found).graph, kReach) == 0;
+  return countCycles(fillOpenings(points, graph, found).graph, 2) == 0;
 }
 
 }  // namespace

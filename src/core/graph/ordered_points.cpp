@@ -16,13 +16,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Indices have 32 bits; a mesh has four times as many edge ends as points.
-constexpr Eigen::Index kMaxPoints = Eigen::Index{1} << 30;
-/// Largest exponent of the scaled coordinates: 2^1000 is finite.
-constexpr int kMaxExponent = 1000;
-/// Areas and volumes of larger clouds leave the range of double.
-constexpr double kMaxCoordinate = 1e100;
-
 struct Place {
   std::uint64_t key;  ///< on the curve
   Index index;        ///< of the input point
@@ -94,10 +87,11 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   threads = threadCount(threads, n);
   const Eigen::Vector3d low = points.rowwise().minCoeff();
   const Eigen::Vector3d high = points.rowwise().maxCoeff();
-  // An axis along which nothing differs may be so far away that it would not stay finite.
+  // An axis along which nothing differs may be so far away that it would not stay finite: 2^1000
+  // is.
   int largest = 0;
   std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
-  result.exponent = std::max(exponentOfExtent(low, high), largest - kMaxExponent);
+  result.exponent = std::max(exponentOfExtent(low, high), largest - 1000);
   const PowerOfTwo scaled(-result.exponent);
   std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
   result.distinct = numberVertices(mergeDuplicates(points, places, result.input_of_node));
@@ -131,11 +125,13 @@ void checkFinite(const std::string& function, const Positions& points) {
 }
 
 OrderedPoints orderCheckedPoints(const Positions& points, int threads) {
-  if (points.cols() > kMaxPoints)
+  // Indices have 32 bits; a mesh has four times as many edge ends as points.
+  if (points.cols() > Eigen::Index{1} << 30)
     throw InvalidInput("reconstruct: " + std::to_string(points.cols()) +
                        " points are more than 2^30; split or downsample the cloud");
   checkFinite("reconstruct", points);
-  if (points.size() > 0 && points.cwiseAbs().maxCoeff() > kMaxCoordinate)
+  // Areas and volumes of larger clouds leave the range of double.
+  if (points.size() > 0 && points.cwiseAbs().maxCoeff() > 1e100)
     throw InvalidInput("reconstruct: a coordinate is beyond 1e100; scale the points down");
   OrderedPoints nodes = orderPoints(points, threads);
   const std::size_t count = nodes.input_of_node.size();

@@ -19,8 +19,6 @@ namespace {
 constexpr int kNeighbors = 16;
 /// Fewer span no plane.
 constexpr int kMinNeighbors = 3;
-/// Nothing nearer to the surface of its neighbours is an outlier [their mean distances].
-constexpr double kMinScore = 1.0;
 /// Neighbours with mean distances longer than this number of times their median may be outliers.
 constexpr double kMaxDistanceRatio = 2.0;
 /// Neighbours whose spread across is less than this fraction of that along are on a line.
@@ -159,7 +157,7 @@ DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& li
     const double mean = mean_over_rest([](double score) { return score; });
     const double deviation =
         std::sqrt(mean_over_rest([&](double score) { return (score - mean) * (score - mean); }));
-    result.threshold = std::max(mean + sigma * deviation, kMinScore);
+    result.threshold = std::max(mean + sigma * deviation, 1.0);
     before = left;
     for (const Index i : indicesOf(is_outlier))
       if (is_outlier[i] == 0 && scoring.scores[i] > result.threshold) {

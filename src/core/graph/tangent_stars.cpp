@@ -204,12 +204,12 @@ void findGabrielNeighbors(const std::vector<Candidate>& candidates, Index* star,
 
 /// Writes the Voronoi neighbours in the tangent plane. Returns whether they are certified.
 bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen::Matrix3d& axes,
-                          double max_slope, VoronoiCell& cell, Index* star, Index& count) {
+                          VoronoiCell& cell, Index* star, Index& count) {
   const double squared_reach = candidates.back().squared_distance;
   // A cell that is larger ends there: sites beyond would be neighbours across a gap.
   cell.reset(std::sqrt(squared_reach));
-  // In terms of the cosine; of what is as steep as round-off the direction means nothing.
-  const double least_fraction = std::max(1.0 - max_slope * max_slope, 1e-20);
+  // In terms of the cosine.
+  const double least_fraction = 1.0 - kMaxCandidateSlope * kMaxCandidateSlope;
   for (const Candidate& candidate : candidates) {
     if (candidate.squared_distance > 4.0 * cell.squaredRadius())
       break;
@@ -247,9 +247,8 @@ StarKind findStar(const std::vector<Candidate>& candidates, std::size_t others, 
     kind.tangent_plane = findTangentPlane(candidates, span, axes, is_line);
   }
   if (kind.tangent_plane) {
-    kind.certified =
-        findVoronoiNeighbors(candidates, axes, kMaxCandidateSlope, cell, star, count) || complete;
-    kind.wants_more = !kind.certified;
+    const bool certified = findVoronoiNeighbors(candidates, axes, cell, star, count);
+    kind.wants_more = !certified && !complete;
   } else {
     kind.wants_more = is_line && !complete;
     findGabrielNeighbors(candidates, star, count);
@@ -282,8 +281,6 @@ void findStarsOf(const std::vector<Index>& nodes, const Positions& points,
     stars.begin[i] = base + lists.offsets[static_cast<std::size_t>(list)];
     stars.kind[i] = findStar(candidates, stars.size() - 1, scratch.cell,
                              stars.nodes.data() + stars.begin[i], stars.count[i]);
-    for (std::size_t c = 0; c < stars.nearest[i].size(); ++c)
-      stars.nearest[i][c] = c < candidates.size() ? candidates[c].node : -1;
   });
 }
 

@@ -6,7 +6,6 @@
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -16,21 +15,19 @@ namespace spherical_param::internal {
 struct StarKind {
   Index candidates = -1;       ///< number of known nearest points; -1: not processed
   bool tangent_plane = false;  ///< the tangent plane is reliable
-  bool certified = false;      ///< no further point can change the star
-  bool wants_more = false;     ///< more candidates may help
+  bool wants_more = false;     ///< more candidates may help: the star is not certified
 };
 
 /// The star of each node: its Voronoi neighbours in its tangent plane, or its neighbours in the
 /// Gabriel graph if the nearest points span no plane. The star of node i is nodes[begin[i]] ...
 /// nodes[begin[i] + count[i] - 1], ascending.
 struct Stars {
-  explicit Stars(std::size_t n = 0) : begin(n), count(n), kind(n), nearest(n) {}
+  explicit Stars(std::size_t n = 0) : begin(n), count(n), kind(n) {}
 
   Indexed<std::size_t> begin;
   Indexed<Index> count;
   std::vector<Index> nodes;
   Indexed<StarKind> kind;
-  Indexed<std::array<Index, 3>> nearest;  ///< the three nearest; -1: unknown
 
   std::size_t size() const { return begin.size(); }
   /// Positions of a star in `nodes`.

@@ -2,7 +2,7 @@
 
 #include "embedding.h"
 #include "embedding_history.h"
-#include "neighbor_graph.h"
+#include "graph.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/options.h"
 #include "spherical_param/types.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "neighbor_graph.h"
+#include "graph.h"
 #include "spherical_param/result.h"
 
 #include <cstddef>

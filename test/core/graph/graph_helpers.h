@@ -1,8 +1,8 @@
 #pragma once
 
+#include "graph.h"
 #include "graphs.h"
 #include "helpers.h"
-#include "neighbor_graph.h"
 #include "spherical_param/reconstruct.h"
 
 #include <gtest/gtest.h>

@@ -30,7 +30,7 @@ NeighborGraph build(const Positions& points, int k = 12) {
 Index countUncertified(const internal::Stars& stars) {
   return static_cast<Index>(
       std::count_if(stars.kind.begin(), stars.kind.end(),
-                    [](const auto& kind) { return kind.tangent_plane && !kind.certified; }));
+                    [](const auto& kind) { return kind.tangent_plane && kind.wants_more; }));
 }
 
 Index countWithoutPlane(const internal::Stars& stars) {
@@ -259,7 +259,7 @@ Positions scanLines() {
 TEST(LocalDelaunayGraph, AcrossScanLinesThereIsATangentPlaneAndAlongOneThereIsNone) {
   EXPECT_TRUE(build(scanLines()).bridges.empty());
   const internal::Stars across = starsOf(scanLines());
-  for (std::size_t line = 1; line < 11; ++line)
+  for (Index line = 1; line < 11; ++line)
     EXPECT_TRUE(across.kind[line * 30 + 15].tangent_plane);
   const Positions line = Eigen::Vector3d(1.0, 2.0, 3.0) * Eigen::RowVectorXd::LinSpaced(100, 0, 1);
   expectSound(line, build(line));

@@ -143,7 +143,7 @@ TEST(OpenMesh, TrianglesWithoutALoopAreOfTheSurface) {
   // The edges from the upper tip to 0 and to 4 are long; only the first is in a loop.
   DoublePyramid pyramid(8);
   pyramid.openings.spacing.assign(10, 1.0);
-  for (const std::size_t v : {0U, 4U, 8U})
+  for (const Index v : {0, 4, 8})
     pyramid.openings.spacing[v] = 0.3;
   Opening opening;
   opening.loop = {0, 1, 8};

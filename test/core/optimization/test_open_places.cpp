@@ -1,7 +1,7 @@
 #include "graphs.h"
 #include "open_places.h"
 
-#include "neighbor_graph.h"
+#include "graph.h"
 #include "open_shapes.h"
 
 namespace spherical_param {
