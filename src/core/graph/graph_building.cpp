@@ -146,13 +146,6 @@ Indexed<Index> representatives(UnionFind& sets, std::size_t n) {
   return result;
 }
 
-Index countSets(const Indexed<Index>& representative) {
-  Index count = 0;
-  for (const Index i : indicesOf(representative))
-    count += representative[i] == i ? 1 : 0;
-  return count;
-}
-
 Indexed<std::size_t> setSizes(const Indexed<Index>& representative) {
   Indexed<std::size_t> sizes(representative.size(), 0);
   for (const Index set : representative)
@@ -164,8 +157,9 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
                                     int bridges_per_joint) {
   std::vector<Bridge> bridges;
   Indexed<Index> part = representatives(parts, static_cast<std::size_t>(points.cols()));
-  ComponentTree tree(points);
-  while (countSets(part) > 1) {
+  // A set is represented by its lowest node: 0 if there is only one.
+  while (*std::max_element(part.begin(), part.end()) > 0) {
+    ComponentTree tree(points);
     const Partition partition(part, part.size());
     const Indexed<std::size_t> sizes = setSizes(part);
     const auto largest =
@@ -188,17 +182,6 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
     appendFurther(points, tree, part, partition, joints, bridges_per_joint - 1, bridges);
     part = representatives(parts, part.size());
   }
-  return bridges;
-}
-
-std::vector<Bridge> furtherBridges(const Positions& points, const Indexed<Index>& part,
-                                   const std::vector<Bridge>& joints, int count) {
-  std::vector<Bridge> bridges;
-  if (joints.empty())
-    return bridges;
-  ComponentTree tree(points);
-  tree.setComponents(part);
-  appendFurther(points, tree, part, Partition(part, part.size()), joints, count, bridges);
   return bridges;
 }
 

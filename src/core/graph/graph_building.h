@@ -25,9 +25,6 @@ UnionFind connectedComponents(const Graph& graph);
 /// The representative of the set of each of 0 ... n - 1.
 Indexed<Index> representatives(UnionFind& sets, std::size_t n);
 
-/// Number of disjoint sets, by their representatives.
-Index countSets(const Indexed<Index>& representative);
-
 /// Number of elements of each set, at its representative; 0 elsewhere.
 Indexed<std::size_t> setSizes(const Indexed<Index>& representative);
 
@@ -39,15 +36,6 @@ Indexed<std::size_t> setSizes(const Indexed<Index>& representative);
 /// \param bridges_per_joint maximum number of bridges between two joined components; >= 1.
 std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
                                     int bridges_per_joint);
-
-/// Up to `count` more bridges for each of `joints`: the closest pairs of the two components; all
-/// bridges of a joint have different ends.
-///
-/// \param points 3 x n.
-/// \param part   n entries: a node that represents the component of each point before joining.
-/// \param joints one bridge for each two joined components.
-std::vector<Bridge> furtherBridges(const Positions& points, const Indexed<Index>& part,
-                                   const std::vector<Bridge>& joints, int count);
 
 /// Up to `count` bridges for each leaf of the block-cut tree, a biconnected component that hangs by
 /// one articulation point: its closest pairs with points outside, without that node, with different

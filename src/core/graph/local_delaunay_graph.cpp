@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -66,42 +65,15 @@ void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
     graph = withEdges(graph, edges);
 }
 
-/// Joins the components by edges of stars that found no agreement, the shortest first, and what is
-/// left by the closest pairs.
-std::vector<Bridge> joinParts(const Positions& points, const Stars& stars,
-                              const Indexed<Index>& part, UnionFind& parts) {
-  std::vector<Bridge> edges;
-  for (const Index i : indicesOf(part))
-    for (const Index j : stars.of(i))
-      if (part[i] != part[j])
-        edges.push_back(edgeBetween(points, i, j));
-  std::sort(edges.begin(), edges.end(), [](const Bridge& a, const Bridge& b) {
-    return std::tuple(a.length, a.from, a.to) < std::tuple(b.length, b.from, b.to);
-  });
-  std::vector<Bridge> bridges;
-  for (const Bridge& edge : edges)
-    if (parts.unite(edge.from, edge.to))
-      bridges.push_back(edge);
-  const auto append = [&](const std::vector<Bridge>& more) {
-    bridges.insert(bridges.end(), more.begin(), more.end());
-  };
-  append(furtherBridges(points, part, bridges, kBridgesPerJoint - 1));
-  append(shortestBridges(points, parts, kBridgesPerJoint));
-  return bridges;
-}
-
 /// Joins components, and ties each part that only one node joins to the others: it would collapse.
 /// Of parts in a chain only the ends: needles have such chains, and gained nothing from more
 /// rounds.
-void connect(const Positions& points, const Stars& stars, const FractionReport& report,
-             NeighborGraph& result) {
-  UnionFind parts = connectedComponents(result.graph);
-  const Indexed<Index> part = representatives(parts, stars.size());
+void connect(const Positions& points, const FractionReport& report, NeighborGraph& result) {
   reportFraction(report, 0.0);
-  if (countSets(part) > 1) {
-    result.bridges = joinParts(points, stars, part, parts);
+  UnionFind parts = connectedComponents(result.graph);
+  result.bridges = shortestBridges(points, parts, kBridgesPerJoint);
+  if (!result.bridges.empty())
     result.graph = withEdges(result.graph, result.bridges);
-  }
   const std::vector<Bridge> bridges =
       articulationBridges(points, result.graph, kBridgesPerJoint - 1);
   if (bridges.empty())
@@ -149,7 +121,7 @@ NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& star
   result.graph = agreed;
   joinWithoutPlane(points, stars, result.graph);
   repairWeak(points, stars, result.graph);
-  connect(points, stars, reportOf(execution, "graph"), result);
+  connect(points, reportOf(execution, "graph"), result);
   return result;
 }
 

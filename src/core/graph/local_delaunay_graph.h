@@ -17,9 +17,9 @@ enum class StraySearch { No, Yes };
 /// The nearest neighbours of a point are laid into its tangent plane at their true distances; its
 /// star is the set of its Voronoi neighbours there. Points i and j are joined if both stars agree.
 /// Points with fewer than three neighbours get their whole star and their three nearest points.
-/// Components are joined by the shortest edges of stars, then along their closest pairs, with up to
-/// three bridges with different ends. So are biconnected components: one that hangs by an
-/// articulation point would collapse in the embedding.
+/// Components are joined along their closest pairs, with up to three bridges with different ends.
+/// So are biconnected components: one that hangs by an articulation point would collapse in the
+/// embedding.
 ///
 /// Cost: O(p log p log n) for the bridges of p components, typically.
 /// Guaranteed: the graph is connected; with four points and more, each has at least three
