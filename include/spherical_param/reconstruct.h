@@ -22,9 +22,9 @@ namespace spherical_param {
 ///               geometry is arbitrary far sooner: see doc/numbers.md.
 /// \param options the defaults need no tuning.
 /// \param search_of makes the neighbour search; empty: a k-d tree in double precision. It is called
-///               with the first point at each position, again without outliers and for each part.
-///               It and its search run in the calling thread; their exceptions are passed on. Not
-///               used to fit outliers, nor for consolidated points.
+///               at most once, with the first point at each position. It and its search run in the
+///               calling thread; their exceptions are passed on. Not used once outliers are left
+///               out, for one of several parts, nor for consolidated points.
 /// \return the surfaces, and what was left out. Triangles index vertices of their surface.
 /// \throw InvalidInput for bad points or options; ComputeError; Cancelled. A part that cannot be
 ///        meshed is left out and reported in Result::failures; if all parts fail, the first error

@@ -52,8 +52,8 @@ void Selection::leaveOutOutliers() {
     return;
   inputs_ = without(inputs_, left_out_.outliers);
   clock_.begin("neighbors");
-  cloud_ =
-      std::make_unique<Neighborhoods>(points_, inputs_, options_, search_of_, clock_.execution());
+  cloud_ = std::make_unique<Neighborhoods>(points_, inputs_, options_, NeighborSearchFactory(),
+                                           clock_.execution());
   clock_.begin("graph");
   cloud_->findStars(clock_.execution());
 }
@@ -82,8 +82,10 @@ Positions Selection::pointsOf(std::size_t part) const {
 
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
   clock_.begin("neighbors");
+  // The caller's search is made once, among all points.
   if (!cloud_ || parts_[part].size() != inputs_.size())
-    cloud_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_, search_of_,
+    cloud_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_,
+                                             cloud_ ? NeighborSearchFactory() : search_of_,
                                              clock_.execution());
   clock_.begin("graph");
   if (options_.method == Method::Default)

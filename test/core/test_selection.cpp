@@ -177,23 +177,6 @@ TEST(Selection, TheCallersSearchIsMadeOnceOfTheFirstPointAtEachPosition) {
     }
 }
 
-TEST(Selection, WhatTheCallersSearchThrowsIsPassedOnFromAPartAsWell) {
-  const Positions points =
-      horizontally(test::randomSphere(200, 1), movedTo(4.0, test::randomSphere(150, 2)));
-  Options options;
-  options.parts = PartsMode::Each;
-  EXPECT_THROW(reconstruct(points, options,
-                           [&](const std::vector<Index>& some) {
-                             return [search = test::bruteForceFactory(points)(some)](
-                                        const std::vector<Index>& queries, int count) {
-                               if (*std::min_element(queries.begin(), queries.end()) >= 200)
-                                 throw ComputeError("of the second part alone");
-                               return search(queries, count);
-                             };
-                           }),
-               ComputeError);
-}
-
 TEST(Selection, PartsShareOneTimeLimit) {
   Positions points(3, 0);
   for (int part = 0; part < 8; ++part)
