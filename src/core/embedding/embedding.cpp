@@ -32,9 +32,10 @@ Embedding embed(const Graph& graph, const Positions& points, const EmbeddingOpti
 
 std::vector<double> tangentialLaplacianLengths(const Graph& graph, const Positions& directions,
                                                EdgeWeights weights) {
-  std::vector<double> lengths(graph.size());
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    lengths[i] = internal::tangentialLaplacian(graph, weights, directions, i).norm();
+  std::vector<double> lengths;
+  lengths.reserve(graph.size());
+  for (const Index i : graph.nodes())
+    lengths.push_back(internal::tangentialLaplacian(graph, weights, directions, i).norm());
   return lengths;
 }
 

@@ -9,10 +9,6 @@ namespace {
 /// known at the end only.
 constexpr std::size_t kSpare = 3;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Number i of `count` numbers in even distances from 0 to `size` - 1.
 std::size_t evenly(std::size_t i, std::size_t count, std::size_t size) {
   return count < 2 ? 0 : i * (size - 1) / (count - 1);
@@ -32,7 +28,7 @@ EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const EmbeddingOptions& 
 
 EmbeddingRecorder::EmbeddingRecorder(std::size_t nodes, const GraphHierarchy& hierarchy,
                                      const EmbeddingOptions& limits)
-    : max_vertices_(at(limits.history_vertices)),
+    : max_vertices_(static_cast<std::size_t>(limits.history_vertices)),
       max_frames_(static_cast<std::size_t>(limits.history_frames)) {
   keepNodes(nodes, hierarchy);
 }
@@ -54,7 +50,7 @@ void EmbeddingRecorder::keepNodes(std::size_t nodes, const GraphHierarchy& hiera
     kept[i] = static_cast<Index>(evenly(i, count, size_of(level)));
   for (std::size_t l = level; l > 0; --l)
     for (Index& node : kept)
-      node = levels[l - 1].seeds[at(node)];
+      node = levels[l - 1].seeds[node];
 
   wanted_.assign(1, kept);
   for (const HierarchyLevel& coarser : levels) {

@@ -23,13 +23,11 @@ constexpr double kMaxKeptFraction = 0.9;
 
 /// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
 /// turning, scaling or renumbering the points changes them only where rounding decides.
-std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
-  const std::size_t n = graph.size();
-  std::vector<double> keys(n);
-  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        keys[i] += graph.lengths[e];
+Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
+  Indexed<double> keys(graph.size());
+  forEachIndex(graph.size(), threads, {}, [&](Index i) {
+    const Row<double> lengths = graph.lengthsOf(i);
+    keys[i] = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   });
   const double sum = std::accumulate(keys.begin(), keys.end(), 0.0);
   // About one turn over the spread of the lengths, which is a part of their mean; each seed begins
@@ -37,14 +35,12 @@ std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int th
   // often.
   constexpr double turns = 2.0;
   constexpr double golden_ratio = 0.6180339887498949;
-  const double factor = turns * static_cast<double>(n) / sum;
-  forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double turn = factor * keys[i] + golden_ratio * seed;
-      // A length that is NaN gives a key that is NaN, which no comparison orders.
-      keys[i] = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
-    }
-  });
+  const double factor = turns * static_cast<double>(graph.size()) / sum;
+  for (double& key : keys) {
+    const double turn = factor * key + golden_ratio * seed;
+    // A length that is NaN gives a key that is NaN, which no comparison orders.
+    key = std::isfinite(turn) ? turn - std::floor(turn) : 0.0;
+  }
   return keys;
 }
 
@@ -52,19 +48,18 @@ std::vector<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int th
 /// ascending key, unless a neighbour was taken before it. A node can be judged as soon as its
 /// neighbours before it are, which leaves fewer and fewer nodes from round to round, and comes to
 /// the same set whatever the order and the threads.
-std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
-                                  const FractionReport& report) {
+Indexed<Index> independentSet(const Graph& graph, std::uint32_t seed, int threads,
+                              const FractionReport& report) {
   const std::size_t n = graph.size();
-  const std::vector<double> keys = scrambledKeys(graph, seed, threads);
+  const Indexed<double> keys = scrambledKeys(graph, seed, threads);
   reportFraction(report, 0.0);
   enum State : unsigned char { Open, Out, Taken };
-  std::vector<std::atomic<unsigned char>> states(n);
-  const auto judge = [&](std::size_t i) {
+  Indexed<std::atomic<unsigned char>> states(n);
+  const auto judge = [&](Index i) {
     if (states[i].load(std::memory_order_relaxed) != Open)
       return true;
     bool waits = false;
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+    for (const Index j : graph.row(i)) {
       if (keys[j] > keys[i] || (keys[j] == keys[i] && j > i))
         continue;
       const unsigned char state = states[j].load(std::memory_order_relaxed);
@@ -77,98 +72,89 @@ std::vector<Index> independentSet(const Graph& graph, std::uint32_t seed, int th
     if (waits)
       return false;
     states[i].store(Taken, std::memory_order_relaxed);
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      states[static_cast<std::size_t>(graph.neighbors[e])].store(Out, std::memory_order_relaxed);
+    for (const Index j : graph.row(i))
+      states[j].store(Out, std::memory_order_relaxed);
     return true;
   };
   std::vector<std::vector<Index>> waiting((n + kBlockSize - 1) / kBlockSize);
   forEachBlock(n, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
+    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end)))
       if (!judge(i))
-        waiting[block].push_back(static_cast<Index>(i));
+        waiting[block].push_back(i);
   });
   for (bool waits = true; waits;) {
     waits = false;
     for (std::vector<Index>& nodes : waiting) {
-      nodes.erase(std::remove_if(nodes.begin(), nodes.end(),
-                                 [&](Index i) { return judge(static_cast<std::size_t>(i)); }),
-                  nodes.end());
+      nodes.erase(std::remove_if(nodes.begin(), nodes.end(), judge), nodes.end());
       waits = waits || !nodes.empty();
     }
     reportFraction(report, 0.0);
   }
-  std::vector<Index> taken;
-  for (std::size_t i = 0; i < n; ++i)
+  Indexed<Index> taken;
+  for (const Index i : graph.nodes())
     if (states[i].load(std::memory_order_relaxed) == Taken)
-      taken.push_back(static_cast<Index>(i));
+      taken.push_back(i);
   return taken;
 }
 
 /// Geodesic Voronoi cells of seeds.
 struct Aggregates {
-  std::vector<Index> of_node;     ///< n entries, positions in `seeds`
-  std::vector<double> distances;  ///< n entries, length of the path to the own seed
+  Indexed<Index> of_node;     ///< n entries, positions in `seeds`
+  Indexed<double> distances;  ///< n entries, length of the path to the own seed
+
+  /// Gives a node the seed of a neighbour if the path through it is shorter; ties go to the lower
+  /// seed. \return whether it is
+  bool join(Index node, const Aggregates& of, Index neighbor, double length) {
+    const double distance = of.distances[neighbor] + length;
+    const Index seed = of.of_node[neighbor];
+    if (!(distance < distances[node] || (distance == distances[node] && seed < of_node[node])))
+      return false;
+    distances[node] = distance;
+    of_node[node] = seed;
+    return true;
+  }
 };
 
 /// Shortest paths from all seeds at once. No node is far from a seed: after all nodes next to one
 /// and then all nodes have been looked at, only few change, and those next to them.
-Aggregates geodesicCells(const Graph& graph, const std::vector<Index>& seeds, int threads,
+Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int threads,
                          const FractionReport& report) {
   const std::size_t n = graph.size();
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Aggregates near{std::vector<Index>(n, -1), std::vector<double>(n, infinity)};
+  Aggregates near{Indexed<Index>(n, -1), Indexed<double>(n, infinity)};
   // Ties go to the lower seed: the first one here.
-  for (std::size_t s = 0; s < seeds.size(); ++s) {
-    const auto i = static_cast<std::size_t>(seeds[s]);
-    near.of_node[i] = static_cast<Index>(s);
-    near.distances[i] = 0.0;
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+  for (const Index s : indicesOf(seeds)) {
+    near.of_node[seeds[s]] = s;
+    near.distances[seeds[s]] = 0.0;
+    for (const std::size_t e : graph.entries(seeds[s])) {
+      const Index j = graph.neighbors[e];
       if (graph.lengths[e] < near.distances[j]) {
         near.distances[j] = graph.lengths[e];
-        near.of_node[j] = static_cast<Index>(s);
+        near.of_node[j] = s;
       }
     }
   }
   reportFraction(report, 0.0);
-  const auto is_nearer = [](double distance, Index seed, double than, Index other) {
-    return distance < than || (distance == than && seed < other);
-  };
-  Aggregates cells{std::vector<Index>(n), std::vector<double>(n)};
+  Aggregates cells = near;
   std::vector<std::vector<Index>> changed((n + kBlockSize - 1) / kBlockSize);
   forEachBlock(n, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double nearest = near.distances[i];
-      Index seed = near.of_node[i];
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        const auto j = static_cast<std::size_t>(graph.neighbors[e]);
-        const double distance = near.distances[j] + graph.lengths[e];
-        if (is_nearer(distance, near.of_node[j], nearest, seed)) {
-          nearest = distance;
-          seed = near.of_node[j];
-        }
-      }
-      cells.distances[i] = nearest;
-      cells.of_node[i] = seed;
-      if (nearest != near.distances[i] || seed != near.of_node[i])
-        changed[block].push_back(static_cast<Index>(i));
+    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end))) {
+      bool changes = false;
+      for (const std::size_t e : graph.entries(i))
+        changes = cells.join(i, near, graph.neighbors[e], graph.lengths[e]) || changes;
+      if (changes)
+        changed[block].push_back(i);
     }
   });
   std::vector<Index> queue;
   for (const std::vector<Index>& nodes : changed)
     queue.insert(queue.end(), nodes.begin(), nodes.end());
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const auto j = static_cast<std::size_t>(queue[head]);
-    for (std::size_t e = graph.offsets[j]; e < graph.offsets[j + 1]; ++e) {
-      const auto i = static_cast<std::size_t>(graph.neighbors[e]);
-      const double distance = cells.distances[j] + graph.lengths[e];
-      if (is_nearer(distance, cells.of_node[j], cells.distances[i], cells.of_node[i])) {
-        cells.distances[i] = distance;
-        cells.of_node[i] = cells.of_node[j];
-        queue.push_back(static_cast<Index>(i));
-      }
+  for (std::size_t head = 0; head < queue.size(); ++head)
+    for (const std::size_t e : graph.entries(queue[head])) {
+      const Index i = graph.neighbors[e];
+      if (cells.join(i, cells, queue[head], graph.lengths[e]))
+        queue.push_back(i);
     }
-  }
   return cells;
 }
 
@@ -194,25 +180,24 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
   reportFraction(report, 0.0);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Scratch {
-    std::vector<double> shortest;
+    Indexed<double> shortest;
     std::vector<Index> touched;
   };
   std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
   std::vector<EntryBlock> blocks((count + kBlockSize - 1) / kBlockSize);
   forEachItem(count, threads, report, [&](std::size_t thread, std::size_t c) {
-    std::vector<double>& shortest = scratch[thread].shortest;
-    std::vector<Index>& touched = scratch[thread].touched;
+    auto& [shortest, touched] = scratch[thread];
     shortest.resize(count, infinity);
     touched.clear();
-    partition.forEach(static_cast<Index>(c), [&](Index member) {
-      const auto i = static_cast<std::size_t>(member);
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-        const auto j = static_cast<std::size_t>(graph.neighbors[e]);
-        const auto other = static_cast<std::size_t>(cells.of_node[j]);
-        if (other == c)
+    const auto own = static_cast<Index>(c);
+    partition.forEach(own, [&, &shortest = shortest, &touched = touched](Index i) {
+      for (const std::size_t e : graph.entries(i)) {
+        const Index j = graph.neighbors[e];
+        const Index other = cells.of_node[j];
+        if (other == own)
           continue;
         if (shortest[other] == infinity)
-          touched.push_back(static_cast<Index>(other));
+          touched.push_back(other);
         // The sum of the distances first: the same bits from both sides of the edge. It stays a
         // length where it is beyond the range of double.
         const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
@@ -223,8 +208,7 @@ Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count
     EntryBlock& block = blocks[c / kBlockSize];
     for (const Index other : touched) {
       block.columns.push_back(other);
-      block.values.push_back(shortest[static_cast<std::size_t>(other)]);
-      shortest[static_cast<std::size_t>(other)] = infinity;
+      block.values.push_back(std::exchange(shortest[other], infinity));
     }
     block.ends.push_back(block.columns.size());
   });
@@ -268,13 +252,13 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
     block.values.reserve(expected);
     block.ends.reserve(end - begin);
     std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
-    for (std::size_t i = begin; i < end; ++i) {
+    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end))) {
       row.clear();
       row.emplace_back(cells.of_node[i], cells.distances[i]);
       const double own = cells.distances[i];
       if (own > 0.0)
-        for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-          const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+        for (const std::size_t e : graph.entries(i)) {
+          const Index j = graph.neighbors[e];
           addPath(row, cells.of_node[j], cells.distances[j] + graph.lengths[e]);
         }
       double sum = 0.0;

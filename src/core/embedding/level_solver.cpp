@@ -15,23 +15,13 @@ namespace {
 /// long.
 constexpr std::size_t kMaxDirectSize = 10000;
 
-/// The fraction of the surface's area of each node.
-Eigen::VectorXd areasOf(const Graph& graph) {
-  Eigen::VectorXd areas(static_cast<Eigen::Index>(graph.size()));
-  for (std::size_t i = 0; i < graph.size(); ++i) {
-    double squares = 0.0;
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      squares += graph.lengths[e] * graph.lengths[e];
-    const auto degree = static_cast<double>(graph.offsets[i + 1] - graph.offsets[i]);
-    areas[static_cast<Eigen::Index>(i)] = squares / std::max(degree, 1.0);
-  }
-  return areas / areas.sum();
-}
-
 }  // namespace
 
 EmbeddingLevels::EmbeddingLevels(const Graph& graph, const GraphHierarchy& hierarchy, int threads)
-    : graph_(graph), hierarchy_(hierarchy), threads_(threads), masses_(1, areasOf(graph)) {
+    : graph_(graph), hierarchy_(hierarchy), threads_(threads),
+      masses_(1, meanSquares(graph, [&graph](Index, std::size_t e) {
+                return graph.lengths[e] * graph.lengths[e];
+              })) {
   for (const HierarchyLevel& level : hierarchy.levels)
     masses_.emplace_back(level.prolongation.transpose() * masses_.back());
 }
@@ -64,15 +54,12 @@ double EmbeddingLevels::smooth(std::size_t l, int sweeps, const FractionReport& 
 
 Positions EmbeddingLevels::interpolated(std::size_t l, const Positions& coarse) const {
   const auto& weights = hierarchy_.levels[l].prolongation;
-  const auto n = static_cast<std::size_t>(weights.rows());
   Positions u(3, weights.rows());
-  forEachBlock(n, threadCount(threads_, n), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
-        sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
-      u.col(i) = sum.normalized();
-    }
+  forEachIndex(graph(l).size(), threadCount(threads_, graph(l).size()), {}, [&](Index i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (Index e = weights.outerIndexPtr()[i]; e < weights.outerIndexPtr()[i + 1]; ++e)
+      sum += weights.valuePtr()[e] * coarse.col(weights.innerIndexPtr()[e]);
+    u.col(i) = sum.normalized();
   });
   return u;
 }

@@ -1,5 +1,6 @@
 #include "planar_start.h"
 
+#include "indexed.h"
 #include "median.h"
 #include "pi.h"
 
@@ -26,69 +27,57 @@ constexpr int kLandmarks = 12;
 constexpr double kDrift = 0.5;
 /// Largest argument of exp(), with room for products.
 constexpr double kMaxExponent = 300.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Lengths of the shortest paths from a node (E. W. Dijkstra, 1959).
-std::vector<double> pathLengths(const Graph& graph, Index source) {
-  std::vector<double> distances(graph.size(), std::numeric_limits<double>::infinity());
+Indexed<double> pathLengths(const Graph& graph, Index source) {
+  Indexed<double> distances(graph.size(), kInfinity);
   using Entry = std::pair<double, Index>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  distances[static_cast<std::size_t>(source)] = 0.0;
+  distances[source] = 0.0;
   queue.emplace(0.0, source);
   while (!queue.empty()) {
-    const auto [distance, node] = queue.top();
+    const auto [distance, i] = queue.top();
     queue.pop();
-    const auto i = static_cast<std::size_t>(node);
     if (distance > distances[i])
       continue;
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+    for (const std::size_t e : graph.entries(i)) {
       const double through = distance + graph.lengths[e];
-      if (through < distances[j]) {
-        distances[j] = through;
-        queue.emplace(through, static_cast<Index>(j));
+      double& least = distances[graph.neighbors[e]];
+      if (through < least) {
+        least = through;
+        queue.emplace(through, graph.neighbors[e]);
       }
     }
   }
   return distances;
 }
 
-/// Length of the edge between two nodes; infinite if there is none.
-double lengthBetween(const Graph& graph, Index i, Index j) {
-  const auto begin = graph.neighbors.begin() +
-                     static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i)]);
-  const auto end = graph.neighbors.begin() +
-                   static_cast<std::ptrdiff_t>(graph.offsets[static_cast<std::size_t>(i) + 1]);
-  const auto place = std::lower_bound(begin, end, j);
-  return place != end && *place == j
-             ? graph.lengths[static_cast<std::size_t>(place - graph.neighbors.begin())]
-             : std::numeric_limits<double>::infinity();
-}
-
 /// The centre and two of its neighbours, joined to each other if there are such.
 std::array<Index, 3> outerFace(const Graph& graph, Index center) {
-  const auto c = static_cast<std::size_t>(center);
-  std::vector<Index> around(graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[c]),
-                            graph.neighbors.begin() +
-                                static_cast<std::ptrdiff_t>(graph.offsets[c + 1]));
   // The triangle of the least perimeter: not one that depends on the numbering of the nodes.
   std::array<Index, 3> face{};
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t a = 0; a < around.size(); ++a)
-    for (std::size_t b = a + 1; b < around.size(); ++b) {
-      const double across = lengthBetween(graph, around[a], around[b]);
-      const double perimeter =
-          graph.lengths[graph.offsets[c] + a] + graph.lengths[graph.offsets[c] + b] + across;
-      if (perimeter < least) {
+  double least = kInfinity;
+  Indexed<double> reach(graph.size(), kInfinity);  // lengths of the edges of the centre
+  for (const std::size_t e : graph.entries(center))
+    reach[graph.neighbors[e]] = graph.lengths[e];
+  for (const Index a : graph.row(center))
+    for (const std::size_t e : graph.entries(a)) {
+      const Index b = graph.neighbors[e];
+      const double perimeter = reach[a] + reach[b] + graph.lengths[e];
+      if (a < b && perimeter < least) {
         least = perimeter;
-        face = {center, around[a], around[b]};
+        face = {center, a, b};
       }
     }
-  if (least < std::numeric_limits<double>::infinity())
+  if (least < kInfinity)
     return face;
+  const Row<Index> around = graph.row(center);
   if (around.size() >= 2)
-    return {center, around[0], around[1]};
+    return {center, around.begin()[0], around.begin()[1]};
   // A path of two edges, or any three nodes.
-  const Index next = around.empty() ? (center + 1) % static_cast<Index>(graph.size()) : around[0];
+  const Index next =
+      around.size() > 0 ? *around.begin() : (center + 1) % static_cast<Index>(graph.size());
   Index third = 0;
   while (third == center || third == next)
     ++third;
@@ -96,21 +85,17 @@ std::array<Index, 3> outerFace(const Graph& graph, Index center) {
 }
 
 /// Edges on a shortest path from each node to the nearest of some others.
-std::vector<int> hopsFrom(const Graph& graph, const std::array<Index, 3>& sources) {
-  std::vector<int> hops(graph.size(), -1);
+Indexed<int> hopsFrom(const Graph& graph, const std::array<Index, 3>& sources) {
+  Indexed<int> hops(graph.size(), -1);
   std::vector<Index> queue(sources.begin(), sources.end());
   for (const Index source : sources)
-    hops[static_cast<std::size_t>(source)] = 0;
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    const auto i = static_cast<std::size_t>(queue[head]);
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
+    hops[source] = 0;
+  for (std::size_t head = 0; head < queue.size(); ++head)
+    for (const Index j : graph.row(queue[head]))
       if (hops[j] < 0) {
-        hops[j] = hops[i] + 1;
-        queue.push_back(static_cast<Index>(j));
+        hops[j] = hops[queue[head]] + 1;
+        queue.push_back(j);
       }
-    }
-  }
   return hops;
 }
 
@@ -137,55 +122,55 @@ void centerConformally(Positions& directions) {
 /// with each edge of distance from the outer face: without, nodes far from it crowd in one place.
 /// The matrix is scaled to ones on the diagonal, where g no longer occurs.
 Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& outer) {
-  std::vector<Eigen::Index> unknown(graph.size(), 0);
+  Indexed<Index> unknown(graph.size(), 0);
   for (const Index node : outer)
-    unknown[static_cast<std::size_t>(node)] = -1;
-  Eigen::Index unknowns = 0;
-  for (Eigen::Index& index : unknown)
+    unknown[node] = -1;
+  Index unknowns = 0;
+  for (Index& index : unknown)
     if (index == 0)
       index = unknowns++;
 
-  Eigen::MatrixX2d plane(static_cast<Eigen::Index>(graph.size()), 2);
+  Eigen::MatrixX2d plane(graph.size(), 2);
   const double third = 2.0 * kPi / 3.0;
-  for (int k = 0; k < 3; ++k)
-    plane.row(outer[static_cast<std::size_t>(k)]) << std::cos(third * k), std::sin(third * k);
+  double angle = 0.0;
+  for (const Index node : outer) {
+    plane.row(node) << std::cos(angle), std::sin(angle);
+    angle += third;
+  }
   if (unknowns == 0)
     return plane;
-  const std::vector<int> hops = hopsFrom(graph, outer);
+  const Indexed<int> hops = hopsFrom(graph, outer);
   const int max_hops = *std::max_element(hops.begin(), hops.end());
   const double drift = std::min(kDrift, kMaxExponent / std::max(max_hops, 1));
-  std::vector<double> stiffness(graph.size(), 0.0);
-  for (std::size_t i = 0; i < graph.size(); ++i)
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const int deeper = hops[static_cast<std::size_t>(graph.neighbors[e])] - hops[i];
-      stiffness[i] += std::exp(-drift * deeper) / graph.lengths[e];
-    }
+  Indexed<double> roots(graph.size(), 0.0);
+  for (const Index i : graph.nodes()) {
+    for (const std::size_t e : graph.entries(i))
+      roots[i] += std::exp(-drift * (hops[graph.neighbors[e]] - hops[i])) / graph.lengths[e];
+    roots[i] = std::sqrt(roots[i]);
+  }
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixX2d right_side = Eigen::MatrixX2d::Zero(unknowns, 2);
-  for (std::size_t i = 0; i < graph.size(); ++i) {
+  for (const Index i : graph.nodes()) {
     if (unknown[i] < 0)
       continue;
     entries.emplace_back(unknown[i], unknown[i], 1.0);
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-      const auto j = static_cast<std::size_t>(graph.neighbors[e]);
-      const double root = std::sqrt(stiffness[i]);
+    for (const std::size_t e : graph.entries(i)) {
+      const Index j = graph.neighbors[e];
       if (unknown[j] < 0)
         // Next to the outer face, where g_j is 1.
-        right_side.row(unknown[i]) +=
-            plane.row(static_cast<Eigen::Index>(j)) / (graph.lengths[e] * root);
+        right_side.row(unknown[i]) += plane.row(j) / (graph.lengths[e] * roots[i]);
       else
         entries.emplace_back(unknown[i], unknown[j],
-                             -1.0 / (graph.lengths[e] * root * std::sqrt(stiffness[j])));
+                             -1.0 / (graph.lengths[e] * roots[i] * roots[j]));
     }
   }
   Eigen::SparseMatrix<double> laplacian(unknowns, unknowns);
   laplacian.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
   const Eigen::MatrixX2d inner = solver.solve(right_side);
-  for (std::size_t i = 0; i < graph.size(); ++i)
+  for (const Index i : graph.nodes())
     if (unknown[i] >= 0)
-      plane.row(static_cast<Eigen::Index>(i)) =
-          inner.row(unknown[i]) * (std::exp(drift * hops[i]) / std::sqrt(stiffness[i]));
+      plane.row(i) = inner.row(unknown[i]) * (std::exp(drift * hops[i]) / roots[i]);
   return plane;
 }
 
@@ -211,33 +196,30 @@ Positions projectOnSphere(Eigen::MatrixX2d plane) {
 }  // namespace
 
 std::vector<Index> centralNodes(const Graph& graph) {
-  const std::size_t n = graph.size();
-  std::vector<double> eccentricity(n, 0.0);
-  std::vector<double> nearest(n, std::numeric_limits<double>::infinity());
-  // The node of the longest edges, whatever the numbering.
-  std::vector<double> reach(n, 0.0);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-      reach[i] += graph.lengths[e];
-  auto landmark = static_cast<Index>(std::max_element(reach.begin(), reach.end()) - reach.begin());
-  for (int count = 0; count <= kLandmarks; ++count) {
-    const std::vector<double> distances = pathLengths(graph, landmark);
-    for (std::size_t i = 0; i < n; ++i) {
-      // The first one is anywhere: it only serves to find one that is far.
-      if (count > 0)
-        eccentricity[i] = std::max(eccentricity[i], distances[i]);
-      nearest[i] = count > 0 ? std::min(nearest[i], distances[i]) : distances[i];
+  // The node of the longest edges, whatever the numbering. It only serves to find one that is far.
+  Indexed<double> reach(graph.size(), 0.0);
+  for (const Index i : graph.nodes())
+    for (const double length : graph.lengthsOf(i))
+      reach[i] += length;
+  const auto farthest = [](const Indexed<double>& distances) {
+    return static_cast<Index>(std::max_element(distances.begin(), distances.end()) -
+                              distances.begin());
+  };
+  Index landmark = farthest(pathLengths(graph, farthest(reach)));
+  Indexed<double> eccentricity(graph.size(), 0.0);
+  Indexed<double> nearest(graph.size(), kInfinity);
+  for (int count = 0; count < kLandmarks; ++count) {
+    const Indexed<double> distances = pathLengths(graph, landmark);
+    for (const Index i : graph.nodes()) {
+      eccentricity[i] = std::max(eccentricity[i], distances[i]);
+      nearest[i] = std::min(nearest[i], distances[i]);
     }
-    landmark =
-        static_cast<Index>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
-    if (count == 0)
-      std::fill(nearest.begin(), nearest.end(), std::numeric_limits<double>::infinity());
+    landmark = farthest(nearest);
   }
-  std::vector<Index> order(n);
+  std::vector<Index> order(graph.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::pair(eccentricity[static_cast<std::size_t>(a)], a) <
-           std::pair(eccentricity[static_cast<std::size_t>(b)], b);
+    return std::pair(eccentricity[a], a) < std::pair(eccentricity[b], b);
   });
   return order;
 }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace spherical_param::internal {
 
@@ -37,11 +38,11 @@ inline double edgeWeight(EdgeWeights weights, double length, double on_sphere) {
 ///
 /// \param u 3 x n, unit vectors.
 inline Eigen::Vector3d tangentialLaplacian(const Graph& graph, EdgeWeights weights,
-                                           const Positions& u, std::size_t node) {
-  const Eigen::Vector3d center = u.col(static_cast<Eigen::Index>(node));
+                                           const Positions& u, Index node) {
+  const Eigen::Vector3d center = u.col(node);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double sum_of_weights = 0.0;
-  for (std::size_t e = graph.offsets[node]; e < graph.offsets[node + 1]; ++e) {
+  for (const std::size_t e : graph.entries(node)) {
     const Eigen::Vector3d edge = u.col(graph.neighbors[e]) - center;
     const double weight = edgeWeight(weights, graph.lengths[e], edge.norm());
     sum += weight * edge;
@@ -52,6 +53,31 @@ inline Eigen::Vector3d tangentialLaplacian(const Graph& graph, EdgeWeights weigh
   return (sum - sum.dot(center) * center) / sum_of_weights;
 }
 
+/// The sum over the nodes, by block: add(sum, i) adds the term of node i.
+template <typename Sum, typename Add>
+Sum sumOfNodes(const Graph& graph, int threads, const Sum& zero, const Add& add) {
+  return sumOfBlocks(graph.size(), threads, zero, [&](std::size_t begin, std::size_t end) {
+    Sum sum = zero;
+    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end)))
+      add(sum, i);
+    return sum;
+  });
+}
+
+/// Fractions of a surface of the nodes: the mean of square(i, e) over the entries e of each node i,
+/// scaled to sum 1.
+template <typename Square>
+Eigen::VectorXd meanSquares(const Graph& graph, const Square& square) {
+  Eigen::VectorXd means(graph.size());
+  for (const Index i : graph.nodes()) {
+    double sum = 0.0;
+    for (const std::size_t e : graph.entries(i))
+      sum += square(i, e);
+    means[i] = sum / static_cast<double>(std::max<std::size_t>(graph.row(i).size(), 1));
+  }
+  return means / std::max(means.sum(), std::numeric_limits<double>::min());
+}
+
 /// A damped Jacobi step: moves each node by a fraction of its tangential Laplacian, all at once,
 /// and back to the sphere.
 ///
@@ -60,17 +86,11 @@ inline Eigen::Vector3d tangentialLaplacian(const Graph& graph, EdgeWeights weigh
 /// \return the mean length of the tangential Laplacian before it [radius].
 inline double sweep(const Graph& graph, EdgeWeights weights, double damping, const Positions& u,
                     Positions& moved, int threads) {
-  const double sum =
-      sumOfBlocks(graph.size(), threads, 0.0, [&](std::size_t begin, std::size_t end) {
-        double lengths = 0.0;
-        for (std::size_t i = begin; i < end; ++i) {
-          const Eigen::Vector3d step = tangentialLaplacian(graph, weights, u, i);
-          const auto node = static_cast<Eigen::Index>(i);
-          moved.col(node) = (u.col(node) + damping * step).normalized();
-          lengths += step.norm();
-        }
-        return lengths;
-      });
+  const double sum = sumOfNodes(graph, threads, 0.0, [&](double& lengths, Index i) {
+    const Eigen::Vector3d step = tangentialLaplacian(graph, weights, u, i);
+    moved.col(i) = (u.col(i) + damping * step).normalized();
+    lengths += step.norm();
+  });
   return sum / static_cast<double>(std::max<std::size_t>(graph.size(), 1));
 }
 

@@ -13,6 +13,7 @@ template <typename T>
 class Indexed : public std::vector<T> {
 public:
   using std::vector<T>::vector;
+  using std::vector<T>::operator[];
 
   T& operator[](Index i) { return std::vector<T>::operator[](static_cast<std::size_t>(i)); }
   const T& operator[](Index i) const {

@@ -1,0 +1,111 @@
+#pragma once
+
+#include "parallel.h"
+#include "spherical_param/types.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// The numbers of [first, last), for a loop.
+template <typename Number>
+class NumberRange {
+public:
+  class Iterator {
+  public:
+    explicit Iterator(Number number) : number_(number) {}
+    Number operator*() const { return number_; }
+    void operator++() { ++number_; }
+    bool operator!=(const Iterator& other) const { return number_ != other.number_; }
+
+  private:
+    Number number_;
+  };
+
+  NumberRange(Number first, Number last) : first_(first), last_(last) {}
+  Iterator begin() const { return Iterator(first_); }
+  Iterator end() const { return Iterator(last_); }
+
+private:
+  Number first_;
+  Number last_;
+};
+
+/// Some entries of an array, one after the other.
+template <typename T>
+class Row {
+public:
+  Row(const T* begin, const T* end) : begin_(begin), end_(end) {}
+
+  const T* begin() const { return begin_; }
+  const T* end() const { return end_; }
+  std::size_t size() const { return static_cast<std::size_t>(end_ - begin_); }
+  /// The first `count` entries, or all of fewer.
+  Row first(std::size_t count) const { return {begin_, begin_ + std::min(count, size())}; }
+  bool contains(const T& value) const { return std::find(begin_, end_, value) != end_; }
+
+private:
+  const T* begin_;
+  const T* end_;
+};
+
+/// Rows of neighbours of the nodes 0 ... n - 1, one after the other.
+struct NeighborRows {
+  std::vector<std::size_t> offsets{0};  ///< n + 1 positions in `neighbors`
+  std::vector<Index> neighbors;
+
+  /// Number of nodes. \return n
+  std::size_t size() const { return offsets.size() - 1; }
+  NumberRange<Index> nodes() const { return {0, static_cast<Index>(size())}; }
+  /// Positions of the row of a node in `neighbors`.
+  NumberRange<std::size_t> entries(Index node) const { return {begin(node), end(node)}; }
+  std::size_t begin(Index node) const { return offsets[static_cast<std::size_t>(node)]; }
+  std::size_t end(Index node) const { return offsets[static_cast<std::size_t>(node) + 1]; }
+  Row<Index> row(Index node) const {
+    return {neighbors.data() + begin(node), neighbors.data() + end(node)};
+  }
+  /// The next node's row is what was appended to `neighbors`.
+  void endRow() { offsets.push_back(neighbors.size()); }
+};
+
+/// List i of some neighbour lists.
+inline Row<Index> listOf(const NeighborLists& lists, Index i) {
+  const auto place = static_cast<std::size_t>(i);
+  return {lists.indices.data() + lists.offsets[place],
+          lists.indices.data() + lists.offsets[place + 1]};
+}
+
+/// Appends a list.
+template <typename List>
+void append(const List& list, NeighborLists& lists) {
+  lists.indices.insert(lists.indices.end(), list.begin(), list.end());
+  lists.offsets.push_back(lists.indices.size());
+}
+
+/// The indices of an array.
+template <typename Array>
+NumberRange<Index> indicesOf(const Array& array) {
+  return {0, static_cast<Index>(array.size())};
+}
+
+/// Calls work(memory, i) for each i in [0, count), on several threads. The memory is that of a
+/// block of items.
+template <typename Memory, typename Work>
+void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
+  forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
+    Memory memory;
+    for (std::size_t i = begin; i < end; ++i)
+      work(memory, static_cast<Index>(i));
+  });
+}
+
+/// Calls work(i) for each i in [0, count), on several threads.
+template <typename Work>
+void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
+  forEachItem(count, threads, report,
+              [&](std::size_t, std::size_t i) { work(static_cast<Index>(i)); });
+}
+
+}  // namespace spherical_param::internal
