@@ -2,6 +2,7 @@
 
 #include "spherical_param/types.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,7 +20,16 @@ public:
   const T& operator[](Index i) const {
     return std::vector<T>::operator[](static_cast<std::size_t>(i));
   }
+  /// Number of entries.
+  Index count() const { return static_cast<Index>(this->size()); }
 };
+
+/// Sorts values and leaves each once.
+template <typename T>
+void sortUnique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
 
 /// A set of vertices or triangles that is cleared in constant time.
 class IndexSet {

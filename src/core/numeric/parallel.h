@@ -100,4 +100,24 @@ Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term&
   return total;
 }
 
+/// What collect(begin, end, found) appends to `found` for the blocks of [0, count), in their order.
+///
+/// \param items_per_report as in forEachBlock().
+template <typename T, typename Collect>
+std::vector<T> collectBlocks(std::size_t count, int threads, const FractionReport& report,
+                             const Collect& collect,
+                             std::size_t items_per_report = kReportedItems) {
+  std::vector<std::vector<T>> parts((count + kBlockSize - 1) / kBlockSize);
+  forEachBlock(
+      count, threads, report,
+      [&](std::size_t block, std::size_t begin, std::size_t end) {
+        collect(begin, end, parts[block]);
+      },
+      items_per_report);
+  std::vector<T> all;
+  for (const std::vector<T>& part : parts)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 }  // namespace spherical_param::internal
