@@ -330,7 +330,6 @@ public:
       : points_(mesh.points), directions_(mesh.directions),
         mesh_(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), threads) {}
 
-  bool isSphere(int threads) const { return mesh_.isSphere(threads); }
   Triangles triangles() const { return mesh_.triangles(); }
 
   /// The triangles within this number of rings around some triangles; ascending.
@@ -465,14 +464,15 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
   const int workers =
       internal::threadCount(threads, static_cast<std::size_t>(mesh.triangles.cols()));
-  if (checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), workers)
-          .isOpenSurface())
+  const MeshTopology topology =
+      checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), workers);
+  if (topology.isOpenSurface())
     return result;
-  FlippableMesh flippable(mesh, workers);
-  if (!flippable.isSphere(workers))
+  if (!topology.isSphere())
     throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
                        "consistently oriented mesh of genus 0 over all points; give what "
                        "resampleSurface() returned");
+  FlippableMesh flippable(mesh, workers);
   // Around what is left, farther and farther.
   constexpr int most_rounds = 6;
   for (int round = 1; round <= most_rounds && !pairs.empty(); ++round) {

@@ -142,7 +142,11 @@ void addMeshStages(std::vector<Stage>& stages, const Inputs& in) {
   };
   add_silent("mesh", [&in](int threads) {
     const internal::SphereMesh mesh(in.triangles, 40000, threads);
-    return Numbers(mesh.triangles(), mesh.isSphere(threads));
+    Numbers neighbors;
+    for (Index t = 0; t < mesh.size(); ++t)
+      for (int k = 0; k < 3; ++k)
+        neighbors.add(mesh.neighbor(t, k));
+    return neighbors;
   });
   add_silent("topology",
              [&in](int threads) { return numbersOf(checkTopology(in.damaged, 40000, threads)); });

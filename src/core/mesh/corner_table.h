@@ -1,15 +1,18 @@
 #pragma once
 
+#include "indexed.h"
 #include "parallel.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/types.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
+#include <utility>
 
 namespace spherical_param::internal {
 
@@ -40,6 +43,13 @@ inline Index previousCorner(Index k) {
   return previous[k];
 }
 
+/// Normal of a triangle, as long as twice its area.
+inline Eigen::Vector3d areaNormal(const Positions& points, const Triangles& triangles,
+                                  Eigen::Index t) {
+  const Eigen::Vector3d a = points.col(triangles(0, t));
+  return (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
+}
+
 /// Adjacency of arbitrary triangles: their corners, grouped by vertex; 28 bytes for each vertex of
 /// a closed mesh.
 class CornerTable {
@@ -50,30 +60,23 @@ public:
         // Not zeroed in advance by one thread for all.
         corners_(new std::uint32_t[static_cast<std::size_t>(triangles.size())]) {
     forEachCornerOfRange(triangles, threads, vertex_count,
-                         [&](std::size_t v, std::uint32_t) { ++ends_[v + 1]; });
+                         [&](Index v, std::uint32_t) { ++ends_[v + 1]; });
     std::uint32_t begin = 0;
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-      const std::uint32_t count = ends_[v + 1];
-      ends_[v + 1] = begin;
-      begin += count;
-    }
+    for (std::uint32_t& end : ends_)
+      begin += std::exchange(end, begin);
     // Now ends_[v + 1] is where the corners of v begin, and moves on to their end.
-    forEachCornerOfRange(
-        triangles, threads, vertex_count,
-        [&](std::size_t v, std::uint32_t corner) { corners_[ends_[v + 1]++] = corner; });
+    forEachCornerOfRange(triangles, threads, vertex_count,
+                         [&](Index v, std::uint32_t corner) { corners_[ends_[v + 1]++] = corner; });
   }
 
   std::size_t vertexCount() const { return ends_.size() - 1; }
 
-  std::size_t countAt(Index v) const {
-    return ends_[static_cast<std::size_t>(v) + 1] - ends_[static_cast<std::size_t>(v)];
-  }
+  std::size_t countAt(Index v) const { return ends_[v + 1] - ends_[v]; }
 
   /// Calls visit(triangle, k) for the triangles around v, whose corner k it is, ascending.
   template <typename Visit>
   void forEachCorner(Index v, const Visit& visit) const {
-    for (std::uint32_t i = ends_[static_cast<std::size_t>(v)];
-         i < ends_[static_cast<std::size_t>(v) + 1]; ++i)
+    for (std::uint32_t i = ends_[v]; i < ends_[v + 1]; ++i)
       visit(static_cast<Index>(corners_[i] >> 2U), static_cast<Index>(corners_[i] & 3U));
   }
 
@@ -91,12 +94,12 @@ private:
         for (Eigen::Index k = 0; k < 3; ++k) {
           const Index v = triangles(k, t);
           if (v >= begin && v < end)
-            work(static_cast<std::size_t>(v), static_cast<std::uint32_t>(4 * t + k));
+            work(v, static_cast<std::uint32_t>(4 * t + k));
         }
     });
   }
 
-  std::vector<std::uint32_t> ends_;           // corners of v: [ends_[v], ends_[v + 1])
+  Indexed<std::uint32_t> ends_;               // corners of v: [ends_[v], ends_[v + 1])
   std::unique_ptr<std::uint32_t[]> corners_;  // 4 * triangle + k
 };
 

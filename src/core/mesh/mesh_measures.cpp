@@ -71,11 +71,7 @@ SurfaceSums sumOverSurface(const Positions& points, const Triangles& triangles,
       sums.box_max = sums.box_max.cwiseMax(corner);
       sums.length += (corners.col((k + 1) % 3) - corners.col(k)).norm();
     }
-    // As surfaceArea() does.
-    const Eigen::Vector3d a = points.col(triangles(0, t));
-    const Eigen::Vector3d ab = points.col(triangles(1, t)) - a;
-    const Eigen::Vector3d ac = points.col(triangles(2, t)) - a;
-    sums.area += ab.cross(ac).norm();
+    sums.area += internal::areaNormal(points, triangles, t).norm();  // as surfaceArea() does
   }
   return sums;
 }
@@ -129,9 +125,7 @@ Positions areaWeightedNormals(const Positions& points, const Triangles& triangle
   internal::checkTriangles("areaWeightedNormals", triangles, points.cols());
   Positions normals = Positions::Zero(3, points.cols());
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3d a = points.col(triangles(0, t));
-    const Eigen::Vector3d normal =
-        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
+    const Eigen::Vector3d normal = internal::areaNormal(points, triangles, t);
     for (Eigen::Index k = 0; k < 3; ++k)
       normals.col(triangles(k, t)) += normal;
   }

@@ -3,7 +3,7 @@
 #include "spherical_param/errors.h"
 
 #include "corner_table.h"
-#include "parallel.h"
+#include "rows.h"
 #include "union_find.h"
 
 #include <Eigen/Geometry>
@@ -78,6 +78,19 @@ struct Findings {
   std::size_t degenerate_triangles = 0;  ///< triangles that name a vertex twice
   std::vector<Index> nonmanifold_vertices;
   std::vector<Index> unused_vertices;
+
+  void operator+=(const Findings& more) {
+    vertices += more.vertices;
+    edges += more.edges;
+    boundary_edges += more.boundary_edges;
+    nonmanifold_edges += more.nonmanifold_edges;
+    misoriented_edges += more.misoriented_edges;
+    degenerate_triangles += more.degenerate_triangles;
+    nonmanifold_vertices.insert(nonmanifold_vertices.end(), more.nonmanifold_vertices.begin(),
+                                more.nonmanifold_vertices.end());
+    unused_vertices.insert(unused_vertices.end(), more.unused_vertices.begin(),
+                           more.unused_vertices.end());
+  }
 };
 
 /// One of the two sides that a triangle has at a vertex.
@@ -215,28 +228,13 @@ void examineTriangle(const Triangles& triangles, Index t, ConcurrentSets& pieces
 
 /// Adds up what examine(i, findings) finds for i in [0, count), in that order.
 template <typename Examine>
-void collect(std::size_t count, int threads, Findings& all, const Examine& examine) {
-  std::vector<Findings> of_blocks((count + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachBlock(count, threads,
-                         [&](std::size_t block, std::size_t begin, std::size_t end) {
-                           Findings findings;
-                           for (std::size_t i = begin; i < end; ++i)
-                             examine(i, findings);
-                           of_blocks[block] = std::move(findings);
-                         });
-  const auto append = [](std::vector<Index>& to, const std::vector<Index>& more) {
-    to.insert(to.end(), more.begin(), more.end());
-  };
-  for (const Findings& findings : of_blocks) {
-    all.vertices += findings.vertices;
-    all.edges += findings.edges;
-    all.boundary_edges += findings.boundary_edges;
-    all.nonmanifold_edges += findings.nonmanifold_edges;
-    all.misoriented_edges += findings.misoriented_edges;
-    all.degenerate_triangles += findings.degenerate_triangles;
-    append(all.nonmanifold_vertices, findings.nonmanifold_vertices);
-    append(all.unused_vertices, findings.unused_vertices);
-  }
+Findings sumOf(std::size_t count, int threads, const Examine& examine) {
+  return internal::sumOfBlocks(count, threads, Findings{}, [&](std::size_t begin, std::size_t end) {
+    Findings findings;
+    for (std::size_t i = begin; i < end; ++i)
+      examine(static_cast<Index>(i), findings);
+    return findings;
+  });
 }
 
 }  // namespace
@@ -245,34 +243,33 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
                            int requested_threads) {
   internal::checkTriangles("checkTopology", triangles, static_cast<Eigen::Index>(vertex_count));
   const int threads = internal::threadCount(requested_threads, vertex_count);
-  const auto m = static_cast<Index>(triangles.cols());
 
   const CornerTable corners(triangles, vertex_count, threads);
   ConcurrentSets pieces(vertex_count);
-  Findings all;
-  collect(static_cast<std::size_t>(m), threads, all, [&](std::size_t t, Findings& findings) {
-    examineTriangle(triangles, static_cast<Index>(t), pieces, findings);
-  });
-  collect(vertex_count, threads, all, [&](std::size_t v, Findings& findings) {
-    examineVertex(triangles, corners, static_cast<Index>(v), findings);
-  });
   MeshTopology result;
+  result.triangles = static_cast<std::size_t>(triangles.cols());
+  const Findings of_triangles = sumOf(result.triangles, threads, [&](Index t, Findings& findings) {
+    examineTriangle(triangles, t, pieces, findings);
+  });
+  Findings all = sumOf(vertex_count, threads, [&](Index v, Findings& findings) {
+    examineVertex(triangles, corners, v, findings);
+  });
+
   result.vertices = all.vertices;
   result.edges = all.edges;
-  result.triangles = static_cast<std::size_t>(m);
   // Unused vertices are pieces by themselves.
-  for (std::size_t v = 0; v < vertex_count; ++v)
-    result.components += pieces.find(static_cast<Index>(v)) == static_cast<Index>(v) ? 1 : 0;
+  for (const Index v : internal::NumberRange<Index>(0, static_cast<Index>(vertex_count)))
+    result.components += pieces.find(v) == v ? 1 : 0;
   result.components -= all.unused_vertices.size();
 
-  result.closed = m > 0 && all.boundary_edges == 0;
-  result.edge_manifold = all.nonmanifold_edges == 0 && all.degenerate_triangles == 0;
+  result.closed = triangles.cols() > 0 && all.boundary_edges == 0;
+  result.edge_manifold = all.nonmanifold_edges == 0 && of_triangles.degenerate_triangles == 0;
   result.vertex_manifold = all.nonmanifold_vertices.empty();
   result.oriented = all.misoriented_edges == 0 && all.nonmanifold_edges == 0;
   result.nonmanifold_vertices = std::move(all.nonmanifold_vertices);
   result.unused_vertices = std::move(all.unused_vertices);
   result.euler_characteristic = static_cast<long long>(result.vertices) -
-                                static_cast<long long>(result.edges) + static_cast<long long>(m);
+                                static_cast<long long>(result.edges) + triangles.cols();
   if (result.closed && result.manifold() && result.oriented)
     result.genus = static_cast<long long>(result.components) - result.euler_characteristic / 2;
   return result;
@@ -297,12 +294,8 @@ double signedVolume(const Positions& points, const Triangles& triangles) {
 double surfaceArea(const Positions& points, const Triangles& triangles) {
   internal::checkTriangles("surfaceArea", triangles, points.cols());
   double sum = 0.0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3d a = points.col(triangles(0, t));
-    const Eigen::Vector3d ab = points.col(triangles(1, t)) - a;
-    const Eigen::Vector3d ac = points.col(triangles(2, t)) - a;
-    sum += ab.cross(ac).norm();
-  }
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    sum += internal::areaNormal(points, triangles, t).norm();
   return sum / 2.0;
 }
 

@@ -1,190 +1,41 @@
 #include "sphere_mesh.h"
 
-#include "parallel.h"
-#include "union_find.h"
+#include "corner_table.h"
+#include "rows.h"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace spherical_param::internal {
-
-namespace {
-
-/// Finds the other triangle of each side. A side waits with the lower of its vertices for its other
-/// triangle, which comes soon in a mesh whose triangles are in the order of their places: all that
-/// wait are few, and stay in the processor's caches.
-class SidePairing {
-public:
-  struct Side {
-    Index from;
-    Index to;
-    Index triangle;
-    std::uint8_t corner;
-  };
-
-  explicit SidePairing(std::size_t vertex_count) : first_(vertex_count, kNone) {}
-
-  /// Calls pair(side, other) if the other one waits for this one, or lets this one wait.
-  template <typename Pair>
-  void add(const Side& side, const Pair& pair) {
-    std::uint32_t* place = &first_[static_cast<std::size_t>(std::min(side.from, side.to))];
-    std::uint32_t* const list = place;
-    while (*place != kNone) {
-      Waiting& waiting = waiting_[*place];
-      if (waiting.side.from == side.to && waiting.side.to == side.from) {
-        pair(side, waiting.side);
-        const std::uint32_t freed = *place;
-        *place = waiting.next;
-        waiting.next = free_;
-        free_ = freed;
-        return;
-      }
-      place = &waiting.next;
-    }
-    std::uint32_t own = free_;
-    if (own == kNone) {
-      own = static_cast<std::uint32_t>(waiting_.size());
-      // May move what the places point to, but not the lists' beginnings.
-      waiting_.push_back({});
-    } else {
-      free_ = waiting_[own].next;
-    }
-    waiting_[own] = {side, *list};
-    *list = own;
-  }
-
-  /// Calls visit(side) for all that wait.
-  template <typename Visit>
-  void forEachWaiting(const Visit& visit) const {
-    for (const std::uint32_t first : first_)
-      for (std::uint32_t i = first; i != kNone; i = waiting_[i].next)
-        visit(waiting_[i].side);
-  }
-
-private:
-  static constexpr std::uint32_t kNone = 0xffffffffU;
-  struct Waiting {
-    Side side;
-    std::uint32_t next;
-  };
-
-  std::vector<std::uint32_t> first_;
-  std::vector<Waiting> waiting_;
-  std::uint32_t free_ = kNone;
-};
-
-/// Parts of a mesh that are paired on their own at first: each takes memory.
-constexpr std::size_t kMaxParts = 4;
-
-}  // namespace
 
 SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads)
     : triangle_at_(vertex_count, -1), degree_(vertex_count, 0),
       triangle_count_(static_cast<Index>(triangles.cols())) {
-  const auto m = static_cast<std::size_t>(triangles.cols());
   // Room for all splits: entries must not move while changes are recorded.
+  const auto m = static_cast<std::size_t>(triangles.cols());
   vertices_.reserve(std::max(m, 2 * vertex_count));
   neighbors_.reserve(std::max(m, 2 * vertex_count));
   vertices_.resize(m);
-  neighbors_.assign(m, {-1, -1, -1});
-
-  const auto pair = [this](const SidePairing::Side& side, const SidePairing::Side& other) {
-    neighbors_[static_cast<std::size_t>(side.triangle)][side.corner] = other.triangle;
-    neighbors_[static_cast<std::size_t>(other.triangle)][other.corner] = side.triangle;
-  };
-  const std::size_t parts = std::min(kMaxParts, static_cast<std::size_t>(threadCount(threads, m)));
-  std::vector<std::vector<SidePairing::Side>> left(parts);
-  // A block of nothing but its number for each part.
-  forEachBlock(
-      parts * kBlockSize, static_cast<int>(parts), [&](std::size_t part, std::size_t, std::size_t) {
-        SidePairing pairing(vertex_count);
-        for (std::size_t t = part * m / parts; t < (part + 1) * m / parts; ++t) {
-          const auto column = static_cast<Eigen::Index>(t);
-          const std::array<Index, 3> v{triangles(0, column), triangles(1, column),
-                                       triangles(2, column)};
-          vertices_[t] = v;
-          for (std::size_t k = 0; k < 3; ++k)
-            pairing.add({v[(k + 1) % 3], v[(k + 2) % 3], static_cast<Index>(t),
-                         static_cast<std::uint8_t>(k)},
-                        pair);
-        }
-        pairing.forEachWaiting([&](const SidePairing::Side& side) { left[part].push_back(side); });
-      });
-  if (parts > 1) {
-    SidePairing pairing(vertex_count);
-    for (const auto& sides : left)
-      for (const SidePairing::Side& side : sides)
-        pairing.add(side, pair);
-    pairing.forEachWaiting([&](const SidePairing::Side&) { is_paired_ = false; });
-  } else {
-    is_paired_ = left.front().empty();
-  }
-  for (std::size_t t = 0; t < m; ++t)
-    for (const Index v : vertices_[t]) {
-      ++degree_[static_cast<std::size_t>(v)];
-      triangle_at_[static_cast<std::size_t>(v)] = static_cast<Index>(t);
-    }
-}
-
-bool SphereMesh::isFan(Index v) const {
-  std::array<Index, 16> few{};
-  std::vector<Index> many;
-  const auto count = static_cast<std::size_t>(degree(v));
-  if (count > few.size())
-    many.resize(count);
-  Index* const ring = count > few.size() ? many.data() : few.data();
-  std::size_t reached = 0;
-  const Index first = triangleAt(v);
-  Index t = first;
-  do {
-    if (reached == count)
-      return false;
-    const int corner = cornerOf(t, v);
-    ring[reached++] = vertex(t, (corner + 1) % 3);
-    t = neighbor(t, (corner + 1) % 3);
-  } while (t != first);
-  if (reached != count)
-    return false;
-  if (count > few.size()) {
-    std::sort(many.begin(), many.end());
-    return std::adjacent_find(many.begin(), many.end()) == many.end();
-  }
-  for (std::size_t i = 1; i < count; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (ring[i] == ring[j])
-        return false;
-  return true;
-}
-
-bool SphereMesh::isSphere(int threads) const {
-  const auto m = vertices_.size();
-  const auto n = triangle_at_.size();
-  if (n < 4 || m != 2 * n - 4 || !is_paired_)
-    return false;
+  neighbors_.resize(m);
   threads = threadCount(threads, m);
-  if (sumOfBlocks(m, threads, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
-        std::size_t wrong = 0;
-        for (std::size_t t = begin; t < end; ++t) {
-          const auto& [a, b, c] = vertices_[t];
-          wrong += a == b || b == c || c == a ? 1 : 0;
-        }
-        return wrong;
-      }) > 0)
-    return false;
-  // Now every walk around a vertex closes: is it through all of its triangles?
-  if (sumOfBlocks(n, threads, std::size_t{0}, [&](std::size_t begin, std::size_t end) {
-        std::size_t wrong = 0;
-        for (std::size_t v = begin; v < end; ++v)
-          wrong += triangle_at_[v] < 0 || !isFan(static_cast<Index>(v)) ? 1 : 0;
-        return wrong;
-      }) > 0)
-    return false;
-  // One piece, so that 2n - 4 triangles make it a sphere.
-  UnionFind pieces(n);
-  std::size_t joined = 0;
-  for (const auto& [a, b, c] : vertices_)
-    joined += (pieces.unite(a, b) ? 1U : 0U) + (pieces.unite(b, c) ? 1U : 0U);
-  return joined == n - 1;
+  forEachIndex(m, threads, {}, [&](Index t) {
+    vertices_[t] = {triangles(0, t), triangles(1, t), triangles(2, t)};
+  });
+  // Around a vertex, the next triangle after t ends where t begins.
+  const CornerTable corners(triangles, vertex_count, threads);
+  std::vector<Indexed<Index>> ending_of(static_cast<std::size_t>(threads),
+                                        Indexed<Index>(vertex_count));
+  forEachItem(vertex_count, threads, [&](std::size_t thread, std::size_t i) {
+    const auto v = static_cast<Index>(i);
+    Indexed<Index>& ending_at = ending_of[thread];
+    corners.forEachCorner(
+        v, [&](Index t, Index k) { ending_at[triangles(previousCorner(k), t)] = t; });
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      neighbors_[t][static_cast<std::size_t>(previousCorner(k))] =
+          ending_at[triangles(nextCorner(k), t)];
+      triangle_at_[v] = t;
+    });
+    degree_[v] = static_cast<Index>(corners.countAt(v));
+  });
 }
 
 Index SphereMesh::takePlace() {
@@ -206,8 +57,8 @@ void SphereMesh::freePlace(Index t) {
 }
 
 std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
-  const std::array<Index, 3> v = vertices_[static_cast<std::size_t>(triangle)];
-  const std::array<Index, 3> n = neighbors_[static_cast<std::size_t>(triangle)];
+  const std::array<Index, 3> v = vertices_[triangle];
+  const std::array<Index, 3> n = neighbors_[triangle];
   const std::array<Index, 3> parts{triangle, takePlace(), takePlace()};
   for (std::size_t k = 0; k < 3; ++k)
     // Part k has the side opposite to corner k.
@@ -220,7 +71,7 @@ std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
     addDegree(v[k], 1);
   }
   setTriangleAt(new_vertex, triangle);
-  set(degree_[static_cast<std::size_t>(new_vertex)], 3);
+  set(degree_[new_vertex], 3);
   return parts;
 }
 
@@ -248,7 +99,7 @@ Index SphereMesh::merge(Index v) {
     addDegree(w, -1);
   }
   setTriangleAt(v, -1);
-  set(degree_[static_cast<std::size_t>(v)], 0);
+  set(degree_[v], 0);
   freePlace(around[1]);
   freePlace(around[2]);
   return t;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/types.h"
 
 #include <algorithm>
@@ -16,25 +17,23 @@ namespace spherical_param::internal {
 class SphereMesh {
 public:
   /// \param triangles closed, manifold, consistently oriented, genus 0, at least 4 vertices,
-  /// indices
-  ///                  in range; see isSphere().
+  ///                  indices in range; see MeshTopology::isSphere().
   SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
 
-  /// Whether the mesh is a sphere, right after construction.
-  bool isSphere(int threads = 1) const;
-
   /// Number of slots for triangles, used or freed by merge().
-  Index size() const { return static_cast<Index>(vertices_.size()); }
+  Index size() const { return vertices_.count(); }
   bool isTriangle(Index t) const { return vertex(t, 0) >= 0; }
+  /// The corners of a triangle, counter-clockwise.
+  const std::array<Index, 3>& vertices(Index triangle) const { return vertices_[triangle]; }
   Index vertex(Index triangle, int corner) const {
-    return vertices_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(corner)];
+    return vertices_[triangle][static_cast<std::size_t>(corner)];
   }
   /// The triangle across the side opposite to `corner`.
   Index neighbor(Index triangle, int corner) const {
-    return neighbors_[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(corner)];
+    return neighbors_[triangle][static_cast<std::size_t>(corner)];
   }
   int cornerOf(Index triangle, Index v) const {
-    const auto& corners = vertices_[static_cast<std::size_t>(triangle)];
+    const auto& corners = vertices_[triangle];
     return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
   }
   /// The corner of neighbor(triangle, corner) that is opposite to the common side.
@@ -45,8 +44,8 @@ public:
     return (cornerOf(neighbor(triangle, corner), end) + 1) % 3;
   }
   /// A triangle at the vertex; -1 if the vertex is not in the mesh.
-  Index triangleAt(Index vertex) const { return triangle_at_[static_cast<std::size_t>(vertex)]; }
-  Index degree(Index vertex) const { return degree_[static_cast<std::size_t>(vertex)]; }
+  Index triangleAt(Index vertex) const { return triangle_at_[vertex]; }
+  Index degree(Index vertex) const { return degree_[vertex]; }
 
   /// Calls visit(triangle, corner) for the triangles around a vertex of the mesh,
   /// counter-clockwise.
@@ -94,9 +93,6 @@ public:
   Triangles triangles() const;
 
 private:
-  /// Whether the triangles around a vertex are one fan without repeated vertices.
-  bool isFan(Index v) const;
-
   void set(Index& entry, Index value) {
     if (is_recording_)
       changes_.emplace_back(&entry, entry);
@@ -105,29 +101,26 @@ private:
   void setTriangle(Index t, const std::array<Index, 3>& vertices,
                    const std::array<Index, 3>& neighbors) {
     for (std::size_t k = 0; k < 3; ++k) {
-      set(vertices_[static_cast<std::size_t>(t)][k], vertices[k]);
-      set(neighbors_[static_cast<std::size_t>(t)][k], neighbors[k]);
+      set(vertices_[t][k], vertices[k]);
+      set(neighbors_[t][k], neighbors[k]);
     }
   }
-  void setTriangleAt(Index v, Index t) { set(triangle_at_[static_cast<std::size_t>(v)], t); }
-  void addDegree(Index v, Index change) {
-    set(degree_[static_cast<std::size_t>(v)], degree(v) + change);
-  }
+  void setTriangleAt(Index v, Index t) { set(triangle_at_[v], t); }
+  void addDegree(Index v, Index change) { set(degree_[v], degree(v) + change); }
   void replaceNeighbor(Index triangle, Index old_neighbor, Index new_neighbor) {
-    auto& around = neighbors_[static_cast<std::size_t>(triangle)];
+    auto& around = neighbors_[triangle];
     set(*std::find(around.begin(), around.end(), old_neighbor), new_neighbor);
   }
   /// A free slot for a triangle, the last freed one first.
   Index takePlace();
   void freePlace(Index t);
 
-  std::vector<std::array<Index, 3>> vertices_;   ///< -1 and the next free slot, if free
-  std::vector<std::array<Index, 3>> neighbors_;  ///< across the side opposite to each corner
-  std::vector<Index> triangle_at_;
-  std::vector<Index> degree_;
+  Indexed<std::array<Index, 3>> vertices_;   ///< -1 and the next free slot, if free
+  Indexed<std::array<Index, 3>> neighbors_;  ///< across the side opposite to each corner
+  Indexed<Index> triangle_at_;
+  Indexed<Index> degree_;
   Index free_ = -1;  ///< first free slot
   Index triangle_count_ = 0;
-  bool is_paired_ = true;  ///< at the beginning, each side had another triangle
   bool is_recording_ = false;
   std::vector<std::pair<Index*, Index>> changes_;  ///< entries and their old values
 };

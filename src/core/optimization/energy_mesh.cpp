@@ -1,7 +1,7 @@
 #include "energy_mesh.h"
 
 #include "optimization_constants.h"
-#include "parallel.h"
+#include "rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,9 +35,8 @@ RawFacet EnergyMesh::facetOf(Index a, Index b, Index c) const {
 void EnergyMesh::appendNeighbors(Index v, std::vector<Index>& neighbors) const {
   mesh_.forEachAround(
       v, [&](Index t, int corner) { neighbors.push_back(mesh_.vertex(t, (corner + 1) % 3)); });
-  const auto row = static_cast<std::size_t>(v);
-  neighbors.insert(neighbors.end(), graph_.neighbors.data() + graph_.offsets[row],
-                   graph_.neighbors.data() + graph_.offsets[row + 1]);
+  const Row<Index> row = graph_.row(v);
+  neighbors.insert(neighbors.end(), row.begin(), row.end());
 }
 
 void EnergyMesh::setEnergy(const SurfaceEnergy& energy) {
@@ -62,15 +61,12 @@ void EnergyMesh::save(Index t) {
 
 void EnergyMesh::update(Index t) {
   save(t);
-  facets_[t] = facetOf(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)).facet();
+  const auto& [a, b, c] = mesh_.vertices(t);
+  facets_[t] = facetOf(a, b, c).facet();
 }
 
 void EnergyMesh::updateAll(const FractionReport& report) {
-  forEachBlock(facets_.size(), threads_, report,
-               [&](std::size_t, std::size_t begin, std::size_t end) {
-                 for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
-                   update(t);
-               });
+  forEachIndex(facets_.size(), threads_, report, [&](Index t) { update(t); });
 }
 
 double EnergyMesh::flipGain(Index t, int corner, double floor) const {
@@ -118,9 +114,7 @@ bool EnergyMesh::flip(Index t, int corner, double gain) {
 }
 
 double EnergyMesh::splitCost(Index t, Index v, double ceiling) const {
-  const Index a = mesh_.vertex(t, 0);
-  const Index b = mesh_.vertex(t, 1);
-  const Index c = mesh_.vertex(t, 2);
+  const auto& [a, b, c] = mesh_.vertices(t);
   const Facet& abc = facets_[t];
   const Facet& bc = facets_[mesh_.neighbor(t, 0)];
   const Facet& ca = facets_[mesh_.neighbor(t, 1)];
@@ -195,8 +189,7 @@ std::vector<Index> EnergyMesh::changed() const {
   std::vector<Index> changed;
   for (std::size_t i = open_.back().facets; i < old_facets_.size(); ++i)
     changed.push_back(old_facets_[i].first);
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  sortUnique(changed);
   return changed;
 }
 

@@ -8,6 +8,7 @@
 #include "sampling_analysis.h"
 #include "smoothing.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/mesh_topology.h"
 #include "unfolding.h"
 #include "untangling.h"
 #include "workbench.h"
@@ -30,8 +31,7 @@ bool closeWithoutLoop(Workbench& bench) {
   const internal::SphereMesh& mesh = bench.mesh.mesh();
   std::vector<Index> vertices;
   for (const Index t : internal::trianglesWithoutLoop(mesh, *bench.openings))
-    for (int k = 0; k < 3; ++k)
-      vertices.push_back(mesh.vertex(t, k));
+    vertices.insert(vertices.end(), mesh.vertices(t).begin(), mesh.vertices(t).end());
   if (!bench.openings->close(vertices))
     return false;
   bench.mesh.setPoints(bench.mesh.points());
@@ -106,10 +106,10 @@ Pairs finishOn(const Positions& points, Workbench& bench) {
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
                               const Graph& graph, const OptimizationOptions& options,
                               const Execution& execution) {
-  Workbench bench(points, triangles, graph, options, execution);
-  if (!bench.mesh.mesh().isSphere(execution.threads))
+  if (!checkTopology(triangles, graph.size(), execution.threads).isSphere())
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
                        "oriented mesh of genus 0 over all points");
+  Workbench bench(points, triangles, graph, options, execution);
   const auto sampling = internal::analyzeSampling(points, graph, execution.threads);
   const auto flip = [&] {
     internal::flipFor(bench, sampling, "flips", tuned::kMu);
