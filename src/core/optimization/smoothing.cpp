@@ -1,14 +1,13 @@
 #include "smoothing.h"
 
-#include "parallel.h"
+#include "corner_table.h"
 #include "pi.h"
-#include "spherical_param/errors.h"
+#include "rows.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 namespace spherical_param {
@@ -28,57 +27,19 @@ constexpr double kMaxFilterError = 1e-7;
 constexpr double kMaxVolumeError = 1e-12;
 constexpr int kMaxVolumeIterations = 8;
 
-[[noreturn]] void fail(const std::string& what) {
-  throw InvalidInput("smoothSurface: " + what);
-}
-
-/// The triangles around each vertex. Vertex i has those with the other corners next[e], previous[e]
-/// (counter-clockwise), e in [offsets[i], offsets[i + 1]). As the fans of a closed manifold are
-/// cycles, `next` alone names each neighbour once.
-struct Fans {
-  std::vector<std::size_t> offsets;
-  std::vector<Index> next;
-  std::vector<Index> previous;
-
-  std::size_t size() const { return offsets.size() - 1; }
-};
-
-Fans collectFans(const Triangles& triangles, std::size_t n) {
-  const Eigen::Index m = triangles.cols();
-  Fans fans;
-  fans.offsets.assign(n + 1, 0);
-  for (Eigen::Index t = 0; t < m; ++t)
-    for (int k = 0; k < 3; ++k) {
-      const Index v = triangles(k, t);
-      if (v < 0 || static_cast<std::size_t>(v) >= n)
-        fail("triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
-             std::to_string(n) + "; indices must be in [0, n)");
-      ++fans.offsets[static_cast<std::size_t>(v) + 1];
-    }
-  for (std::size_t v = 0; v < n; ++v)
-    fans.offsets[v + 1] += fans.offsets[v];
-  fans.next.resize(fans.offsets[n]);
-  fans.previous.resize(fans.offsets[n]);
-  std::vector<std::size_t> end(fans.offsets.begin(), fans.offsets.end() - 1);
-  for (Eigen::Index t = 0; t < m; ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::size_t e = end[static_cast<std::size_t>(triangles(k, t))]++;
-      fans.next[e] = triangles((k + 1) % 3, t);
-      fans.previous[e] = triangles((k + 2) % 3, t);
-    }
-  return fans;
-}
-
 /// Filters and volume of one mesh, on several threads.
 class Filter {
 public:
-  Filter(const Fans& fans, int requested_threads)
-      : fans_(fans), threads_(internal::threadCount(requested_threads, fans.size())) {}
+  Filter(const Triangles& triangles, std::size_t n, int requested_threads)
+      : triangles_(triangles), threads_(internal::threadCount(requested_threads, n)),
+        corners_(triangles, n, threads_) {}
+
+  bool isUsed(Index v) const { return corners_.countAt(v) > 0; }
 
   /// Moves each point by a fraction of its Laplacian, all at once; `scratch` is overwritten.
   void step(Positions& points, double fraction, Positions& scratch) const {
     forEachPoint(
-        [&](Eigen::Index i) { scratch.col(i) = points.col(i) + fraction * laplacian(points, i); });
+        [&](Index i) { scratch.col(i) = points.col(i) + fraction * laplacian(points, i); });
     points.swap(scratch);
   }
 
@@ -87,54 +48,54 @@ public:
   /// Signed volume, by the divergence theorem.
   double volume(const Positions& points) const {
     // Each triangle is visited from its three corners.
-    return sum([&](Eigen::Index i) { return points.col(i).dot(normal(points, i)); }) / 18.0;
+    return sum([&](Index i) { return points.col(i).dot(normal(points, i)); }) / 18.0;
   }
 
   void restoreVolume(Positions& points, double volume) const;
 
   template <typename Term>
   double sum(const Term& term) const {
-    return internal::sumOfBlocks(fans_.size(), threads_, 0.0,
+    return internal::sumOfBlocks(corners_.vertexCount(), threads_, 0.0,
                                  [&](std::size_t begin, std::size_t end) {
                                    double total = 0.0;
                                    for (std::size_t i = begin; i < end; ++i)
-                                     total += term(static_cast<Eigen::Index>(i));
+                                     total += term(static_cast<Index>(i));
                                    return total;
                                  });
   }
 
   template <typename Work>
   void forEachPoint(const Work& work) const {
-    internal::forEachItem(fans_.size(), threads_,
-                          [&](std::size_t, std::size_t i) { work(static_cast<Eigen::Index>(i)); });
+    internal::forEachIndex(corners_.vertexCount(), threads_, {}, work);
   }
 
 private:
-  /// The mean of the neighbours of point i minus the point; 0 for a point of no triangle.
-  Eigen::Vector3d laplacian(const Positions& points, Eigen::Index i) const {
-    const std::size_t begin = fans_.offsets[static_cast<std::size_t>(i)];
-    const std::size_t end = fans_.offsets[static_cast<std::size_t>(i) + 1];
-    if (begin == end)
-      return Eigen::Vector3d::Zero();
+  /// The mean of the neighbours of point i minus the point; 0 for a point of no triangle. As the
+  /// fans of a closed manifold are cycles, their next corners alone are each neighbour once.
+  Eigen::Vector3d laplacian(const Positions& points, Index i) const {
     Eigen::Vector3d total = Eigen::Vector3d::Zero();
-    for (std::size_t e = begin; e < end; ++e)
-      total += points.col(fans_.next[e]);
-    return total / static_cast<double>(end - begin) - points.col(i);
+    if (!isUsed(i))
+      return total;
+    corners_.forEachCorner(
+        i, [&](Index t, Index k) { total += points.col(triangles_(internal::nextCorner(k), t)); });
+    return total / static_cast<double>(corners_.countAt(i)) - points.col(i);
   }
 
   /// The sum of the normals of the triangles around point i, as long as twice their areas: six
   /// times the gradient of the volume.
-  Eigen::Vector3d normal(const Positions& points, Eigen::Index i) const {
+  Eigen::Vector3d normal(const Positions& points, Index i) const {
     const Eigen::Vector3d center = points.col(i);
     Eigen::Vector3d total = Eigen::Vector3d::Zero();
-    for (std::size_t e = fans_.offsets[static_cast<std::size_t>(i)];
-         e < fans_.offsets[static_cast<std::size_t>(i) + 1]; ++e)
-      total += (points.col(fans_.next[e]) - center).cross(points.col(fans_.previous[e]) - center);
+    corners_.forEachCorner(i, [&](Index t, Index k) {
+      total += (points.col(triangles_(internal::nextCorner(k), t)) - center)
+                   .cross(points.col(triangles_(internal::previousCorner(k), t)) - center);
+    });
     return total;
   }
 
-  const Fans& fans_;
+  const Triangles& triangles_;
   int threads_;
+  internal::CornerTable corners_;
 };
 
 /// The Chebyshev coefficients of 2^-(k / c)^2, c = 1 - 2^(-1 / steps), in x = 4/3 k - 1 of [-1, 1].
@@ -176,7 +137,7 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
   step(last, 1.0 / half, points);
   points = coefficients[0] * before + coefficients[1] * last;
   for (std::size_t degree = 2; degree < coefficients.size(); ++degree) {
-    forEachPoint([&](Eigen::Index i) {
+    forEachPoint([&](Index i) {
       before.col(i) = -2.0 * (laplacian(last, i) / half + last.col(i)) - before.col(i);
       points.col(i) += coefficients[degree] * before.col(i);
     });
@@ -191,11 +152,11 @@ void Filter::restoreVolume(Positions& points, double volume) const {
   Positions moved(3, points.cols());
   for (int i = 0; i < kMaxVolumeIterations && std::abs(error) > kMaxVolumeError * std::abs(volume);
        ++i) {
-    const double slope = sum([&](Eigen::Index v) { return normal(points, v).norm(); }) / 6.0;
+    const double slope = sum([&](Index v) { return normal(points, v).norm(); }) / 6.0;
     const double distance = error / slope;
     if (!std::isfinite(distance))
       return;
-    forEachPoint([&](Eigen::Index v) {
+    forEachPoint([&](Index v) {
       const Eigen::Vector3d direction = normal(points, v);
       const double length = direction.norm();
       moved.col(v) = points.col(v);
@@ -214,13 +175,12 @@ void Filter::restoreVolume(Positions& points, double volume) const {
 
 Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
                         const SmoothingOptions& options, int threads) {
-  const Fans fans = collectFans(triangles, static_cast<std::size_t>(points.cols()));
-
+  internal::checkTriangles("smoothSurface", triangles, points.cols());
   Smoothing result;
   result.points = points;
   if (triangles.cols() == 0)
     return result;
-  const Filter filter(fans, threads);
+  const Filter filter(triangles, static_cast<std::size_t>(points.cols()), threads);
 
   // About a point of the mesh, so that a far origin costs no digits.
   const Eigen::Vector3d origin = points.col(triangles(0, 0));
@@ -246,10 +206,9 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
 
   double used = 0.0;
   double squared = 0.0;
-  for (std::size_t v = 0; v < fans.size(); ++v) {
-    if (fans.offsets[v] == fans.offsets[v + 1])
+  for (const Index i : internal::NumberRange<Index>(0, static_cast<Index>(points.cols()))) {
+    if (!filter.isUsed(i))
       continue;
-    const auto i = static_cast<Eigen::Index>(v);
     result.points.col(i) = smooth.col(i) + origin;
     const double distance = (result.points.col(i) - points.col(i)).norm();
     result.report.max_displacement = std::max(result.report.max_displacement, distance);
