@@ -5,43 +5,41 @@
 
 namespace spherical_param::internal {
 
-void LocalIntersections::begin(std::size_t triangles, std::vector<Face> faces) {
+void LocalIntersections::begin(std::size_t triangles, Indexed<Face> faces) {
   for (const Face& face : faces_)
-    places_[at(face.triangle)] = -1;
+    places_[face.triangle] = -1;
   places_.resize(triangles, -1);
   faces_ = std::move(faces);
   counts_.assign(faces_.size(), kUnknown);
   has_counts_ = false;
-  std::vector<BoxGroup> groups((faces_.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    places_[at(faces_[i].triangle)] = static_cast<Index>(i);
-    groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, FloatBox(boxOf(faces_[i].corners)));
-  }
-  boxes_ = BoxTree(std::move(groups), 1);
+  for (Index i = 0; i < faces_.count(); ++i)
+    places_[faces_[i].triangle] = i;
+  boxes_ =
+      BoxTree(faces_.size(), 1, {}, [&](Index i) { return FloatBox(boxOf(faces_[i].corners)); });
 }
 
 void LocalIntersections::set(const Face& face) {
-  Index& place = places_[at(face.triangle)];
+  Index& place = places_[face.triangle];
   if (place >= 0) {
-    addToCounts(faces_[at(place)], -1);
+    addToCounts(faces_[place], -1);
   } else {
-    place = static_cast<Index>(faces_.size());
+    place = faces_.count();
     faces_.push_back(face);
     counts_.push_back(kUnknown);
   }
-  faces_[at(place)] = face;
-  boxes_.set(at(place), FloatBox(boxOf(face.corners)));
-  counts_[at(place)] = addToCounts(face, 1);
+  faces_[place] = face;
+  boxes_.set(place, FloatBox(boxOf(face.corners)));
+  counts_[place] = addToCounts(face, 1);
 }
 
 void LocalIntersections::remove(Index triangle) {
-  Index& place = places_[at(triangle)];
-  addToCounts(faces_[at(place)], -1);
-  const std::size_t last = faces_.size() - 1;
-  faces_[at(place)] = faces_[last];
-  counts_[at(place)] = counts_[last];
-  boxes_.set(at(place), boxes_.at(last));
-  places_[at(faces_[last].triangle)] = place;
+  Index& place = places_[triangle];
+  addToCounts(faces_[place], -1);
+  const Index last = faces_.count() - 1;
+  faces_[place] = faces_[last];
+  counts_[place] = counts_[last];
+  boxes_.set(place, boxes_.at(last));
+  places_[faces_[last].triangle] = place;
   place = -1;
   faces_.pop_back();
   counts_.pop_back();
@@ -54,7 +52,7 @@ int LocalIntersections::addToCounts(const Face& face, int change) {
   int found = 0;
   forEachIntersecting(face, face.triangle, [&](const Face& other) {
     ++found;
-    int& count = counts_[at(places_[at(other.triangle)])];
+    int& count = counts_[places_[other.triangle]];
     count += count == kUnknown ? 0 : change;
     return true;
   });
@@ -62,7 +60,7 @@ int LocalIntersections::addToCounts(const Face& face, int change) {
 }
 
 int LocalIntersections::countOf(Index triangle) {
-  int& known = counts_[at(places_[at(triangle)])];
+  int& known = counts_[places_[triangle]];
   if (known == kUnknown)
     known = count(face(triangle), triangle, std::numeric_limits<int>::max());
   has_counts_ = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "box_tree.h"
+#include "indexed.h"
 #include "spherical_param/types.h"
 #include "triangle_pair.h"
 
@@ -16,15 +17,13 @@ public:
   ///
   /// \param triangles number of triangles of the mesh.
   /// \param faces     the set; faster if faces that follow each other are near.
-  void begin(std::size_t triangles, std::vector<Face> faces = {});
+  void begin(std::size_t triangles, Indexed<Face> faces = {});
   /// Adds or changes a triangle.
   void set(const Face& face);
   void remove(Index triangle);
-  bool contains(Index triangle) const { return places_[static_cast<std::size_t>(triangle)] >= 0; }
+  bool contains(Index triangle) const { return places_[triangle] >= 0; }
   const std::vector<Face>& faces() const { return faces_; }
-  const Face& face(Index triangle) const {
-    return faces_[static_cast<std::size_t>(places_[static_cast<std::size_t>(triangle)])];
-  }
+  const Face& face(Index triangle) const { return faces_[places_[triangle]]; }
   /// Calls work(face) for each triangle whose box overlaps a box, and perhaps a few more, until it
   /// returns false.
   template <typename Work>
@@ -32,7 +31,7 @@ public:
     bool is_done = false;
     boxes_.forEachOverlapping(
         FloatBox(box), 0, [&](const FloatBox&) { return is_done; },
-        [&](std::size_t place) { is_done = !work(faces_[place]); });
+        [&](Index place) { is_done = !work(faces_[place]); });
   }
   /// Number of others that intersect one of the triangles. From the first call on, it is kept up to
   /// date.
@@ -45,7 +44,6 @@ public:
   bool intersects(const Face& face) const { return count(face, face.triangle, 0) > 0; }
 
 private:
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   /// Calls work(face) for each triangle that intersects `face`, without itself and `without`, until
   /// it returns false.
   template <typename Work>
@@ -63,11 +61,11 @@ private:
 
   static constexpr int kUnknown = -1;
 
-  std::vector<Face> faces_;
-  std::vector<int> counts_;  ///< of each of faces_, or kUnknown
+  Indexed<Face> faces_;
+  Indexed<int> counts_;  ///< of each of faces_, or kUnknown
   bool has_counts_ = false;
-  BoxTree boxes_;              ///< of each of faces_
-  std::vector<Index> places_;  ///< of each triangle of the mesh in faces_, or -1
+  BoxTree boxes_;          ///< of each of faces_
+  Indexed<Index> places_;  ///< of each triangle of the mesh in faces_, or -1
 };
 
 }  // namespace spherical_param::internal

@@ -8,29 +8,9 @@
 #include <tuple>
 
 namespace spherical_param::internal {
-namespace {
-
-/// Steps over sides that two flips reach, and the triangles beyond those.
-constexpr int kReach = 3;
-
-}  // namespace
 
 LocalUntangling::LocalUntangling(EnergyMesh& mesh)
-    : mesh_(mesh), scale_(scaleToUnit(mesh.points().cwiseAbs().maxCoeff())),
-      seen_(static_cast<std::size_t>(mesh.mesh().size())) {}
-
-Face LocalUntangling::face(Index t, Index a, Index b, Index c) const {
-  const Positions& points = mesh_.points();
-  Face face{
-      {scale_ * points.col(a), scale_ * points.col(b), scale_ * points.col(c)}, 0.0, {a, b, c}, t};
-  face.size = boxOf(face.corners).size();
-  return face;
-}
-
-Face LocalUntangling::face(Index t) const {
-  const SphereMesh& mesh = mesh_.mesh();
-  return face(t, mesh.vertex(t, 0), mesh.vertex(t, 1), mesh.vertex(t, 2));
-}
+    : mesh_(mesh), scale_(scaleToUnit(mesh.points().cwiseAbs().maxCoeff())) {}
 
 void LocalUntangling::watch(const std::vector<Index>& vertices) {
   local_.begin(static_cast<std::size_t>(mesh_.mesh().size()));
@@ -70,8 +50,7 @@ int LocalUntangling::flipChangedApart() {
     }
     local_.set(face_of_t);
   }
-  std::sort(bad.begin(), bad.end());
-  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  sortUnique(bad);
   return difference - flipApart(std::move(bad));
 }
 
@@ -95,38 +74,15 @@ int LocalUntangling::flipApart(std::vector<Index> bad) {
   return fewer;
 }
 
-void LocalUntangling::gatherNear(Index t) {
-  seen_.clear();
-  seen_.insert(t);
-  std::vector<Index> ring{t};
-  Box box = boxOf(face(t).corners);
-  for (std::size_t i = 0, end = 1, steps = 0; steps < kReach; ++steps, end = ring.size())
-    for (; i < end; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const Index o = mesh_.mesh().neighbor(ring[i], k);
-        if (!seen_.insert(o))
-          continue;
-        ring.push_back(o);
-        const Box other = boxOf(face(o).corners);
-        box.lower = box.lower.cwiseMin(other.lower);
-        box.upper = box.upper.cwiseMax(other.upper);
-      }
-  near_.begin(static_cast<std::size_t>(mesh_.mesh().size()));
-  local_.forEachIn(box, [&](const Face& face) {
-    near_.set(face);
-    return true;
-  });
-}
-
 std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int corner, int most) {
   const SphereMesh& mesh = mesh_.mesh();
   const Index o = mesh.neighbor(t, corner);
-  if (!near_.contains(t) || !near_.contains(o))
+  if (!local_.contains(t) || !local_.contains(o))
     return std::nullopt;
-  int before = near_.countOf(t) + near_.countOf(o);
+  int before = local_.countOf(t) + local_.countOf(o);
   if (before + most < 0)
     return std::nullopt;
-  before -= intersect(near_.face(t), near_.face(o)) ? 1 : 0;
+  before -= intersect(local_.face(t), local_.face(o)) ? 1 : 0;
   const Index c = mesh.vertex(t, corner);
   const Index a = mesh.vertex(t, (corner + 1) % 3);
   const Index b = mesh.vertex(t, (corner + 2) % 3);
@@ -134,25 +90,18 @@ std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int co
   if (before + most < 0 || c == d || mesh.areJoined(c, d) || mesh_.facetOf(c, a, d).isOpen() ||
       mesh_.facetOf(c, d, b).isOpen())
     return std::nullopt;
-  const Face cad = face(t, c, a, d);
-  const Face cdb = face(o, c, d, b);
+  const Face cad = face(t, {c, a, d});
+  const Face cdb = face(o, {c, d, b});
   int left = before + most;
-  left -= near_.count(cad, o, left);
+  left -= local_.count(cad, o, left);
   if (left >= 0)
-    left -= near_.count(cdb, t, left);
+    left -= local_.count(cdb, t, left);
   if (left >= 0)
     left -= intersect(cad, cdb) ? 1 : 0;
   if (left < 0)
     return std::nullopt;
   return Repair{t, corner, most - left,
                 -mesh_.flipGain(t, corner, -std::numeric_limits<double>::infinity())};
-}
-
-void LocalUntangling::update(Index t, Index o) {
-  for (const Index changed : {t, o}) {
-    local_.set(face(changed));
-    near_.set(face(changed));
-  }
 }
 
 void LocalUntangling::flip(const Repair& repair) {
@@ -191,7 +140,6 @@ std::vector<std::pair<Index, int>> LocalUntangling::sidesNear(Index t) const {
 }
 
 LocalUntangling::Repairs LocalUntangling::bestRepairs(Index t) {
-  gatherNear(t);
   ++work_;
   Repairs best;
   for (int k = 0; k < 3; ++k)

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "energy_mesh.h"
-#include "indexed.h"
 #include "local_intersections.h"
 
 #include <cstddef>
@@ -49,12 +48,12 @@ private:
     double cost = 0.0;
   };
 
-  Face face(Index t, Index a, Index b, Index c) const;
-  Face face(Index t) const;
+  Face face(Index t, const std::array<Index, 3>& corners) const {
+    return faceOf(mesh_.points(), scale_, corners, t);
+  }
+  Face face(Index t) const { return face(t, mesh_.mesh().vertices(t)); }
   bool intersects(Index t) const { return local_.contains(t) && local_.intersects(face(t)); }
   int flipApart(std::vector<Index> bad);
-  /// Fills near_ with the watched triangles that two flips near a triangle may affect.
-  void gatherNear(Index t);
   /// The flip of a side, unless it is impossible or changes the number of pairs by more than
   /// `most`.
   std::optional<Repair> repairOf(Index t, int corner, int most);
@@ -64,14 +63,15 @@ private:
   Repairs bestRepairs(Index t);
   std::vector<std::pair<Index, int>> sidesNear(Index t) const;
   void flip(const Repair& repair);
-  void update(Index t, Index o);
+  void update(Index t, Index o) {
+    local_.set(face(t));
+    local_.set(face(o));
+  }
 
   EnergyMesh& mesh_;
   double scale_;  ///< brings the coordinates to at most 1
   std::size_t work_ = 0;
   LocalIntersections local_;  ///< the watched triangles
-  LocalIntersections near_;   ///< a part of local_
-  IndexSet seen_;             ///< working memory of gatherNear()
 };
 
 }  // namespace spherical_param::internal

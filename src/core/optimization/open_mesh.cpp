@@ -57,6 +57,10 @@ typename Candidates::iterator leastCrossing(Candidates& candidates, const Crossi
   return best;
 }
 
+bool isOver(const OpenPlaces& openings, const std::array<Index, 3>& corners) {
+  return openings.isOpen(corners[0], corners[1], corners[2]);
+}
+
 class Opener {
 public:
   Opener(const Positions& points, const Triangles& triangles, const OpenPlaces& openings)
@@ -65,8 +69,7 @@ public:
         is_open_(static_cast<std::size_t>(mesh_.size()), 0),
         scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
     for (Index t = 0; t < mesh_.size(); ++t)
-      is_open_[t] =
-          openings.isOpen(mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)) ? 1 : 0;
+      is_open_[t] = isOver(openings, mesh_.vertices(t)) ? 1 : 0;
   }
 
   OpenMesh run() {
@@ -101,8 +104,7 @@ private:
     for (Index t = 0; t < mesh_.size(); ++t)
       for (int k = 0; isOpen(t) && k < 3; ++k)
         vertices.push_back(mesh_.vertex(t, k));
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    sortUnique(vertices);
     return vertices;
   }
 
@@ -252,7 +254,7 @@ private:
     const auto count_crossings = [&](const Run& run, int most) {
       int count = 0;
       for (const Index t : run)
-        count += crossings(cornersOf(t), t, most - count);
+        count += crossings(mesh_.vertices(t), t, most - count);
       return count;
     };
     const auto gap = leastCrossing(gaps, count_crossings, least);
@@ -265,10 +267,6 @@ private:
     return vertices;
   }
 
-  std::array<Index, 3> cornersOf(Index t) const {
-    return {mesh_.vertex(t, 0), mesh_.vertex(t, 1), mesh_.vertex(t, 2)};
-  }
-
   /// Number of triangles of the surface, but for `without`, that one that is not on it would
   /// intersect; counting may stop beyond `most`.
   int crossings(const std::array<Index, 3>& corners, Index without, int most) {
@@ -279,18 +277,15 @@ private:
 
   void gatherSurface() {
     has_surface_ = true;
-    std::vector<Face> faces;
+    Indexed<Face> faces;
     for (Index t = 0; t < mesh_.size(); ++t)
       if (!isOpen(t))
-        faces.push_back(face(t, cornersOf(t)));
+        faces.push_back(face(t, mesh_.vertices(t)));
     surface_.begin(is_open_.size(), std::move(faces));
   }
 
   Face face(Index t, const std::array<Index, 3>& corners) const {
-    const std::array<Vector3d, 3> at{scale_ * points_.col(corners[0]),
-                                     scale_ * points_.col(corners[1]),
-                                     scale_ * points_.col(corners[2])};
-    return {at, boxOf(at).size(), corners, t};
+    return faceOf(points_, scale_, corners, t);
   }
 
   /// Distance of the first and the last neighbour of a run.
@@ -300,9 +295,8 @@ private:
   }
 
   double perimeter(Index t) const {
-    return length(mesh_.vertex(t, 0), mesh_.vertex(t, 1)) +
-           length(mesh_.vertex(t, 1), mesh_.vertex(t, 2)) +
-           length(mesh_.vertex(t, 2), mesh_.vertex(t, 0));
+    const auto& [a, b, c] = mesh_.vertices(t);
+    return length(a, b) + length(b, c) + length(c, a);
   }
 
   /// Flips the edges from a vertex into a run of it, as far as that goes: what is left of the run.
@@ -327,7 +321,7 @@ private:
   void close(Index t) {
     is_open_[t] = 0;
     if (has_surface_)
-      surface_.set(face(t, cornersOf(t)));
+      surface_.set(face(t, mesh_.vertices(t)));
   }
 
   const Positions& points_;
@@ -342,9 +336,7 @@ private:
 }  // namespace
 
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
-  const auto is_open = [&](Index t) {
-    return openings.isOpen(mesh.vertex(t, 0), mesh.vertex(t, 1), mesh.vertex(t, 2));
-  };
+  const auto is_open = [&](Index t) { return isOver(openings, mesh.vertices(t)); };
   std::vector<Index> found;
   Indexed<std::uint8_t> is_seen(static_cast<std::size_t>(mesh.size()), 0);
   std::vector<Index> piece;

@@ -1,29 +1,26 @@
 #include "box_tree.h"
 
-#include "parallel.h"
-
 #include <utility>
 
 namespace spherical_param::internal {
 
-BoxTree::BoxTree(std::vector<BoxGroup> groups, int threads) {
+void BoxTree::build(std::vector<BoxGroup> groups, int threads) {
   if (groups.empty())
     return;
   levels_.push_back(std::move(groups));
   while (levels_.back().size() > 1) {
     const std::vector<BoxGroup>& below = levels_.back();
     std::vector<BoxGroup> level((below.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-    static_assert(kBlockSize % BoxGroup::kSize == 0, "a group is in one block");
-    forEachBlock(below.size(), below.size() >= kParallelThreshold ? threads : 1,
-                 [&](std::size_t, std::size_t begin, std::size_t end) {
-                   for (std::size_t i = begin; i < end; ++i)
-                     level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
-                 });
+    forEachItem(below.size(), below.size() >= kParallelThreshold ? threads : 1,
+                [&](std::size_t, std::size_t i) {
+                  level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
+                });
     levels_.push_back(std::move(level));
   }
 }
 
-void BoxTree::set(std::size_t i, const FloatBox& box) {
+void BoxTree::set(Index place, const FloatBox& box) {
+  auto i = static_cast<std::size_t>(place);
   if (levels_.empty())
     levels_.emplace_back();
   FloatBox changed = box;

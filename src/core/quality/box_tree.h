@@ -1,5 +1,6 @@
 #pragma once
 
+#include "parallel.h"
 #include "triangle_pair.h"
 
 #include <Eigen/Core>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -67,24 +69,34 @@ public:
   static constexpr std::size_t kBlock = std::size_t{1} << kBlockLevel * BoxGroup::kBits;
 
   BoxTree() = default;
-  BoxTree(std::vector<BoxGroup> groups, int threads);
+  /// \param box_of returns box i of [0, count).
+  template <typename BoxOf>
+  BoxTree(std::size_t count, int threads, const FractionReport& report, const BoxOf& box_of) {
+    std::vector<BoxGroup> groups((count + BoxGroup::kSize - 1) / BoxGroup::kSize);
+    static_assert(kBlockSize % BoxGroup::kSize == 0, "a group is in one block");
+    forEachItem(count, threads, report, [&](std::size_t, std::size_t i) {
+      groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, box_of(static_cast<Index>(i)));
+    });
+    build(std::move(groups), threads);
+  }
 
-  FloatBox at(std::size_t i) const {
+  FloatBox at(Index place) const {
+    const auto i = static_cast<std::size_t>(place);
     return levels_[0][i / BoxGroup::kSize].at(i % BoxGroup::kSize);
   }
-  /// Changes a box, or adds one: i is at most the number of boxes.
-  void set(std::size_t i, const FloatBox& box);
+  /// Changes a box, or adds one: its place is at most the number of boxes.
+  void set(Index place, const FloatBox& box);
 
   /// Calls visit(i) for each box that overlaps one.
   ///
   /// \param first the first box of interest.
   /// \param skips whether boxes within a box are of no interest.
   template <typename Skips, typename Visit>
-  void forEachOverlapping(const FloatBox& box, std::size_t first, const Skips& skips,
+  void forEachOverlapping(const FloatBox& box, Index first, const Skips& skips,
                           const Visit& visit) const {
     if (!levels_.empty())
-      descend({levels_.size() - 1, 0}, 0, box, first, skips,
-              [&](std::size_t i, const FloatBox&) { visit(i); });
+      descend({levels_.size() - 1, 0}, 0, box, static_cast<std::size_t>(first), skips,
+              [&](std::size_t i, const FloatBox&) { visit(static_cast<Index>(i)); });
   }
 
   /// Calls visit(i, j) for each pair of overlapping boxes, i < j, with i in a block.
@@ -102,6 +114,8 @@ public:
   }
 
 private:
+  void build(std::vector<BoxGroup> groups, int threads);
+
   struct Node {
     std::size_t level;
     std::size_t group;
@@ -139,7 +153,7 @@ private:
         if (level > 0 && i <= j)
           join(level - 1, i, j, others.at(other_lane), visit);
         else if (i < j)
-          visit(i, j);
+          visit(static_cast<Index>(i), static_cast<Index>(j));
       });
     });
   }

@@ -1,10 +1,11 @@
 #include "spherical_param/self_intersection.h"
 
 #include "box_tree.h"
-#include "parallel.h"
+#include "corner_table.h"
 #include "power_of_two.h"
 #include "progress.h"
 #include "radix_sort.h"
+#include "rows.h"
 #include "space_filling_curve.h"
 #include "spherical_param/errors.h"
 #include "triangle_pair.h"
@@ -26,7 +27,6 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::Box;
-using internal::BoxGroup;
 using internal::boxOf;
 using internal::BoxTree;
 using internal::Face;
@@ -36,33 +36,16 @@ using internal::Plane;
 using Pairs = std::vector<std::array<Index, 2>>;
 
 /// A mesh as the tests want it.
-class Mesh {
-public:
-  /// \param scale a power of two; coordinates times it are at most 1.
-  Mesh(const Positions& points, const Triangles& triangles, double scale)
-      : points_(points), triangles_(triangles), scale_(scale) {}
+struct Mesh {
+  const Positions& points;
+  const Triangles& triangles;
+  double scale;  ///< a power of two; coordinates times it are at most 1
 
-  std::size_t size() const { return static_cast<std::size_t>(triangles_.cols()); }
-
-  Box box(Index triangle) const { return boxOf(corners(triangle)); }
-  Face face(Index triangle) const {
-    const std::array<Vector3d, 3> at = corners(triangle);
-    return {at, boxOf(at).size(), vertices(triangle), triangle};
+  std::size_t size() const { return static_cast<std::size_t>(triangles.cols()); }
+  Face face(Index t) const {
+    return internal::faceOf(points, scale, {triangles(0, t), triangles(1, t), triangles(2, t)}, t);
   }
-
-private:
-  std::array<Index, 3> vertices(Index triangle) const {
-    return {triangles_(0, triangle), triangles_(1, triangle), triangles_(2, triangle)};
-  }
-  std::array<Vector3d, 3> corners(Index triangle) const {
-    return {points_.col(triangles_(0, triangle)) * scale_,
-            points_.col(triangles_(1, triangle)) * scale_,
-            points_.col(triangles_(2, triangle)) * scale_};
-  }
-
-  const Positions& points_;
-  const Triangles& triangles_;
-  double scale_;
+  Box box(Index t) const { return boxOf(face(t).corners); }
 };
 
 /// The box of some triangles, and the sum of their sizes.
@@ -83,18 +66,18 @@ struct Extent {
 class TriangleTree {
 public:
   /// \param subset triangles, ascending; at least one. The mesh must outlive this.
-  TriangleTree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
+  TriangleTree(const Mesh& mesh, const internal::Indexed<Index>& subset, int threads,
                const FractionReport& report);
 
   std::size_t size() const { return order_.size(); }
 
   /// Appends the intersecting pairs of a triangle of this block and one of the same or a later one.
-  void findPairs(std::size_t block, Pairs& pairs) const;
+  void findPairsOfBlock(std::size_t block, Pairs& pairs) const;
   /// Appends the intersecting pairs of a triangle and one in the tree, from the place `first` on.
-  void findPairs(const Face& face, std::size_t first, Pairs& pairs) const;
+  void findPairs(const Face& face, Index first, Pairs& pairs) const;
 
 private:
-  void sort(const std::vector<Index>& subset, const Extent& extent, int threads);
+  void sort(const internal::Indexed<Index>& subset, const Extent& extent, int threads);
   FloatBox rounded(const Box& box) const {
     return FloatBox(Box{box.lower - origin_, box.upper - origin_});
   }
@@ -112,19 +95,19 @@ private:
 
   const Mesh& mesh_;
   Vector3d origin_;  ///< of the boxes in the tree: far from 0, floats are coarse
-  std::vector<Index> order_;
-  std::size_t large_ = 0;  ///< number of large triangles, the first ones
+  internal::Indexed<Index> order_;
+  Index large_ = 0;  ///< number of large triangles, the first ones
   BoxTree tree_;
 };
 
-TriangleTree::TriangleTree(const Mesh& mesh, const std::vector<Index>& subset, int threads,
+TriangleTree::TriangleTree(const Mesh& mesh, const internal::Indexed<Index>& subset, int threads,
                            const FractionReport& report)
     : mesh_(mesh) {
   const Extent extent = internal::sumOfBlocks(
       subset.size(), threads, Extent{},
       [&](std::size_t begin, std::size_t end) {
         Extent block;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) {
           const Box box = mesh.box(subset[i]);
           block += Extent{box.lower, box.upper, box.size()};
         }
@@ -133,78 +116,70 @@ TriangleTree::TriangleTree(const Mesh& mesh, const std::vector<Index>& subset, i
       report);
   origin_ = extent.low;
   sort(subset, extent, threads);
-  std::vector<BoxGroup> groups((order_.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-  internal::forEachBlock(
-      order_.size(), threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, rounded(mesh.box(order_[i])));
-      });
-  tree_ = BoxTree(std::move(groups), threads);
+  tree_ = BoxTree(order_.size(), threads, report,
+                  [&](Index i) { return rounded(mesh.box(order_[i])); });
 }
 
 /// Orders the triangles by size, large ones first, then along a space-filling curve: among small
 /// ones, large ones would make large boxes of all above them.
-void TriangleTree::sort(const std::vector<Index>& subset, const Extent& extent, int threads) {
+void TriangleTree::sort(const internal::Indexed<Index>& subset, const Extent& extent, int threads) {
   struct Place {
     std::uint64_t key;
     Index triangle;
   };
-  std::vector<Place> places(subset.size());
+  internal::Indexed<Place> places(subset.size());
   const internal::MortonCurve curve(extent.low, extent.high);
   // A class of sizes for each factor of 8, up to 8 times the mean in the last one.
   constexpr double factor = 8.0;
   constexpr std::uint64_t last_class = 7;
   const double mean = extent.size / static_cast<double>(subset.size());
-  internal::forEachBlock(
-      subset.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const Box box = mesh_.box(subset[i]);
-          std::uint64_t size_class = last_class;
-          for (double size = box.size() / factor; size > mean && size_class > 0; size /= factor)
-            --size_class;
-          const std::uint64_t cell = curve.key(0.5 * (box.lower + box.upper));
-          places[i] = {size_class << 61U | cell >> 2U, subset[i]};
-        }
-      });
+  internal::forEachIndex(subset.size(), threads, {}, [&](Index i) {
+    const Box box = mesh_.box(subset[i]);
+    std::uint64_t size_class = last_class;
+    for (double size = box.size() / factor; size > mean && size_class > 0; size /= factor)
+      --size_class;
+    const std::uint64_t cell = curve.key(0.5 * (box.lower + box.upper));
+    places[i] = {size_class << 61U | cell >> 2U, subset[i]};
+  });
   internal::radixSort(places);
-  order_.resize(places.size());
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    order_[i] = places[i].triangle;
-    large_ += places[i].key >> 61U < last_class ? 1 : 0;
+  order_.reserve(places.size());
+  for (const auto& [key, triangle] : places) {
+    order_.push_back(triangle);
+    large_ += key >> 61U < last_class ? 1 : 0;
   }
 }
 
-void TriangleTree::findPairs(std::size_t block, Pairs& pairs) const {
+void TriangleTree::findPairsOfBlock(std::size_t block, Pairs& pairs) const {
   // What every test of one of the block's triangles needs.
   struct Own {
     Face face;
     Plane plane;
   };
-  std::vector<Own> own;
+  internal::Indexed<Own> own;
   own.reserve(BoxTree::kBlock);
-  const std::size_t begin = block * BoxTree::kBlock;
-  for (std::size_t i = begin; i < std::min(order_.size(), begin + BoxTree::kBlock); ++i) {
+  const auto begin = static_cast<Index>(block * BoxTree::kBlock);
+  for (Index i = begin; i < order_.count() && own.size() < BoxTree::kBlock; ++i) {
     const Face face = mesh_.face(order_[i]);
     own.push_back({face, Plane(face)});
   }
   if (begin < large_) {
-    for (std::size_t i = 0; i < own.size(); ++i)
+    for (Index i = 0; i < own.count(); ++i)
       findPairs(own[i].face, begin + i + 1, pairs);
     return;
   }
-  tree_.forEachPair(block, [&](std::size_t i, std::size_t j) {
+  tree_.forEachPair(block, [&](Index i, Index j) {
     const auto& [a, plane] = own[i - begin];
-    const Face b = j - begin < own.size() ? own[j - begin].face : mesh_.face(order_[j]);
+    const Face b = j - begin < own.count() ? own[j - begin].face : mesh_.face(order_[j]);
     if (intersect(a, plane, b))
       append(a, b, pairs);
   });
 }
 
-void TriangleTree::findPairs(const Face& face, std::size_t first, Pairs& pairs) const {
+void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const {
   const Plane plane(face);
   // A large triangle is likely to pass by a small box.
   const auto passes = [&](const FloatBox& box) { return clears(plane, widened(box)); };
-  tree_.forEachOverlapping(rounded(boxOf(face.corners)), first, passes, [&](std::size_t i) {
+  tree_.forEachOverlapping(rounded(boxOf(face.corners)), first, passes, [&](Index i) {
     const Face other = mesh_.face(order_[i]);
     if (intersect(face, plane, other))
       append(face, other, pairs);
@@ -224,39 +199,21 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
       if (!points.col(i).allFinite())
         refuse("point " + std::to_string(i) + " is not finite; remove such points first");
   const double most = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
-  if (triangles.cols() > 0 && (triangles.minCoeff() < 0 || triangles.maxCoeff() >= points.cols()))
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-      for (int k = 0; k < 3; ++k)
-        if (triangles(k, t) < 0 || triangles(k, t) >= points.cols())
-          refuse("triangle " + std::to_string(t) + " names vertex " +
-                 std::to_string(triangles(k, t)) + ", but there are " +
-                 std::to_string(points.cols()) + " points");
+  internal::checkTriangles("findSelfIntersections", triangles, points.cols());
   return internal::scaleToUnit(most);
 }
 
-/// Runs find(begin, end, pairs) for the blocks of [0, count) and joins what it appends.
-template <typename Find>
-Pairs collect(std::size_t count, int threads, const FractionReport& report, const Find& find) {
-  // Where the mesh is a tangle, a block takes a tenth of a second.
-  constexpr std::size_t items_per_report = 8 * internal::kBlockSize;
-  std::vector<Pairs> parts((count + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachBlock(
-      count, threads, report,
-      [&](std::size_t block, std::size_t begin, std::size_t end) {
-        find(begin, end, parts[block]);
-      },
-      items_per_report);
-  Pairs pairs;
-  for (const Pairs& part : parts)
-    pairs.insert(pairs.end(), part.begin(), part.end());
-  return pairs;
-}
+/// Where the mesh is a tangle, a block takes a tenth of a second.
+constexpr std::size_t kItemsPerReport = 8 * internal::kBlockSize;
 
 Pairs pairsWithin(const TriangleTree& tree, int threads, const FractionReport& report) {
   static_assert(internal::kBlockSize == BoxTree::kBlock);
-  return collect(tree.size(), threads, report, [&](std::size_t begin, std::size_t, Pairs& pairs) {
-    tree.findPairs(begin / BoxTree::kBlock, pairs);
-  });
+  return internal::collectBlocks<std::array<Index, 2>>(
+      tree.size(), threads, report,
+      [&](std::size_t begin, std::size_t, Pairs& pairs) {
+        tree.findPairsOfBlock(begin / BoxTree::kBlock, pairs);
+      },
+      kItemsPerReport);
 }
 
 }  // namespace
@@ -265,8 +222,8 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {
   internal::checkThreads(execution.threads);
-  const Mesh mesh(points, triangles, checkedScale(points, triangles));
-  std::vector<Index> all(mesh.size());
+  const Mesh mesh{points, triangles, checkedScale(points, triangles)};
+  internal::Indexed<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
   if (all.empty())
     return {};
@@ -283,30 +240,32 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const std::vector<Index>& of,
                                                           const Execution& execution) {
   internal::checkThreads(execution.threads);
-  const Mesh mesh(points, triangles, checkedScale(points, triangles));
-  std::vector<char> in_set(mesh.size(), 0);
+  const Mesh mesh{points, triangles, checkedScale(points, triangles)};
+  internal::Indexed<std::uint8_t> in_set(mesh.size(), 0);
   for (const Index t : of) {
-    if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
+    if (t < 0 || t >= in_set.count())
       refuse("triangle " + std::to_string(t) + " is asked for, but there are " +
              std::to_string(mesh.size()));
-    in_set[static_cast<std::size_t>(t)] = 1;
+    in_set[t] = 1;
   }
-  std::vector<Index> subset;
-  for (std::size_t t = 0; t < in_set.size(); ++t)
+  internal::Indexed<Index> subset;
+  for (Index t = 0; t < in_set.count(); ++t)
     if (in_set[t] != 0)
-      subset.push_back(static_cast<Index>(t));
+      subset.push_back(t);
   if (subset.empty())
     return {};
   const int threads = internal::threadCount(execution.threads, mesh.size());
   const FractionReport report = internal::reportOf(execution, "intersections");
   const TriangleTree tree(mesh, subset, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);
-  const Pairs others =
-      collect(mesh.size(), threads, report, [&](std::size_t begin, std::size_t end, Pairs& found) {
-        for (std::size_t t = begin; t < end; ++t)
+  const Pairs others = internal::collectBlocks<std::array<Index, 2>>(
+      mesh.size(), threads, report,
+      [&](std::size_t begin, std::size_t end, Pairs& found) {
+        for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
           if (in_set[t] == 0)
-            tree.findPairs(mesh.face(static_cast<Index>(t)), 0, found);
-      });
+            tree.findPairs(mesh.face(t), 0, found);
+      },
+      kItemsPerReport);
   pairs.insert(pairs.end(), others.begin(), others.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -317,9 +276,8 @@ std::size_t countTriangles(const Pairs& pairs) {
   triangles.reserve(2 * pairs.size());
   for (const auto& pair : pairs)
     triangles.insert(triangles.end(), pair.begin(), pair.end());
-  std::sort(triangles.begin(), triangles.end());
-  const auto end = std::unique(triangles.begin(), triangles.end());
-  return static_cast<std::size_t>(end - triangles.begin());
+  internal::sortUnique(triangles);
+  return triangles.size();
 }
 
 }  // namespace spherical_param

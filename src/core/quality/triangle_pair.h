@@ -36,6 +36,15 @@ inline Box boxOf(const std::array<Vector3d, 3>& corners) {
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
 }
 
+/// \param scale a power of two; coordinates times it are at most 1.
+inline Face faceOf(const Positions& points, double scale, const std::array<Index, 3>& vertices,
+                   Index triangle) {
+  const std::array<Vector3d, 3> corners{scale * points.col(vertices[0]),
+                                        scale * points.col(vertices[1]),
+                                        scale * points.col(vertices[2])};
+  return {corners, boxOf(corners).size(), vertices, triangle};
+}
+
 /// The definition of self_intersection.h, in exact arithmetic.
 bool intersectExactly(const Face& a, const Face& b);
 

@@ -1,5 +1,7 @@
 #include "box_tree.h"
 
+#include "indexed.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,28 +14,24 @@
 namespace spherical_param::test {
 namespace {
 
-using internal::BoxGroup;
 using internal::BoxTree;
 using internal::FloatBox;
-using PlacePairs = std::set<std::pair<std::size_t, std::size_t>>;
+using PlacePairs = std::set<std::pair<Index, Index>>;
 
 bool overlap(const FloatBox& a, const FloatBox& b) {
   return (a.lower <= b.upper).all() && (b.lower <= a.upper).all();
 }
 
-BoxTree treeOf(const std::vector<FloatBox>& boxes) {
-  std::vector<BoxGroup> groups((boxes.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, boxes[i]);
-  return {std::move(groups), 1};
+BoxTree treeOf(const internal::Indexed<FloatBox>& boxes) {
+  return {boxes.size(), 1, {}, [&](Index i) { return boxes[i]; }};
 }
 
 /// Boxes on a grid, so that many touch; most are small, a few as large as all, a few are equal.
-std::vector<FloatBox> randomBoxes(std::size_t count, std::mt19937& random) {
+internal::Indexed<FloatBox> randomBoxes(Index count, std::mt19937& random) {
   std::uniform_int_distribution<int> coordinate(0, 60);
   std::uniform_int_distribution<int> size(0, 6);
-  std::vector<FloatBox> boxes;
-  for (std::size_t i = 0; i < count; ++i) {
+  internal::Indexed<FloatBox> boxes;
+  for (Index i = 0; i < count; ++i) {
     const Eigen::Array3f low =
         Eigen::Array3i(coordinate(random), coordinate(random), 0).cast<float>();
     const float extent = static_cast<float>(i % 50 == 49 ? 60 : size(random));
@@ -44,15 +42,15 @@ std::vector<FloatBox> randomBoxes(std::size_t count, std::mt19937& random) {
   return boxes;
 }
 
-void expectOverlaps(const BoxTree& tree, const std::vector<FloatBox>& boxes) {
-  for (const std::size_t first : {std::size_t{0}, boxes.size() / 3})
-    for (std::size_t i = 0; i < boxes.size(); i += 7) {
-      std::vector<std::size_t> found;
+void expectOverlaps(const BoxTree& tree, const internal::Indexed<FloatBox>& boxes) {
+  for (const Index first : {0, boxes.count() / 3})
+    for (Index i = 0; i < boxes.count(); i += 7) {
+      std::vector<Index> found;
       tree.forEachOverlapping(
           boxes[i], first, [](const FloatBox&) { return false; },
-          [&](std::size_t j) { found.push_back(j); });
-      std::vector<std::size_t> expected;
-      for (std::size_t j = first; j < boxes.size(); ++j)
+          [&](Index j) { found.push_back(j); });
+      std::vector<Index> expected;
+      for (Index j = first; j < boxes.count(); ++j)
         if (overlap(boxes[i], boxes[j]))
           expected.push_back(j);
       ASSERT_EQ(found, expected) << i;
@@ -61,20 +59,21 @@ void expectOverlaps(const BoxTree& tree, const std::vector<FloatBox>& boxes) {
 
 TEST(BoxTree, FindsTheBoxesAndPairsThatOverlap) {
   std::mt19937 random(1);
-  for (const std::size_t count : {1U, 2U, 8U, 9U, 64U, 65U, 512U, 513U, 1200U}) {
+  for (const Index count : {1, 2, 8, 9, 64, 65, 512, 513, 1200}) {
     SCOPED_TRACE(count);
-    const std::vector<FloatBox> boxes = randomBoxes(count, random);
+    const internal::Indexed<FloatBox> boxes = randomBoxes(count, random);
     const BoxTree tree = treeOf(boxes);
     expectOverlaps(tree, boxes);
     PlacePairs pairs;
-    for (std::size_t block = 0; block * BoxTree::kBlock < count; ++block)
-      tree.forEachPair(block, [&](std::size_t i, std::size_t j) {
-        EXPECT_EQ(i / BoxTree::kBlock, block);
+    constexpr auto block_size = static_cast<Index>(BoxTree::kBlock);
+    for (Index block = 0; block * block_size < count; ++block)
+      tree.forEachPair(static_cast<std::size_t>(block), [&](Index i, Index j) {
+        EXPECT_EQ(i / block_size, block);
         EXPECT_TRUE(pairs.emplace(i, j).second);
       });
     PlacePairs expected;
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = i + 1; j < count; ++j)
+    for (Index i = 0; i < count; ++i)
+      for (Index j = i + 1; j < count; ++j)
         if (overlap(boxes[i], boxes[j]))
           expected.emplace(i, j);
     EXPECT_EQ(pairs, expected);
@@ -83,12 +82,12 @@ TEST(BoxTree, FindsTheBoxesAndPairsThatOverlap) {
 
 TEST(BoxTree, GrowsAndChanges) {
   std::mt19937 random(2);
-  const std::vector<FloatBox> before = randomBoxes(600, random);
-  const std::vector<FloatBox> after = randomBoxes(600, random);
+  const internal::Indexed<FloatBox> before = randomBoxes(600, random);
+  const internal::Indexed<FloatBox> after = randomBoxes(600, random);
   BoxTree tree;
   expectOverlaps(tree, {});
-  std::vector<FloatBox> boxes;
-  for (std::size_t i = 0; i < before.size(); ++i) {
+  internal::Indexed<FloatBox> boxes;
+  for (Index i = 0; i < before.count(); ++i) {
     boxes.push_back(before[i]);
     tree.set(i, before[i]);
     if (i % 5 == 4) {
@@ -104,8 +103,8 @@ TEST(BoxTree, GrowsAndChanges) {
 // ones as well.
 TEST(BoxTree, LooksAtFewBoxesBeyondThoseFound) {
   constexpr std::size_t side = 64;
-  std::vector<FloatBox> boxes;
-  for (std::size_t i = 0; i < 2 * side * side; ++i) {
+  internal::Indexed<FloatBox> boxes;
+  for (unsigned i = 0; i < 2 * side * side; ++i) {
     // Along a space-filling curve over a plane, each place twice.
     Eigen::Array3f low = Eigen::Array3f::Zero();
     for (unsigned bit = 0; bit < 6; ++bit) {
@@ -124,7 +123,7 @@ TEST(BoxTree, LooksAtFewBoxesBeyondThoseFound) {
           ++looks;
           return skips(within);
         },
-        [&](std::size_t) { ++found; });
+        [&](Index) { ++found; });
   };
   for (const FloatBox& box : boxes)
     ask(box, [](const FloatBox&) { return false; });
