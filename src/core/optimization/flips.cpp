@@ -73,8 +73,7 @@ std::size_t Flips::flipQueued(const FractionReport& report) {
     for (const Index i : affected_)
       for (std::uint32_t& stamp : stamps_[i])
         ++stamp;
-    std::sort(affected_.begin(), affected_.end());
-    affected_.erase(std::unique(affected_.begin(), affected_.end()), affected_.end());
+    sortUnique(affected_);
     queueSides(affected_);
   }
   return flips;
@@ -87,17 +86,14 @@ void Flips::flipAround(const std::vector<Index>& triangles) {
 }
 
 std::size_t Flips::flipAll(const FractionReport& report) {
-  std::vector<std::vector<Candidate>> found((stamps_.size() + kBlockSize - 1) / kBlockSize);
-  forEachBlock(stamps_.size(), mesh_.threads(), report,
-               [&](std::size_t block, std::size_t begin, std::size_t end) {
-                 for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
-                   for (int k = 0; k < 3; ++k)
-                     if (t < mesh_.mesh().neighbor(t, k))
-                       append(t, k, found[block]);
-               });
-  queue_.clear();
-  for (const auto& part : found)
-    queue_.insert(queue_.end(), part.begin(), part.end());
+  queue_ = collectBlocks<Candidate>(
+      stamps_.size(), mesh_.threads(), report,
+      [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
+        for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
+          for (int k = 0; k < 3; ++k)
+            if (t < mesh_.mesh().neighbor(t, k))
+              append(t, k, found);
+      });
   std::make_heap(queue_.begin(), queue_.end());
   return flipQueued(report);
 }

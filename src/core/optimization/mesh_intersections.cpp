@@ -8,13 +8,13 @@ namespace spherical_param::internal {
 std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
                                                     const FractionReport& report) {
   Triangles triangles = mesh.mesh().triangles();
-  Indexed<Index> surface;
+  Indexed<Index> surface;  // slots, by the columns that are left
   for (Index t = 0; t < mesh.mesh().size(); ++t)
     if (!mesh.facet(t).isOpen()) {
-      triangles.col(static_cast<Index>(surface.size())) = triangles.col(t);
+      triangles.col(surface.count()) = triangles.col(t);
       surface.push_back(t);
     }
-  triangles.conservativeResize(3, static_cast<Eigen::Index>(surface.size()));
+  triangles.conservativeResize(3, surface.count());
   Execution execution;
   execution.threads = mesh.threads();
   if (report)

@@ -35,16 +35,13 @@ OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openin
       add(v, kLoop, static_cast<Index>(o));
     }
   }
-  std::sort(rim_edges_.begin(), rim_edges_.end());
-  rim_edges_.erase(std::unique(rim_edges_.begin(), rim_edges_.end()), rim_edges_.end());
+  sortUnique(rim_edges_);
   for (int step = 0; step < kNearSteps; ++step) {
     const std::vector<Index> last = std::move(ring);
     ring.clear();
-    for (const Index v : last) {
-      const auto i = static_cast<std::size_t>(v);
-      for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-        add(graph.neighbors[e], kNear, nearest_[v]);
-    }
+    for (const Index v : last)
+      for (const Index w : graph.row(v))
+        add(w, kNear, nearest_[v]);
   }
 }
 

@@ -27,24 +27,23 @@ bool isNear(const SphereMesh& mesh, const std::vector<Index>& ring, Index w) {
 bool isRough(const EnergyMesh& of, Index v, std::vector<Index>& ring) {
   const SphereMesh& mesh = of.mesh();
   ring.clear();
-  bool is_sharp = false;
+  bool is_rough = false;
   double lengths = 0.0;
   mesh.forEachAround(v, [&](Index t, int corner) {
     const int k = (corner + 1) % 3;
     const Index w = mesh.vertex(t, k);
     ring.push_back(w);
     lengths += (of.points().col(v) - of.points().col(w)).norm();
-    is_sharp = is_sharp ||
+    is_rough = is_rough ||
                Facet::cosine(of.facet(t), of.facet(mesh.neighbor(t, k))) < tuned::kMinSmoothCosine;
   });
   // In a graph of many neighbours, most of them are far.
   const double far = tuned::kMaxNearNeighbor * lengths / static_cast<double>(ring.size());
   const Graph& graph = of.graph();
-  const auto row = static_cast<std::size_t>(v);
-  for (std::size_t e = graph.offsets[row]; e < graph.offsets[row + 1] && !is_sharp; ++e)
-    if (graph.lengths[e] <= far && !isNear(mesh, ring, graph.neighbors[e]))
-      return true;
-  return is_sharp;
+  for (const std::size_t e : graph.entries(v))
+    if (!is_rough && graph.lengths[e] <= far)
+      is_rough = !isNear(mesh, ring, graph.neighbors[e]);
+  return is_rough;
 }
 
 /// Rough vertices near some vertices, ascending.
@@ -56,8 +55,7 @@ std::vector<Index> roughNear(const EnergyMesh& mesh, const std::vector<Index>& v
       mesh.appendNeighbors(mesh.mesh().vertex(t, (corner + 1) % 3), near);
     });
   }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sortUnique(near);
   std::vector<Index> ring;
   near.erase(
       std::remove_if(near.begin(), near.end(), [&](Index v) { return !isRough(mesh, v, ring); }),
@@ -69,18 +67,13 @@ std::vector<Index> roughNear(const EnergyMesh& mesh, const std::vector<Index>& v
 
 std::vector<Index> roughVertices(const EnergyMesh& mesh, const FractionReport& report) {
   const auto n = static_cast<std::size_t>(mesh.points().cols());
-  std::vector<std::vector<Index>> found((n + kBlockSize - 1) / kBlockSize);
-  forEachBlock(n, mesh.threads(), report,
-               [&](std::size_t block, std::size_t begin, std::size_t end) {
-                 std::vector<Index> ring;
-                 for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v)
-                   if (isRough(mesh, v, ring))
-                     found[block].push_back(v);
-               });
-  std::vector<Index> rough;
-  for (const std::vector<Index>& part : found)
-    rough.insert(rough.end(), part.begin(), part.end());
-  return rough;
+  return collectBlocks<Index>(n, mesh.threads(), report,
+                              [&](std::size_t begin, std::size_t end, std::vector<Index>& rough) {
+                                std::vector<Index> ring;
+                                for (std::size_t v = begin; v < end; ++v)
+                                  if (isRough(mesh, static_cast<Index>(v), ring))
+                                    rough.push_back(static_cast<Index>(v));
+                              });
 }
 
 void relocate(Workbench& bench, std::vector<Index> rough) {

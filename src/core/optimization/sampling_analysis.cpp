@@ -1,7 +1,8 @@
 #include "sampling_analysis.h"
 
+#include "indexed.h"
 #include "optimization_constants.h"
-#include "parallel.h"
+#include "rows.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -37,18 +38,12 @@ Eigen::Vector2d deviator(double xx, double xy, double yy) {
 }
 
 /// The neighbours of point i, and theirs, without i; ascending.
-void collectWide(std::size_t i, const Graph& graph, std::vector<Index>& wide) {
-  const auto append = [&](std::size_t v) {
-    wide.insert(wide.end(), graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v]),
-                graph.neighbors.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v + 1]));
-  };
-  wide.clear();
-  append(i);
-  for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e)
-    append(static_cast<std::size_t>(graph.neighbors[e]));
-  std::sort(wide.begin(), wide.end());
-  wide.erase(std::unique(wide.begin(), wide.end()), wide.end());
-  wide.erase(std::remove(wide.begin(), wide.end(), static_cast<Index>(i)), wide.end());
+void collectWide(Index i, const Graph& graph, std::vector<Index>& wide) {
+  wide.assign(graph.row(i).begin(), graph.row(i).end());
+  for (const Index v : graph.row(i))
+    wide.insert(wide.end(), graph.row(v).begin(), graph.row(v).end());
+  sortUnique(wide);
+  wide.erase(std::remove(wide.begin(), wide.end(), i), wide.end());
 }
 
 /// The absolute curvature of the surface through local points, with the height as the first
@@ -76,14 +71,12 @@ std::optional<Eigen::Matrix2d> bendingOf(const Eigen::Matrix3Xd& local) {
          principal.eigenvectors().transpose();
 }
 
-void addAlignmentAt(std::size_t i, const Positions& points, const Graph& graph,
-                    std::vector<Index>& wide, Sums& sums) {
+void addAlignmentAt(Index i, const Positions& points, const Graph& graph, std::vector<Index>& wide,
+                    Sums& sums) {
   collectWide(i, graph, wide);
   if (wide.size() < optimization_constants::kMinQuadricPoints)
     return;
-  const auto offset = [&](Index v) -> Eigen::Vector3d {
-    return points.col(v) - points.col(static_cast<Eigen::Index>(i));
-  };
+  const auto offset = [&](Index v) -> Eigen::Vector3d { return points.col(v) - points.col(i); };
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Index v : wide)
     spread += offset(v) * offset(v).transpose();
@@ -93,16 +86,17 @@ void addAlignmentAt(std::size_t i, const Positions& points, const Graph& graph,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   const Eigen::Matrix3d frame = axes.eigenvectors() / scale;
   Eigen::Matrix3Xd local(3, static_cast<Eigen::Index>(wide.size()));
-  for (std::size_t j = 0; j < wide.size(); ++j)
-    local.col(static_cast<Eigen::Index>(j)) = frame.transpose() * offset(wide[j]);
+  Eigen::Index column = 0;
+  for (const Index v : wide)
+    local.col(column++) = frame.transpose() * offset(v);
   const std::optional<Eigen::Matrix2d> bending = bendingOf(local);
   if (!bending)
     return;
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;
-  for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-    const Eigen::Vector3d neighbor = frame.transpose() * offset(graph.neighbors[e]);
+  for (const Index v : graph.row(i)) {
+    const Eigen::Vector3d neighbor = frame.transpose() * offset(v);
     xx += neighbor[2] * neighbor[2];
     xy += neighbor[2] * neighbor[1];
     yy += neighbor[1] * neighbor[1];
@@ -113,14 +107,14 @@ void addAlignmentAt(std::size_t i, const Positions& points, const Graph& graph,
   sums.possible += of_bending.norm() * of_spread.norm();
 }
 
-double unevennessAt(std::size_t i, const Graph& graph) {
+double unevennessAt(Index i, const Graph& graph) {
   double sum = 0.0;
   double squares = 0.0;
-  for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
-    sum += graph.lengths[e];
-    squares += graph.lengths[e] * graph.lengths[e];
+  for (const double length : graph.lengthsOf(i)) {
+    sum += length;
+    squares += length * length;
   }
-  const auto count = static_cast<double>(graph.offsets[i + 1] - graph.offsets[i]);
+  const auto count = static_cast<double>(graph.row(i).size());
   const double mean = sum / count;
   return mean > 0.0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) / mean : 0.0;
 }
@@ -137,8 +131,9 @@ Sampling analyzeSampling(const Positions& points, const Graph& graph, int thread
                                   Sums part;
                                   std::vector<Index> wide;
                                   for (std::size_t s = begin; s < end; ++s) {
-                                    addAlignmentAt(s * step, points, graph, wide, part);
-                                    part.unevenness += unevennessAt(s * step, graph);
+                                    const auto i = static_cast<Index>(s * step);
+                                    addAlignmentAt(i, points, graph, wide, part);
+                                    part.unevenness += unevennessAt(i, graph);
                                   }
                                   return part;
                                 });

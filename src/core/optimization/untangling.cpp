@@ -15,8 +15,7 @@ using Pairs = std::vector<std::array<Index, 2>>;
 std::vector<Index> verticesOf(const SphereMesh& mesh, const std::array<Index, 2>& pair) {
   std::vector<Index> vertices;
   for (const Index t : pair)
-    for (int k = 0; k < 3; ++k)
-      vertices.push_back(mesh.vertex(t, k));
+    vertices.insert(vertices.end(), mesh.vertices(t).begin(), mesh.vertices(t).end());
   return vertices;
 }
 

@@ -3,7 +3,9 @@
 #include "corner_table.h"
 #include "graph_building.h"
 #include "graph_cycles.h"
-#include "parallel.h"
+#include "indexed.h"
+#include "node_spacing.h"
+#include "rows.h"
 #include "union_find.h"
 
 #include <Eigen/Geometry>
@@ -59,10 +61,6 @@ constexpr double kMaxOutsideGraph = 0.1;
 /// The least gap between parts [distance of the points at the gap].
 constexpr double kMinPartGap = 4.0;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// {lower, higher}
 using Edge = std::array<Index, 2>;
 
@@ -78,6 +76,12 @@ struct Differences {
   std::vector<Index> triangles;
   /// Edges of the graph whose ends are more than two steps apart on the mesh, ascending.
   std::vector<Edge> apart;
+
+  void operator+=(const Differences& more) {
+    outside_graph += more.outside_graph;
+    triangles.insert(triangles.end(), more.triangles.begin(), more.triangles.end());
+    apart.insert(apart.end(), more.apart.begin(), more.apart.end());
+  }
 };
 
 /// The mesh and the graph of the points, with queries on both.
@@ -121,26 +125,18 @@ public:
   /// Distance of the points around v in the graph.
   double spacing(Index v) const {
     std::vector<double> lengths;
-    return internal::nodeSpacing(graph_, v, lengths);
+    return internal::nodeSpacing(graph_, static_cast<std::size_t>(v), lengths);
   }
 
   Differences differences() const {
-    const std::size_t n = graph_.size();
-    std::vector<Differences> of_blocks((n + internal::kBlockSize - 1) / internal::kBlockSize);
-    internal::forEachBlock(n, threads_, [&](std::size_t block, std::size_t begin, std::size_t end) {
-      Differences found;
-      std::vector<Index> ring;
-      for (std::size_t v = begin; v < end; ++v)
-        collectAt(static_cast<Index>(v), ring, found);
-      of_blocks[block] = std::move(found);
-    });
-    Differences all;
-    for (const Differences& found : of_blocks) {
-      all.outside_graph += found.outside_graph;
-      all.triangles.insert(all.triangles.end(), found.triangles.begin(), found.triangles.end());
-      all.apart.insert(all.apart.end(), found.apart.begin(), found.apart.end());
-    }
-    return all;
+    return internal::sumOfBlocks(graph_.size(), threads_, Differences{},
+                                 [&](std::size_t begin, std::size_t end) {
+                                   Differences found;
+                                   std::vector<Index> ring;
+                                   for (std::size_t v = begin; v < end; ++v)
+                                     collectAt(static_cast<Index>(v), ring, found);
+                                   return found;
+                                 });
   }
 
 private:
@@ -157,8 +153,7 @@ private:
       ring.push_back(next);
       unknown += a < next ? 1 : 0;
     });
-    for (std::size_t e = graph_.offsets[at(a)]; e < graph_.offsets[at(a) + 1]; ++e) {
-      const Index b = graph_.neighbors[e];
+    for (const Index b : graph_.row(a)) {
       if (b < a)
         continue;
       bool is_near = is_around(b);
@@ -187,19 +182,11 @@ private:
 
   /// Whether a and b are neighbours in the graph or have a common one.
   bool isNearInGraph(Index a, Index b) const {
-    auto i = graph_.offsets[at(a)];
-    auto j = graph_.offsets[at(b)];
-    const auto i_end = graph_.offsets[at(a) + 1];
-    const auto j_end = graph_.offsets[at(b) + 1];
-    for (std::size_t e = i; e < i_end; ++e)
-      if (graph_.neighbors[e] == b)
-        return true;
-    while (i != i_end && j != j_end) {
-      if (graph_.neighbors[i] == graph_.neighbors[j])
-        return true;
-      graph_.neighbors[i] < graph_.neighbors[j] ? ++i : ++j;
-    }
-    return false;
+    const auto of_a = graph_.row(a);
+    const auto of_b = graph_.row(b);
+    return of_a.contains(b) || std::any_of(of_a.begin(), of_a.end(), [&](Index c) {
+             return std::binary_search(of_b.begin(), of_b.end(), c);
+           });
   }
 
   const Positions& points_;
@@ -230,16 +217,16 @@ private:
 
   /// Whether it met the mark `other`, where it ends.
   bool markDisc(Index center, int steps, Mark own, Mark other) {
-    if (mark_[at(center)] == other)
+    if (mark_[center] == other)
       return true;
-    mark_[at(center)] = own;
+    mark_[center] = own;
     disc_.assign(1, center);
     bool met = false;
     std::size_t begin = 0;
     for (int step = 0; step < steps; ++step)
       for (const std::size_t end = disc_.size(); begin < end; ++begin) {
         surface_.forEachTriangle(disc_[begin], [&](Index, Index next, Index) {
-          Mark& mark = mark_[at(next)];
+          Mark& mark = mark_[next];
           met = met || mark == other;
           if (mark != own)
             disc_.push_back(next);
@@ -252,7 +239,7 @@ private:
   }
 
   const MeshAndGraph& surface_;
-  std::vector<Mark> mark_;
+  internal::Indexed<Mark> mark_;
   std::vector<Index> disc_;
   Mark last_mark_ = 0;
 };
@@ -260,12 +247,12 @@ private:
 /// The edges of the graph along the surface whose ends are far apart on the mesh.
 ///
 /// \param apart those whose ends are more than two steps apart.
-std::vector<Edge> tornEdges(const MeshAndGraph& surface, const std::vector<Edge>& apart,
-                            const std::vector<Edge>& bridges) {
+internal::Indexed<Edge> tornEdges(const MeshAndGraph& surface, const std::vector<Edge>& apart,
+                                  const std::vector<Edge>& bridges) {
   if (apart.empty())
     return {};
   MeshDistance distance(surface);
-  std::vector<Edge> torn;
+  internal::Indexed<Edge> torn;
   std::copy_if(apart.begin(), apart.end(), std::back_inserter(torn), [&](const Edge& edge) {
     return distance.exceeds(edge[0], edge[1], kMinHandleSteps) &&
            !std::binary_search(bridges.begin(), bridges.end(), edge) &&
@@ -274,20 +261,14 @@ std::vector<Edge> tornEdges(const MeshAndGraph& surface, const std::vector<Edge>
   return torn;
 }
 
-void sortUnique(std::vector<Index>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
 /// Groups of torn edges that share an end, or whose ends are neighbours on the mesh; all ends are
 /// listed.
-std::vector<Handle> handlesOf(const MeshAndGraph& surface, const std::vector<Edge>& torn) {
+std::vector<Handle> handlesOf(const MeshAndGraph& surface, const internal::Indexed<Edge>& torn) {
   std::map<Index, Index> edge_at;
   internal::UnionFind groups(torn.size());
-  for (std::size_t e = 0; e < torn.size(); ++e)
+  for (const Index e : internal::indicesOf(torn))
     for (const Index v : torn[e])
-      groups.unite(edge_at.try_emplace(v, static_cast<Index>(e)).first->second,
-                   static_cast<Index>(e));
+      groups.unite(edge_at.try_emplace(v, e).first->second, e);
   for (const auto& entry : edge_at)
     surface.forEachTriangle(entry.first, [&](Index, Index next, Index) {
       const auto other = edge_at.find(next);
@@ -295,8 +276,8 @@ std::vector<Handle> handlesOf(const MeshAndGraph& surface, const std::vector<Edg
         groups.unite(entry.second, other->second);
     });
   std::map<Index, Handle> handles;
-  for (std::size_t e = 0; e < torn.size(); ++e) {
-    Handle& handle = handles[groups.find(static_cast<Index>(e))];
+  for (const Index e : internal::indicesOf(torn)) {
+    Handle& handle = handles[groups.find(e)];
     ++handle.edges;
     handle.vertices.insert(handle.vertices.end(), torn[e].begin(), torn[e].end());
   }
@@ -304,7 +285,7 @@ std::vector<Handle> handlesOf(const MeshAndGraph& surface, const std::vector<Edg
   for (auto& [group, handle] : handles) {
     if (handle.edges < kMinTornEdges)
       continue;
-    sortUnique(handle.vertices);
+    internal::sortUnique(handle.vertices);
     handle.center = surface.mean(handle.vertices);
     Eigen::AlignedBox3d box;
     for (const Index v : handle.vertices)
@@ -377,12 +358,10 @@ std::vector<Edge> edgesOf(const std::vector<Bridge>& bridges) {
 /// Joins the nodes of each part of a graph: there are no bridges within one.
 internal::UnionFind partsOf(const Graph& graph, const std::vector<Edge>& bridges) {
   internal::UnionFind parts(graph.size());
-  for (std::size_t a = 0; a < graph.size(); ++a)
-    for (std::size_t e = graph.offsets[a]; e < graph.offsets[a + 1]; ++e) {
-      const Edge edge{static_cast<Index>(a), graph.neighbors[e]};
-      if (edge[0] < edge[1] && !std::binary_search(bridges.begin(), bridges.end(), edge))
-        parts.unite(edge[0], edge[1]);
-    }
+  for (const Index a : graph.nodes())
+    for (const Index b : graph.row(a))
+      if (a < b && !std::binary_search(bridges.begin(), bridges.end(), Edge{a, b}))
+        parts.unite(a, b);
   return parts;
 }
 
@@ -392,9 +371,9 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
   if (bridges.empty())
     return {};
   internal::UnionFind parts = partsOf(graph, bridges);
-  std::vector<std::size_t> sizes(graph.size(), 0);
-  for (std::size_t v = 0; v < graph.size(); ++v)
-    ++sizes[at(parts.find(static_cast<Index>(v)))];
+  internal::Indexed<std::size_t> sizes(graph.size(), 0);
+  for (const Index v : graph.nodes())
+    ++sizes[parts.find(v)];
   std::map<Edge, std::vector<Edge>> joints;
   for (const Edge& edge : bridges) {
     const Edge pair = edgeOf(parts.find(edge[0]), parts.find(edge[1]));
@@ -413,15 +392,14 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
         spacings.push_back(surface.spacing(v));
       }
     }
-    sortUnique(joint.vertices);
-    const auto median = spacings.begin() + static_cast<std::ptrdiff_t>((spacings.size() - 1) / 2);
-    std::nth_element(spacings.begin(), median, spacings.end());
-    joint.spacing = *median;
+    internal::sortUnique(joint.vertices);
+    std::sort(spacings.begin(), spacings.end());
+    joint.spacing = spacings[(spacings.size() - 1) / 2];
     if (joint.gap < kMinPartGap * joint.spacing)
       continue;
     joint.center = surface.mean(joint.vertices);
-    joint.points = std::min(sizes[at(pair[0])], sizes[at(pair[1])]);
-    joint.other_points = std::max(sizes[at(pair[0])], sizes[at(pair[1])]);
+    joint.points = std::min(sizes[pair[0]], sizes[pair[1]]);
+    joint.other_points = std::max(sizes[pair[0]], sizes[pair[1]]);
     result.push_back(std::move(joint));
   }
   std::stable_sort(result.begin(), result.end(),
@@ -434,29 +412,26 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
 /// The edges of a graph that are among the kThinnedDegree shortest of one of their ends, and the
 /// bridges.
 Graph thinned(const Graph& graph, const std::vector<Edge>& bridges) {
-  std::vector<double> reach(graph.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t v = 0; v < graph.size(); ++v) {
-    std::vector<double> lengths(
-        graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v]),
-        graph.lengths.begin() + static_cast<std::ptrdiff_t>(graph.offsets[v + 1]));
+  internal::Indexed<double> reach(graph.size(), std::numeric_limits<double>::infinity());
+  for (const Index v : graph.nodes()) {
+    const auto row = graph.lengthsOf(v);
+    std::vector<double> lengths(row.begin(), row.end());
     if (lengths.size() <= kThinnedDegree)
       continue;
-    const auto last = lengths.begin() + static_cast<std::ptrdiff_t>(kThinnedDegree - 1);
-    std::nth_element(lengths.begin(), last, lengths.end());
-    reach[v] = *last;
+    std::sort(lengths.begin(), lengths.end());
+    reach[v] = lengths[kThinnedDegree - 1];
   }
   Graph thin;
-  for (std::size_t v = 0; v < graph.size(); ++v) {
-    for (std::size_t e = graph.offsets[v]; e < graph.offsets[v + 1]; ++e) {
+  for (const Index v : graph.nodes()) {
+    for (const std::size_t e : graph.entries(v)) {
       const Index w = graph.neighbors[e];
-      const Edge edge = edgeOf(static_cast<Index>(v), w);
-      if (graph.lengths[e] > std::max(reach[v], reach[at(w)]) &&
-          !std::binary_search(bridges.begin(), bridges.end(), edge))
+      if (graph.lengths[e] > std::max(reach[v], reach[w]) &&
+          !std::binary_search(bridges.begin(), bridges.end(), edgeOf(v, w)))
         continue;
       thin.neighbors.push_back(w);
       thin.lengths.push_back(graph.lengths[e]);
     }
-    thin.offsets.push_back(thin.neighbors.size());
+    thin.endRow();
   }
   return thin;
 }
@@ -468,9 +443,7 @@ std::vector<std::uint8_t> marksOf(const MeshAndGraph& surface, const SurfaceDiag
                                   const std::vector<Opening>& openings,
                                   const std::vector<Index>& outside_graph) {
   std::vector<std::uint8_t> marks(surface.triangleCount(), 0);
-  const auto mark = [&](Index t, std::uint8_t bit) {
-    marks[at(t)] = static_cast<std::uint8_t>(marks[at(t)] | bit);
-  };
+  const auto mark = [&](Index t, std::uint8_t bit) { marks[static_cast<std::size_t>(t)] |= bit; };
   const auto mark_around = [&](const std::vector<Index>& vertices, std::uint8_t bit) {
     for (const Index v : vertices)
       surface.forEachTriangle(v, [&](Index t, Index, Index) { mark(t, bit); });
