@@ -89,8 +89,7 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
   SolidSums solid;
   SurfaceSums surface;
   // Each sum has one thread, which adds in the order of the triangles.
-  const int threads =
-      internal::threadCount(requested_threads, static_cast<std::size_t>(triangles.cols()));
+  const int threads = internal::threadCount(requested_threads, internal::columnCount(triangles));
   internal::forEachTask(2, threads, [&](std::size_t part) {
     if (part == 0)
       solid = sumOverSolid(points, triangles, origin);

@@ -11,7 +11,7 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
     : triangle_at_(vertex_count, -1), degree_(vertex_count, 0),
       triangle_count_(static_cast<Index>(triangles.cols())) {
   // Room for all splits: entries must not move while changes are recorded.
-  const auto m = static_cast<std::size_t>(triangles.cols());
+  const auto m = columnCount(triangles);
   vertices_.reserve(std::max(m, 2 * vertex_count));
   neighbors_.reserve(std::max(m, 2 * vertex_count));
   vertices_.resize(m);

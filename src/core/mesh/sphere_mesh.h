@@ -22,6 +22,7 @@ public:
 
   /// Number of slots for triangles, used or freed by merge().
   Index size() const { return vertices_.count(); }
+  std::size_t slotCount() const { return vertices_.size(); }
   bool isTriangle(Index t) const { return vertex(t, 0) >= 0; }
   /// The corners of a triangle, counter-clockwise.
   const std::array<Index, 3>& vertices(Index triangle) const { return vertices_[triangle]; }

@@ -17,7 +17,7 @@ namespace spherical_param::internal {
 /// \param sphere 3 x v, unit vectors: normals of vertices whose triangles have no area.
 inline Positions vertexNormals(const Positions& points, const Triangles& triangles,
                                const Positions& sphere, const CornerTable& corners, int threads) {
-  const auto count = static_cast<std::size_t>(points.cols());
+  const auto count = columnCount(points);
   Positions normals(3, points.cols());
   forEachItem(count, threadCount(threads, count), [&](std::size_t, std::size_t i) {
     const auto v = static_cast<Index>(i);

@@ -24,6 +24,12 @@ public:
   Index count() const { return static_cast<Index>(this->size()); }
 };
 
+/// Columns of a matrix, as the size of a list with an entry for each.
+template <typename Matrix>
+std::size_t columnCount(const Matrix& matrix) {
+  return static_cast<std::size_t>(matrix.cols());
+}
+
 /// Sorts values and leaves each once.
 template <typename T>
 void sortUnique(std::vector<T>& values) {

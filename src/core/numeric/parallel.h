@@ -1,6 +1,7 @@
 #pragma once
 
 #include "progress.h"
+#include "spherical_param/types.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -100,6 +101,21 @@ Value sumOfBlocks(std::size_t count, int threads, const Value& zero, const Term&
   return total;
 }
 
+/// The sum of what add(i, sum) adds for i in [0, count), block by block.
+template <typename Value, typename Add>
+Value accumulate(std::size_t count, int threads, const Value& zero, const Add& add,
+                 const FractionReport& report = {}) {
+  return sumOfBlocks(
+      count, threads, zero,
+      [&](std::size_t begin, std::size_t end) {
+        Value sum = zero;
+        for (std::size_t i = begin; i < end; ++i)
+          add(static_cast<Index>(i), sum);
+        return sum;
+      },
+      report);
+}
+
 /// What collect(begin, end, found) appends to `found` for the blocks of [0, count), in their order.
 ///
 /// \param items_per_report as in forEachBlock().
@@ -111,7 +127,7 @@ std::vector<T> collectBlocks(std::size_t count, int threads, const FractionRepor
   forEachBlock(
       count, threads, report,
       [&](std::size_t block, std::size_t begin, std::size_t end) {
-        collect(begin, end, parts[block]);
+        collect(static_cast<Index>(begin), static_cast<Index>(end), parts[block]);
       },
       items_per_report);
   std::vector<T> all;

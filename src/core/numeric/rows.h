@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "parallel.h"
 #include "spherical_param/types.h"
 

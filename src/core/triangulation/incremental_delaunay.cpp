@@ -1,6 +1,8 @@
 #include "incremental_delaunay.h"
 
 #include "exact_predicates.h"
+#include "indexed.h"
+#include "parallel.h"
 #include "space_filling_curve.h"
 #include "tangent_basis.h"
 
@@ -19,9 +21,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-/// Points between reports.
-constexpr Index kReportedPoints = Index{1} << 16;
 
 /// Stereographic projection from a pole on the sphere: inversion about it, which takes the sphere
 /// to a plane. It is written in differences from the pole, which keeps what is near the pole
@@ -89,7 +88,7 @@ public:
       : places_(places.data()), triangles_(new Triangle[2 * places.size() - 4]) {}
 
   Index size() const { return size_; }
-  const Triangle& triangle(Index t) const { return triangles_[static_cast<std::size_t>(t)]; }
+  const Triangle& triangle(Index t) const { return triangles_.get()[t]; }
 
   /// Starts with a closed, oriented genus-0 mesh.
   void begin(const std::vector<std::array<Index, 3>>& triangles) {
@@ -155,7 +154,7 @@ private:
     Index coincident = kPole;  ///< vertex at the same place; kPole: none
   };
 
-  Triangle& at(Index t) { return triangles_[static_cast<std::size_t>(t)]; }
+  Triangle& at(Index t) { return triangles_.get()[t]; }
   Corner& across(Corner corner) { return at(triangleOf(corner)).across[corner & 3U]; }
   const Eigen::Vector2d& place(Index v) const { return places_[v]; }
 
@@ -310,15 +309,15 @@ struct Coincidence {
 
 /// Puts the vertices that coincide with others beside them, so that those at one place share its
 /// triangles evenly.
-void putBeside(std::vector<Coincidence> coincidences, Index vertex_count,
+void putBeside(Indexed<Coincidence> coincidences, Index vertex_count,
                Triangulation& triangulation) {
   if (coincidences.empty())
     return;
   std::sort(coincidences.begin(), coincidences.end());
-  std::vector<Index> triangle_at(static_cast<std::size_t>(vertex_count), -1);
+  Indexed<Index> triangle_at(static_cast<std::size_t>(vertex_count), -1);
   for (Index t = 0; t < triangulation.size(); ++t)
     for (const Index v : triangulation.triangle(t).vertices)
-      triangle_at[static_cast<std::size_t>(v)] = t;
+      triangle_at[v] = t;
   std::vector<Index> crowd;  // the vertices at one place
   std::size_t turn = 0;
   for (const auto& [anchor, p] : coincidences) {
@@ -329,7 +328,7 @@ void putBeside(std::vector<Coincidence> coincidences, Index vertex_count,
     const Index v = crowd[turn++];
     crowd.push_back(v);
     crowd.push_back(p);
-    const Index t = triangle_at[static_cast<std::size_t>(v)];
+    const Index t = triangle_at[v];
     const auto& vertices = triangulation.triangle(t).vertices;
     const auto k = std::find(vertices.begin(), vertices.end(), v) - vertices.begin();
     const Index first = triangulation.divide(cornerOf(t, static_cast<unsigned>(k)), p);
@@ -337,7 +336,7 @@ void putBeside(std::vector<Coincidence> coincidences, Index vertex_count,
     Index around = first;
     do {
       for (const Index w : triangulation.triangle(around).vertices)
-        triangle_at[static_cast<std::size_t>(w)] = around;
+        triangle_at[w] = around;
       around = triangleOf(triangulation.triangle(around).across[1]);
     } while (around != first);
   }
@@ -345,14 +344,14 @@ void putBeside(std::vector<Coincidence> coincidences, Index vertex_count,
 
 /// The points, numbered in the order in which they go in: neighbours lie together in memory.
 struct Vertices {
-  std::vector<Index> input;             ///< the point that each vertex is; the pole is the first
-  std::vector<Eigen::Vector2d> places;  ///< in the plane
-  Index in_plane = 0;  ///< vertices from here on are too near the pole to have a place
+  Indexed<Index> input;             ///< the point that each vertex is; the pole is the first
+  Indexed<Eigen::Vector2d> places;  ///< in the plane
+  Index in_plane = 0;               ///< vertices from here on are too near the pole to have a place
 
-  const Eigen::Vector2d& place(Index v) const { return places[static_cast<std::size_t>(v)]; }
+  const Eigen::Vector2d& place(Index v) const { return places[v]; }
   void swap(Index v, Index w) {
-    std::swap(input[static_cast<std::size_t>(v)], input[static_cast<std::size_t>(w)]);
-    std::swap(places[static_cast<std::size_t>(v)], places[static_cast<std::size_t>(w)]);
+    std::swap(input[v], input[w]);
+    std::swap(places[v], places[w]);
   }
 };
 
@@ -370,9 +369,9 @@ Vertices projectInOrder(const Positions& directions, const FractionReport& repor
       pole = i;
 
   Vertices vertices;
-  vertices.input.reserve(static_cast<std::size_t>(n));
+  vertices.input.reserve(columnCount(directions));
   vertices.input.push_back(pole);
-  vertices.places.resize(static_cast<std::size_t>(n));
+  vertices.places.resize(columnCount(directions));
   std::vector<Index> at_pole;
   const StereographicProjection projection(directions.col(pole));
   reportFraction(report, 0.0);
@@ -381,12 +380,12 @@ Vertices projectInOrder(const Positions& directions, const FractionReport& repor
   for (const Index i : order) {
     if (i == pole)
       continue;
-    if (projection.project(directions.col(i), vertices.places[vertices.input.size()]))
+    if (projection.project(directions.col(i), vertices.places[vertices.input.count()]))
       vertices.input.push_back(i);
     else
       at_pole.push_back(i);
   }
-  vertices.in_plane = static_cast<Index>(vertices.input.size());
+  vertices.in_plane = vertices.input.count();
   vertices.input.insert(vertices.input.end(), at_pole.begin(), at_pole.end());
   return vertices;
 }
@@ -415,8 +414,7 @@ bool beginWithTriangle(Vertices& vertices) {
 
 /// Vertices that are all on one line, in its order, the pole first: on the sphere, their order on a
 /// circle through the pole.
-std::vector<Index> ringThroughPole(const Vertices& vertices,
-                                   std::vector<Coincidence>& coincidences) {
+std::vector<Index> ringThroughPole(const Vertices& vertices, Indexed<Coincidence>& coincidences) {
   std::vector<Index> line(static_cast<std::size_t>(vertices.in_plane) - 1);
   std::iota(line.begin(), line.end(), Index{1});
   std::stable_sort(line.begin(), line.end(), [&](Index v, Index w) {
@@ -438,8 +436,8 @@ std::vector<Index> ringThroughPole(const Vertices& vertices,
 SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report) {
   Vertices vertices = projectInOrder(directions, report);
   reportFraction(report, 0.0);
-  const auto n = static_cast<Index>(vertices.input.size());
-  std::vector<Coincidence> coincidences;
+  const Index n = vertices.input.count();
+  Indexed<Coincidence> coincidences;
   for (Index p = vertices.in_plane; p < n; ++p)
     coincidences.push_back({kPole, p});
 
@@ -448,16 +446,16 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionRe
   if (beginWithTriangle(vertices)) {
     triangulation.begin({{1, 2, 3}, {kPole, 3, 2}, {kPole, 1, 3}, {kPole, 2, 1}});
     for (Index p = 4; p < vertices.in_plane; ++p) {
-      if (p % kReportedPoints == 0)
+      if (static_cast<std::size_t>(p) % kReportedItems == 0)
         reportFraction(report, static_cast<double>(p) / vertices.in_plane);
       const Index v = triangulation.insert(p);
       if (v != p)
         coincidences.push_back({v, p});
     }
-    result.coincident = static_cast<Index>(coincidences.size());
+    result.coincident = coincidences.count();
   } else {
     std::vector<Index> ring = ringThroughPole(vertices, coincidences);
-    result.coincident = static_cast<Index>(coincidences.size());
+    result.coincident = coincidences.count();
     // A mesh has at least four vertices: at three places or fewer, some begin beside their anchor.
     for (; ring.size() < 4; coincidences.pop_back()) {
       const auto anchor = std::find(ring.begin(), ring.end(), coincidences.back().anchor);
@@ -469,10 +467,10 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionRe
   putBeside(std::move(coincidences), n, triangulation);
 
   result.triangles.resize(3, triangulation.size());
-  for (Index t = 0; t < triangulation.size(); ++t)
-    for (Eigen::Index k = 0; k < 3; ++k)
-      result.triangles(k, t) = vertices.input[static_cast<std::size_t>(
-          triangulation.triangle(t).vertices[static_cast<std::size_t>(k)])];
+  for (Index t = 0; t < triangulation.size(); ++t) {
+    const auto& [a, b, c] = triangulation.triangle(t).vertices;
+    result.triangles.col(t) << vertices.input[a], vertices.input[b], vertices.input[c];
+  }
   return result;
 }
 
