@@ -6,16 +6,9 @@
 #include <algorithm>
 
 namespace spherical_param::internal {
-namespace {
-
-/// Candidates between reports.
-constexpr std::size_t kReportedCandidates = std::size_t{1} << 16U;
-
-}  // namespace
 
 Flips::Flips(EnergyMesh& mesh)
-    : mesh_(mesh), stamps_(static_cast<std::size_t>(mesh.mesh().size()), {0, 0, 0}),
-      due_(stamps_.size()) {}
+    : mesh_(mesh), stamps_(mesh.mesh().slotCount(), {0, 0, 0}), due_(stamps_.size()) {}
 
 void Flips::append(Index t, int corner, std::vector<Candidate>& candidates) const {
   const double floor = optimization_constants::kMinGain * mesh_.unit();
@@ -50,7 +43,7 @@ std::size_t Flips::flipQueued(const FractionReport& report) {
   std::size_t flips = 0;
   double fraction = 0.0;
   for (std::size_t taken = 1; !queue_.empty(); ++taken) {
-    if (report && taken % kReportedCandidates == 0) {
+    if (report && taken % kReportedItems == 0) {
       // What is in the queue by now puts in less than it takes out.
       fraction = std::max(fraction,
                           static_cast<double>(taken) / static_cast<double>(taken + queue_.size()));
@@ -86,14 +79,13 @@ void Flips::flipAround(const std::vector<Index>& triangles) {
 }
 
 std::size_t Flips::flipAll(const FractionReport& report) {
-  queue_ = collectBlocks<Candidate>(
-      stamps_.size(), mesh_.threads(), report,
-      [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
-        for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
-          for (int k = 0; k < 3; ++k)
-            if (t < mesh_.mesh().neighbor(t, k))
-              append(t, k, found);
-      });
+  queue_ = collectBlocks<Candidate>(stamps_.size(), mesh_.threads(), report,
+                                    [&](Index begin, Index end, std::vector<Candidate>& found) {
+                                      for (Index t = begin; t < end; ++t)
+                                        for (int k = 0; k < 3; ++k)
+                                          if (t < mesh_.mesh().neighbor(t, k))
+                                            append(t, k, found);
+                                    });
   std::make_heap(queue_.begin(), queue_.end());
   return flipQueued(report);
 }

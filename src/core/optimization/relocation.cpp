@@ -66,18 +66,17 @@ std::vector<Index> roughNear(const EnergyMesh& mesh, const std::vector<Index>& v
 }  // namespace
 
 std::vector<Index> roughVertices(const EnergyMesh& mesh, const FractionReport& report) {
-  const auto n = static_cast<std::size_t>(mesh.points().cols());
-  return collectBlocks<Index>(n, mesh.threads(), report,
-                              [&](std::size_t begin, std::size_t end, std::vector<Index>& rough) {
+  return collectBlocks<Index>(columnCount(mesh.points()), mesh.threads(), report,
+                              [&](Index begin, Index end, std::vector<Index>& rough) {
                                 std::vector<Index> ring;
-                                for (std::size_t v = begin; v < end; ++v)
-                                  if (isRough(mesh, static_cast<Index>(v), ring))
-                                    rough.push_back(static_cast<Index>(v));
+                                for (Index v = begin; v < end; ++v)
+                                  if (isRough(mesh, v, ring))
+                                    rough.push_back(v);
                               });
 }
 
 void relocate(Workbench& bench, std::vector<Index> rough) {
-  for (int round = 0; round < tuned::kMaxRelocateRounds && !rough.empty() && !bench.isOutOfTime();
+  for (int round = 0; round < tuned::kMaxRounds && !rough.empty() && !bench.isOutOfTime();
        ++round) {
     OptimizationPhase& phase = bench.begin("relocate");
     std::vector<Index> moved;

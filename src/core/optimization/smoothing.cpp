@@ -23,9 +23,8 @@ constexpr double kMaxFrequency = 1.5;
 /// exact: far below any noise that is worth smoothing.
 constexpr double kMaxFilterError = 1e-7;
 
-/// Newton's method for the volume ends at this relative error, or after this number of steps.
+/// Newton's method for the volume ends at this relative error.
 constexpr double kMaxVolumeError = 1e-12;
-constexpr int kMaxVolumeIterations = 8;
 
 /// Filters and volume of one mesh, on several threads.
 class Filter {
@@ -34,6 +33,9 @@ public:
       : triangles_(triangles), threads_(internal::threadCount(requested_threads, n)),
         corners_(triangles, n, threads_) {}
 
+  internal::NumberRange<Index> vertices() const {
+    return {0, static_cast<Index>(corners_.vertexCount())};
+  }
   bool isUsed(Index v) const { return corners_.countAt(v) > 0; }
 
   /// Moves each point by a fraction of its Laplacian, all at once; `scratch` is overwritten.
@@ -55,13 +57,8 @@ public:
 
   template <typename Term>
   double sum(const Term& term) const {
-    return internal::sumOfBlocks(corners_.vertexCount(), threads_, 0.0,
-                                 [&](std::size_t begin, std::size_t end) {
-                                   double total = 0.0;
-                                   for (std::size_t i = begin; i < end; ++i)
-                                     total += term(static_cast<Index>(i));
-                                   return total;
-                                 });
+    return internal::accumulate(corners_.vertexCount(), threads_, 0.0,
+                                [&](Index i, double& total) { total += term(i); });
   }
 
   template <typename Work>
@@ -150,8 +147,7 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
 void Filter::restoreVolume(Positions& points, double volume) const {
   double error = volume - this->volume(points);
   Positions moved(3, points.cols());
-  for (int i = 0; i < kMaxVolumeIterations && std::abs(error) > kMaxVolumeError * std::abs(volume);
-       ++i) {
+  while (std::abs(error) > kMaxVolumeError * std::abs(volume)) {
     const double slope = sum([&](Index v) { return normal(points, v).norm(); }) / 6.0;
     const double distance = error / slope;
     if (!std::isfinite(distance))
@@ -180,7 +176,7 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
   result.points = points;
   if (triangles.cols() == 0)
     return result;
-  const Filter filter(triangles, static_cast<std::size_t>(points.cols()), threads);
+  const Filter filter(triangles, internal::columnCount(points), threads);
 
   // About a point of the mesh, so that a far origin costs no digits.
   const Eigen::Vector3d origin = points.col(triangles(0, 0));
@@ -206,7 +202,7 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
 
   double used = 0.0;
   double squared = 0.0;
-  for (const Index i : internal::NumberRange<Index>(0, static_cast<Index>(points.cols()))) {
+  for (const Index i : filter.vertices()) {
     if (!filter.isUsed(i))
       continue;
     result.points.col(i) = smooth.col(i) + origin;

@@ -64,10 +64,6 @@ struct BoxGroup {
 /// each other are near.
 class BoxTree {
 public:
-  /// Boxes of a block: block i has the boxes from kBlock i on.
-  static constexpr unsigned kBlockLevel = 3;
-  static constexpr std::size_t kBlock = std::size_t{1} << kBlockLevel * BoxGroup::kBits;
-
   BoxTree() = default;
   /// \param box_of returns box i of [0, count).
   template <typename BoxOf>
@@ -99,17 +95,21 @@ public:
               [&](std::size_t i, const FloatBox&) { visit(static_cast<Index>(i)); });
   }
 
-  /// Calls visit(i, j) for each pair of overlapping boxes, i < j, with i in a block.
+  /// Calls visit(i, j) for each pair of overlapping boxes, i < j, with i in the block of kBlockSize
+  /// from `begin` on.
   template <typename Visit>
-  void forEachPair(std::size_t block, const Visit& visit) const {
+  void forEachPair(Index begin, const Visit& visit) const {
+    constexpr std::size_t block_level = 3;
+    static_assert(1U << block_level * BoxGroup::kBits == kBlockSize);
+    const std::size_t block = static_cast<std::size_t>(begin) / kBlockSize;
     const std::size_t top = levels_.size() - 1;
-    if (top < kBlockLevel)
+    if (top < block_level)
       return join(top, 0, 0, levels_[top][0].all(), visit);
     descend(
-        {top, 0}, kBlockLevel, levels_[kBlockLevel - 1][block].all(), block * kBlock,
+        {top, 0}, block_level, levels_[block_level - 1][block].all(), block * kBlockSize,
         [](const FloatBox&) { return false; },
         [&](std::size_t other, const FloatBox& box) {
-          join(kBlockLevel - 1, block, other, box, visit);
+          join(block_level - 1, block, other, box, visit);
         });
   }
 

@@ -41,7 +41,7 @@ struct Mesh {
   const Triangles& triangles;
   double scale;  ///< a power of two; coordinates times it are at most 1
 
-  std::size_t size() const { return static_cast<std::size_t>(triangles.cols()); }
+  std::size_t size() const { return internal::columnCount(triangles); }
   Face face(Index t) const {
     return internal::faceOf(points, scale, {triangles(0, t), triangles(1, t), triangles(2, t)}, t);
   }
@@ -71,8 +71,9 @@ public:
 
   std::size_t size() const { return order_.size(); }
 
-  /// Appends the intersecting pairs of a triangle of this block and one of the same or a later one.
-  void findPairsOfBlock(std::size_t block, Pairs& pairs) const;
+  /// Appends the intersecting pairs of a triangle of the block from `begin` on and one of the same
+  /// or a later one.
+  void findPairsOfBlock(Index begin, Pairs& pairs) const;
   /// Appends the intersecting pairs of a triangle and one in the tree, from the place `first` on.
   void findPairs(const Face& face, Index first, Pairs& pairs) const;
 
@@ -103,15 +104,11 @@ private:
 TriangleTree::TriangleTree(const Mesh& mesh, const internal::Indexed<Index>& subset, int threads,
                            const FractionReport& report)
     : mesh_(mesh) {
-  const Extent extent = internal::sumOfBlocks(
+  const Extent extent = internal::accumulate(
       subset.size(), threads, Extent{},
-      [&](std::size_t begin, std::size_t end) {
-        Extent block;
-        for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) {
-          const Box box = mesh.box(subset[i]);
-          block += Extent{box.lower, box.upper, box.size()};
-        }
-        return block;
+      [&](Index i, Extent& sum) {
+        const Box box = mesh.box(subset[i]);
+        sum += Extent{box.lower, box.upper, box.size()};
       },
       report);
   origin_ = extent.low;
@@ -149,16 +146,15 @@ void TriangleTree::sort(const internal::Indexed<Index>& subset, const Extent& ex
   }
 }
 
-void TriangleTree::findPairsOfBlock(std::size_t block, Pairs& pairs) const {
+void TriangleTree::findPairsOfBlock(Index begin, Pairs& pairs) const {
   // What every test of one of the block's triangles needs.
   struct Own {
     Face face;
     Plane plane;
   };
   internal::Indexed<Own> own;
-  own.reserve(BoxTree::kBlock);
-  const auto begin = static_cast<Index>(block * BoxTree::kBlock);
-  for (Index i = begin; i < order_.count() && own.size() < BoxTree::kBlock; ++i) {
+  own.reserve(internal::kBlockSize);
+  for (Index i = begin; i < order_.count() && own.size() < internal::kBlockSize; ++i) {
     const Face face = mesh_.face(order_[i]);
     own.push_back({face, Plane(face)});
   }
@@ -167,7 +163,7 @@ void TriangleTree::findPairsOfBlock(std::size_t block, Pairs& pairs) const {
       findPairs(own[i].face, begin + i + 1, pairs);
     return;
   }
-  tree_.forEachPair(block, [&](Index i, Index j) {
+  tree_.forEachPair(begin, [&](Index i, Index j) {
     const auto& [a, plane] = own[i - begin];
     const Face b = j - begin < own.count() ? own[j - begin].face : mesh_.face(order_[j]);
     if (intersect(a, plane, b))
@@ -203,17 +199,18 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
   return internal::scaleToUnit(most);
 }
 
-/// Where the mesh is a tangle, a block takes a tenth of a second.
-constexpr std::size_t kItemsPerReport = 8 * internal::kBlockSize;
+/// The pairs that find(begin, end, pairs) appends for the blocks of [0, count).
+template <typename Find>
+Pairs findInBlocks(std::size_t count, int threads, const FractionReport& report, const Find& find) {
+  // Where the mesh is a tangle, a block takes a tenth of a second.
+  return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
+                                                       8 * internal::kBlockSize);
+}
 
 Pairs pairsWithin(const TriangleTree& tree, int threads, const FractionReport& report) {
-  static_assert(internal::kBlockSize == BoxTree::kBlock);
-  return internal::collectBlocks<std::array<Index, 2>>(
-      tree.size(), threads, report,
-      [&](std::size_t begin, std::size_t, Pairs& pairs) {
-        tree.findPairsOfBlock(begin / BoxTree::kBlock, pairs);
-      },
-      kItemsPerReport);
+  return findInBlocks(tree.size(), threads, report, [&](Index begin, Index, Pairs& pairs) {
+    tree.findPairsOfBlock(begin, pairs);
+  });
 }
 
 }  // namespace
@@ -258,14 +255,12 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
   const FractionReport report = internal::reportOf(execution, "intersections");
   const TriangleTree tree(mesh, subset, threads, report);
   Pairs pairs = pairsWithin(tree, threads, report);
-  const Pairs others = internal::collectBlocks<std::array<Index, 2>>(
-      mesh.size(), threads, report,
-      [&](std::size_t begin, std::size_t end, Pairs& found) {
-        for (auto t = static_cast<Index>(begin); t < static_cast<Index>(end); ++t)
+  const Pairs others =
+      findInBlocks(mesh.size(), threads, report, [&](Index begin, Index end, Pairs& found) {
+        for (Index t = begin; t < end; ++t)
           if (in_set[t] == 0)
             tree.findPairs(mesh.face(t), 0, found);
-      },
-      kItemsPerReport);
+      });
   pairs.insert(pairs.end(), others.begin(), others.end());
   std::sort(pairs.begin(), pairs.end());
   return pairs;

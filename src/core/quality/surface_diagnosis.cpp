@@ -28,10 +28,9 @@ namespace {
 // different sampling and of generated closed shapes, on none of which anything may be reported; on
 // a torus and a pair of bodies of 1,000 to 50,000 points.
 
-/// The thresholds hold for graphs of up to this mean degree: local Delaunay neighbourhoods have 5
-/// to 6, the 8 nearest neighbours 8 to 9. Of graphs of a larger degree, the kThinnedDegree shortest
-/// edges of each point are looked at: with the 25 nearest, no handle of a torus is found.
-constexpr std::size_t kMaxMeanDegree = 12;
+/// The thresholds hold for graphs of a mean degree of up to one and a half times this: local
+/// Delaunay neighbourhoods have 5 to 6, the 8 nearest neighbours 8 to 9. Of others, that number of
+/// shortest edges of each point are looked at: with the 25 nearest, no handle of a torus is found.
 constexpr std::size_t kThinnedDegree = 8;
 
 /// Neighbours in the graph that are more steps apart on the mesh were torn apart.
@@ -92,7 +91,7 @@ public:
         corners_(triangles, graph.size(), threads) {}
 
   std::size_t vertexCount() const { return graph_.size(); }
-  std::size_t triangleCount() const { return static_cast<std::size_t>(triangles_.cols()); }
+  std::size_t triangleCount() const { return internal::columnCount(triangles_); }
   Eigen::Vector3d point(Index v) const { return points_.col(v); }
   double distance(Index a, Index b) const { return (points_.col(a) - points_.col(b)).norm(); }
 
@@ -496,7 +495,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
                                  const std::vector<Opening>& openings,
                                  const DiagnosisOptions& options, int threads) {
   const std::vector<Edge> bridge_edges = edgesOf(bridges);
-  const bool is_dense = graph.neighbors.size() > kMaxMeanDegree * graph.size();
+  const bool is_dense = 2 * graph.neighbors.size() > 3 * kThinnedDegree * graph.size();
   const Graph thin = is_dense ? thinned(graph, bridge_edges) : Graph();
   const Graph& sparse = is_dense ? thin : graph;
   const MeshAndGraph surface(points, triangles, sparse,

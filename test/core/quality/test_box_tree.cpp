@@ -65,10 +65,10 @@ TEST(BoxTree, FindsTheBoxesAndPairsThatOverlap) {
     const BoxTree tree = treeOf(boxes);
     expectOverlaps(tree, boxes);
     PlacePairs pairs;
-    constexpr auto block_size = static_cast<Index>(BoxTree::kBlock);
-    for (Index block = 0; block * block_size < count; ++block)
-      tree.forEachPair(static_cast<std::size_t>(block), [&](Index i, Index j) {
-        EXPECT_EQ(i / block_size, block);
+    constexpr auto block_size = static_cast<Index>(internal::kBlockSize);
+    for (Index begin = 0; begin < count; begin += block_size)
+      tree.forEachPair(begin, [&](Index i, Index j) {
+        EXPECT_EQ(i / block_size, begin / block_size);
         EXPECT_TRUE(pairs.emplace(i, j).second);
       });
     PlacePairs expected;
