@@ -13,7 +13,7 @@ LocalUntangling::LocalUntangling(EnergyMesh& mesh)
     : mesh_(mesh), scale_(scaleToUnit(mesh.points().cwiseAbs().maxCoeff())) {}
 
 void LocalUntangling::watch(const std::vector<Index>& vertices) {
-  local_.begin(static_cast<std::size_t>(mesh_.mesh().size()));
+  local_.begin(mesh_.mesh().slotCount());
   for (const Index v : vertices)
     mesh_.mesh().forEachAround(v, [&](Index t, int) {
       if (!mesh_.facet(t).isOpen() && !local_.contains(t))

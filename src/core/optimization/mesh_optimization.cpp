@@ -45,7 +45,7 @@ Pairs intersectionsOf(Workbench& bench) {
 /// Untangles, again as long as that leaves open triangles without a loop.
 Pairs untangleSurface(Workbench& bench, Pairs pairs, int rounds_by_energy) {
   pairs = internal::untangle(bench, std::move(pairs), rounds_by_energy);
-  for (int round = 0; round < tuned::kMaxClosingRounds && closeWithoutLoop(bench); ++round)
+  for (int round = 0; round < tuned::kMaxRounds && closeWithoutLoop(bench); ++round)
     pairs = internal::untangle(bench, intersectionsOf(bench), rounds_by_energy);
   return pairs;
 }

@@ -64,10 +64,8 @@ bool isOver(const OpenPlaces& openings, const std::array<Index, 3>& corners) {
 class Opener {
 public:
   Opener(const Positions& points, const Triangles& triangles, const OpenPlaces& openings)
-      : points_(points), openings_(openings),
-        mesh_(triangles, static_cast<std::size_t>(points.cols())),
-        is_open_(static_cast<std::size_t>(mesh_.size()), 0),
-        scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
+      : points_(points), openings_(openings), mesh_(triangles, columnCount(points)),
+        is_open_(mesh_.slotCount(), 0), scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
     for (Index t = 0; t < mesh_.size(); ++t)
       is_open_[t] = isOver(openings, mesh_.vertices(t)) ? 1 : 0;
   }
@@ -338,7 +336,7 @@ private:
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
   const auto is_open = [&](Index t) { return isOver(openings, mesh.vertices(t)); };
   std::vector<Index> found;
-  Indexed<std::uint8_t> is_seen(static_cast<std::size_t>(mesh.size()), 0);
+  Indexed<std::uint8_t> is_seen(mesh.slotCount(), 0);
   std::vector<Index> piece;
   for (Index first = 0; first < mesh.size(); ++first) {
     if (is_seen[first] != 0 || !is_open(first))

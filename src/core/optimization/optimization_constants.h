@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 
 /// All tuned constants of the optimisation, each with the experiment that set it.
 ///
@@ -28,11 +27,10 @@ constexpr double kEvenMu = 4.0;
 /// rises by 15 % in the mean (fandisk by 290 %); with all taken as even, by 29 %.
 constexpr double kMaxUnalignedSampling = 0.16;
 constexpr double kMaxEvenSampling = 0.3;
-/// Angles up to this one cost nothing in an even sampling [rad], 10 degrees, and its cosine. 0 and
+/// Angles up to this one cost nothing in an even sampling [rad], 10 degrees. 0 and
 /// 20 degrees change 2 and 3 models, without self-intersections before and after. With 5 times the
 /// median angle around a vertex, where that is more, the models' RMS is 2 % higher.
 constexpr double kFreeAngle = 0.17453292519943295;
-constexpr double kCosineOfFreeAngle = 0.984807753012208;
 
 // --- Openings ------------------------------------------------------------------------------------
 
@@ -40,29 +38,19 @@ constexpr double kCosineOfFreeAngle = 0.984807753012208;
 /// ends].
 constexpr double kMaxSurfaceEdge = 1.6;
 /// Open triangles: fraction of mu R, and of the price of an edge between two of them. With 1 for
-/// the first the RMS of clouds with holes rises by 1 %, for the second open clouds of several views
-/// keep 37 self-intersections instead of 0.
-constexpr double kOpenTriangle = 0.5;
-constexpr double kOpenEdge = 0.5;
+/// mu R the RMS of clouds with holes rises by 1 %, with 1 for the price open clouds of several
+/// views keep 37 self-intersections instead of 0.
+constexpr double kOpen = 0.5;
 /// Price of an edge between an open triangle and the surface outside of loops [length of the edge]:
 /// the first, plus the second times mu. Too low makes holes, too high folds ears.
 constexpr double kRimPrice = 0.8;
 constexpr double kRimPriceOfMu = 2.0;
-/// Rounds of closing open triangles without a loop, of which untangling may leave more. Without
-/// any, 1 of 56 open clouds keeps an intersection.
-constexpr int kMaxClosingRounds = 4;
-
 // --- Gains ---------------------------------------------------------------------------------------
 
 /// Changes of the energy below this are rounding [mean length of the graph's edges]. With 0,
 /// 11 of 26 clouds change, without self-intersections before and after, and noisy ones for the
 /// better or the worse.
 constexpr double kMinGain = 1e-9;
-/// Changes of the energy of a few triangles below this fraction of it are rounding: less than 16
-/// terms, none negative, are added. A flip that gains no more could be made and undone forever.
-/// It matters where the terms exceed some 300,000 mean lengths: of no cloud here.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
-
 // --- Rough vertices ------------------------------------------------------------------------------
 
 /// Edges with a smaller cosine between their triangles' normals (37 degrees) are sharp, those below
@@ -74,9 +62,11 @@ constexpr double kMinUnfoldedCosine = -0.5;
 /// the mesh. With 1 the noisy penguin has 174 self-intersections instead of 17, with 2.5 the noisy
 /// homer 436 instead of 237.
 constexpr double kMaxNearNeighbor = 1.5;
-/// Without relocation true edges fall to 0.9359; with 2 rounds 2 of 10 models keep intersections.
-/// Without that after the polish, the models' RMS rises by 14 %.
-constexpr int kMaxRelocateRounds = 4;
+/// Rounds of relocation, and of closing open triangles without a loop, of which untangling may
+/// leave more. Without relocation true edges fall to 0.9359; with 2 rounds 2 of 10 models keep
+/// intersections; without that after the polish, the models' RMS rises by 14 %. Without closing, 1
+/// of 56 open clouds keeps an intersection.
+constexpr int kMaxRounds = 4;
 
 // --- Noise ---------------------------------------------------------------------------------------
 
@@ -127,14 +117,12 @@ constexpr int kMaxRoundsByEnergy = 2;
 /// without intersections, in 1.05 times as long.
 constexpr int kMaxIdleRounds = 12;
 /// Vertices of a part around two triangles that intersect, from the first size to the last,
-/// doubled. Rounds by number begin with parts up to the second one; each round without a gain
-/// doubles that, up to the third. Of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20
-/// times as long. By energy with 24 a tube from a bad start keeps its spikes; with 96 the runs keep
-/// 116 intersections instead of 24.
+/// doubled. Rounds by number begin with parts up to four times the first; each round without a gain
+/// doubles that. Of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20 times as long. Rounds
+/// by energy have parts up to half of the last size: with 24 a tube from a bad start keeps its
+/// spikes; with 96 the runs keep 116 intersections instead of 24.
 constexpr std::size_t kMinUntangled = 6;
-constexpr std::size_t kMaxFirstUntangled = 24;
 constexpr std::size_t kMaxUntangled = 96;
-constexpr std::size_t kMaxUntangledByEnergy = 48;
 /// Vertices around two intersecting triangles whose edges are flipped. With 96 a tube from a bad
 /// start keeps its spikes.
 constexpr std::size_t kFlipRegion = 64;

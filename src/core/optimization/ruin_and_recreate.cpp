@@ -9,9 +9,8 @@
 namespace spherical_param::internal {
 
 RuinAndRecreate::RuinAndRecreate(EnergyMesh& mesh, Flips& flips, std::uint64_t seed)
-    : mesh_(mesh), flips_(flips), random_(seed),
-      seen_triangles_(static_cast<std::size_t>(mesh.mesh().size())),
-      seen_vertices_(static_cast<std::size_t>(mesh.points().cols())) {}
+    : mesh_(mesh), flips_(flips), random_(seed), seen_triangles_(mesh.mesh().slotCount()),
+      seen_vertices_(columnCount(mesh.points())) {}
 
 std::size_t RuinAndRecreate::random(std::size_t end) {
   random_ = splitmix64(random_);

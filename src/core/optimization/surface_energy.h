@@ -48,7 +48,7 @@ struct RawFacet {
 
   bool isOpen() const { return radius < 0.0; }
   /// Makes it an open triangle.
-  void open() { radius *= -optimization_constants::kOpenTriangle; }
+  void open() { radius *= -optimization_constants::kOpen; }
 
   Facet facet() const {
     if (!(twice_area > 0.0))
@@ -98,11 +98,8 @@ struct SurfaceEnergy {
               const Facet& facet, const Facet& other) const {
     if (facet.isOpen() || other.isOpen())
       return openEdge(v, w, p, q, facet.isOpen() && other.isOpen());
-    const double cosine = facet.normal.dot(other.normal);
-    if (bend == Bend::Excess && cosine >= optimization_constants::kCosineOfFreeAngle)
-      return 0.0;
     const double length = (p - q).norm();
-    const double angle = fastAcos(cosine);
+    const double angle = fastAcos(facet.normal.dot(other.normal));
     switch (bend) {
     case Bend::Angle:
       return length * angle;
@@ -122,7 +119,7 @@ private:
     if (openings->isRim(v, w))
       return 0.0;
     const double price = (tuned::kRimPrice + tuned::kRimPriceOfMu * mu) * (p - q).norm();
-    return are_both_open ? tuned::kOpenEdge * price : price;
+    return are_both_open ? tuned::kOpen * price : price;
   }
 };
 

@@ -65,7 +65,7 @@ void flipApart(Workbench& bench, Pairs& pairs) {
                   return;
                 ++phase.moves;
                 OptimizationPhase parts;
-                for (std::size_t size = tuned::kMinUntangled; size <= tuned::kMaxFirstUntangled;
+                for (std::size_t size = tuned::kMinUntangled; size <= 4 * tuned::kMinUntangled;
                      size *= 2)
                   tryByNumber(bench, seeds, size, parts);
               });
@@ -90,7 +90,7 @@ std::size_t rebuild(Workbench& bench, bool is_by_number, std::size_t largest, Pa
 Pairs untangle(Workbench& bench, Pairs pairs, int rounds_by_energy) {
   const auto is_due = [&] { return !pairs.empty() && bench.mayRepair(); };
   for (int round = 0; round < rounds_by_energy && is_due(); ++round)
-    if (rebuild(bench, false, tuned::kMaxUntangledByEnergy, pairs) == 0)
+    if (rebuild(bench, false, tuned::kMaxUntangled / 2, pairs) == 0)
       break;
   // Rounds in a row without a gain. Small parts gain more in the same time: large ones once nothing
   // else helps.
@@ -99,7 +99,7 @@ Pairs untangle(Workbench& bench, Pairs pairs, int rounds_by_energy) {
       flipApart(bench, pairs);
     if (!is_due())
       break;
-    const std::size_t largest = std::min(tuned::kMaxUntangled, tuned::kMaxFirstUntangled << idle);
+    const std::size_t largest = std::min(tuned::kMaxUntangled, 4 * tuned::kMinUntangled << idle);
     idle = rebuild(bench, true, largest, pairs) == 0 ? idle + 1 : 0;
   }
   return pairs;

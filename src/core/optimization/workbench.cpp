@@ -37,8 +37,7 @@ bool Workbench::mayRepair() {
 
 void Workbench::renewWork() {
   namespace tuned = optimization_constants;
-  max_work_ = work() + tuned::kMaxWork +
-              tuned::kMaxWorkOfPoint * static_cast<std::size_t>(mesh.points().cols());
+  max_work_ = work() + tuned::kMaxWork + tuned::kMaxWorkOfPoint * columnCount(mesh.points());
 }
 
 void Workbench::tryPart(const std::vector<Index>& seeds, std::size_t size,
