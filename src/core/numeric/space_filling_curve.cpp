@@ -4,9 +4,6 @@
 #include "radix_sort.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 
 namespace spherical_param::internal {
@@ -23,112 +20,57 @@ std::uint64_t spread(std::uint64_t x) {
   return x;
 }
 
-/// A point's place on a curve; sorted by key, then by index.
-template <typename Key>
-struct PlaceOf {
-  Key key;
+/// A point's place on a curve.
+struct Place {
+  std::uint64_t key;
   Index index;
-  bool operator<(const PlaceOf& other) const {
-    return key != other.key ? key < other.key : index < other.index;
-  }
 };
-using Place = PlaceOf<std::uint32_t>;
-using CubePlace = PlaceOf<std::uint64_t>;
 
-/// Sorts places whose indices ascend.
-template <typename Key>
-void sortPlaces(std::vector<PlaceOf<Key>>& places) {
-  constexpr std::size_t few = 1000;
-  if (places.size() < few)
-    std::sort(places.begin(), places.end());
-  else
-    radixSort(places);
+/// All points in the order of their keys; ties by index.
+///
+/// \param key_of returns the key of a point.
+template <typename KeyOf>
+std::vector<Place> placesBy(const Positions& points, const KeyOf& key_of) {
+  std::vector<Place> places;
+  places.reserve(static_cast<std::size_t>(points.cols()));
+  for (Index i = 0; i < points.cols(); ++i)
+    places.push_back({key_of(i), i});
+  radixSort(places);
+  return places;
 }
 
-/// One step of the Hilbert curve (D. Hilbert, 1891) in the four attitudes that a square can have:
-/// for quadrant 2 x + y, its number along the curve and the attitude within it.
-struct HilbertStep {
-  std::array<std::uint8_t, 4> digit;
-  std::array<std::uint8_t, 4> attitude;
-};
-constexpr std::array<HilbertStep, 4> kHilbert{{{{0, 1, 3, 2}, {1, 0, 3, 0}},
-                                               {{0, 3, 1, 2}, {0, 2, 1, 1}},
-                                               {{2, 3, 1, 0}, {2, 1, 2, 3}},
-                                               {{2, 1, 3, 0}, {3, 3, 0, 2}}}};
-
-/// Position of a cell along the Hilbert curve over 2^bits x 2^bits cells; bits <= 16.
-std::uint32_t hilbertIndex(std::uint32_t x, std::uint32_t y, unsigned bits) {
-  std::uint32_t index = 0;
-  std::size_t attitude = 0;
-  for (unsigned bit = bits; bit-- > 0;) {
-    const std::size_t quadrant = (x >> bit & 1U) << 1U | (y >> bit & 1U);
-    index = index << 2U | kHilbert[attitude].digit[quadrant];
-    attitude = kHilbert[attitude].attitude[quadrant];
-  }
-  return index;
+std::vector<Index> indicesOf(const std::vector<Place>& places) {
+  std::vector<Index> order(places.size());
+  std::transform(places.begin(), places.end(), order.begin(),
+                 [](const Place& place) { return place.index; });
+  return order;
 }
 
-/// Element i of the sequence of splitmix64 from 0.
-std::uint64_t hash(std::uint64_t i) {
-  return splitmix64(i * 0x9e3779b97f4a7c15ULL);
-}
-
-constexpr unsigned kCurveBits = 14;    ///< an axis, for the whole sphere
-constexpr unsigned kRefineBits = 16;   ///< an axis, within a cell of the curve
-constexpr unsigned kGrowthBits = 3;    ///< each round has 2^3 - 1 times the points before it
-constexpr double kFirstRound = 128.0;  ///< points in the first round, about
-constexpr std::ptrdiff_t kCrowd = 16;  ///< points in one cell that are worth refining
-
-/// Cell of a direction on the Hilbert curve over the octahedron, unfolded to a square (Z. H.
-/// Cigolle et al., "A survey of efficient representations for independent unit vectors", 2014).
-std::uint32_t curveIndex(double x, double y, double z) {
-  const double scale = 1.0 / (std::abs(x) + std::abs(y) + std::abs(z));
-  double u = x * scale;
-  double v = y * scale;
-  if (z < 0.0) {
-    const double folded = std::copysign(1.0 - std::abs(v), u);
-    v = std::copysign(1.0 - std::abs(u), v);
-    u = folded;
-  }
-  constexpr double half = 1U << (kCurveBits - 1U);
-  const auto cell = [&](double w) {
-    return std::min(static_cast<std::uint32_t>(std::max(half + half * w, 0.0)),
-                    (1U << kCurveBits) - 1U);
-  };
-  return hilbertIndex(cell(u), cell(v), kCurveBits);
-}
-
-/// Sorts points of one cell along a Hilbert curve over their own bounding box, and so on. The sides
-/// of the box lie in different cells: each crowd is smaller than the one before it.
-void refine(const Positions& directions, Place* begin, Place* end) {
-  Eigen::Index normal = 0;
-  directions.col(begin->index).cwiseAbs().maxCoeff(&normal);
-  const auto chart = [&](const Place& place) {
-    const auto direction = directions.col(place.index);
-    return Eigen::Array2d(direction[(normal + 1) % 3], direction[(normal + 2) % 3]);
-  };
-  Eigen::Array2d low = chart(*begin);
-  Eigen::Array2d high = low;
-  for (const Place* place = begin; place != end; ++place) {
-    low = low.min(chart(*place));
-    high = high.max(chart(*place));
-  }
-  const double extent = (high - low).maxCoeff();
-  if (!(extent > 0.0))
-    return;
-  constexpr double cells = (1U << kRefineBits) - 1U;
-  for (Place* place = begin; place != end; ++place) {
-    const Eigen::Array2d cell = (chart(*place) - low) / extent * cells;
-    place->key = hilbertIndex(static_cast<std::uint32_t>(cell.x()),
-                              static_cast<std::uint32_t>(cell.y()), kRefineBits);
-  }
-  std::sort(begin, end);
-  for (Place* crowd = begin; crowd != end;) {
-    const std::uint32_t key = crowd->key;
-    Place* rest = std::find_if(crowd, end, [&](const Place& place) { return place.key != key; });
-    if (rest - crowd > kCrowd)
-      refine(directions, crowd, rest);
-    crowd = rest;
+/// Sorts points that crowd in one cell along the curve of their own box, and so on: the sides of
+/// the box lie in different cells, so that each crowd is smaller than the one before it.
+///
+/// Without, 200,000 points within 1e-6 on the sphere take 25 times as long to insert.
+void refineCrowds(const Positions& points, Place* begin, Place* end) {
+  constexpr std::ptrdiff_t crowd = 16;
+  for (Place* rest = begin; begin != end; begin = rest) {
+    rest = std::find_if(begin, end, [&](const Place& place) { return place.key != begin->key; });
+    Eigen::Vector3d low = points.col(begin->index);
+    Eigen::Vector3d high = low;
+    if (rest - begin <= crowd)
+      continue;
+    for (const Place* place = begin; place != rest; ++place) {
+      low = low.cwiseMin(points.col(place->index));
+      high = high.cwiseMax(points.col(place->index));
+    }
+    if (low == high)
+      continue;
+    const MortonCurve curve(low, high);
+    for (Place* place = begin; place != rest; ++place)
+      place->key = curve.key(points.col(place->index));
+    std::sort(begin, rest, [](const Place& a, const Place& b) {
+      return a.key != b.key ? a.key < b.key : a.index < b.index;
+    });
+    refineCrowds(points, begin, rest);
   }
 }
 
@@ -150,52 +92,29 @@ std::uint64_t MortonCurve::key(const Eigen::Vector3d& point) const {
 }
 
 std::vector<Index> mortonOrder(const Positions& points) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  std::vector<Index> order(n);
-  if (n == 0)
-    return order;
+  if (points.cols() == 0)
+    return {};
   const MortonCurve curve(points.rowwise().minCoeff(), points.rowwise().maxCoeff());
-  std::vector<CubePlace> places(n);
-  for (std::size_t i = 0; i < n; ++i)
-    places[i] = {curve.key(points.col(static_cast<Eigen::Index>(i))), static_cast<Index>(i)};
-  sortPlaces(places);
-  std::transform(places.begin(), places.end(), order.begin(),
-                 [](const CubePlace& place) { return place.index; });
-  return order;
+  return indicesOf(placesBy(points, [&](Index i) { return curve.key(points.col(i)); }));
 }
 
 std::vector<Index> insertionOrder(const Positions& directions) {
-  const auto n = static_cast<std::size_t>(directions.cols());
-  // A round has as many points as all before it, times 2^kGrowthBits - 1.
+  const MortonCurve curve(Eigen::Vector3d::Constant(-1.0), Eigen::Vector3d::Constant(1.0));
+  // The first round has at most about 128 points, and each has 2^3 - 1 times as many as all before
+  // it: less than 16 rounds, as keys are numbers of 63 bits, of which 60 are used.
+  constexpr unsigned growth_bits = 3;
   unsigned last_round = 0;
-  constexpr unsigned most_rounds = 1U << (32U - 2U * kCurveBits);
-  for (double size = static_cast<double>(n); size > kFirstRound && last_round + 1 < most_rounds;
-       size /= 1U << kGrowthBits)
+  for (Eigen::Index size = directions.cols(); size > 128; size >>= growth_bits)
     ++last_round;
-  std::vector<Place> places(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    unsigned round = last_round;
-    for (std::uint64_t bits = hash(i); round > 0 && (bits & ((1U << kGrowthBits) - 1U)) == 0;
-         bits >>= kGrowthBits)
+  std::vector<Place> places = placesBy(directions, [&](Index i) {
+    std::uint64_t round = last_round;
+    std::uint64_t bits = splitmix64(static_cast<std::uint64_t>(i) * 0x9e3779b97f4a7c15ULL);
+    for (; round > 0 && bits % (1U << growth_bits) == 0; bits >>= growth_bits)
       --round;
-    places[i] = {round << 2U * kCurveBits | curveIndex(directions(0, column), directions(1, column),
-                                                       directions(2, column)),
-                 static_cast<Index>(i)};
-  }
-  sortPlaces(places);
-  for (std::size_t begin = 0; begin < n;) {
-    std::size_t end = begin + 1;
-    while (end < n && places[end].key == places[begin].key)
-      ++end;
-    if (end - begin > static_cast<std::size_t>(kCrowd))
-      refine(directions, places.data() + begin, places.data() + end);
-    begin = end;
-  }
-  std::vector<Index> order(n);
-  std::transform(places.begin(), places.end(), order.begin(),
-                 [](const Place& place) { return place.index; });
-  return order;
+    return round << 60U | curve.key(directions.col(i)) >> 3U;
+  });
+  refineCrowds(directions, places.data(), places.data() + places.size());
+  return indicesOf(places);
 }
 
 }  // namespace spherical_param::internal
