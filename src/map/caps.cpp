@@ -1,15 +1,15 @@
 #include "caps.h"
 
 #include "boundary_loops.h"
-#include "parallel.h"
+#include "index_loops.h"
 #include "pi.h"
 #include "ringed_disc.h"
 #include "spherical_param/mesh_topology.h"
 
 #include <Eigen/Geometry>
 
-#include <cstddef>
 #include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -32,22 +32,20 @@ public:
       lengths.push_back(lengths.back() + (b - a).norm());
       moment += 0.5 * (lengths[i + 1] - lengths[i]) * (a + b);
     }
-    const double length = lengths.back();
-    const Vector3d center = length > 0.0 ? Vector3d(moment / length) : points_.col(loop.front());
+    Vector3d center = points_.col(loop.front());
+    if (lengths.back() > 0.0)
+      center = moment / lengths.back();
+    else
+      std::iota(lengths.begin(), lengths.end(), 0.0);
     std::vector<double> angles(loop.size());
     for (std::size_t i = 0; i < loop.size(); ++i)
-      angles[i] = 2.0 * kPi *
-                  (length > 0.0 ? lengths[i] / length
-                                : static_cast<double>(i) / static_cast<double>(loop.size()));
+      angles[i] = 2.0 * kPi * (lengths[i] / lengths.back());
     const RingedDisc disc = ringedDisc(angles);
 
-    const auto rim = static_cast<Index>(loop.size());
-    const Index first = static_cast<Index>(points_.cols()) + static_cast<Index>(added_.size());
-    for (Eigen::Index t = 0; t < disc.triangles.cols(); ++t)
-      for (Eigen::Index k = 0; k < 3; ++k) {
-        const Index v = disc.triangles(k, t);
-        corners_.push_back(v < rim ? loop[static_cast<std::size_t>(v)] : first + v - rim);
-      }
+    const Index rim = indexCount(loop);
+    const Index first = static_cast<Index>(points_.cols()) + indexCount(added_);
+    for (const Index v : disc.triangles.reshaped())
+      corners_.push_back(v < rim ? entry(loop, v) : first + v - rim);
     // The last vertex of the rim before each angle; rings begin at angle 0.
     std::size_t before = 0;
     for (std::size_t i = loop.size(); i < disc.radii.size(); ++i) {
@@ -66,14 +64,14 @@ public:
 
   CappedMesh take(const Triangles& triangles) const {
     CappedMesh mesh;
-    mesh.points.resize(3, points_.cols() + static_cast<Eigen::Index>(added_.size()));
+    mesh.points.resize(3, points_.cols() + indexCount(added_));
     mesh.points.leftCols(points_.cols()) = points_;
-    for (std::size_t i = 0; i < added_.size(); ++i)
-      mesh.points.col(points_.cols() + static_cast<Eigen::Index>(i)) = added_[i];
-    mesh.triangles.resize(3, triangles.cols() + static_cast<Eigen::Index>(corners_.size() / 3));
-    mesh.triangles << triangles,
-        Eigen::Map<const Triangles>(corners_.data(), 3,
-                                    static_cast<Eigen::Index>(corners_.size() / 3));
+    Eigen::Index i = points_.cols();
+    for (const Vector3d& point : added_)
+      mesh.points.col(i++) = point;
+    const Eigen::Map<const Triangles> added(corners_.data(), 3, indexCount(corners_) / 3);
+    mesh.triangles.resize(3, triangles.cols() + added.cols());
+    mesh.triangles << triangles, added;
     return mesh;
   }
 
@@ -108,17 +106,13 @@ Triangles manifoldPart(Triangles triangles, std::size_t vertices) {
     const MeshTopology topology = checkTopology(triangles, vertices, 1);
     if (topology.manifold())
       break;
-    std::vector<char> is_fault(vertices, 0);
+    Indexed<char> is_fault(vertices, 0);
     for (const Index v : topology.nonmanifold_vertices)
-      is_fault[static_cast<std::size_t>(v)] = 1;
+      is_fault[v] = 1;
     Eigen::Index kept = 0;
-    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-      bool is_good = true;
-      for (Eigen::Index k = 0; k < 3; ++k)
-        is_good = is_good && is_fault[static_cast<std::size_t>(triangles(k, t))] == 0;
-      if (is_good)
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+      if (is_fault[triangles(0, t)] + is_fault[triangles(1, t)] + is_fault[triangles(2, t)] == 0)
         triangles.col(kept++) = triangles.col(t).eval();
-    }
     if (kept == triangles.cols())
       break;
     triangles.conservativeResize(3, kept);
@@ -128,15 +122,13 @@ Triangles manifoldPart(Triangles triangles, std::size_t vertices) {
 
 /// Calls visit(vertex on the surface, vertex in an opening) for edges between the two.
 template <typename Visit>
-void forEachCrossing(const Triangles& triangles, const std::vector<Side>& sides,
-                     const Visit& visit) {
+void forEachCrossing(const Triangles& triangles, const Indexed<Side>& sides, const Visit& visit) {
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     for (Eigen::Index k = 0; k < 3; ++k) {
       // An edge is in two triangles, once in each direction.
       const Index u = triangles(k, t);
       const Index v = triangles((k + 1) % 3, t);
-      if (sides[static_cast<std::size_t>(u)] == Side::Surface &&
-          sides[static_cast<std::size_t>(v)] == Side::Open)
+      if (sides[u] == Side::Surface && sides[v] == Side::Open)
         visit(u, v);
     }
 }
@@ -145,41 +137,40 @@ void forEachCrossing(const Triangles& triangles, const std::vector<Side>& sides,
 
 CappedMesh capOpenings(const Positions& points, const Triangles& triangles) {
   Capping capping(points);
-  for (const std::vector<Index>& loop :
-       boundaryLoops(triangles, static_cast<std::size_t>(points.cols())))
+  for (const std::vector<Index>& loop : boundaryLoops(triangles, columnCount(points)))
     capping.cap(loop);
   return capping.take(triangles);
 }
 
 std::vector<Index> compact(Triangles& triangles, Eigen::Index vertex_count) {
-  std::vector<Index> numbers(static_cast<std::size_t>(vertex_count), -1);
-  for (Eigen::Index i = 0; i < triangles.size(); ++i)
-    numbers[static_cast<std::size_t>(triangles.data()[i])] = 0;
+  Indexed<Index> numbers(static_cast<std::size_t>(vertex_count), -1);
+  for (const Index v : triangles.reshaped())
+    numbers[v] = 0;
   std::vector<Index> used;
-  for (std::size_t v = 0; v < numbers.size(); ++v)
+  for (Index v = 0; v < vertex_count; ++v)
     if (numbers[v] == 0) {
-      numbers[v] = static_cast<Index>(used.size());
-      used.push_back(static_cast<Index>(v));
+      numbers[v] = indexCount(used);
+      used.push_back(v);
     }
-  for (Eigen::Index i = 0; i < triangles.size(); ++i)
-    triangles.data()[i] = numbers[static_cast<std::size_t>(triangles.data()[i])];
+  for (Index& v : triangles.reshaped())
+    v = numbers[v];
   return used;
 }
 
 OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
                        const std::function<bool(const Vector3d&)>& is_open) {
-  const auto count = static_cast<std::size_t>(directions.cols());
-  std::vector<Side> sides(count, Side::Surface);
-  forEachItem(count, threadCount(0, count), [&](std::size_t, std::size_t i) {
-    if (is_open(directions.col(static_cast<Eigen::Index>(i))))
+  const std::size_t count = columnCount(directions);
+  Indexed<Side> sides(count, Side::Surface);
+  forEachIndex(count, 0, [&](Index i) {
+    if (is_open(directions.col(i)))
       sides[i] = Side::Open;
   });
   Positions moved = directions;
   // How far each vertex moves to the nearest crossing: fractions of the edge.
-  std::vector<double> moves(count, 1.0);
+  Indexed<double> moves(count, 1.0);
   const auto move = [&](Index v, double fraction, const Vector3d& place) {
-    if (fraction < moves[static_cast<std::size_t>(v)]) {
-      moves[static_cast<std::size_t>(v)] = fraction;
+    if (fraction < moves[v]) {
+      moves[v] = fraction;
       moved.col(v) = place.normalized();
     }
   };
@@ -194,7 +185,7 @@ OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
     if (fraction < kNear)
       move(u, fraction, place(u, v, fraction));
   });
-  for (std::size_t i = 0; i < count; ++i)
+  for (Index i = 0; i < directions.cols(); ++i)
     if (moves[i] < 1.0)
       sides[i] = Side::Boundary;
   forEachCrossing(triangles, sides, [&](Index u, Index v) {
@@ -206,7 +197,7 @@ OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
   Eigen::Index kept = 0;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     for (Eigen::Index k = 0; k < 3; ++k)
-      if (sides[static_cast<std::size_t>(triangles(k, t))] == Side::Surface) {
+      if (sides[triangles(k, t)] == Side::Surface) {
         left.col(kept++) = triangles.col(t);
         break;
       }
@@ -215,7 +206,7 @@ OpenSphere cutOpenings(const Positions& directions, const Triangles& triangles,
   OpenSphere sphere;
   sphere.triangles = manifoldPart(std::move(left), count);
   const std::vector<Index> used = compact(sphere.triangles, directions.cols());
-  sphere.directions = moved(Eigen::all, used);
+  sphere.directions = columnsOf(moved, used);
   return sphere;
 }
 

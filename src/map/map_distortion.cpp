@@ -1,9 +1,9 @@
 #include "spherical_param/map/sphere_map.h"
 
 #include "corner_table.h"
-#include "exact_predicates.h"
-#include "parallel.h"
+#include "index_loops.h"
 #include "spherical_param/errors.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -160,43 +160,43 @@ struct Meshes {
   double scale;  ///< of the points: no square of a length leaves the range of double
   int threads;
 
-  std::size_t count() const { return static_cast<std::size_t>(triangles.cols()); }
-  Sides solid(std::size_t t) const {
-    return Sides(points, triangles, static_cast<Eigen::Index>(t), scale);
+  Sides solid(Index t) const { return Sides(points, triangles, t, scale); }
+  Sides flat(Index t) const { return Sides(sphere, triangles, t, 1.0); }
+  double areaOnSphere(Index t, const Sides& flat) const {
+    return spherical_param::areaOnSphere(sphere.col(triangles(0, t)), flat);
   }
-  Sides flat(std::size_t t) const {
-    return Sides(sphere, triangles, static_cast<Eigen::Index>(t), 1.0);
+  /// Calls work(block, t) for each triangle of each block.
+  template <typename Work>
+  void forEachTriangle(const Work& work) const {
+    internal::forEachBlock(internal::columnCount(triangles), threads,
+                           [&](std::size_t block, std::size_t begin, std::size_t end) {
+                             for (std::size_t t = begin; t < end; ++t)
+                               work(block, static_cast<Index>(t));
+                           });
   }
-  Vector3d direction(std::size_t t, int corner) const {
-    return sphere.col(triangles(corner, static_cast<Eigen::Index>(t)));
-  }
-  double areaOnSphere(std::size_t t, const Sides& flat) const {
-    return spherical_param::areaOnSphere(direction(t, 0), flat);
+  std::size_t blockCount() const {
+    return (internal::columnCount(triangles) + internal::kBlockSize - 1) / internal::kBlockSize;
   }
 };
 
 /// Sums over each block of triangles.
 std::vector<Sums> sumBlocks(const Meshes& meshes) {
-  std::vector<Sums> of_blocks((meshes.count() + internal::kBlockSize - 1) / internal::kBlockSize);
-  internal::forEachBlock(
-      meshes.count(), meshes.threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        Sums& sums = of_blocks[block];
-        for (std::size_t t = begin; t < end; ++t) {
-          const Sides solid = meshes.solid(t);
-          if (internal::orientation3d(Vector3d::Zero(), meshes.direction(t, 0),
-                                      meshes.direction(t, 1), meshes.direction(t, 2)) <= 0)
-            ++sums.flipped;
-          if (solid.isDegenerate()) {
-            ++sums.degenerate;
-            continue;
-          }
-          ++sums.counted;
-          sums.in_space += solid.twice_area;
-          const Sides flat = meshes.flat(t);
-          sums.on_sphere += flat.twice_area;
-          sums.covered += meshes.areaOnSphere(t, flat);
-        }
-      });
+  std::vector<Sums> of_blocks(meshes.blockCount());
+  meshes.forEachTriangle([&](std::size_t block, Index t) {
+    Sums& sums = of_blocks[block];
+    const Sides solid = meshes.solid(t);
+    if (internal::isFlipped(meshes.sphere, meshes.triangles, t))
+      ++sums.flipped;
+    if (solid.isDegenerate()) {
+      ++sums.degenerate;
+      return;
+    }
+    ++sums.counted;
+    sums.in_space += solid.twice_area;
+    const Sides flat = meshes.flat(t);
+    sums.on_sphere += flat.twice_area;
+    sums.covered += meshes.areaOnSphere(t, flat);
+  });
   return of_blocks;
 }
 
@@ -210,39 +210,34 @@ struct Distortions {
 
 Distortions distortionsOf(const Meshes& meshes, const std::vector<Sums>& of_blocks,
                           const Sums& sums) {
-  // Where the values of a block begin; the sums follow the order of the blocks.
-  std::vector<std::size_t> first(of_blocks.size(), 0);
+  // Where the next value of each block goes; the sums follow the order of the blocks.
+  std::vector<std::size_t> next(of_blocks.size(), 0);
   for (std::size_t b = 1; b < of_blocks.size(); ++b)
-    first[b] = first[b - 1] + of_blocks[b - 1].counted;
+    next[b] = next[b - 1] + of_blocks[b - 1].counted;
   Distortions result;
   result.angles.resize(sums.counted);
   result.areas.resize(sums.counted);
   // Of the blocks: differences of angles, and the squares of stretch.
   std::vector<std::pair<double, double>> of_block(of_blocks.size());
-  internal::forEachBlock(
-      meshes.count(), meshes.threads, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        std::size_t k = first[block];
-        for (std::size_t t = begin; t < end; ++t) {
-          const Sides solid = meshes.solid(t);
-          if (solid.isDegenerate())
-            continue;
-          const Sides flat = meshes.flat(t);
-          const LinearMap map(solid, flat);
-          const double weight = solid.twice_area / sums.in_space;
-          const double area = meshes.areaOnSphere(t, flat) / sums.covered / weight;
-          // Written so that 0 / 0, which is not a number, counts as unbounded.
-          result.angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
-          result.areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
-          ++k;
-          // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
-          const double sigma_2 = map.determinant / map.sigma_1;
-          const double stretch = 0.5 *
-                                 (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
-                                 (sums.on_sphere / sums.in_space);
-          of_block[block].second += weight * bounded(stretch);
-          of_block[block].first += (solid.angles() - flat.angles()).cwiseAbs().sum();
-        }
-      });
+  meshes.forEachTriangle([&](std::size_t block, Index t) {
+    const Sides solid = meshes.solid(t);
+    if (solid.isDegenerate())
+      return;
+    const Sides flat = meshes.flat(t);
+    const LinearMap map(solid, flat);
+    const double weight = solid.twice_area / sums.in_space;
+    const double area = meshes.areaOnSphere(t, flat) / sums.covered / weight;
+    const std::size_t k = next[block]++;
+    // Written so that 0 / 0, which is not a number, counts as unbounded.
+    result.angles[k] = {bounded(map.sigma_1 * map.sigma_1 / map.determinant), weight};
+    result.areas[k] = {area >= 1.0 ? bounded(area) : bounded(1.0 / area), weight};
+    // The map from the sphere has the singular values 1 / sigma_2 and 1 / sigma_1.
+    const double sigma_2 = map.determinant / map.sigma_1;
+    const double stretch = 0.5 * (1.0 / (sigma_2 * sigma_2) + 1.0 / (map.sigma_1 * map.sigma_1)) *
+                           (sums.on_sphere / sums.in_space);
+    of_block[block].second += weight * bounded(stretch);
+    of_block[block].first += (solid.angles() - flat.angles()).cwiseAbs().sum();
+  });
   for (const auto& [angle, square] : of_block) {
     result.angle_difference += angle;
     result.squared_stretch += square;
@@ -257,9 +252,8 @@ MapDistortion measureMapDistortion(const Positions& points, const Triangles& tri
   internal::checkThreads(threads);
   checkPositions(points, triangles, sphere);
   MapDistortion distortion;
-  const auto m = static_cast<std::size_t>(triangles.cols());
-  threads = internal::threadCount(threads, m);
-  if (m == 0)
+  threads = internal::threadCount(threads, internal::columnCount(triangles));
+  if (triangles.cols() == 0)
     return distortion;
   const double extent = points.cwiseAbs().maxCoeff();
   const Meshes meshes{points, sphere, triangles, extent > 0.0 ? 1.0 / extent : 1.0, threads};

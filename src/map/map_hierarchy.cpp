@@ -1,8 +1,9 @@
 #include "map_hierarchy.h"
 
 #include "corner_table.h"
-#include "parallel.h"
+#include "index_loops.h"
 #include "radix_sort.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -35,13 +37,12 @@ double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 /// corner on the other side of the edge opposite to it.
 class CollapsibleMesh {
 public:
-  CollapsibleMesh(const Positions& points, const Triangles& triangles, std::vector<double> masses,
+  CollapsibleMesh(const Positions& points, const Triangles& triangles, Indexed<double> masses,
                   int threads)
       : points_(points), vertex_(triangles.data(), triangles.data() + triangles.size()),
-        opposite_(vertex_.size()), corner_of_(static_cast<std::size_t>(points.cols())),
-        valence_(static_cast<std::size_t>(points.cols())),
-        mark_(static_cast<std::size_t>(points.cols()), 0), masses_(std::move(masses)) {
-    const CornerTable corners(triangles, static_cast<std::size_t>(points.cols()), threads);
+        opposite_(vertex_.size()), corner_of_(columnCount(points)), valence_(columnCount(points)),
+        marked_(columnCount(points)), masses_(std::move(masses)) {
+    const CornerTable corners(triangles, columnCount(points), threads);
     forEachBlock(corners.vertexCount(), threads,
                  [&](std::size_t, std::size_t begin, std::size_t end) {
                    std::vector<std::pair<Index, Index>> behind;
@@ -50,34 +51,31 @@ public:
                  });
   }
 
-  Index valence(Index v) const { return valence_[static_cast<std::size_t>(v)]; }
-  bool isAlive(std::size_t t) const { return vertex_[3 * t] >= 0; }
-  Index vertex(std::size_t corner) const { return vertex_[corner]; }
-  double mass(std::size_t t) const { return masses_[t]; }
-  std::size_t triangleCount() const { return masses_.size(); }
+  Index valence(Index v) const { return valence_[v]; }
+  bool isAlive(Index t) const { return vertex_[3 * t] >= 0; }
+  Index vertex(Index corner) const { return vertex_[corner]; }
+  double mass(Index t) const { return masses_[t]; }
+  Index triangleCount() const { return indexCount(masses_); }
 
   /// Calls visit(corner, neighbor) for the triangles around v counter-clockwise, each with its
   /// corner at v and its vertex behind that.
   template <typename Visit>
   void forEachAround(Index v, const Visit& visit) const {
-    const Index first = corner_of_[static_cast<std::size_t>(v)];
+    const Index first = corner_of_[v];
     Index corner = first;
     do {
-      const Index following = after(opposite(after(corner)));
-      visit(corner, vertex_[static_cast<std::size_t>(after(corner))]);
+      const Index following = after(opposite_[after(corner)]);
+      visit(corner, vertex_[after(corner)]);
       corner = following;
     } while (corner != first);
   }
 
   /// Whether the mesh stays a manifold if w is moved to its neighbour v, and is no tetrahedron.
   bool canCollapse(Index w, Index v) {
-    ++stamp_;
-    forEachAround(
-        w, [&](Index, Index neighbor) { mark_[static_cast<std::size_t>(neighbor)] = stamp_; });
+    marked_.clear();
+    forEachAround(w, [&](Index, Index neighbor) { marked_.insert(neighbor); });
     int shared = 0;
-    forEachAround(v, [&](Index, Index neighbor) {
-      shared += mark_[static_cast<std::size_t>(neighbor)] == stamp_ ? 1 : 0;
-    });
+    forEachAround(v, [&](Index, Index neighbor) { shared += marked_.contains(neighbor) ? 1 : 0; });
     return shared == 2;
   }
 
@@ -96,36 +94,36 @@ public:
     ring_masses_.clear();
     double mass = 0.0;
     for (const Index corner : star_) {
-      ring_masses_.push_back(masses_[static_cast<std::size_t>(corner / 3)]);
+      ring_masses_.push_back(masses_[corner / 3]);
       mass += ring_masses_.back();
     }
     // The triangles with both w and v are the first and the last.
     const Index first = star_.front();
     const Index last = star_.back();
-    join(opposite(first), opposite(after(first)));
-    join(opposite(last), opposite(before(last)));
-    remove(first / 3);
-    remove(last / 3);
-    const std::size_t k = star_.size();
-    valence_[static_cast<std::size_t>(v)] += static_cast<Index>(k) - 4;
-    --valence_[static_cast<std::size_t>(ring_[1])];
-    --valence_[static_cast<std::size_t>(ring_[k - 1])];
+    join(opposite_[first], opposite_[after(first)]);
+    join(opposite_[last], opposite_[before(last)]);
+    vertex_[3 * (first / 3)] = -1;
+    vertex_[3 * (last / 3)] = -1;
+    const Index k = indexCount(star_);
+    valence_[v] += k - 4;
+    --valence_[ring_[1]];
+    --valence_[ring_[k - 1]];
 
     double area = 0.0;
-    for (std::size_t i = 1; i + 1 < k; ++i)
+    for (Index i = 1; i + 1 < k; ++i)
       area += areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
-    const auto count = static_cast<double>(k - 2);
-    for (std::size_t i = 1; i + 1 < k; ++i) {
+    const double count = k - 2;
+    for (Index i = 1; i + 1 < k; ++i) {
       const Index corner = star_[i];
-      vertex_[static_cast<std::size_t>(corner)] = v;
-      corner_of_[static_cast<std::size_t>(v)] = corner;
-      corner_of_[static_cast<std::size_t>(ring_[i])] = after(corner);
-      corner_of_[static_cast<std::size_t>(ring_[i + 1])] = before(corner);
+      vertex_[corner] = v;
+      corner_of_[v] = corner;
+      corner_of_[ring_[i]] = after(corner);
+      corner_of_[ring_[i + 1]] = before(corner);
       // A part is shared evenly, so that a triangle without area has some of it.
       constexpr double even = 0.1;
       const double fraction =
           areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
-      masses_[static_cast<std::size_t>(corner / 3)] =
+      masses_[corner / 3] =
           mass * (area > 0.0 ? even / count + (1.0 - even) * fraction / area : 1.0 / count);
     }
   }
@@ -136,14 +134,11 @@ public:
 private:
   static Index after(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
   static Index before(Index corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
-  Index opposite(Index corner) const { return opposite_[static_cast<std::size_t>(corner)]; }
 
   void join(Index a, Index b) {
-    opposite_[static_cast<std::size_t>(a)] = b;
-    opposite_[static_cast<std::size_t>(b)] = a;
+    opposite_[a] = b;
+    opposite_[b] = a;
   }
-
-  void remove(Index triangle) { vertex_[3 * static_cast<std::size_t>(triangle)] = -1; }
 
   /// Finds the opposite corners over the edges of v.
   ///
@@ -153,30 +148,29 @@ private:
     behind.clear();
     corners.forEachCorner(v, [&](Index t, Index k) {
       const Index corner = 3 * t + k;
-      behind.emplace_back(vertex_[static_cast<std::size_t>(after(corner))], corner);
+      behind.emplace_back(vertex_[after(corner)], corner);
     });
     std::sort(behind.begin(), behind.end());
     for (const auto& [neighbor, corner] : behind) {
-      const Index end = vertex_[static_cast<std::size_t>(before(corner))];
+      const Index end = vertex_[before(corner)];
       const auto next = std::lower_bound(behind.begin(), behind.end(), std::pair(end, Index{0}));
       // Over the edge of v and `end`, of which the other side is written at `end`.
-      opposite_[static_cast<std::size_t>(after(corner))] = before(next->second);
+      opposite_[after(corner)] = before(next->second);
     }
-    corner_of_[static_cast<std::size_t>(v)] = behind.front().second;
-    valence_[static_cast<std::size_t>(v)] = static_cast<Index>(behind.size());
+    corner_of_[v] = behind.front().second;
+    valence_[v] = indexCount(behind);
   }
 
   const Positions& points_;
-  std::vector<Index> vertex_;    // of each corner; the first of a triangle that is gone: -1
-  std::vector<Index> opposite_;  // of each corner
-  std::vector<Index> corner_of_;
-  std::vector<Index> valence_;
-  std::vector<std::uint32_t> mark_;
-  std::vector<double> masses_;
-  std::uint32_t stamp_ = 0;
+  Indexed<Index> vertex_;    // of each corner; the first of a triangle that is gone: -1
+  Indexed<Index> opposite_;  // of each corner
+  Indexed<Index> corner_of_;
+  Indexed<Index> valence_;
+  IndexSet marked_;
+  Indexed<double> masses_;
   // Of the last collapse.
-  std::vector<Index> star_;
-  std::vector<Index> ring_;
+  Indexed<Index> star_;
+  Indexed<Index> ring_;
   std::vector<double> ring_masses_;
 };
 
@@ -218,67 +212,49 @@ double costOf(const Positions& points, const std::vector<Index>& ring, std::size
     longest = std::max(longest, next_squared);
     side = next;
   }
-  const double more = std::max(0.0, static_cast<double>(valence) - 7.0);
+  const double more = std::max(0.0, valence - 7.0);
   return longest * shape * (1.0 + 8.0 * (1.0 - least_cosine)) * (1.0 + 0.1 * more * more);
 }
 
 /// The numbering of the vertices by breadth-first search: what is near is near in memory, whatever
 /// the order of the input, and the frame does not matter.
-std::vector<Index> breadthFirst(const Triangles& triangles, std::size_t n, int threads) {
+Indexed<Index> breadthFirst(const Triangles& triangles, std::size_t n, int threads) {
   const CornerTable corners(triangles, n, threads);
-  std::vector<Index> order;
+  Indexed<Index> order;
   order.reserve(n);
-  std::vector<char> known(n, 0);
+  Indexed<char> known(n, 0);
   order.push_back(0);
   known[0] = 1;
-  for (std::size_t i = 0; i < order.size(); ++i)
+  for (Index i = 0; i < indexCount(order); ++i)
     corners.forEachCorner(order[i], [&](Index t, Index k) {
       const Index next = triangles(nextCorner(k), t);
-      if (known[static_cast<std::size_t>(next)] == 0) {
-        known[static_cast<std::size_t>(next)] = 1;
+      if (known[next] == 0) {
+        known[next] = 1;
         order.push_back(next);
       }
     });
   return order;
 }
 
-std::vector<Index> inverseOf(const std::vector<Index>& order) {
-  std::vector<Index> rank(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    rank[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+Indexed<Index> inverseOf(const Indexed<Index>& order) {
+  Indexed<Index> rank(order.size());
+  for (Index i = 0; i < indexCount(order); ++i)
+    rank[order[i]] = i;
   return rank;
 }
 
-Triangles renumbered(const Triangles& triangles, const std::vector<Index>& rank) {
-  return triangles.unaryExpr([&](Index v) { return rank[static_cast<std::size_t>(v)]; });
+Triangles renumbered(const Triangles& triangles, const Indexed<Index>& rank) {
+  return triangles.unaryExpr([&](Index v) { return rank[v]; });
 }
 
-Positions ordered(const Positions& points, const std::vector<Index>& order) {
-  Positions result(3, points.cols());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    result.col(static_cast<Eigen::Index>(i)) = points.col(order[i]);
-  return result;
-}
-
-std::vector<double> massesOf(const Positions& points, const Triangles& triangles, int threads) {
-  const auto m = static_cast<std::size_t>(triangles.cols());
-  std::vector<double> masses(m);
-  const double sum = sumOfBlocks(m, threads, 0.0, [&](std::size_t begin, std::size_t end) {
-    double part = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto t = static_cast<Eigen::Index>(i);
-      masses[i] = areaOf(points.col(triangles(0, t)), points.col(triangles(1, t)),
-                         points.col(triangles(2, t)));
-      part += masses[i];
-    }
-    return part;
+Indexed<double> massesOf(const Positions& points, const Triangles& triangles, int threads) {
+  const Index m = static_cast<Index>(triangles.cols());
+  Indexed<double> masses(columnCount(triangles));
+  const double sum = sumOfIndices(masses.size(), threads, 0.0, [&](Index t) {
+    return masses[t] = 0.5 * areaNormal(points, triangles, t).norm();
   });
-  if (!(sum > 0.0)) {
-    std::fill(masses.begin(), masses.end(), 1.0 / static_cast<double>(m));
-    return masses;
-  }
   for (double& mass : masses)
-    mass = std::max(mass / sum, kMinMass / static_cast<double>(m));
+    mass = sum > 0.0 ? std::max(mass / sum, kMinMass / m) : 1.0 / m;
   return masses;
 }
 
@@ -288,29 +264,28 @@ public:
   Coarsening(const Positions& points, const Triangles& triangles, int requested, int threads)
       : points_(points), requested_threads_(requested),
         mesh_(points, triangles, massesOf(points, triangles, threads), threads),
-        blocked_(static_cast<std::size_t>(points.cols()), 0) {
-    for (Index v = 0; v < points.cols(); ++v)
-      alive_.push_back(v);
+        alive_(columnCount(points)), blocked_(alive_.size()) {
+    std::iota(alive_.begin(), alive_.end(), 0);
     keepMesh();
   }
 
   MapHierarchy run(const FractionReport& report) {
-    const auto n = static_cast<double>(alive_.size());
+    const double n = indexCount(alive_);
     Index most_neighbors = kMaxCoarseNeighbors;
     while (alive_.size() > 4) {
-      const std::size_t before = alive_.size();
+      const Index before = indexCount(alive_);
       takeOut(most_neighbors);
-      const std::size_t gone = before - alive_.size();
+      const Index gone = before - indexCount(alive_);
       // With more than 4 vertices there is an edge that can be contracted.
-      if (gone == 0 || (gone < before / 20 && before > static_cast<std::size_t>(kFewVertices)))
+      if (gone == 0 || (gone < before / 20 && before > kFewVertices))
         most_neighbors = most_neighbors < (Index{1} << 29) ? 2 * most_neighbors : most_neighbors;
       else
         most_neighbors = std::max(kMaxCoarseNeighbors, most_neighbors / 2);
-      const auto kept = static_cast<double>(hierarchy_.meshes.back().vertex_count);
-      const double ratio = kept > 1000.0 ? 0.5 : 0.8;
-      if (static_cast<double>(alive_.size()) <= ratio * kept || alive_.size() == 4)
+      const Index kept = hierarchy_.meshes.back().vertex_count;
+      const double ratio = kept > 1000 ? 0.5 : 0.8;
+      if (indexCount(alive_) <= ratio * kept || alive_.size() == 4)
         keepMesh();
-      reportFraction(report, 1.0 - static_cast<double>(alive_.size()) / n);
+      reportFraction(report, 1.0 - indexCount(alive_) / n);
     }
     number();
     return std::move(hierarchy_);
@@ -319,31 +294,26 @@ public:
 private:
   void takeOut(Index most_neighbors) {
     findCandidates(most_neighbors);
-    const std::size_t count =
-        alive_.size() <= static_cast<std::size_t>(kFewVertices)
-            ? candidates_.size()
-            : static_cast<std::size_t>(
-                  std::ceil(kFractionOfCandidates * static_cast<double>(candidates_.size())));
-    const std::size_t most = alive_.size() <= static_cast<std::size_t>(kFewVertices)
-                                 ? 1
-                                 : alive_.size() - static_cast<std::size_t>(kFewVertices);
+    const Index alive = indexCount(alive_);
+    const bool are_few = alive <= kFewVertices;
+    const double count = indexCount(candidates_) * (are_few ? 1.0 : kFractionOfCandidates);
+    const Index most = are_few ? 1 : alive - kFewVertices;
     const std::size_t first = removed_.size();
-    ++batch_;
-    for (std::size_t i = 0; i < count && removed_.size() - first < most; ++i) {
+    blocked_.clear();
+    for (Index i = 0; i < count && indexCount(gone_) < most; ++i) {
       Candidate candidate = candidates_[i];
-      if (blocked_[static_cast<std::size_t>(candidate.vertex)] == batch_ ||
-          !chooseTarget(candidate))
+      if (blocked_.contains(candidate.vertex) || !chooseTarget(candidate))
         continue;
       mesh_.collapse(candidate.vertex, candidate.target);
       for (const Index neighbor : mesh_.ring())
-        blocked_[static_cast<std::size_t>(neighbor)] = batch_;
+        blocked_.insert(neighbor);
       removed_.push_back({candidate.vertex, static_cast<std::uint32_t>(ring_.size())});
       ring_.insert(ring_.end(), mesh_.ring().begin(), mesh_.ring().end());
       for (const double mass : mesh_.ringMasses())
         ring_masses_.push_back(static_cast<float>(mass));
       gone_.push_back(candidate.vertex);
     }
-    if (removed_.size() == first)
+    if (gone_.empty())
       return;
     batch_begin_.push_back(first);
     std::sort(gone_.begin(), gone_.end());
@@ -361,7 +331,7 @@ private:
     forEachBlock(alive_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
       std::vector<Index> ring;
       for (std::size_t i = begin; i < end; ++i) {
-        const Index w = alive_[i];
+        const Index w = alive_[static_cast<Index>(i)];
         found_[i] = {0, w, none};
         if (mesh_.valence(w) > most_neighbors)
           continue;
@@ -423,11 +393,11 @@ private:
 
   void keepMesh() {
     MapMesh mesh;
-    mesh.vertex_count = static_cast<Index>(alive_.size());
+    mesh.vertex_count = indexCount(alive_);
     mesh.triangles.resize(3, 2 * mesh.vertex_count - 4);
-    mesh.masses.reserve(static_cast<std::size_t>(mesh.triangles.cols()));
+    mesh.masses.reserve(columnCount(mesh.triangles));
     Eigen::Index t = 0;
-    for (std::size_t i = 0; i < mesh_.triangleCount(); ++i)
+    for (Index i = 0; i < mesh_.triangleCount(); ++i)
       if (mesh_.isAlive(i)) {
         mesh.triangles.col(t++) << mesh_.vertex(3 * i), mesh_.vertex(3 * i + 1),
             mesh_.vertex(3 * i + 2);
@@ -438,7 +408,7 @@ private:
 
   /// Numbers the vertices, those that were taken out last first; of a batch in their order here.
   void number() {
-    std::vector<Index>& order = hierarchy_.order;
+    Indexed<Index>& order = hierarchy_.order;
     order = alive_;
     hierarchy_.ring_begin.push_back(0);
     hierarchy_.ring.reserve(ring_.size());
@@ -446,7 +416,7 @@ private:
     batch_begin_.push_back(removed_.size());
     std::size_t end = removed_.size();
     for (std::size_t b = batch_begin_.size() - 1; b-- > 0;) {
-      hierarchy_.batches.push_back(static_cast<Index>(order.size()));
+      hierarchy_.batches.push_back(indexCount(order));
       std::vector<std::pair<Index, std::size_t>> batch;
       for (std::size_t i = batch_begin_[b]; i < end; ++i)
         batch.emplace_back(removed_[i].vertex, i);
@@ -463,13 +433,13 @@ private:
         hierarchy_.ring_begin.push_back(static_cast<std::uint32_t>(hierarchy_.ring.size()));
       }
     }
-    hierarchy_.batches.push_back(static_cast<Index>(order.size()));
-    const std::vector<Index> rank = inverseOf(order);
+    hierarchy_.batches.push_back(indexCount(order));
+    const Indexed<Index> rank = inverseOf(order);
     for (Index& v : hierarchy_.ring)
-      v = rank[static_cast<std::size_t>(v)];
+      v = rank[v];
     for (MapMesh& mesh : hierarchy_.meshes)
       mesh.triangles = renumbered(mesh.triangles, rank);
-    hierarchy_.points = ordered(points_, order);
+    hierarchy_.points = columnsOf(points_, order);
   }
 
   struct Removed {
@@ -480,11 +450,10 @@ private:
   const Positions& points_;
   int requested_threads_;
   CollapsibleMesh mesh_;
-  std::vector<Index> alive_;
-  std::vector<std::uint32_t> blocked_;  // the last batch that changes something at the vertex
-  std::uint32_t batch_ = 0;
+  Indexed<Index> alive_;
+  IndexSet blocked_;  // vertices at which the batch changes something
   std::vector<Candidate> found_;
-  std::vector<Candidate> candidates_;
+  Indexed<Candidate> candidates_;
   std::vector<Index> work_ring_;
   std::vector<Index> gone_;
   std::vector<Removed> removed_;
@@ -498,19 +467,18 @@ private:
 
 MapHierarchy buildMapHierarchy(const Positions& points, const Triangles& triangles, int threads,
                                const FractionReport& report) {
-  const auto n = static_cast<std::size_t>(points.cols());
-  const int most = threadCount(threads, n);
+  const int most = threadCount(threads, columnCount(points));
   // Squares of lengths are in the range of double, whatever the unit.
   const Vector3d center = 0.5 * points.rowwise().minCoeff() + 0.5 * points.rowwise().maxCoeff();
   const double extent = (points.colwise() - center).cwiseAbs().maxCoeff();
-  const std::vector<Index> order = breadthFirst(triangles, n, most);
-  Positions scaled = ordered(points, order).colwise() - center;
+  const Indexed<Index> order = breadthFirst(triangles, columnCount(points), most);
+  Positions scaled = columnsOf(points, order).colwise() - center;
   if (extent > 0.0)
     scaled /= extent;
   MapHierarchy hierarchy =
       Coarsening(scaled, renumbered(triangles, inverseOf(order)), threads, most).run(report);
   for (Index& v : hierarchy.order)
-    v = order[static_cast<std::size_t>(v)];
+    v = order[v];
   return hierarchy;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "progress.h"
 #include "spherical_param/types.h"
 
@@ -14,7 +15,7 @@ struct MapMesh {
   Index vertex_count = 0;
   Triangles triangles;
   /// Area in space that each triangle stands for [unit of the input squared].
-  std::vector<float> masses;
+  Indexed<float> masses;
 };
 
 /// A closed mesh of genus 0 and ever coarser ones, down to a tetrahedron, which stand for the same
@@ -23,7 +24,7 @@ struct MapMesh {
 /// is a triangle.
 struct MapHierarchy {
   /// The vertices of the input in the numbering of the hierarchy: the coarser meshes first.
-  std::vector<Index> order;
+  Indexed<Index> order;
   /// 3 x v, the vertices in that order.
   Positions points;
   /// Some of the meshes, finest first; the last is a tetrahedron.

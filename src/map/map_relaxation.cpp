@@ -1,9 +1,10 @@
 #include "map_relaxation.h"
 
 #include "corner_table.h"
-#include "exact_predicates.h"
-#include "parallel.h"
+#include "index_loops.h"
+#include "partition.h"
 #include "tangent_basis.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -74,10 +75,6 @@ bool isSurelyPositive(const Vector3d& to_first, const Vector3d& to_next, double 
          determinant * determinant > unit * unit * to_first.squaredNorm() * to_next.squaredNorm();
 }
 
-bool isPositive(const Vector3d& u, const Vector3d& first, const Vector3d& next) {
-  return orientation3d(Vector3d::Zero(), u, first, next) > 0;
-}
-
 /// What the ratio of an area to its target costs, and the derivatives by the ratio's logarithm.
 struct AreaTerm {
   double value;
@@ -119,8 +116,8 @@ double energyAround(const Positions& sphere, const MapCorner* corners, std::size
     const Vector3d to_next = is_last ? to_begin : Vector3d(sphere.col(corners[i + 1].neighbor) - u);
     const Image image(u, to_first, to_next, corners[i]);
     if (!isSurelyPositive(to_first, to_next, image.determinant) &&
-        !(image.determinant > 0.0 && isPositive(u, sphere.col(corners[i].neighbor),
-                                                sphere.col(corners[is_last ? 0 : i + 1].neighbor))))
+        !(image.determinant > 0.0 && isOutward(u, sphere.col(corners[i].neighbor),
+                                               sphere.col(corners[is_last ? 0 : i + 1].neighbor))))
       return std::numeric_limits<double>::infinity();
     sum += termOf(image, corners[i].mass, energy);
     to_first = to_next;
@@ -231,44 +228,40 @@ Vector2d newtonStep(const Model& model) {
 /// the lowest colour that no neighbour has.
 void colorVertices(const Triangles& triangles, const CornerTable& corners, Index vertex_count,
                    MapRows& rows) {
-  const auto n = static_cast<std::size_t>(vertex_count);
-  std::vector<Index> color(n, -1);
-  std::vector<Index> taken_by;  // of each colour, the last vertex with a neighbour that has it
+  Indexed<Index> color(static_cast<std::size_t>(vertex_count), -1);
+  Indexed<Index> taken_by;  // of each colour, the last vertex with a neighbour that has it
   for (Index v = 0; v < vertex_count; ++v) {
     corners.forEachCorner(v, [&](Index t, Index k) {
-      const Index other = color[static_cast<std::size_t>(triangles(nextCorner(k), t))];
+      const Index other = color[triangles(nextCorner(k), t)];
       if (other >= 0)
-        taken_by[static_cast<std::size_t>(other)] = v;
+        taken_by[other] = v;
     });
-    Index c = 0;
-    while (static_cast<std::size_t>(c) < taken_by.size() &&
-           taken_by[static_cast<std::size_t>(c)] == v)
-      ++c;
-    if (static_cast<std::size_t>(c) == taken_by.size())
+    color[v] = 0;
+    while (color[v] < indexCount(taken_by) && taken_by[color[v]] == v)
+      ++color[v];
+    if (color[v] == indexCount(taken_by))
       taken_by.push_back(-1);
-    color[static_cast<std::size_t>(v)] = c;
   }
 
-  rows.colors.assign(taken_by.size() + 1, 0);
-  for (const Index c : color)
-    ++rows.colors[static_cast<std::size_t>(c) + 1];
-  for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c)
-    rows.colors[c + 1] += rows.colors[c];
-  rows.vertices.resize(n);
-  std::vector<std::uint32_t> next(rows.colors.begin(), rows.colors.end() - 1);
-  for (Index v = 0; v < vertex_count; ++v)
-    rows.vertices[next[static_cast<std::size_t>(color[static_cast<std::size_t>(v)])]++] = v;
+  const Partition by_color(color, taken_by.size());
+  rows.vertices.reserve(color.size());
+  for (Index c = 0; c < indexCount(taken_by); ++c) {
+    rows.colors.push_back(rows.vertices.size());
+    by_color.forEach(c, [&](Index v) { rows.vertices.push_back(v); });
+  }
+  rows.colors.push_back(rows.vertices.size());
 }
 
 }  // namespace
 
-Vector3d mapCotangents(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const std::array<Vector3d, 3> corners = {a, b, c};
+Eigen::Vector3f mapCotangents(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  Eigen::Matrix3d corners;
+  corners << a, b, c;
   // The longest side is the base: the corners next to it are acute.
-  std::size_t top = 0;
+  Index top = 0;
   double longest = -1.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double squared = (corners[(k + 2) % 3] - corners[(k + 1) % 3]).squaredNorm();
+  for (Index k = 0; k < 3; ++k) {
+    const double squared = (corners.col((k + 2) % 3) - corners.col((k + 1) % 3)).squaredNorm();
     if (squared > longest) {
       longest = squared;
       top = k;
@@ -276,33 +269,26 @@ Vector3d mapCotangents(const Vector3d& a, const Vector3d& b, const Vector3d& c) 
   }
   Vector3d cotangents = Vector3d::Constant(std::sqrt(1.0 / 3.0));
   if (!(longest > 0.0))
-    return cotangents;
-  const Vector3d& left = corners[(top + 1) % 3];
-  const Vector3d base = (corners[(top + 2) % 3] - left) / std::sqrt(longest);
-  const Vector3d side = (corners[top] - left) / std::sqrt(longest);
+    return cotangents.cast<float>();
+  const Vector3d left = corners.col((top + 1) % 3);
+  const Vector3d base = (corners.col((top + 2) % 3) - left) / std::sqrt(longest);
+  const Vector3d side = (corners.col(top) - left) / std::sqrt(longest);
   const double x = std::clamp(base.dot(side), 0.0, 1.0);
   const double height = std::max(base.cross(side).norm(), kThinnest);
-  const auto at = [&](std::size_t k) -> double& {
-    return cotangents[static_cast<Eigen::Index>((top + k) % 3)];
-  };
-  at(0) = (height * height - x * (1.0 - x)) / height;
-  at(1) = x / height;
-  at(2) = (1.0 - x) / height;
-  return cotangents;
+  cotangents[top] = (height * height - x * (1.0 - x)) / height;
+  cotangents[(top + 1) % 3] = x / height;
+  cotangents[(top + 2) % 3] = (1.0 - x) / height;
+  return cotangents.cast<float>();
 }
 
 MapRows makeMapRows(const Positions& points, const Triangles& triangles,
-                    const std::vector<float>& masses, Index vertex_count, int requested) {
+                    const Indexed<float>& masses, Index vertex_count, int requested) {
   const auto n = static_cast<std::size_t>(vertex_count);
-  const auto m = static_cast<std::size_t>(triangles.cols());
   const int threads = threadCount(requested, n);
-  std::vector<std::array<float, 3>> cotangents(m);
-  forEachItem(m, threads, [&](std::size_t, std::size_t i) {
-    const auto t = static_cast<Eigen::Index>(i);
-    const Vector3d of_corners = mapCotangents(
-        points.col(triangles(0, t)), points.col(triangles(1, t)), points.col(triangles(2, t)));
-    for (std::size_t k = 0; k < 3; ++k)
-      cotangents[i][k] = static_cast<float>(of_corners[static_cast<Eigen::Index>(k)]);
+  Eigen::Matrix3Xf cotangents(3, triangles.cols());
+  forEachIndex(columnCount(triangles), threads, [&](Index t) {
+    cotangents.col(t) = mapCotangents(points.col(triangles(0, t)), points.col(triangles(1, t)),
+                                      points.col(triangles(2, t)));
   });
   const CornerTable corners(triangles, n, threads);
 
@@ -315,24 +301,20 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
         rows.begin[i] + static_cast<std::uint32_t>(corners.countAt(rows.vertices[i]));
   rows.corners.resize(rows.begin[n]);
   forEachBlock(n, threads, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<std::pair<Index, std::uint32_t>> behind;  // vertex behind, corner
+    std::vector<std::array<Index, 3>> behind;  // vertex behind, triangle, corner
     for (std::size_t i = begin; i < end; ++i) {
       behind.clear();
       corners.forEachCorner(rows.vertices[i], [&](Index t, Index k) {
-        behind.emplace_back(triangles(nextCorner(k), t), static_cast<std::uint32_t>(4 * t + k));
+        behind.push_back({triangles(nextCorner(k), t), t, k});
       });
       std::sort(behind.begin(), behind.end());
-      Index neighbor = behind.front().first;
+      Index neighbor = behind.front()[0];
       for (std::uint32_t r = rows.begin[i]; r < rows.begin[i + 1]; ++r) {
-        const auto at =
-            std::lower_bound(behind.begin(), behind.end(), std::pair(neighbor, std::uint32_t{0}));
-        const std::size_t t = at->second >> 2U;
-        const auto k = static_cast<Index>(at->second & 3U);
-        const std::array<float, 3>& cot = cotangents[t];
-        rows.corners[r] = {neighbor, masses[t], cot[static_cast<std::size_t>(k)],
-                           cot[static_cast<std::size_t>(nextCorner(k))],
-                           cot[static_cast<std::size_t>(previousCorner(k))]};
-        neighbor = triangles(previousCorner(k), static_cast<Eigen::Index>(t));
+        const auto at = std::lower_bound(behind.begin(), behind.end(), std::array{neighbor, 0, 0});
+        const auto [v, t, k] = *at;
+        const auto cot = cotangents.col(t);
+        rows.corners[r] = {neighbor, masses[t], cot[k], cot[nextCorner(k)], cot[previousCorner(k)]};
+        neighbor = triangles(previousCorner(k), t);
       }
     }
   });
@@ -342,8 +324,8 @@ MapRows makeMapRows(const Positions& points, const Triangles& triangles,
 bool isMapValid(const Positions& sphere, const MapCorner* corners, std::size_t count,
                 const Vector3d& at) {
   for (std::size_t i = 0; i < count; ++i)
-    if (!isPositive(at, sphere.col(corners[i].neighbor),
-                    sphere.col(corners[i + 1 == count ? 0 : i + 1].neighbor)))
+    if (!isOutward(at, sphere.col(corners[i].neighbor),
+                   sphere.col(corners[i + 1 == count ? 0 : i + 1].neighbor)))
       return false;
   return true;
 }

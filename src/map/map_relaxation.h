@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Core>
@@ -32,19 +33,19 @@ struct MapEnergy {
 /// one colour, no two of them neighbours, after those of another.
 struct MapRows {
   std::vector<Index> vertices;
-  std::vector<std::uint32_t> begin;   ///< v + 1 positions in `corners`
-  std::vector<MapCorner> corners;     ///< counter-clockwise
-  std::vector<std::uint32_t> colors;  ///< where the vertices of each colour begin, and their end
+  std::vector<std::uint32_t> begin;  ///< v + 1 positions in `corners`
+  std::vector<MapCorner> corners;    ///< counter-clockwise
+  std::vector<std::size_t> colors;   ///< where the vertices of each colour begin, and their end
 };
 
 /// Cotangents of the angles of a triangle; of a needle, those of one that is not as thin: its
 /// distortion would outweigh all others.
-Eigen::Vector3d mapCotangents(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+Eigen::Vector3f mapCotangents(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                               const Eigen::Vector3d& c);
 
 /// \param masses of the triangles.
 MapRows makeMapRows(const Positions& points, const Triangles& triangles,
-                    const std::vector<float>& masses, Index vertex_count, int threads);
+                    const Indexed<float>& masses, Index vertex_count, int threads);
 
 /// Whether a point of the sphere makes all triangles counter-clockwise with its ring, for sure.
 bool isMapValid(const Positions& sphere, const MapCorner* corners, std::size_t count,

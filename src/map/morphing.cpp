@@ -2,9 +2,8 @@
 
 #include "caps.h"
 #include "corner_table.h"
-#include "exact_predicates.h"
+#include "index_loops.h"
 #include "option_checks.h"
-#include "parallel.h"
 #include "progress.h"
 #include "rotation_search.h"
 #include "space_filling_curve.h"
@@ -13,6 +12,7 @@
 #include "sphere_warp.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/resampling.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -28,7 +28,9 @@
 namespace spherical_param {
 namespace {
 
+using Eigen::Vector3d;
 using internal::CornerTable;
+using internal::Indexed;
 
 constexpr std::size_t kMinSamples = 12;
 constexpr std::size_t kMaxGridSamples = std::size_t{1} << 24U;
@@ -112,21 +114,18 @@ double shortestEdgeAt(const Positions& sphere, const Triangles& triangles,
   return std::sqrt(shortest);
 }
 
-CornerTable cornersOf(const Triangles& triangles, Eigen::Index vertices) {
-  return {triangles, static_cast<std::size_t>(vertices), 1};
+CornerTable cornersOf(const Triangles& triangles, const Positions& vertices) {
+  return {triangles, internal::columnCount(vertices), 1};
 }
 
 /// Moves a vertex on the sphere, unless that would flip one of its triangles.
 bool moveVertex(Positions& sphere, const Triangles& triangles, const CornerTable& corners, Index v,
-                const Eigen::Vector3d& place) {
-  const Eigen::Vector3d old = sphere.col(v);
+                const Vector3d& place) {
+  const Vector3d old = sphere.col(v);
   sphere.col(v) = place;
   bool flips = false;
-  corners.forEachCorner(v, [&](Index t, Index) {
-    flips = flips ||
-            internal::orientation3d(Eigen::Vector3d::Zero(), sphere.col(triangles(0, t)),
-                                    sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0;
-  });
+  corners.forEachCorner(
+      v, [&](Index t, Index) { flips = flips || internal::isFlipped(sphere, triangles, t); });
   if (flips)
     sphere.col(v) = old;
   return !flips;
@@ -134,38 +133,37 @@ bool moveVertex(Positions& sphere, const Triangles& triangles, const CornerTable
 
 /// Puts vertices of the second mesh that are next to one of the first at its place.
 void joinVertices(const SphereSurface& first, const Triangles& triangles, Positions& sphere,
-                  std::vector<Index>& partner) {
-  const Eigen::Index a = first.sphere().cols();
-  const Eigen::Index b = sphere.cols();
-  Positions points(3, a + b);
+                  Indexed<Index>& partner) {
+  const Index a = static_cast<Index>(first.sphere().cols());
+  Positions points(3, a + sphere.cols());
   points << first.sphere(), sphere;
-  std::vector<char> is_taken(static_cast<std::size_t>(a), 0);
+  Indexed<char> is_taken(internal::columnCount(first.sphere()), 0);
   for (const Index i : partner)
     if (i >= 0)
-      is_taken[static_cast<std::size_t>(i)] = 1;
+      is_taken[i] = 1;
   std::vector<Index> queries;
   for (const Index i : internal::mortonOrder(sphere))
-    if (partner[static_cast<std::size_t>(i)] < 0)
-      queries.push_back(static_cast<Index>(a) + i);
+    if (partner[i] < 0)
+      queries.push_back(a + i);
   const std::vector<SphereLocation> places =
       internal::locateAll(points, first.triangles(), queries);
-  const CornerTable at_first = cornersOf(first.triangles(), a);
-  const CornerTable at_second = cornersOf(triangles, b);
+  const CornerTable at_first = cornersOf(first.triangles(), first.sphere());
+  const CornerTable at_second = cornersOf(triangles, sphere);
   for (std::size_t q = 0; q < places.size(); ++q) {
-    const Index v = queries[q] - static_cast<Index>(a);
+    const Index v = queries[q] - a;
     Eigen::Index corner = 0;
     places[q].weights.maxCoeff(&corner);
     const Index other = first.triangles()(corner, places[q].triangle);
-    const Eigen::Vector3d place = first.sphere().col(other);
-    if (is_taken[static_cast<std::size_t>(other)] != 0 ||
+    const Vector3d place = first.sphere().col(other);
+    if (is_taken[other] != 0 ||
         (place - sphere.col(v)).norm() >
             kSameVertex *
                 std::min(shortestEdgeAt(first.sphere(), first.triangles(), at_first, other),
                          shortestEdgeAt(sphere, triangles, at_second, v)))
       continue;
     if (moveVertex(sphere, triangles, at_second, v, place)) {
-      partner[static_cast<std::size_t>(v)] = other;
-      is_taken[static_cast<std::size_t>(other)] = 1;
+      partner[v] = other;
+      is_taken[other] = 1;
     }
   }
 }
@@ -178,7 +176,7 @@ public:
            int threads)
       : first_(first), second_(second), locator_(sphere, second.triangles(), threads) {}
 
-  bool holds(const Eigen::Vector3d& direction) const {
+  bool holds(const Vector3d& direction) const {
     return first_.isCap(first_.locate(direction).triangle) ||
            second_.isCap(locator_.locate(direction).triangle);
   }
@@ -194,7 +192,7 @@ void leaveCaps(const SphereSurface& surface, std::vector<SphereLocation>& places
   if (!surface.isOpen())
     return;
   const Triangles& triangles = surface.triangles();
-  const CornerTable corners = cornersOf(triangles, surface.points().cols());
+  const CornerTable corners = cornersOf(triangles, surface.points());
   for (SphereLocation& place : places) {
     if (!surface.isCap(place.triangle))
       continue;
@@ -233,7 +231,7 @@ void cutOpenings(const OpenPart& open, MorphResult& morph) {
   Triangles triangles(3, morph.triangles.cols());
   Eigen::Index kept = 0;
   for (Eigen::Index t = 0; t < morph.triangles.cols(); ++t) {
-    const auto corner = [&](Eigen::Index k) -> Eigen::Vector3d {
+    const auto corner = [&](Eigen::Index k) -> Vector3d {
       return morph.sphere.col(morph.triangles(k, t));
     };
     if (!open.holds(corner(0) + corner(1) + corner(2)))
@@ -241,13 +239,11 @@ void cutOpenings(const OpenPart& open, MorphResult& morph) {
   }
   triangles.conservativeResize(3, kept);
   const std::vector<Index> used = internal::compact(triangles, morph.sphere.cols());
-  const auto keep = [&](Positions& positions) {
-    positions = Positions(positions(Eigen::all, used));
-  };
+  const auto keep = [&](Positions& positions) { positions = internal::columnsOf(positions, used); };
   const auto keep_places = [&](std::vector<SphereLocation>& places) {
     std::vector<SphereLocation> all = std::exchange(places, {});
     for (const Index v : used)
-      places.push_back(all[static_cast<std::size_t>(v)]);
+      places.push_back(internal::entry(all, v));
   };
   morph.triangles = std::move(triangles);
   keep(morph.first);
@@ -260,17 +256,15 @@ void cutOpenings(const OpenPart& open, MorphResult& morph) {
 /// Positions at places of a surface; of the vertices as they are.
 Positions positionsAt(const SphereSurface& surface, const std::vector<SphereLocation>& places,
                       int threads) {
-  Positions positions(3, static_cast<Eigen::Index>(places.size()));
-  internal::forEachItem(places.size(), internal::threadCount(threads, places.size()),
-                        [&](std::size_t, std::size_t i) {
-                          const SphereLocation& place = places[i];
-                          Eigen::Index corner = 0;
-                          const bool is_vertex = place.weights.maxCoeff(&corner) == 1.0;
-                          positions.col(static_cast<Eigen::Index>(i)) =
-                              is_vertex ? Eigen::Vector3d(surface.points().col(
-                                              surface.triangles()(corner, place.triangle)))
-                                        : surface.evaluate(place).position;
-                        });
+  Positions positions(3, internal::indexCount(places));
+  internal::forEachIndex(places.size(), threads, [&](Index i) {
+    const SphereLocation& place = internal::entry(places, i);
+    Eigen::Index corner = 0;
+    if (place.weights.maxCoeff(&corner) == 1.0)
+      positions.col(i) = surface.points().col(surface.triangles()(corner, place.triangle));
+    else
+      positions.col(i) = surface.evaluate(place).position;
+  });
   return positions;
 }
 
@@ -280,18 +274,18 @@ Triangles triangulateFaces(const internal::SphereOverlay& overlay, const MorphRe
                            double first_scale, double second_scale) {
   Triangles triangles(3, 2 * overlay.directions.cols() - 4);
   Eigen::Index t = 0;
-  std::vector<Index> face;
+  Indexed<Index> face;
   const auto squared_length = [&](Index i, Index j) {
     return first_scale * (morph.first.col(i) - morph.first.col(j)).squaredNorm() +
            second_scale * (morph.second.col(i) - morph.second.col(j)).squaredNorm();
   };
   for (std::size_t f = 0; f + 1 < overlay.offsets.size(); ++f) {
-    face.assign(overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.offsets[f]),
-                overlay.corners.begin() + static_cast<std::ptrdiff_t>(overlay.offsets[f + 1]));
-    for (std::size_t n = face.size(); n > 3; --n) {
-      std::size_t ear = 0;
+    face.assign(overlay.corners.data() + overlay.offsets[f],
+                overlay.corners.data() + overlay.offsets[f + 1]);
+    for (Index n = internal::indexCount(face); n > 3; --n) {
+      Index ear = 0;
       double shortest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < n; ++i) {
+      for (Index i = 0; i < n; ++i) {
         const double length = squared_length(face[(i + n - 1) % n], face[(i + 1) % n]);
         if (length < shortest) {
           shortest = length;
@@ -299,7 +293,7 @@ Triangles triangulateFaces(const internal::SphereOverlay& overlay, const MorphRe
         }
       }
       triangles.col(t++) << face[(ear + n - 1) % n], face[ear], face[(ear + 1) % n];
-      face.erase(face.begin() + static_cast<std::ptrdiff_t>(ear));
+      face.erase(face.begin() + ear);
     }
     triangles.col(t++) << face[0], face[1], face[2];
   }
@@ -311,43 +305,40 @@ double inverseArea(const SphereSurface& surface) {
 }
 
 /// A geodesic sphere with vertices at the places of pairs.
-GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Eigen::Vector3d>& places) {
+GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Vector3d>& places) {
   GridSphere grid = makeGridSphere(SphereGrid::Icosahedral,
                                    gridFrequency(SphereGrid::Icosahedral, options.samples));
   if (places.empty())
     return grid;
-  const CornerTable corners = cornersOf(grid.triangles, grid.directions.cols());
-  std::vector<char> is_taken(corners.vertexCount(), 0);
+  const CornerTable corners = cornersOf(grid.triangles, grid.directions);
+  Indexed<char> is_taken(corners.vertexCount(), 0);
   const Positions regular = grid.directions;
-  for (const Eigen::Vector3d& place : places) {
-    Eigen::Index nearest = 0;
+  for (const Vector3d& place : places) {
+    Index nearest = 0;
     (regular.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
-    const auto v = static_cast<std::size_t>(nearest);
-    if (is_taken[v] == 0 &&
-        moveVertex(grid.directions, grid.triangles, corners, static_cast<Index>(nearest), place))
-      is_taken[v] = 1;
+    if (is_taken[nearest] == 0 &&
+        moveVertex(grid.directions, grid.triangles, corners, nearest, place))
+      is_taken[nearest] = 1;
   }
   return grid;
 }
 
 void sampleBoth(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
                 MorphResult& morph) {
-  const Eigen::Index w = morph.sphere.cols();
   const std::vector<Index> order = internal::mortonOrder(morph.sphere);
   const auto locate = [&](const Positions& of_mesh, const Triangles& triangles) {
-    const Eigen::Index n = of_mesh.cols();
-    Positions points(3, n + w);
+    Positions points(3, of_mesh.cols() + morph.sphere.cols());
     points << of_mesh, morph.sphere;
     std::vector<Index> queries(order);
     for (Index& query : queries)
-      query += static_cast<Index>(n);
+      query += static_cast<Index>(of_mesh.cols());
     const std::vector<SphereLocation> found = internal::locateAll(points, triangles, queries);
     if (found.empty())
       throw ComputeError("morphSurfaces: a triangulation of the sphere does not cover it once; "
                          "use maps that are one to one");
     std::vector<SphereLocation> places(found.size());
     for (std::size_t q = 0; q < found.size(); ++q)
-      places[static_cast<std::size_t>(order[q])] = found[q];
+      internal::entry(places, order[q]) = found[q];
     return places;
   };
   morph.first_places = locate(first.sphere(), first.triangles());
@@ -356,19 +347,18 @@ void sampleBoth(const SphereSurface& first, const SphereSurface& second, const P
 
 /// Sets the partners of the vertices whose landmarks arrived, and adds the other pairs to the
 /// impossible ones. \return the places of the landmarks that arrived
-std::vector<Eigen::Vector3d> honouredPairs(const PairChoice& choice,
-                                           const std::vector<internal::Landmark>& landmarks,
-                                           const internal::SphereWarp& warp,
-                                           std::vector<Index>& partner,
-                                           std::vector<ImpossiblePair>& impossible) {
-  std::vector<Eigen::Vector3d> places;
+std::vector<Vector3d> honouredPairs(const PairChoice& choice,
+                                    const std::vector<internal::Landmark>& landmarks,
+                                    const internal::SphereWarp& warp, Indexed<Index>& partner,
+                                    std::vector<ImpossiblePair>& impossible) {
+  std::vector<Vector3d> places;
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     if (!warp.reasons[i].empty()) {
       for (const std::size_t number : choice.numbers[i])
         impossible.push_back({number, warp.reasons[i]});
       continue;
     }
-    partner[static_cast<std::size_t>(choice.pairs[i].second)] = choice.pairs[i].first;
+    partner[choice.pairs[i].second] = choice.pairs[i].first;
     places.push_back(landmarks[i].target);
   }
   std::sort(impossible.begin(), impossible.end(),
@@ -387,7 +377,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   const PairChoice choice = choosePairs(first, second, options.pairs, morph.impossible);
 
   if (options.align) {
-    std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> directions;
+    std::vector<std::pair<Vector3d, Vector3d>> directions;
     for (const PointPair& pair : choice.pairs)
       directions.emplace_back(first.sphere().col(pair.first), second.sphere().col(pair.second));
     morph.rotation = internal::searchRotation(first, second, directions, options.threads, report);
@@ -409,8 +399,8 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   sphere = std::move(warp.sphere);
   morph.worst_pair = warp.worst;
 
-  std::vector<Index> partner(static_cast<std::size_t>(sphere.cols()), -1);
-  const std::vector<Eigen::Vector3d> places =
+  Indexed<Index> partner(internal::columnCount(sphere), -1);
+  const std::vector<Vector3d> places =
       honouredPairs(choice, landmarks, warp, partner, morph.impossible);
 
   std::optional<OpenPart> open;
@@ -421,7 +411,7 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
     internal::reportFraction(report, 0.0);
     internal::SphereOverlay overlay = internal::overlaySpheres(
         first.sphere(), first.triangles(), sphere, second.triangles(), partner,
-        internal::threadCount(options.threads, static_cast<std::size_t>(sphere.cols())));
+        internal::threadCount(options.threads, internal::columnCount(sphere)));
     internal::reportFraction(report, 0.0);
     morph.first_places = std::move(overlay.first);
     morph.second_places = std::move(overlay.second);
@@ -434,9 +424,8 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   } else {
     GridSphere grid = gridWithPairs(options, places);
     if (open) {
-      internal::OpenSphere cut =
-          internal::cutOpenings(grid.directions, grid.triangles,
-                                [&](const Eigen::Vector3d& u) { return open->holds(u); });
+      internal::OpenSphere cut = internal::cutOpenings(
+          grid.directions, grid.triangles, [&](const Vector3d& u) { return open->holds(u); });
       grid.directions = std::move(cut.directions);
       grid.triangles = std::move(cut.triangles);
     }

@@ -1,14 +1,16 @@
 #include "spherical_param/map/resampling.h"
 
 #include "bit_mixing.h"
+#include "caps.h"
 #include "corner_table.h"
-#include "exact_predicates.h"
+#include "index_loops.h"
 #include "option_checks.h"
-#include "parallel.h"
 #include "sample_elimination.h"
 #include "sphere_mesh.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/mesh_topology.h"
 #include "spherical_param/self_intersection.h"
+#include "triangle_geometry.h"
 #include "vertex_normals.h"
 
 #include <Eigen/Geometry>
@@ -27,12 +29,14 @@ namespace spherical_param {
 namespace {
 
 using Eigen::Vector3d;
+using internal::entry;
+using internal::Indexed;
 
-constexpr std::size_t kMaxVertices = std::size_t{1} << 29;
+constexpr Index kMaxVertices = Index{1} << 29;
 constexpr int kLargestSide = 16385;
 
 /// A grid has `factor` f^2 + 2 vertices.
-std::size_t factorOf(SphereGrid grid) {
+Index factorOf(SphereGrid grid) {
   return grid == SphereGrid::Icosahedral ? 10 : 4;
 }
 
@@ -67,7 +71,7 @@ public:
         const Index a = face[k];
         const Index b = face[(k + 1) % 3];
         if (a < b)
-          edges_[place(a, b)] = count++;
+          edges_(a, b) = count++;
       }
     // sin(x i) for the corner's weight i / f, where x is the angle of an edge: great circles with
     // equal steps along the edges, and areas in the faces that differ less than those of plain
@@ -78,8 +82,8 @@ public:
   }
 
   GridSphere grid() const {
-    const auto f = static_cast<Index>(frequency_);
-    const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Icosahedral, frequency_));
+    const Index f = frequency_;
+    const auto n = static_cast<Eigen::Index>(gridVertices(SphereGrid::Icosahedral, f));
     GridSphere grid{Positions(3, n), Triangles(3, 2 * n - 4), frequency_};
     grid.directions.leftCols(12) = corners_;
     Eigen::Index t = 0;
@@ -103,15 +107,11 @@ public:
   }
 
 private:
-  static std::size_t place(Index a, Index b) {
-    return 12 * static_cast<std::size_t>(a) + static_cast<std::size_t>(b);
-  }
-
   /// Vertex i of f on the edge from a to b.
   Index onEdge(Index a, Index b, Index i) const {
     if (a > b)
       return onEdge(b, a, frequency_ - i);
-    return 12 + edges_[place(a, b)] * (frequency_ - 1) + i - 1;
+    return 12 + edges_(a, b) * (frequency_ - 1) + i - 1;
   }
 
   /// The vertex with the weights f - i - j, i and j of a face's corners.
@@ -132,16 +132,15 @@ private:
 
   Vector3d direction(Index a, Index weight_a, Index b, Index weight_b, Index c,
                      Index weight_c) const {
-    return (sine(weight_a) * corners_.col(a) + sine(weight_b) * corners_.col(b) +
-            sine(weight_c) * corners_.col(c))
+    return (sines_[weight_a] * corners_.col(a) + sines_[weight_b] * corners_.col(b) +
+            sines_[weight_c] * corners_.col(c))
         .normalized();
   }
-  double sine(Index weight) const { return sines_[static_cast<std::size_t>(weight)]; }
 
   Index frequency_;
   Positions corners_;
-  std::array<Index, 144> edges_{};  ///< number of the edge from a to b > a
-  std::vector<double> sines_;
+  Eigen::Matrix<Index, 12, 12> edges_;  ///< number of the edge from a to b > a
+  Indexed<double> sines_;
 };
 
 // --- The octahedron, unfolded into a square ------------------------------------------------------
@@ -188,7 +187,7 @@ public:
     Index count = 0;
     forEachPixel([&](Index x, Index y) {
       const Eigen::Index first = firstPixel(x, y);
-      result.push_back(first == pixel(x, y) ? count++ : result[static_cast<std::size_t>(first)]);
+      result.push_back(first == pixel(x, y) ? count++ : entry(result, first));
     });
     return result;
   }
@@ -197,9 +196,7 @@ public:
   Triangles triangles(const std::vector<Index>& vertices) const {
     Triangles result(3, Eigen::Index{8} * f_ * f_);
     Eigen::Index t = 0;
-    const auto at = [&](Index x, Index y) {
-      return vertices[static_cast<std::size_t>(pixel(x, y))];
-    };
+    const auto at = [&](Index x, Index y) { return entry(vertices, pixel(x, y)); };
     for (Index y = f_ - 1; y >= -f_; --y)
       for (Index x = -f_; x < f_; ++x) {
         const Index a = at(x, y);
@@ -222,7 +219,7 @@ public:
     const std::vector<Index> vertex = vertices();
     GridSphere grid{Positions(3, n), triangles(vertex), f_};
     for (Eigen::Index i = 0; i < pixelCount(); ++i)
-      grid.directions.col(vertex[static_cast<std::size_t>(i)]) = direction(i);
+      grid.directions.col(entry(vertex, i)) = direction(i);
     return grid;
   }
 
@@ -239,8 +236,6 @@ private:
 
 // --- Random points -------------------------------------------------------------------------------
 
-constexpr std::size_t kMaxEvenSamples = std::size_t{1} << 24;
-
 /// Points by area for each that is kept: five are enough for a good distribution (Yuksel 2015,
 /// section 4); fewer where they would take much memory.
 std::size_t candidateCount(std::size_t count) {
@@ -248,13 +243,14 @@ std::size_t candidateCount(std::size_t count) {
   return (count <= many ? 5 : 3) * count;
 }
 
-/// Numbers in [0, 1) that follow from their place alone, whichever thread asks.
+/// Three numbers in [0, 1) for each point, which follow from their place alone, whichever thread
+/// asks.
 class RandomNumbers {
 public:
   explicit RandomNumbers(std::uint32_t seed) : start_(internal::splitmix64(seed)) {}
-  double at(std::uint64_t i) const {
-    constexpr double unit = 1.0 / static_cast<double>(std::uint64_t{1} << 53U);
-    return static_cast<double>(internal::splitmix64(start_ + i) >> 11U) * unit;
+  double at(Index point, int which) const {
+    const auto place = 3 * static_cast<std::uint64_t>(point) + static_cast<unsigned>(which);
+    return static_cast<double>(internal::splitmix64(start_ + place) >> 11U) * 0x1p-53;
   }
 
 private:
@@ -263,17 +259,12 @@ private:
 
 /// The sums of the areas up to each triangle, and in the end of all.
 std::vector<double> sumsOfAreas(const SphereSurface& surface) {
-  const Positions& points = surface.points();
   const Triangles& triangles = surface.triangles();
   std::vector<double> sums{0.0};
-  sums.reserve(static_cast<std::size_t>(triangles.cols()) + 1);
+  sums.reserve(internal::columnCount(triangles) + 1);
   // Caps are the last triangles.
-  for (Eigen::Index t = 0; t < triangles.cols() && !surface.isCap(static_cast<Index>(t)); ++t) {
-    const Vector3d a = points.col(triangles(0, t));
-    const Vector3d normal =
-        (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
-    sums.push_back(sums.back() + 0.5 * normal.norm());
-  }
+  for (Index t = 0; t < triangles.cols() && !surface.isCap(t); ++t)
+    sums.push_back(sums.back() + 0.5 * internal::areaNormal(surface.points(), triangles, t).norm());
   return sums;
 }
 
@@ -281,23 +272,21 @@ std::vector<double> sumsOfAreas(const SphereSurface& surface) {
 SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
   const std::vector<double> sums = sumsOfAreas(surface);
   const RandomNumbers random(seed);
-  SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
-                       Positions(3, static_cast<Eigen::Index>(count)),
-                       std::vector<SphereLocation>(count)};
-  internal::forEachItem(count, internal::threadCount(0, count), [&](std::size_t, std::size_t i) {
-    const double place =
-        (static_cast<double>(i) + random.at(3 * i)) / static_cast<double>(count) * sums.back();
+  const auto n = static_cast<Index>(count);
+  SurfacePoints result{Positions(3, n), Positions(3, n), std::vector<SphereLocation>(count)};
+  internal::forEachIndex(count, 0, [&](Index i) {
+    const double place = (i + random.at(i, 0)) / n * sums.back();
     // The last triangle that begins at or before the place: one with an area.
     const auto next = std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
     SphereLocation location;
     location.triangle = static_cast<Index>(next - sums.begin() - 1);
-    const double root = std::sqrt(random.at(3 * i + 1));
-    const double fraction = random.at(3 * i + 2);
+    const double root = std::sqrt(random.at(i, 1));
+    const double fraction = random.at(i, 2);
     location.weights << 1.0 - root, root * (1.0 - fraction), root * fraction;
     const SurfaceSample sample = surface.evaluate(location);
-    result.points.col(static_cast<Eigen::Index>(i)) = sample.position;
-    result.normals.col(static_cast<Eigen::Index>(i)) = sample.normal;
-    result.locations[i] = location;
+    result.points.col(i) = sample.position;
+    result.normals.col(i) = sample.normal;
+    entry(result.locations, i) = location;
   });
   return result;
 }
@@ -328,7 +317,7 @@ class FlippableMesh {
 public:
   FlippableMesh(const ResampledMesh& mesh, int threads)
       : points_(mesh.points), directions_(mesh.directions),
-        mesh_(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), threads) {}
+        mesh_(mesh.triangles, internal::columnCount(mesh.points), threads) {}
 
   Triangles triangles() const { return mesh_.triangles(); }
 
@@ -339,8 +328,7 @@ public:
       for (const Index t : triangles)
         for (int k = 0; k < 3; ++k)
           mesh_.forEachAround(mesh_.vertex(t, k), [&](Index near, int) { wider.push_back(near); });
-      std::sort(wider.begin(), wider.end());
-      wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+      internal::sortUnique(wider);
       triangles = std::move(wider);
     }
     return triangles;
@@ -373,8 +361,7 @@ private:
     return angle_at(a) + angle_at(d);
   }
   bool isOutward(Index a, Index b, Index c) const {
-    return internal::orientation3d(Vector3d::Zero(), directions_.col(a), directions_.col(b),
-                                   directions_.col(c)) > 0;
+    return internal::isOutward(directions_.col(a), directions_.col(b), directions_.col(c));
   }
   bool isBetterFlipped(Index triangle, int corner) const {
     const Index a = mesh_.vertex(triangle, corner);
@@ -396,8 +383,8 @@ private:
 }  // namespace
 
 int gridFrequency(SphereGrid grid, std::size_t vertices) {
-  const auto factor = static_cast<double>(factorOf(grid));
-  const double most = std::floor(std::sqrt(static_cast<double>(kMaxVertices - 2) / factor));
+  const double factor = factorOf(grid);
+  const double most = std::floor(std::sqrt((kMaxVertices - 2) / factor));
   const double wanted = std::max(0.0, static_cast<double>(vertices) - 2.0) / factor;
   // Nearest in vertices: between f and f + 1, the middle of their squares.
   double f = std::floor(std::sqrt(wanted));
@@ -408,19 +395,16 @@ int gridFrequency(SphereGrid grid, std::size_t vertices) {
 
 int gridFrequency(SphereGrid grid, std::size_t vertices, const SphereSurface& surface) {
   const double all = static_cast<double>(vertices) / surface.coverage();
-  return gridFrequency(grid,
-                       static_cast<std::size_t>(std::min(all, static_cast<double>(kMaxVertices))));
+  return gridFrequency(grid, static_cast<std::size_t>(std::min<double>(all, kMaxVertices)));
 }
 
 std::size_t gridVertices(SphereGrid grid, int frequency) {
-  const std::size_t factor = factorOf(grid);
   internal::checkEnum("gridVertices: grid", grid, SphereGrid::Octahedral);
-  const auto f = static_cast<std::size_t>(std::max(frequency, 0));
-  if (frequency < 1 || f * f > (kMaxVertices - 2) / factor)
+  const int most = gridFrequency(grid, kMaxVertices);
+  if (frequency < 1 || frequency > most)
     throw InvalidInput("gridVertices: frequency = " + std::to_string(frequency) +
-                       " is not possible; use 1 to " +
-                       std::to_string(gridFrequency(grid, kMaxVertices)));
-  return factor * f * f + 2;
+                       " is not possible; use 1 to " + std::to_string(most));
+  return static_cast<std::size_t>(factorOf(grid) * frequency * frequency + 2);
 }
 
 GridSphere makeGridSphere(SphereGrid grid, int frequency) {
@@ -462,11 +446,8 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   options.threads = threads;
   auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
-  const int workers =
-      internal::threadCount(threads, static_cast<std::size_t>(mesh.triangles.cols()));
-  const MeshTopology topology =
-      checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), workers);
-  if (topology.isOpenSurface())
+  const int workers = internal::threadCount(threads, internal::columnCount(mesh.triangles));
+  if (checkTopology(mesh.triangles, internal::columnCount(mesh.points), workers).isOpenSurface())
     return result;
   if (!topology.isSphere())
     throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "
@@ -492,7 +473,7 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
 }
 
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  if (count < 1 || count > kMaxEvenSamples)
+  if (count < 1 || count > std::size_t{1} << 24U)
     throw InvalidInput("sampleEvenly: count = " + std::to_string(count) +
                        " is out of range; use 1 to 2^24");
   if (!(surface.area() > 0.0))
@@ -500,14 +481,10 @@ SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std:
   const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);
   const std::vector<Index> kept =
       internal::eliminateSamples(all.points, all.normals, count, surface.area(), 0);
-  SurfacePoints result{Positions(3, static_cast<Eigen::Index>(count)),
-                       Positions(3, static_cast<Eigen::Index>(count)),
-                       std::vector<SphereLocation>(count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    result.points.col(static_cast<Eigen::Index>(i)) = all.points.col(kept[i]);
-    result.normals.col(static_cast<Eigen::Index>(i)) = all.normals.col(kept[i]);
-    result.locations[i] = all.locations[static_cast<std::size_t>(kept[i])];
-  }
+  SurfacePoints result{
+      internal::columnsOf(all.points, kept), internal::columnsOf(all.normals, kept), {}};
+  for (const Index i : kept)
+    result.locations.push_back(entry(all.locations, i));
   return result;
 }
 
@@ -522,18 +499,14 @@ GeometryImage makeGeometryImage(const SphereSurface& surface, int side) {
 }
 
 GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
-  const auto count = static_cast<std::size_t>(mesh.points.cols());
+  const std::size_t count = internal::columnCount(mesh.points);
   const int frequency = gridFrequency(SphereGrid::Octahedral, count);
   const int side = 2 * frequency + 1;
   if (side > kLargestSide || gridVertices(SphereGrid::Octahedral, frequency) != count)
     throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
                        " vertices are not those of an octahedral grid; use makeGridSphere()");
   const OctahedralSquare square(frequency);
-  const std::vector<Index> vertex = square.vertices();
-  GeometryImage image{side, Positions(3, square.pixelCount())};
-  for (Eigen::Index i = 0; i < square.pixelCount(); ++i)
-    image.positions.col(i) = mesh.points.col(vertex[static_cast<std::size_t>(i)]);
-  return image;
+  return {side, internal::columnsOf(mesh.points, square.vertices())};
 }
 
 ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
@@ -555,14 +528,14 @@ ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
   mesh.points.resize(3, n);
   mesh.triangles = square.triangles(vertex);
   for (Eigen::Index i = 0; i < square.pixelCount(); ++i) {
-    mesh.directions.col(vertex[static_cast<std::size_t>(i)]) = square.direction(i);
-    mesh.points.col(vertex[static_cast<std::size_t>(i)]) = image.positions.col(i);
+    mesh.directions.col(entry(vertex, i)) = square.direction(i);
+    mesh.points.col(entry(vertex, i)) = image.positions.col(i);
   }
   // Sums of two and of four equal numbers are exact: where pixels agree, nothing changes.
   const Index f = image.side / 2;
   const auto at = [&](Index x, Index y) { return image.positions.col(square.pixel(x, y)); };
   const auto point = [&](Index x, Index y) {
-    return mesh.points.col(vertex[static_cast<std::size_t>(square.pixel(x, y))]);
+    return mesh.points.col(entry(vertex, square.pixel(x, y)));
   };
   for (Index i = 1; i < f; ++i) {
     point(i, f) = 0.5 * (at(i, f) + at(-i, f));
@@ -572,7 +545,7 @@ ResampledMesh meshOfGeometryImage(const GeometryImage& image) {
   }
   point(f, f) = 0.25 * ((at(f, f) + at(-f, f)) + (at(f, -f) + at(-f, -f)));
 
-  const auto count = static_cast<std::size_t>(n);
+  const std::size_t count = internal::columnCount(mesh.points);
   const internal::CornerTable corners(mesh.triangles, count, internal::threadCount(0, count));
   mesh.normals = internal::vertexNormals(mesh.points, mesh.triangles, mesh.directions, corners, 0);
   return mesh;

@@ -1,6 +1,7 @@
 #include "sphere_cutting.h"
 
-#include "exact_predicates.h"
+#include "index_loops.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -11,6 +12,8 @@
 
 namespace spherical_param::internal {
 namespace {
+
+using Eigen::Vector3d;
 
 constexpr std::array<std::array<int, 3>, kCutPlanes> plane_normals = {{
     {1, 0, 0},
@@ -24,14 +27,14 @@ constexpr std::array<std::array<int, 3>, kCutPlanes> plane_normals = {{
     {0, 1, 1},
 }};
 
-Eigen::Vector3d normalOf(int plane) {
-  const auto& n = plane_normals[static_cast<std::size_t>(plane)];
-  return Eigen::Vector3d(n[0], n[1], n[2]);
+Vector3d normalOf(int plane) {
+  const auto& n = entry(plane_normals, plane);
+  return Vector3d(n[0], n[1], n[2]);
 }
 
 /// The direction that two planes have in common, one of its two; components are 1, 0 and -1.
-Eigen::Vector3d commonDirection(int plane, int other) {
-  const Eigen::Vector3d direction = normalOf(plane).cross(normalOf(other));
+Vector3d commonDirection(int plane, int other) {
+  const Vector3d direction = normalOf(plane).cross(normalOf(other));
   return direction / direction.cwiseAbs().maxCoeff();
 }
 
@@ -40,25 +43,19 @@ std::int8_t compare(double a, double b) {
 }
 
 int signAt(const PlaneSigns& signs, int plane) {
-  return signs[static_cast<std::size_t>(plane)];
-}
-
-/// Of the determinant | a, b, c |.
-int determinantSign(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  return orientation3d(Eigen::Vector3d::Zero(), a, b, c);
+  return entry(signs, plane);
 }
 
 /// Moves a point onto the planes where its signs are 0, from which it is off by rounding alone.
-Eigen::Vector3d onPlanes(const Eigen::Vector3d& point, const PlaneSigns& signs,
-                         const std::vector<int>& planes) {
+Vector3d onPlanes(const Vector3d& point, const PlaneSigns& signs, const std::vector<int>& planes) {
   std::vector<int> touched;
   std::copy_if(planes.begin(), planes.end(), std::back_inserter(touched),
                [&](int plane) { return signAt(signs, plane) == 0; });
   if (touched.empty())
     return point;
   if (touched.size() == 1) {
-    const Eigen::Vector3d normal = normalOf(touched.front());
-    Eigen::Vector3d result = point;
+    const Vector3d normal = normalOf(touched.front());
+    Vector3d result = point;
     // Both coordinates of a diagonal plane end at the same number, or at one and its negative.
     Eigen::Index first = 0;
     normal.cwiseAbs().maxCoeff(&first);
@@ -72,7 +69,7 @@ Eigen::Vector3d onPlanes(const Eigen::Vector3d& point, const PlaneSigns& signs,
     result[first] = 0.0;
     return result;
   }
-  const Eigen::Vector3d direction = commonDirection(touched[0], touched[1]);
+  const Vector3d direction = commonDirection(touched[0], touched[1]);
   return direction * (point.dot(direction) / direction.squaredNorm());
 }
 
@@ -81,11 +78,11 @@ struct Corner {
   enum class Kind { Vertex, OnEdge, Inside };
 
   Kind kind = Kind::Vertex;
-  Index a = 0;                ///< the vertex, or the lower end of the edge
-  Index b = 0;                ///< the upper end of the edge
-  int plane = 0;              ///< that cuts the edge
-  Eigen::Vector3d direction;  ///< of a point inside
-  PlaneSigns signs{};         ///< on which side of each plane it is
+  Index a = 0;                            ///< the vertex, or the lower end of the edge
+  Index b = 0;                            ///< the upper end of the edge
+  int plane = 0;                          ///< that cuts the edge
+  Vector3d direction = Vector3d::Zero();  ///< of a point inside
+  PlaneSigns signs{};                     ///< on which side of each plane it is
   int line = 0;  ///< of the side that begins here: 0, 1, 2 side of the triangle, then 3 + plane
 };
 
@@ -98,55 +95,50 @@ public:
     std::array<bool, kCutPlanes> used{};
     for (const std::vector<CellSide>& cell : cells)
       for (const CellSide& side : cell)
-        used[static_cast<std::size_t>(side.plane)] = true;
+        entry(used, side.plane) = true;
     for (int plane = 0; plane < kCutPlanes; ++plane)
-      if (used[static_cast<std::size_t>(plane)])
+      if (entry(used, plane))
         planes_.push_back(plane);
   }
 
   CutSphere run() {
-    const auto vertex_count = static_cast<std::size_t>(sphere_.cols());
-    signs_.resize(vertex_count);
-    result_.vertices.resize(vertex_count);
-    result_.points.resize(vertex_count);
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-      const auto i = static_cast<Index>(v);
-      signs_[v] = planeSigns(sphere_.col(i));
-      result_.vertices[v].vertices = {i, i, i};
-      result_.points[v] = sphere_.col(i);
+    for (Index v = 0; v < sphere_.cols(); ++v) {
+      signs_.push_back(planeSigns(sphere_.col(v)));
+      result_.vertices.push_back({{v, v, v}, Vector3d::UnitX()});
+      result_.points.emplace_back(sphere_.col(v));
     }
-    result_.triangles.reserve(static_cast<std::size_t>(triangles_.cols()));
-    for (Index t = 0; t < static_cast<Index>(triangles_.cols()); ++t)
+    result_.triangles.reserve(columnCount(triangles_));
+    for (Index t = 0; t < triangles_.cols(); ++t)
       cutTriangle(t);
     return std::move(result_);
   }
 
 private:
-  const PlaneSigns& signsOf(Index v) const { return signs_[static_cast<std::size_t>(v)]; }
-
   void cutTriangle(Index t) {
     const std::array<Index, 3> corners = {triangles_(0, t), triangles_(1, t), triangles_(2, t)};
-    for (std::size_t c = 0; c < cells_.size(); ++c)
+    for (Index c = 0; c < indexCount(cells_); ++c)
       if (std::all_of(corners.begin(), corners.end(),
-                      [&](Index v) { return isInCell(signsOf(v), cells_[c]); })) {
-        add(corners, static_cast<Index>(c), t);
+                      [&](Index v) { return isInCell(signs_[v], cells_[c]); })) {
+        add(corners, c, t);
         return;
       }
     triangle_ = t;
     inside_.clear();
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-      Polygon polygon(3);
-      for (std::size_t k = 0; k < 3; ++k) {
-        polygon[k].a = corners[k];
-        polygon[k].signs = signsOf(corners[k]);
-        polygon[k].line = static_cast<int>(k);
+    for (Index c = 0; c < indexCount(cells_); ++c) {
+      Polygon polygon;
+      for (const Index v : corners) {
+        Corner corner;
+        corner.a = v;
+        corner.signs = signs_[v];
+        corner.line = indexCount(polygon);
+        polygon.push_back(corner);
       }
       for (const CellSide& side : cells_[c]) {
         polygon = clipped(polygon, side);
         if (polygon.empty())
           break;
       }
-      addPolygon(polygon, static_cast<Index>(c));
+      addPolygon(polygon, c);
     }
   }
 
@@ -190,10 +182,10 @@ private:
     corner.b = triangles_((side + 1) % 3, triangle_);
     if (corner.b < corner.a)
       std::swap(corner.a, corner.b);
-    const PlaneSigns& of_a = signsOf(corner.a);
-    const PlaneSigns& of_b = signsOf(corner.b);
+    const PlaneSigns& of_a = signs_[corner.a];
+    const PlaneSigns& of_b = signs_[corner.b];
     for (int q = 0; q < kCutPlanes; ++q) {
-      std::int8_t& sign = corner.signs[static_cast<std::size_t>(q)];
+      std::int8_t& sign = entry(corner.signs, q);
       if (q == plane) {
         sign = 0;
       } else if (signAt(of_a, q) * signAt(of_b, q) >= 0) {
@@ -275,11 +267,11 @@ private:
     return corner.a;
   }
 
-  Index nextVertex() const { return static_cast<Index>(result_.vertices.size()); }
+  Index nextVertex() const { return indexCount(result_.vertices); }
 
   void addOnEdge(const Corner& corner) {
-    const Eigen::Vector3d a = sphere_.col(corner.a);
-    const Eigen::Vector3d b = sphere_.col(corner.b);
+    const Vector3d a = sphere_.col(corner.a);
+    const Vector3d b = sphere_.col(corner.b);
     const double from_a = std::abs(normalOf(corner.plane).dot(a));
     const double from_b = std::abs(normalOf(corner.plane).dot(b));
     const double fraction = from_a / (from_a + from_b);
@@ -290,16 +282,16 @@ private:
   void addInside(const Corner& corner) {
     CutVertex vertex;
     for (int k = 0; k < 3; ++k) {
-      vertex.vertices[static_cast<std::size_t>(k)] = triangles_(k, triangle_);
+      entry(vertex.vertices, k) = triangles_(k, triangle_);
       // Rounding may make a weight negative that is next to nothing.
       vertex.weights[k] = std::max(
           0.0, corner.direction.dot(sphere_.col(triangles_((k + 1) % 3, triangle_))
                                         .cross(sphere_.col(triangles_((k + 2) % 3, triangle_)))));
     }
     const double sum = vertex.weights.sum();
-    vertex.weights = sum > 0.0 ? Eigen::Vector3d(vertex.weights / sum)
-                               : Eigen::Vector3d(Eigen::Vector3d::Constant(1.0 / 3.0));
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    vertex.weights =
+        sum > 0.0 ? Vector3d(vertex.weights / sum) : Vector3d(Vector3d::Constant(1.0 / 3.0));
+    Vector3d point = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
       point += vertex.weights[k] * sphere_.col(triangles_(k, triangle_));
     result_.vertices.push_back(vertex);
@@ -311,16 +303,16 @@ private:
   const SphereCells& cells_;
   int apex_;
   std::vector<int> planes_;  // of the cells
-  std::vector<PlaneSigns> signs_;
-  Index triangle_ = 0;                                     // that is being cut
-  std::vector<std::pair<Eigen::Vector3d, Index>> inside_;  // vertices inside of it
-  std::map<std::array<Index, 3>, Index> on_edges_;         // ends and plane -> vertex
+  Indexed<PlaneSigns> signs_;
+  Index triangle_ = 0;                              // that is being cut
+  std::vector<std::pair<Vector3d, Index>> inside_;  // vertices inside of it
+  std::map<std::array<Index, 3>, Index> on_edges_;  // ends and plane -> vertex
   CutSphere result_;
 };
 
 }  // namespace
 
-PlaneSigns planeSigns(const Eigen::Vector3d& d) {
+PlaneSigns planeSigns(const Vector3d& d) {
   return {compare(d.x(), 0.0),    compare(d.y(), 0.0),    compare(d.z(), 0.0),
           compare(d.x(), d.y()),  compare(d.x(), -d.y()), compare(d.x(), d.z()),
           compare(d.x(), -d.z()), compare(d.y(), d.z()),  compare(d.y(), -d.z())};

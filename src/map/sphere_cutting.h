@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/types.h"
 
@@ -26,17 +27,17 @@ struct CellSide {
 
 /// The convex cones that make up the sphere in a chart. Two that touch have a whole side, an edge
 /// from the centre or nothing more than the centre in common.
-using SphereCells = std::vector<std::vector<CellSide>>;
+using SphereCells = Indexed<std::vector<CellSide>>;
 
 bool isInCell(const PlaneSigns& signs, const std::vector<CellSide>& cell);
 
 /// A mesh on the sphere in which each triangle is in one cell.
 struct CutSphere {
-  std::vector<CutVertex> vertices;      ///< the first are those of the mesh
-  std::vector<Eigen::Vector3d> points;  ///< in the flat triangles of the mesh, not of unit length
-  std::vector<std::array<Index, 3>> triangles;  ///< outward
-  std::vector<Index> cells;                     ///< the cell of each triangle
-  std::vector<Index> source;                    ///< triangle of the mesh that each is a part of
+  Indexed<CutVertex> vertices;      ///< the first are those of the mesh
+  Indexed<Eigen::Vector3d> points;  ///< in the flat triangles of the mesh, not of unit length
+  Indexed<std::array<Index, 3>> triangles;  ///< outward
+  Indexed<Index> cells;                     ///< the cell of each triangle
+  Indexed<Index> source;                    ///< triangle of the mesh that each is a part of
 };
 
 /// Cuts a mesh on the sphere along the sides of cells.

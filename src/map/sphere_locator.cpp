@@ -1,7 +1,7 @@
 #include "sphere_locator.h"
 
-#include "exact_predicates.h"
-#include "parallel.h"
+#include "index_loops.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -22,11 +22,6 @@ constexpr unsigned kSerialLevels = 4;  ///< whose nodes are split level by level
 /// Of the coordinates of a unit vector after its normalisation, and of a corner after its own:
 /// each less than 1e-15.
 constexpr double kRounding = 4e-15;
-
-/// The sign of the determinant | a, b, c |, exact.
-int sideOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  return orientation3d(Vector3d::Zero(), a, b, c);
-}
 
 /// The direction with a largest coordinate of 1/2 to 1, exactly the same, but that coordinates
 /// whose products would underflow, so that no triangle might hold it, are 0.
@@ -52,7 +47,7 @@ Vector3d unitVector(const Vector3d& direction) {
 
 SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles, int threads)
     : sphere_(&sphere), triangles_(&triangles) {
-  const auto count = static_cast<std::size_t>(triangles.cols());
+  const std::size_t count = columnCount(triangles);
   while (count > kLeafSize << levels_)
     ++levels_;
   order_.resize(count);
@@ -60,12 +55,9 @@ SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles
   boxes_.resize(std::size_t{2} << levels_);
   Positions centers(3, triangles.cols());
   threads = threadCount(threads, count);
-  forEachBlock(count, threads, [&](std::size_t, std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      const auto t = static_cast<Eigen::Index>(i);
-      centers.col(t) =
-          sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
-    }
+  forEachIndex(count, threads, [&](Index t) {
+    centers.col(t) =
+        sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
   });
   const unsigned serial_levels = std::min(levels_, kSerialLevels);
   for (unsigned level = 0; level < serial_levels; ++level)
@@ -91,14 +83,12 @@ void SphereLocator::split(std::size_t node, unsigned level, unsigned last_level,
     makeBox(node);
     return;
   }
-  const auto at = [&](std::size_t leaf) {
-    return order_.begin() + static_cast<std::ptrdiff_t>(begin(leaf));
-  };
-  const auto first = at(first_leaf);
-  const auto end = at(first_leaf + leaves);
+  const auto at = [&](std::size_t leaf) { return order_.data() + begin(leaf); };
+  Index* const first = at(first_leaf);
+  Index* const end = at(first_leaf + leaves);
   Vector3d lower = centers.col(*first);
   Vector3d upper = lower;
-  for (auto i = first; i != end; ++i) {
+  for (const Index* i = first; i != end; ++i) {
     lower = lower.cwiseMin(centers.col(*i));
     upper = upper.cwiseMax(centers.col(*i));
   }
@@ -137,10 +127,12 @@ void SphereLocator::makeBox(std::size_t node) {
 }
 
 SphereLocator::Box SphereLocator::boxOf(Index triangle) const {
-  std::array<Vector3d, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = sphere_->col((*triangles_)(static_cast<Eigen::Index>(k), triangle)).normalized();
-  const auto& [a, b, c] = corners;
+  const auto corner = [&](Index k) -> Vector3d {
+    return sphere_->col((*triangles_)(k, triangle)).normalized();
+  };
+  const Vector3d a = corner(0);
+  const Vector3d b = corner(1);
+  const Vector3d c = corner(2);
   // A point of the flat triangle with the weights w is by w_a w_b |a - b|^2 + w_b w_c |b - c|^2 +
   // w_c w_a |c - a|^2 <= |longest side|^2 / 3 shorter than the sphere's radius, squared, and its
   // image on the sphere is as far away as its length is less than 1.
@@ -167,14 +159,13 @@ SphereHit SphereLocator::locate(const Vector3d& direction) const {
   const double y = place.y();
   const double z = place.z();
   const auto contains = [&](const Box& box) {
-    return static_cast<bool>(
-        static_cast<unsigned>(box.lower[0] <= x) & static_cast<unsigned>(x <= box.upper[0]) &
-        static_cast<unsigned>(box.lower[1] <= y) & static_cast<unsigned>(y <= box.upper[1]) &
-        static_cast<unsigned>(box.lower[2] <= z) & static_cast<unsigned>(z <= box.upper[2]));
+    // Without branches, which would be mispredicted.
+    return ((box.lower[0] <= x) & (x <= box.upper[0]) & (box.lower[1] <= y) & (y <= box.upper[1]) &
+            (box.lower[2] <= z) & (z <= box.upper[2])) != 0;
   };
 
   SphereHit hit;
-  std::array<int, 3> hit_sides{};
+  Eigen::Vector3i hit_sides;
   const std::size_t first_leaf = std::size_t{1} << levels_;
   std::array<std::size_t, std::numeric_limits<Index>::digits + 2> stack{};
   std::size_t size = 0;
@@ -195,9 +186,10 @@ SphereHit SphereLocator::locate(const Vector3d& direction) const {
       const Vector3d a = sphere_->col((*triangles_)(0, t));
       const Vector3d b = sphere_->col((*triangles_)(1, t));
       const Vector3d c = sphere_->col((*triangles_)(2, t));
-      std::array<int, 3> sides{};
-      if ((sides[0] = sideOf(exact, b, c)) < 0 || (sides[1] = sideOf(exact, c, a)) < 0 ||
-          (sides[2] = sideOf(exact, a, b)) < 0)
+      Eigen::Vector3i sides;
+      if ((sides[0] = determinantSign(exact, b, c)) < 0 ||
+          (sides[1] = determinantSign(exact, c, a)) < 0 ||
+          (sides[2] = determinantSign(exact, a, b)) < 0)
         continue;
       hit.triangle = t;
       hit_sides = sides;
@@ -214,25 +206,21 @@ SphereHit SphereLocator::locate(const Vector3d& direction) const {
 }
 
 Vector3d SphereLocator::weightsIn(Index triangle, const Vector3d& unit,
-                                  const std::array<int, 3>& sides) const {
+                                  const Eigen::Vector3i& sides) const {
   // Differences from the direction keep the digits in a tiny triangle. The weights are those of
   // where the ray meets the plane of the corners.
-  std::array<Vector3d, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = sphere_->col((*triangles_)(static_cast<Eigen::Index>(k), triangle)) - unit;
+  Eigen::Matrix3d corners;
+  for (Index k = 0; k < 3; ++k)
+    corners.col(k) = sphere_->col((*triangles_)(k, triangle)) - unit;
   Vector3d weights;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double volume = unit.dot(corners[(k + 1) % 3].cross(corners[(k + 2) % 3]));
-    weights[static_cast<Eigen::Index>(k)] = sides[k] > 0 ? std::max(0.0, volume) : 0.0;
+  for (Index k = 0; k < 3; ++k) {
+    const double volume = unit.dot(corners.col((k + 1) % 3).cross(corners.col((k + 2) % 3)));
+    weights[k] = sides[k] > 0 ? std::max(0.0, volume) : 0.0;
   }
-  double sum = weights.sum();
-  if (!(sum > 0.0)) {
-    // All is rounding: the middle of the sides and corners that are not excluded.
-    for (std::size_t k = 0; k < 3; ++k)
-      weights[static_cast<Eigen::Index>(k)] = sides[k] > 0 ? 1.0 : 0.0;
-    sum = weights.sum();
-  }
-  return weights / sum;
+  // If all is rounding: the middle of the sides and corners that are not excluded.
+  if (!(weights.sum() > 0.0))
+    weights = sides.cwiseMax(0).cast<double>();
+  return weights / weights.sum();
 }
 
 }  // namespace spherical_param::internal

@@ -2,7 +2,6 @@
 
 #include "spherical_param/types.h"
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -34,7 +33,7 @@ private:
   /// Weights of the corners of a triangle at a direction.
   /// \param sides signs of the determinants of the direction and the side opposite to each corner
   Eigen::Vector3d weightsIn(Index triangle, const Eigen::Vector3d& unit,
-                            const std::array<int, 3>& sides) const;
+                            const Eigen::Vector3i& sides) const;
 
   struct Box {
     double lower[3];

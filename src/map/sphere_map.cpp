@@ -1,13 +1,13 @@
 #include "spherical_param/map/sphere_map.h"
 
 #include "caps.h"
-#include "exact_predicates.h"
+#include "index_loops.h"
 #include "map_hierarchy.h"
 #include "map_relaxation.h"
-#include "parallel.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -68,14 +68,12 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
     if (!(std::abs(start.col(v).norm() - 1.0) <= tolerance))
       throw InvalidInput(caller + "the start of vertex " + std::to_string(v) + " has length " +
                          std::to_string(start.col(v).norm()) + "; normalise it");
-  MeshTopology topology =
-      checkTopology(triangles, static_cast<std::size_t>(points.cols()), threads);
+  MeshTopology topology = checkTopology(triangles, internal::columnCount(points), threads);
   if (topology.isSphere())
     return std::nullopt;
   if (topology.isOpenSurface()) {
     internal::CappedMesh capped = internal::capOpenings(points, triangles);
-    topology =
-        checkTopology(capped.triangles, static_cast<std::size_t>(capped.points.cols()), threads);
+    topology = checkTopology(capped.triangles, internal::columnCount(capped.points), threads);
     if (topology.isSphere())
       return capped;
   }
@@ -159,10 +157,10 @@ bool insertVertex(const MapHierarchy& hierarchy, Index v, const MapEnergy& energ
   for (std::size_t r = begin; r < end; ++r) {
     const Index first = hierarchy.ring[r];
     const Index next = hierarchy.ring[r + 1 == end ? begin : r + 1];
-    const Vector3d cotangents = internal::mapCotangents(
+    const Eigen::Vector3f cotangents = internal::mapCotangents(
         hierarchy.points.col(v), hierarchy.points.col(first), hierarchy.points.col(next));
-    work.corners.push_back({first, hierarchy.ring_masses[r], static_cast<float>(cotangents[0]),
-                            static_cast<float>(cotangents[1]), static_cast<float>(cotangents[2])});
+    work.corners.push_back(
+        {first, hierarchy.ring_masses[r], cotangents[0], cotangents[1], cotangents[2]});
   }
   const Vector3d point = kernelPoint(sphere, work);
   if (!internal::isMapValid(sphere, work.corners.data(), work.corners.size(), point))
@@ -183,9 +181,7 @@ void placeTetrahedron(const MapMesh& mesh, Positions& sphere) {
   sphere.col(1) << -c, -c, c;
   sphere.col(2) << -c, c, -c;
   sphere.col(3) << c, -c, -c;
-  if (internal::orientation3d(Vector3d::Zero(), sphere.col(mesh.triangles(0, 0)),
-                              sphere.col(mesh.triangles(1, 0)),
-                              sphere.col(mesh.triangles(2, 0))) < 0)
+  if (internal::isFlipped(sphere, mesh.triangles, 0))
     sphere.col(2).swap(sphere.col(3));
 }
 
@@ -219,8 +215,8 @@ class Refinement {
 public:
   Refinement(const MapHierarchy& hierarchy, const SphereMapOptions& options)
       : hierarchy_(hierarchy), options_(options), sphere_(3, hierarchy.points.cols()) {
-    for (const float mass : hierarchy.meshes.front().masses)
-      mass_ += static_cast<double>(mass);
+    for (const double mass : hierarchy.meshes.front().masses)
+      mass_ += mass;
     const double area = options.area_weight;
     const double angle = std::max(1.0 - area, kMinAngleWeight);
     const double area_of_mass = kAreaOfSphere / mass_;
@@ -278,13 +274,13 @@ private:
     SphereMapLevel level;
     level.vertices = static_cast<std::size_t>(mesh.vertex_count);
     for (; level.sweeps < std::min(kMildSweeps, options_.sweeps); ++level.sweeps) {
-      internal::reportFraction(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      internal::reportFraction(report, 1.0 * level.sweeps / options_.sweeps);
       internal::sweepMap(sphere_, rows, mild_, options_.threads);
     }
     double value = internal::mapEnergy(sphere_, rows, final_, options_.threads);
     bool goes_on = true;
     for (; goes_on && level.sweeps < options_.sweeps; ++level.sweeps) {
-      internal::reportFraction(report, static_cast<double>(level.sweeps) / options_.sweeps);
+      internal::reportFraction(report, 1.0 * level.sweeps / options_.sweeps);
       const double gain = internal::sweepMap(sphere_, rows, final_, options_.threads);
       value -= gain;
       goes_on = gain > kMinGain * value;
@@ -319,8 +315,8 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
   SphereMap map;
   const Positions refined = Refinement(hierarchy, options).run(map.levels, report);
   Positions sphere(3, refined.cols());
-  for (std::size_t i = 0; i < hierarchy.order.size(); ++i)
-    sphere.col(hierarchy.order[i]) = refined.col(static_cast<Eigen::Index>(i));
+  for (Index i = 0; i < refined.cols(); ++i)
+    sphere.col(hierarchy.order[i]) = refined.col(i);
   const Positions unit_start = start.colwise().normalized();
   map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
   internal::reportFraction(report, 0.0);

@@ -1,9 +1,9 @@
 #include "sphere_overlay.h"
 
-#include "exact_predicates.h"
-#include "parallel.h"
+#include "index_loops.h"
 #include "space_filling_curve.h"
 #include "spherical_param/errors.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -15,7 +15,9 @@
 namespace spherical_param::internal {
 namespace {
 
-int minorSign(const Eigen::Vector3d& u, const Eigen::Vector3d& v, int a, int b) {
+using Eigen::Vector3d;
+
+int minorSign(const Vector3d& u, const Vector3d& v, int a, int b) {
   return orientation2d({u[a], u[b]}, {v[a], v[b]}, Eigen::Vector2d::Zero());
 }
 
@@ -25,7 +27,7 @@ int signOf(double x) {
 
 /// For i < j < k: the sign of the first coefficient that does not vanish of the determinant, as a
 /// polynomial in what the coordinates are moved by.
-int perturbedSign(const Eigen::Vector3d& i, const Eigen::Vector3d& j, const Eigen::Vector3d& k) {
+int perturbedSign(const Vector3d& i, const Vector3d& j, const Vector3d& k) {
   const auto first = [](std::initializer_list<int> signs) {
     for (const int sign : signs)
       if (sign != 0)
@@ -41,9 +43,9 @@ int perturbedSign(const Eigen::Vector3d& i, const Eigen::Vector3d& j, const Eige
 }
 
 double determinantOf(const Positions& points, Index i, Index j, Index k) {
-  const Eigen::Vector3d a = points.col(i);
-  const Eigen::Vector3d ab = points.col(j) - points.col(i);
-  const Eigen::Vector3d ac = points.col(k) - points.col(i);
+  const Vector3d a = points.col(i);
+  const Vector3d ab = points.col(j) - points.col(i);
+  const Vector3d ac = points.col(k) - points.col(i);
   return a.dot(ab.cross(ac));
 }
 
@@ -81,7 +83,7 @@ SphereLocation placeOn(const ArcMesh& mesh, Index edge, double fraction) {
   return location;
 }
 
-SphereLocation placeAtCorner(Index triangle, int corner) {
+SphereLocation placeAtCorner(Index triangle, Index corner) {
   SphereLocation location;
   location.triangle = triangle;
   location.weights[corner] = 1.0;
@@ -101,12 +103,12 @@ std::array<double, 2> crossingOf(const Positions& points, const std::array<Index
   if (fractions[0] >= 0.0 && fractions[1] >= 0.0)
     return fractions;
   // On one great circle: the middle of what they have in common.
-  const auto along = [&points](const std::array<Index, 2>& of, const Eigen::Vector3d& place) {
-    const Eigen::Vector3d step = points.col(of[1]) - points.col(of[0]);
+  const auto along = [&points](const std::array<Index, 2>& of, const Vector3d& place) {
+    const Vector3d step = points.col(of[1]) - points.col(of[0]);
     return std::clamp((place - points.col(of[0])).dot(step) / step.squaredNorm(), 0.0, 1.0);
   };
   const double middle = 0.5 * (along(a, points.col(b[0])) + along(a, points.col(b[1])));
-  const Eigen::Vector3d place = (1.0 - middle) * points.col(a[0]) + middle * points.col(a[1]);
+  const Vector3d place = (1.0 - middle) * points.col(a[0]) + middle * points.col(a[1]);
   return {middle, along(b, place.normalized())};
 }
 
@@ -116,8 +118,9 @@ struct Crossings {
   std::vector<Index> edges;
   std::vector<Index> along;  ///< the edge of the other mesh that it is itself; -1: none
 
-  std::size_t begin(Index edge) const { return offsets[static_cast<std::size_t>(edge)]; }
-  std::size_t end(Index edge) const { return offsets[static_cast<std::size_t>(edge) + 1]; }
+  Index begin(Index edge) const { return static_cast<Index>(entry(offsets, edge)); }
+  Index end(Index edge) const { return begin(edge + 1); }
+  bool isAlong(Index edge) const { return entry(along, edge) >= 0; }
 };
 
 /// \param places of the vertices of `mesh` in `through`
@@ -159,8 +162,7 @@ void ascend(double& fraction, double& least) {
 }  // namespace
 
 int orientationOf(const Positions& points, Index i, Index j, Index k) {
-  const int sign =
-      orientation3d(Eigen::Vector3d::Zero(), points.col(i), points.col(j), points.col(k));
+  const int sign = determinantSign(points.col(i), points.col(j), points.col(k));
   if (sign != 0)
     return sign;
   std::array<Index, 3> order{i, j, k};
@@ -174,8 +176,8 @@ int orientationOf(const Positions& points, Index i, Index j, Index k) {
 }
 
 ArcMesh::ArcMesh(const Positions& points, const Triangles& triangles)
-    : points_(points), triangles_(triangles), across_(static_cast<std::size_t>(triangles.size())),
-      edge_of_(across_.size()), corner_at_(static_cast<std::size_t>(points.cols()), -1) {
+    : points_(points), triangles_(triangles), across_(3 * columnCount(triangles)),
+      edge_of_(across_.size()), corner_at_(columnCount(points), -1) {
   struct Side {
     Index low, high, corner;
     bool operator<(const Side& other) const {
@@ -186,28 +188,28 @@ ArcMesh::ArcMesh(const Positions& points, const Triangles& triangles)
   };
   std::vector<Side> sides;
   sides.reserve(across_.size());
-  for (Index t = 0; t < static_cast<Index>(triangles.cols()); ++t)
+  for (Index t = 0; t < triangles.cols(); ++t)
     for (Index k = 0; k < 3; ++k) {
       const Index begin = vertex(t, (k + 1) % 3);
       const Index end = vertex(t, (k + 2) % 3);
       sides.push_back({std::min(begin, end), std::max(begin, end), 3 * t + k});
-      Index& corner = corner_at_[static_cast<std::size_t>(vertex(t, k))];
+      Index& corner = corner_at_[vertex(t, k)];
       if (corner < 0)
         corner = 3 * t + k;
     }
   std::sort(sides.begin(), sides.end());
   for (std::size_t s = 0; s + 1 < sides.size(); s += 2) {
-    const auto edge = static_cast<Index>(edge_corner_.size());
-    edge_corner_.push_back(sides[s].corner);
-    for (std::size_t i = 0; i < 2; ++i) {
-      across_[static_cast<std::size_t>(sides[s + i].corner)] = sides[s + 1 - i].corner;
-      edge_of_[static_cast<std::size_t>(sides[s + i].corner)] = edge;
-    }
+    const Index left = sides[s].corner;
+    const Index right = sides[s + 1].corner;
+    across_[left] = right;
+    across_[right] = left;
+    edge_of_[left] = edge_of_[right] = edgeCount();
+    edge_corner_.push_back(left);
   }
 }
 
 std::array<Index, 2> ArcMesh::ends(Index edge) const {
-  const Index corner = edge_corner_[static_cast<std::size_t>(edge)];
+  const Index corner = edge_corner_[edge];
   return {vertex(corner / 3, (corner % 3 + 1) % 3), vertex(corner / 3, (corner % 3 + 2) % 3)};
 }
 
@@ -216,7 +218,7 @@ bool ArcMesh::leavesBetween(Index from, Index to, Index right, Index left) const
 }
 
 ArcMesh::Exit ArcMesh::leaveVertex(Index from, Index to) const {
-  const Index first = corner_at_[static_cast<std::size_t>(from)];
+  const Index first = corner_at_[from];
   Index around = first;
   do {
     const Index t = around / 3;
@@ -225,7 +227,7 @@ ArcMesh::Exit ArcMesh::leaveVertex(Index from, Index to) const {
     const Index left = vertex(t, (k + 2) % 3);
     if (right == to || left == to) {
       const Index opposite = 3 * t + (k + (right == to ? 2 : 1)) % 3;
-      return {{false, edge_of_[static_cast<std::size_t>(opposite)], -1}, -1};
+      return {{false, edge_of_[opposite], -1}, -1};
     }
     if (leavesBetween(from, to, right, left)) {
       if (orientationOf(points_, right, left, to) > 0)
@@ -264,8 +266,8 @@ ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index
   if (corner < 0)
     return exit.walk;
   for (std::size_t steps = 0; steps <= across_.size(); ++steps) {
-    crossed.push_back(edge_of_[static_cast<std::size_t>(corner)]);
-    const Index entry = across_[static_cast<std::size_t>(corner)];
+    crossed.push_back(edge_of_[corner]);
+    const Index entry = across_[corner];
     const Index t = entry / 3;
     const Index k = entry % 3;
     // Seen from this triangle the side runs the other way round.
@@ -295,7 +297,7 @@ std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& 
         const Index corner = mesh.cornerOppositeTo(edge);
         const Index second = (corner % 3 + 2) % 3;
         const Index k = mesh.vertex(corner / 3, second) == point ? second : (corner % 3 + 1) % 3;
-        locations[q] = placeAtCorner(corner / 3, static_cast<int>(k));
+        locations[q] = placeAtCorner(corner / 3, k);
       });
       last = locations[q].triangle;
       continue;
@@ -318,19 +320,16 @@ struct CommonVertices {
   Triangles second_triangles;  ///< of the second mesh, renumbered
 
   CommonVertices(const Positions& first, const Positions& second, const Triangles& triangles,
-                 const std::vector<Index>& partner)
-      : second_triangles(3, triangles.cols()) {
-    std::vector<Index> number(partner);
+                 const std::vector<Index>& partner) {
+    Indexed<Index> number(partner.begin(), partner.end());
     auto count = static_cast<Index>(first.cols());
     for (Index& i : number)
       if (i < 0)
         i = count++;
     points.resize(3, count);
     points.leftCols(first.cols()) = first;
-    for (std::size_t i = 0; i < number.size(); ++i)
-      points.col(number[i]) = second.col(static_cast<Eigen::Index>(i));
-    for (Eigen::Index i = 0; i < triangles.size(); ++i)
-      second_triangles.data()[i] = number[static_cast<std::size_t>(triangles.data()[i])];
+    points(Eigen::all, number) = second;
+    second_triangles = triangles.unaryExpr([&](Index v) { return number[v]; });
   }
 };
 
@@ -341,7 +340,7 @@ class OverlayBuilder {
 public:
   OverlayBuilder(const CommonVertices& vertices, const Triangles& first_triangles, int threads)
       : points_(vertices.points), triangles_{&first_triangles, &vertices.second_triangles},
-        threads_(threads), vertex_count_(static_cast<std::size_t>(points_.cols())),
+        threads_(threads), vertex_count_(static_cast<Index>(points_.cols())),
         mesh_a_(points_, first_triangles), mesh_b_(points_, vertices.second_triangles) {}
 
   SphereOverlay build() {
@@ -363,9 +362,9 @@ private:
     forEachTask(2, std::min(threads_, 2), [&](std::size_t m) {
       const std::vector<SphereLocation> found = locateAll(points_, *triangles_[m], order);
       is_lost[m] = found.size() != order.size();
-      places[m]->resize(vertex_count_);
+      places[m]->resize(order.size());
       for (std::size_t q = 0; q < found.size(); ++q)
-        (*places[m])[static_cast<std::size_t>(order[q])] = found[q];
+        entry(*places[m], order[q]) = found[q];
     });
     if (is_lost[0] || is_lost[1])
       failLost();
@@ -374,33 +373,39 @@ private:
   void findCrossings() {
     of_b_ = crossingsOf(mesh_b_, mesh_a_, overlay_.first, threads_);
     of_a_ = crossingsOf(mesh_a_, mesh_b_, overlay_.second, threads_);
-    crossing_count_ = of_b_.edges.size();
-    if (of_a_.edges.size() != crossing_count_)
+    if (of_a_.edges.size() != of_b_.edges.size())
       failLost();
-    node_count_ = vertex_count_ + crossing_count_;
-    overlay_.first.resize(node_count_);
-    overlay_.second.resize(node_count_);
+    const std::size_t node_count = columnCount(points_) + of_b_.edges.size();
+    // Half-edges, four at a crossing, have an Index.
+    if (node_count > std::size_t{1} << 28U)
+      throw ComputeError("morphSurfaces: the edges of both meshes cross too often; resample them");
+    node_count_ = static_cast<Index>(node_count);
+    overlay_.first.resize(node_count);
+    overlay_.second.resize(node_count);
   }
 
   /// Finds the node of each crossing on the edges of the first mesh: nodes are numbered along the
   /// edges of the second.
   void matchCrossings() {
-    std::vector<std::pair<Index, Index>> by_edge(crossing_count_);  // edge of the second, node
-    std::vector<std::size_t> end(of_a_.offsets.begin(), of_a_.offsets.end() - 1);
+    Indexed<std::pair<Index, Index>> by_edge(of_b_.edges.size());  // edge of the second, node
+    Indexed<Index> free;  // of each edge of the first, where the next goes
+    for (Index e = 0; e < mesh_a_.edgeCount(); ++e)
+      free.push_back(of_a_.begin(e));
     for (Index e = 0; e < mesh_b_.edgeCount(); ++e)
-      for (std::size_t c = of_b_.begin(e); c < of_b_.end(e); ++c) {
-        const auto a = static_cast<std::size_t>(of_b_.edges[c]);
-        if (end[a] >= of_a_.offsets[a + 1])
+      for (Index c = of_b_.begin(e); c < of_b_.end(e); ++c) {
+        const Index a = entry(of_b_.edges, c);
+        if (free[a] == of_a_.end(a))
           failLost();
-        by_edge[end[a]++] = {e, static_cast<Index>(vertex_count_ + c)};
+        by_edge[free[a]++] = {e, vertex_count_ + c};
       }
-    nodes_of_a_.resize(crossing_count_);
+    nodes_of_a_.resize(by_edge.size());
     for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
-      const auto first = by_edge.begin() + static_cast<std::ptrdiff_t>(of_a_.begin(e));
-      const auto last = by_edge.begin() + static_cast<std::ptrdiff_t>(of_a_.end(e));
-      for (std::size_t c = of_a_.begin(e); c < of_a_.end(e); ++c) {
-        const auto found = std::lower_bound(first, last, std::pair(of_a_.edges[c], Index{0}));
-        if (found == last || found->first != of_a_.edges[c])
+      const auto first = by_edge.begin() + of_a_.begin(e);
+      const auto last = by_edge.begin() + of_a_.end(e);
+      for (Index c = of_a_.begin(e); c < of_a_.end(e); ++c) {
+        const Index crossed = entry(of_a_.edges, c);
+        const auto found = std::lower_bound(first, last, std::pair(crossed, Index{0}));
+        if (found == last || found->first != crossed)
           failLost();
         nodes_of_a_[c] = found->second;
       }
@@ -408,33 +413,33 @@ private:
   }
 
   void placeCrossings() {
-    std::vector<double> fraction_of_a(crossing_count_);
-    std::vector<double> fraction_of_b(crossing_count_);
-    from_left_.resize(crossing_count_);
+    Indexed<double> fraction_of_a(nodes_of_a_.size());
+    Indexed<double> fraction_of_b(nodes_of_a_.size());
+    from_left_.resize(nodes_of_a_.size());
     for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
       const std::array<Index, 2> ends = mesh_a_.ends(e);
       double least = 0.0;
-      for (std::size_t c = of_a_.begin(e); c < of_a_.end(e); ++c) {
-        const auto node = static_cast<std::size_t>(nodes_of_a_[c]);
-        const std::size_t x = node - vertex_count_;
-        const std::array<Index, 2> other = mesh_b_.ends(of_a_.edges[c]);
+      for (Index c = of_a_.begin(e); c < of_a_.end(e); ++c) {
+        const Index node = nodes_of_a_[c];
+        const Index x = node - vertex_count_;
+        const std::array<Index, 2> other = mesh_b_.ends(entry(of_a_.edges, c));
         const std::array<double, 2> fractions = crossingOf(points_, ends, other);
         fraction_of_a[x] = fractions[0];
         fraction_of_b[x] = fractions[1];
         ascend(fraction_of_a[x], least);
         from_left_[x] = orientationOf(points_, ends[0], ends[1], other[0]) > 0 ? 1 : 0;
-        overlay_.first[node] = placeOn(mesh_a_, e, fraction_of_a[x]);
+        entry(overlay_.first, node) = placeOn(mesh_a_, e, fraction_of_a[x]);
       }
     }
-    overlay_.directions.resize(3, static_cast<Eigen::Index>(node_count_));
+    overlay_.directions.resize(3, node_count_);
     overlay_.directions.leftCols(points_.cols()) = points_;
     for (Index e = 0; e < mesh_b_.edgeCount(); ++e) {
       double least = 0.0;
-      for (std::size_t x = of_b_.begin(e); x < of_b_.end(e); ++x) {
+      for (Index x = of_b_.begin(e); x < of_b_.end(e); ++x) {
         ascend(fraction_of_b[x], least);
-        overlay_.second[vertex_count_ + x] = placeOn(mesh_b_, e, fraction_of_b[x]);
-        const std::array<Index, 2> ends = mesh_a_.ends(of_b_.edges[x]);
-        overlay_.directions.col(static_cast<Eigen::Index>(vertex_count_ + x)) =
+        entry(overlay_.second, vertex_count_ + x) = placeOn(mesh_b_, e, fraction_of_b[x]);
+        const std::array<Index, 2> ends = mesh_a_.ends(entry(of_b_.edges, x));
+        overlay_.directions.col(vertex_count_ + x) =
             ((1.0 - fraction_of_a[x]) * points_.col(ends[0]) +
              fraction_of_a[x] * points_.col(ends[1]))
                 .normalized();
@@ -459,7 +464,7 @@ private:
     if (!mesh_b_.isVertex(v))
       return;
     mesh_b_.forEachEdgeAt(v, [&](Index edge, bool is_begin, Index towards) {
-      if (of_b_.along[static_cast<std::size_t>(edge)] < 0)
+      if (!of_b_.isAlong(edge))
         spokes.push_back({edge, true, is_begin, towards});
     });
     if (!mesh_a_.isVertex(v))
@@ -479,70 +484,67 @@ private:
   }
 
   void numberHalfEdges() {
-    offsets_.assign(node_count_ + 1, 0);
-    ends_of_a_.assign(2 * static_cast<std::size_t>(mesh_a_.edgeCount()), 0);
-    ends_of_b_.assign(2 * static_cast<std::size_t>(mesh_b_.edgeCount()), 0);
+    ends_of_a_.resize(of_a_.along.size());
+    ends_of_b_.resize(of_b_.along.size());
     std::vector<Spoke> spokes;
-    for (std::size_t v = 0; v < vertex_count_; ++v) {
-      findSpokes(static_cast<Index>(v), spokes);
-      for (std::size_t i = 0; i < spokes.size(); ++i) {
-        const Spoke& spoke = spokes[i];
-        std::vector<std::size_t>& ends = spoke.is_second ? ends_of_b_ : ends_of_a_;
-        ends[2 * static_cast<std::size_t>(spoke.edge) + (spoke.is_begin ? 0 : 1)] = offsets_[v] + i;
+    for (Index v = 0; v < vertex_count_; ++v) {
+      findSpokes(v, spokes);
+      offsets_.push_back(indexCount(origin_));
+      for (const Spoke& spoke : spokes) {
+        std::array<Index, 2>& ends = (spoke.is_second ? ends_of_b_ : ends_of_a_)[spoke.edge];
+        (spoke.is_begin ? ends[0] : ends[1]) = indexCount(origin_);
+        origin_.push_back(v);
       }
-      offsets_[v + 1] = offsets_[v] + spokes.size();
     }
-    for (std::size_t v = vertex_count_; v < node_count_; ++v)
-      offsets_[v + 1] = offsets_[v] + 4;
-    origin_.resize(offsets_.back());
-    for (std::size_t v = 0; v < node_count_; ++v)
-      std::fill(origin_.begin() + static_cast<std::ptrdiff_t>(offsets_[v]),
-                origin_.begin() + static_cast<std::ptrdiff_t>(offsets_[v + 1]),
-                static_cast<Index>(v));
+    for (Index v = vertex_count_; v < node_count_; ++v) {
+      offsets_.push_back(indexCount(origin_));
+      origin_.insert(origin_.end(), 4, v);
+    }
+    offsets_.push_back(indexCount(origin_));
   }
 
   /// Around a crossing: on along the first's edge, left of it, back, right of it.
   void joinTwins() {
-    twin_.resize(offsets_.back());
-    const auto join = [this](std::size_t one, std::size_t other) {
+    twin_.resize(origin_.size());
+    const auto join = [this](Index one, Index other) {
       twin_[one] = other;
       twin_[other] = one;
     };
     for (Index e = 0; e < mesh_a_.edgeCount(); ++e) {
-      std::size_t out = ends_of_a_[2 * static_cast<std::size_t>(e)];
-      for (std::size_t c = of_a_.begin(e); c < of_a_.end(e); ++c) {
-        const std::size_t begin = offsets_[static_cast<std::size_t>(nodes_of_a_[c])];
+      Index out = ends_of_a_[e][0];
+      for (Index c = of_a_.begin(e); c < of_a_.end(e); ++c) {
+        const Index begin = offsets_[nodes_of_a_[c]];
         join(out, begin + 2);
         out = begin;
       }
-      join(out, ends_of_a_[2 * static_cast<std::size_t>(e) + 1]);
+      join(out, ends_of_a_[e][1]);
     }
     for (Index e = 0; e < mesh_b_.edgeCount(); ++e) {
-      if (of_b_.along[static_cast<std::size_t>(e)] >= 0)
+      if (of_b_.isAlong(e))
         continue;
-      std::size_t out = ends_of_b_[2 * static_cast<std::size_t>(e)];
-      for (std::size_t x = of_b_.begin(e); x < of_b_.end(e); ++x) {
-        const std::size_t begin = offsets_[vertex_count_ + x];
+      Index out = ends_of_b_[e][0];
+      for (Index x = of_b_.begin(e); x < of_b_.end(e); ++x) {
+        const Index begin = offsets_[vertex_count_ + x];
         join(out, begin + (from_left_[x] != 0 ? 1 : 3));
         out = begin + (from_left_[x] != 0 ? 3 : 1);
       }
-      join(out, ends_of_b_[2 * static_cast<std::size_t>(e) + 1]);
+      join(out, ends_of_b_[e][1]);
     }
   }
 
   /// The face to the left of a half-edge continues, where that ends, by the next one clockwise.
   void traceFaces() {
     overlay_.offsets.push_back(0);
-    std::vector<char> is_done(twin_.size(), 0);
-    for (std::size_t start = 0; start < twin_.size(); ++start) {
+    Indexed<char> is_done(twin_.size(), 0);
+    for (Index start = 0; start < indexCount(twin_); ++start) {
       if (is_done[start] != 0)
         continue;
-      std::size_t half_edge = start;
+      Index half_edge = start;
       do {
         is_done[half_edge] = 1;
         overlay_.corners.push_back(origin_[half_edge]);
-        const std::size_t back = twin_[half_edge];
-        const auto v = static_cast<std::size_t>(origin_[back]);
+        const Index back = twin_[half_edge];
+        const Index v = origin_[back];
         half_edge = back == offsets_[v] ? offsets_[v + 1] - 1 : back - 1;
       } while (half_edge != start);
       overlay_.offsets.push_back(overlay_.corners.size());
@@ -550,27 +552,26 @@ private:
         failLost();
     }
     // Euler: else the edges would cross more often than was found, or rotations would be wrong.
-    if (node_count_ + overlay_.offsets.size() - 1 != twin_.size() / 2 + 2)
+    if (node_count_ + indexCount(overlay_.offsets) - 1 != indexCount(twin_) / 2 + 2)
       failLost();
   }
 
   const Positions& points_;
   std::array<const Triangles*, 2> triangles_;
   int threads_;
-  std::size_t vertex_count_;
-  std::size_t crossing_count_ = 0;
-  std::size_t node_count_ = 0;
+  Index vertex_count_;
+  Index node_count_ = 0;
   ArcMesh mesh_a_;
   ArcMesh mesh_b_;
   Crossings of_a_;
   Crossings of_b_;
-  std::vector<Index> nodes_of_a_;     ///< crossings in the order along the edges of the first mesh
-  std::vector<char> from_left_;       ///< whether the second's edge comes from left of the first's
-  std::vector<std::size_t> offsets_;  ///< nodes + 1: the half-edges of each node
-  std::vector<std::size_t> ends_of_a_;  ///< half-edges at both ends of each edge of the first mesh
-  std::vector<std::size_t> ends_of_b_;  ///< the same of the second mesh
-  std::vector<std::size_t> twin_;
-  std::vector<Index> origin_;
+  Indexed<Index> nodes_of_a_;  ///< crossings in the order along the edges of the first mesh
+  Indexed<char> from_left_;    ///< whether the second's edge comes from left of the first's
+  Indexed<Index> offsets_;     ///< nodes + 1: the half-edges of each node
+  Indexed<std::array<Index, 2>> ends_of_a_;  ///< half-edges at both ends of the first's edges
+  Indexed<std::array<Index, 2>> ends_of_b_;  ///< the same of the second mesh
+  Indexed<Index> twin_;                      ///< of each half-edge
+  Indexed<Index> origin_;                    ///< the node that each half-edge leaves
   SphereOverlay overlay_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "index_loops.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/types.h"
 
@@ -26,12 +27,12 @@ public:
   /// \param points must outlive this. \param triangles 3 x m, columns of `points`.
   ArcMesh(const Positions& points, const Triangles& triangles);
 
-  Index edgeCount() const { return static_cast<Index>(edge_corner_.size()); }
-  bool isVertex(Index point) const { return corner_at_[static_cast<std::size_t>(point)] >= 0; }
+  Index edgeCount() const { return indexCount(edge_corner_); }
+  bool isVertex(Index point) const { return corner_at_[point] >= 0; }
   /// Both ends of an edge, as its left triangle has it.
   std::array<Index, 2> ends(Index edge) const;
   /// The corner of the left triangle that is opposite to an edge, as 3 * triangle + corner.
-  Index cornerOppositeTo(Index edge) const { return edge_corner_[static_cast<std::size_t>(edge)]; }
+  Index cornerOppositeTo(Index edge) const { return edge_corner_[edge]; }
   Index vertex(Index triangle, Index corner) const {
     return triangles_.data()[3 * triangle + corner];
   }
@@ -52,13 +53,13 @@ public:
   /// Calls visit(edge, is its left end, other end) for the edges at a vertex, counter-clockwise.
   template <typename Visit>
   void forEachEdgeAt(Index vertex, const Visit& visit) const {
-    const Index first = corner_at_[static_cast<std::size_t>(vertex)];
+    const Index first = corner_at_[vertex];
     Index corner = first;
     do {
       const Index t = corner / 3;
       const Index k = corner % 3;
       const Index behind = 3 * t + (k + 2) % 3;
-      const Index edge = edge_of_[static_cast<std::size_t>(behind)];
+      const Index edge = edge_of_[behind];
       visit(edge, ends(edge)[0] == vertex, this->vertex(t, (k + 1) % 3));
       corner = nextAround(corner);
     } while (corner != first);
@@ -78,17 +79,17 @@ private:
   Index nextAround(Index corner) const {
     const Index begin = corner - corner % 3;
     const Index next = begin + (corner + 1 - begin) % 3;
-    const Index across = across_[static_cast<std::size_t>(next)];
+    const Index across = across_[next];
     // There the common side begins at the vertex, behind the opposite corner.
     return 3 * (across / 3) + (across % 3 + 1) % 3;
   }
 
   const Positions& points_;
   const Triangles& triangles_;
-  std::vector<Index> across_;       ///< corner opposite to each corner, beyond its side
-  std::vector<Index> edge_of_;      ///< the edge opposite to each corner
-  std::vector<Index> edge_corner_;  ///< opposite to each edge, in its left triangle
-  std::vector<Index> corner_at_;    ///< of each point; -1: no vertex
+  Indexed<Index> across_;       ///< corner opposite to each corner, beyond its side
+  Indexed<Index> edge_of_;      ///< the edge opposite to each corner
+  Indexed<Index> edge_corner_;  ///< opposite to each edge, in its left triangle
+  Indexed<Index> corner_at_;    ///< of each point; -1: no vertex
 };
 
 /// The triangle that holds each of some points; each point is a vertex or in the mesh's sphere.

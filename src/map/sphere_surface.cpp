@@ -2,13 +2,13 @@
 
 #include "caps.h"
 #include "corner_table.h"
-#include "exact_predicates.h"
+#include "index_loops.h"
 #include "option_checks.h"
-#include "parallel.h"
 #include "pi.h"
 #include "sphere_locator.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
+#include "triangle_geometry.h"
 #include "vertex_normals.h"
 #include "vertex_quadrics.h"
 
@@ -37,13 +37,11 @@ void requireAll(const Positions& positions, const Check& check, const std::strin
       throw InvalidInput(what + " " + std::to_string(i) + " " + remedy);
 }
 
-bool isFlipped(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
-  return internal::orientation3d(Vector3d::Zero(), sphere.col(triangles(0, t)),
-                                 sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0;
-}
-
 /// The solid angle of a triangle on the unit sphere (A. van Oosterom and J. Strackee, 1983).
-double solidAngle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+double solidAngle(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
+  const Vector3d a = sphere.col(triangles(0, t));
+  const Vector3d b = sphere.col(triangles(1, t));
+  const Vector3d c = sphere.col(triangles(2, t));
   return 2.0 * std::atan2(a.dot(b.cross(c)), 1.0 + a.dot(b) + b.dot(c) + c.dot(a));
 }
 
@@ -60,17 +58,16 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
   requireAll(
       sphere, [](const Vector3d& u) { return std::abs(u.squaredNorm() - 1.0) <= tolerance; },
       "SphereSurface: vertex", "is not of unit length on the sphere; normalise the sphere first");
-  if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), threads).isSphere())
+  if (!checkTopology(triangles, internal::columnCount(points), threads).isSphere())
     throw InvalidInput("SphereSurface: the triangles must be a manifold, consistently oriented "
                        "mesh of genus 0 over all points, with the caps of SphereMap if it has "
                        "openings; see checkTopology()");
 
-  const auto count = static_cast<std::size_t>(triangles.cols());
-  const int workers = internal::threadCount(threads, count);
+  const std::size_t count = internal::columnCount(triangles);
   struct Covering {
     double angle = 0.0;
-    std::size_t flipped = 0;
-    std::size_t first = 0;  ///< that is flipped, if one is
+    Index flipped = 0;
+    Index first = 0;  ///< that is flipped, if one is
     Covering& operator+=(const Covering& other) {
       first = flipped > 0 ? first : other.first;
       angle += other.angle;
@@ -78,19 +75,11 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
       return *this;
     }
   };
-  const Covering sums =
-      internal::sumOfBlocks(count, workers, Covering(), [&](std::size_t begin, std::size_t end) {
-        Covering sum;
-        for (std::size_t i = begin; i < end; ++i) {
-          const auto t = static_cast<Eigen::Index>(i);
-          if (isFlipped(sphere, triangles, t))
-            sum += Covering{0.0, 1, i};
-          else
-            sum.angle += solidAngle(sphere.col(triangles(0, t)), sphere.col(triangles(1, t)),
-                                    sphere.col(triangles(2, t)));
-        }
-        return sum;
-      });
+  const Covering sums = internal::sumOfIndices(count, threads, Covering(), [&](Index t) {
+    if (internal::isFlipped(sphere, triangles, t))
+      return Covering{0.0, 1, t};
+    return Covering{solidAngle(sphere, triangles, t), 0, 0};
+  });
   if (sums.flipped > 0)
     throw InvalidInput("SphereSurface: triangle " + std::to_string(sums.first) +
                        " is flipped on the sphere or has no area there, as " +
@@ -103,19 +92,10 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
                        " times; make a map that is one to one by computeSphereMap()");
 }
 
-double areaOf(const Positions& points, const Eigen::Ref<const Triangles>& triangles, int threads) {
-  const auto count = static_cast<std::size_t>(triangles.cols());
-  return internal::sumOfBlocks(
-      count, internal::threadCount(threads, count), 0.0, [&](std::size_t begin, std::size_t end) {
-        double sum = 0.0;
-        for (std::size_t i = begin; i < end; ++i) {
-          const auto t = static_cast<Eigen::Index>(i);
-          const Vector3d a = points.col(triangles(0, t));
-          sum +=
-              0.5 * (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a).norm();
-        }
-        return sum;
-      });
+double areaOf(const Positions& points, const Triangles& triangles, int threads) {
+  return internal::sumOfIndices(internal::columnCount(triangles), threads, 0.0, [&](Index t) {
+    return 0.5 * internal::areaNormal(points, triangles, t).norm();
+  });
 }
 
 }  // namespace
@@ -129,7 +109,7 @@ struct SphereSurface::Data {
         mesh_triangles(mesh_triangles_in),
         area(areaOf(points, triangles.leftCols(mesh_triangles), thread_limit)),
         locator(sphere, triangles, thread_limit) {
-    const auto count = static_cast<std::size_t>(points.cols());
+    const std::size_t count = internal::columnCount(points);
     const int threads = internal::threadCount(thread_limit, count);
     // Caps have no say in what the surface is like at their loops.
     const internal::CornerTable corners(triangles.leftCols(mesh_triangles), count, threads);
@@ -190,8 +170,7 @@ SphereSurface::SphereSurface(const Positions& points, const Triangles& triangles
     return;
   }
   internal::checkTriangles("SphereSurface", triangles, points.cols());
-  if (!checkTopology(triangles, static_cast<std::size_t>(points.cols()), options.threads)
-           .isOpenSurface())
+  if (!checkTopology(triangles, internal::columnCount(points), options.threads).isOpenSurface())
     throw InvalidInput("SphereSurface: there are caps, but the triangles are not a consistently "
                        "oriented manifold with boundary over all points; give the mesh of the map");
   internal::CappedMesh capped = internal::capOpenings(points, triangles);
@@ -225,9 +204,7 @@ double SphereSurface::area() const {
 double SphereSurface::coverage() const {
   double openings = 0.0;
   for (Eigen::Index t = data_->mesh_triangles; t < data_->triangles.cols(); ++t)
-    openings += solidAngle(data_->sphere.col(data_->triangles(0, t)),
-                           data_->sphere.col(data_->triangles(1, t)),
-                           data_->sphere.col(data_->triangles(2, t)));
+    openings += solidAngle(data_->sphere, data_->triangles, t);
   // A mesh has a part of the sphere, be it lost in rounding.
   constexpr double least = 1e-12;
   return std::max(least, 1.0 - openings / (4.0 * kPi));
@@ -278,22 +255,20 @@ SurfaceSample SphereSurface::evaluate(const SphereLocation& location) const {
 SurfaceSamples SphereSurface::evaluate(const Positions& directions) const {
   requireAll(directions, isDirection, "SphereSurface: direction",
              "is zero or not finite; any other will do");
-  const auto count = static_cast<std::size_t>(directions.cols());
   SurfaceSamples samples;
   samples.positions.resize(3, directions.cols());
   samples.normals.resize(3, directions.cols());
-  samples.locations.resize(count);
-  internal::forEachItem(
-      count, internal::threadCount(data_->thread_limit, count), [&](std::size_t, std::size_t i) {
-        const auto column = static_cast<Eigen::Index>(i);
-        const internal::SphereHit hit = data_->locator.locate(directions.col(column));
-        samples.locations[i] = {hit.triangle, hit.weights};
-        if (hit.triangle < 0)
-          return;
-        const SurfaceSample sample = data_->at(samples.locations[i]);
-        samples.positions.col(column) = sample.position;
-        samples.normals.col(column) = sample.normal;
-      });
+  samples.locations.resize(internal::columnCount(directions));
+  internal::forEachIndex(samples.locations.size(), data_->thread_limit, [&](Index i) {
+    const internal::SphereHit hit = data_->locator.locate(directions.col(i));
+    SphereLocation& location = internal::entry(samples.locations, i);
+    location = {hit.triangle, hit.weights};
+    if (hit.triangle < 0)
+      return;
+    const SurfaceSample sample = data_->at(location);
+    samples.positions.col(i) = sample.position;
+    samples.normals.col(i) = sample.normal;
+  });
   for (const SphereLocation& location : samples.locations)
     requireHit({location.triangle, location.weights});
   return samples;

@@ -1,10 +1,10 @@
 #include "sphere_warp.h"
 
 #include "corner_table.h"
-#include "exact_predicates.h"
-#include "parallel.h"
+#include "index_loops.h"
 #include "pi.h"
 #include "tangent_basis.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -19,6 +19,8 @@
 
 namespace spherical_param::internal {
 namespace {
+
+using Eigen::Vector3d;
 
 /// A step x -> (x + s(x)) / |x + s(x)| of a tangential field is locally one to one where |s|^2 +
 /// |Ds|^2 < 1, as I + (s, Ds) then has an inverse; and a map of the sphere that is so everywhere is
@@ -51,35 +53,35 @@ constexpr int kSpread = 512;
 
 /// The way of a landmark: an arc, pushed aside most in its middle.
 struct Path {
-  Eigen::Vector3d from, to;
-  Eigen::Vector3d axis;                                   ///< of the arc
-  double angle = 0.0;                                     ///< of the arc [rad]
-  double detour = 0.0;                                    ///< [rad]
-  std::array<Eigen::Vector3d, kPathSamples - 1> samples;  ///< evenly, without the ends
+  Vector3d from, to;
+  Vector3d axis;                                   ///< of the arc
+  double angle = 0.0;                              ///< of the arc [rad]
+  double detour = 0.0;                             ///< [rad]
+  std::array<Vector3d, kPathSamples - 1> samples;  ///< evenly, without the ends
 
-  Path(const Eigen::Vector3d& begin, const Eigen::Vector3d& end) : from(begin), to(end) {
-    const Eigen::Vector3d cross = begin.cross(end);
+  Path(const Vector3d& begin, const Vector3d& end) : from(begin), to(end) {
+    const Vector3d cross = begin.cross(end);
     angle = std::atan2(cross.norm(), begin.dot(end));
     // Between antipodes any arc will do, and without a way any axis.
-    axis = cross.norm() > 1e-12 ? Eigen::Vector3d(cross.normalized())
-                                : Eigen::Vector3d(tangentBasis(begin).col(0));
+    axis =
+        cross.norm() > 1e-12 ? Vector3d(cross.normalized()) : Vector3d(tangentBasis(begin).col(0));
     bend(0.0);
   }
 
   void bend(double aside) {
     detour = aside;
-    for (std::size_t s = 0; s < samples.size(); ++s)
-      samples[s] = at(static_cast<double>(s + 1) / kPathSamples);
+    for (unsigned s = 0; s < samples.size(); ++s)
+      samples[s] = at((s + 1.0) / kPathSamples);
   }
 
   /// No place on it is farther from its beginning [rad].
   double reach() const { return angle + std::abs(detour); }
 
-  Eigen::Vector3d at(double t) const {
+  Vector3d at(double t) const {
     if (t >= 1.0)
       return to;
-    const Eigen::Vector3d along = axis.cross(from).normalized();
-    const Eigen::Vector3d on_arc = std::cos(t * angle) * from + std::sin(t * angle) * along;
+    const Vector3d along = axis.cross(from).normalized();
+    const Vector3d on_arc = std::cos(t * angle) * from + std::sin(t * angle) * along;
     const double aside = detour * std::sin(kPi * t);
     return (std::cos(aside) * on_arc + std::sin(aside) * axis).normalized();
   }
@@ -99,30 +101,31 @@ double conflictOf(const Path& one, const Path& other) {
 }
 
 /// Sends landmarks that would collide on detours. \return which still would, most of all
-std::ptrdiff_t planPaths(std::vector<Path>& paths, const std::vector<std::size_t>& active,
-                         int threads) {
-  const std::size_t n = active.size();
+std::optional<std::size_t> planPaths(std::vector<Path>& paths,
+                                     const std::vector<std::size_t>& active, int threads) {
   const auto conflict_of = [&](std::size_t i) {
     double sum = 0.0;
-    for (std::size_t j = 0; j < n; ++j)
+    for (const std::size_t j : active)
       if (j != i)
-        sum += conflictOf(paths[active[i]], paths[active[j]]);
+        sum += conflictOf(paths[i], paths[j]);
     return sum;
   };
-  std::vector<double> conflicts(n);
-  const auto examine = [&] {
-    const int used = threadCount(threads, n * n);
-    forEachTask(n, used, [&](std::size_t i) { conflicts[i] = conflict_of(i); });
-    return std::max_element(conflicts.begin(), conflicts.end()) - conflicts.begin();
+  std::vector<double> conflicts(paths.size(), 0.0);
+  const auto find_worst = [&] {
+    const int used = threadCount(threads, active.size() * active.size());
+    forEachTask(active.size(), used,
+                [&](std::size_t k) { conflicts[active[k]] = conflict_of(active[k]); });
+    return std::max_element(conflicts.begin(), conflicts.end());
   };
-  std::ptrdiff_t worst = examine();
-  for (int round = 0; round < kDetourRounds && conflicts[static_cast<std::size_t>(worst)] > 0.0;
-       ++round) {
-    for (std::size_t i = 0; i < n; ++i) {
+  auto worst = find_worst();
+  for (int round = 0; round < kDetourRounds; ++round) {
+    if (*worst == 0.0)
+      return std::nullopt;
+    for (const std::size_t i : active) {
       double least = conflict_of(i);
       if (least == 0.0)
         continue;
-      Path& path = paths[active[i]];
+      Path& path = paths[i];
       double best = path.detour;
       for (const double fraction : kDetours) {
         path.bend(fraction * (path.angle + 0.1));
@@ -134,11 +137,11 @@ std::ptrdiff_t planPaths(std::vector<Path>& paths, const std::vector<std::size_t
       }
       path.bend(best);
     }
-    worst = examine();
+    worst = find_worst();
   }
-  return conflicts[static_cast<std::size_t>(worst)] > 0.0
-             ? static_cast<std::ptrdiff_t>(active[static_cast<std::size_t>(worst)])
-             : -1;
+  if (*worst == 0.0)
+    return std::nullopt;
+  return worst - conflicts.begin();
 }
 
 /// A tangential field on the sphere: the sum of vectors of which each counts the less the farther
@@ -149,19 +152,18 @@ public:
   Field(const Positions& centers, const Positions& values, double support)
       : centers_(centers), inverse_support_(1.0 / support) {
     const Eigen::Index n = centers.cols();
-    std::vector<TangentBasis> bases;
+    Indexed<TangentBasis> bases;
     for (Eigen::Index i = 0; i < n; ++i)
       bases.push_back(tangentBasis(centers.col(i)));
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(2 * n, 2 * n);
     Eigen::VectorXd wanted(2 * n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const TangentBasis& basis = bases[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < n; ++i) {
+      const TangentBasis& basis = bases[i];
       wanted.segment<2>(2 * i) = basis.transpose() * values.col(i);
-      for (Eigen::Index j = 0; j <= i; ++j) {
+      for (Index j = 0; j <= i; ++j) {
         const double r = (centers.col(i) - centers.col(j)).norm() * inverse_support_;
         if (r < 1.0)
-          gram.block<2, 2>(2 * i, 2 * j) =
-              kernel(r) * (basis.transpose() * bases[static_cast<std::size_t>(j)]);
+          gram.block<2, 2>(2 * i, 2 * j) = kernel(r) * (basis.transpose() * bases[j]);
       }
     }
     const Eigen::LDLT<Eigen::MatrixXd> solver(gram);
@@ -170,15 +172,15 @@ public:
     for (int i = 0; i < 2; ++i)
       weights += solver.solve(wanted - gram.selfadjointView<Eigen::Lower>() * weights);
     weights_.resize(3, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      weights_.col(i) = bases[static_cast<std::size_t>(i)] * weights.segment<2>(2 * i);
+    for (Index i = 0; i < n; ++i)
+      weights_.col(i) = bases[i] * weights.segment<2>(2 * i);
     is_finite_ = weights_.allFinite();
   }
 
   bool isFinite() const { return is_finite_; }
 
-  Eigen::Vector3d at(const Eigen::Vector3d& x) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Vector3d at(const Vector3d& x) const {
+    Vector3d sum = Vector3d::Zero();
     for (Eigen::Index j = 0; j < centers_.cols(); ++j) {
       const double squared =
           (x - centers_.col(j)).squaredNorm() * inverse_support_ * inverse_support_;
@@ -189,11 +191,11 @@ public:
   }
 
   /// |s|^2 + |Ds|^2, the Frobenius norm.
-  double slopeAt(const Eigen::Vector3d& x) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double slopeAt(const Vector3d& x) const {
+    Vector3d sum = Vector3d::Zero();
     Eigen::Matrix3d derivative = Eigen::Matrix3d::Zero();
     for (Eigen::Index j = 0; j < centers_.cols(); ++j) {
-      const Eigen::Vector3d from = (x - centers_.col(j)) * inverse_support_;
+      const Vector3d from = (x - centers_.col(j)) * inverse_support_;
       const double r = from.norm();
       if (r >= 1.0)
         continue;
@@ -206,8 +208,8 @@ public:
     const double along = x.dot(sum);
     double squared = (sum - along * x).squaredNorm();
     for (int k = 0; k < 2; ++k) {
-      const Eigen::Vector3d e = basis.col(k);
-      const Eigen::Vector3d d = derivative * e;
+      const Vector3d e = basis.col(k);
+      const Vector3d d = derivative * e;
       squared += (d - (x.dot(d) + e.dot(sum)) * x - along * e).squaredNorm();
     }
     return squared;
@@ -226,15 +228,14 @@ private:
 };
 
 bool isFlipped(const Positions& sphere, Index a, Index b, Index c) {
-  return orientation3d(Eigen::Vector3d::Zero(), sphere.col(a), sphere.col(b), sphere.col(c)) <= 0;
+  return !isOutward(sphere.col(a), sphere.col(b), sphere.col(c));
 }
 
 /// Untangles flipped triangles by moves of single vertices.
 class Untangler {
 public:
-  Untangler(const Triangles& triangles, Eigen::Index n, const std::vector<char>& is_fixed)
-      : triangles_(triangles), is_fixed_(is_fixed),
-        corners_(triangles, static_cast<std::size_t>(n), 1) {}
+  Untangler(const Triangles& triangles, const Indexed<char>& is_fixed)
+      : triangles_(triangles), is_fixed_(is_fixed), corners_(triangles, is_fixed.size(), 1) {}
 
   /// Flipped triangles, ascending.
   std::vector<Index> flipped(const Positions& sphere, int threads) const {
@@ -267,10 +268,9 @@ public:
         for (std::size_t i = 0, n = vertices.size(); i < n; ++i)
           forEachSide(vertices[i], [&](Index a, Index) { vertices.push_back(a); });
       }
-      std::sort(vertices.begin(), vertices.end());
-      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+      sortUnique(vertices);
       for (const Index v : vertices)
-        if (is_fixed_[static_cast<std::size_t>(v)] == 0 && relax(sphere, v))
+        if (is_fixed_[v] == 0 && relax(sphere, v))
           ++moved;
       bad = flipped(sphere, threads);
     }
@@ -295,12 +295,12 @@ private:
   /// Moves a vertex towards its neighbours' mean, or to where its triangle with the least margin
   /// has most, if fewer triangles around are flipped then, or as many and it is in between.
   bool relax(Positions& sphere, Index v) const {
-    const Eigen::Vector3d old = sphere.col(v);
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    const Vector3d old = sphere.col(v);
+    Vector3d mean = Vector3d::Zero();
     forEachSide(v, [&](Index a, Index) { mean += sphere.col(a); });
     mean.normalize();
     const int before = flippedAround(sphere, v);
-    Eigen::Vector3d best = old;
+    Vector3d best = old;
     int least = before;
     for (const double fraction : {0.25, 0.5, 0.75, 1.0}) {
       sphere.col(v) = ((1.0 - fraction) * old + fraction * mean).normalized();
@@ -313,13 +313,13 @@ private:
     if (least > 0) {
       // The middle of the kernel of the polygon of neighbours, by steps off the nearest of its
       // sides.
-      Eigen::Vector3d place = mean;
+      Vector3d place = mean;
       for (int step = 0; step < kKernelSteps && least > 0; ++step) {
         double nearest = std::numeric_limits<double>::infinity();
-        Eigen::Vector3d inward = Eigen::Vector3d::Zero();
+        Vector3d inward = Vector3d::Zero();
         double size = 0.0;
         forEachSide(v, [&](Index a, Index b) {
-          const Eigen::Vector3d normal = sphere.col(a).cross(sphere.col(b));
+          const Vector3d normal = sphere.col(a).cross(sphere.col(b));
           const double length = normal.norm();
           size = std::max(size, (sphere.col(a) - place).norm());
           if (length > 0.0 && normal.dot(place) / length < nearest) {
@@ -343,7 +343,7 @@ private:
   }
 
   const Triangles& triangles_;
-  const std::vector<char>& is_fixed_;
+  const Indexed<char>& is_fixed_;
   CornerTable corners_;
 };
 
@@ -360,47 +360,42 @@ Positions spreadDirections(int n) {
 }
 
 /// Distance of each column to the nearest other one; of a single one 2, the largest there is.
-std::vector<double> nearestDistances(const Positions& places) {
-  std::vector<double> nearest(static_cast<std::size_t>(places.cols()), 2.0);
-  for (Eigen::Index i = 0; i < places.cols(); ++i)
-    for (Eigen::Index j = 0; j < i; ++j) {
+Indexed<double> nearestDistances(const Positions& places) {
+  Indexed<double> nearest(columnCount(places), 2.0);
+  for (Index i = 0; i < places.cols(); ++i)
+    for (Index j = 0; j < i; ++j) {
       const double distance = (places.col(i) - places.col(j)).norm();
-      for (const Eigen::Index k : {i, j})
-        nearest[static_cast<std::size_t>(k)] =
-            std::min(nearest[static_cast<std::size_t>(k)], distance);
+      for (const Index k : {i, j})
+        nearest[k] = std::min(nearest[k], distance);
     }
   return nearest;
 }
 
 /// The largest slope of a field over some places, and at which landmark it is, about.
-std::pair<double, std::size_t> steepestOf(const Field& field, const Positions& places,
-                                          const Positions& spread, int threads) {
-  const std::vector<double> nearest = nearestDistances(places);
-  const Eigen::Index n = places.cols();
+std::pair<double, Index> steepestOf(const Field& field, const Positions& places,
+                                    const Positions& spread, int threads) {
+  const Indexed<double> nearest = nearestDistances(places);
+  const Index n = indexCount(nearest);
   constexpr int around = 6;
-  const std::size_t near_count = static_cast<std::size_t>(n) * (2 * around + 1);
-  std::vector<double> slopes(near_count + static_cast<std::size_t>(spread.cols()));
-  forEachItem(slopes.size(), threadCount(threads, slopes.size() * static_cast<std::size_t>(n)),
-              [&](std::size_t, std::size_t s) {
-                if (s >= near_count) {
-                  slopes[s] = field.slopeAt(spread.col(static_cast<Eigen::Index>(s - near_count)));
-                  return;
-                }
-                const auto i = s / (2 * around + 1);
-                const auto k = static_cast<int>(s % (2 * around + 1));
-                Eigen::Vector3d x = places.col(static_cast<Eigen::Index>(i));
-                if (k > 0) {
-                  const TangentBasis basis = tangentBasis(x);
-                  const double angle = kPi / 3.0 * k;
-                  const double far = nearest[i] * (k <= around ? 0.5 : 0.25);
-                  x = (x + far * (std::cos(angle) * basis.col(0) + std::sin(angle) * basis.col(1)))
-                          .normalized();
-                }
-                slopes[s] = field.slopeAt(x);
-              });
-  const auto steepest = std::max_element(slopes.begin(), slopes.end());
-  const auto s = static_cast<std::size_t>(steepest - slopes.begin());
-  return {*steepest, s < near_count ? s / (2 * around + 1) : static_cast<std::size_t>(n)};
+  constexpr int of_each = 2 * around + 1;
+  Eigen::VectorXd slopes(of_each * n + spread.cols());
+  const auto examine = [&](Index s) {
+    const Index i = s / of_each;
+    const Index k = s % of_each;
+    Vector3d x = i < n ? places.col(i) : spread.col(s - of_each * n);
+    if (i < n && k > 0) {
+      const TangentBasis basis = tangentBasis(x);
+      const double angle = kPi / 3.0 * k;
+      const double far = nearest[i] * (k <= around ? 0.5 : 0.25);
+      x = (x + far * (std::cos(angle) * basis.col(0) + std::sin(angle) * basis.col(1)))
+              .normalized();
+    }
+    slopes[s] = field.slopeAt(x);
+  };
+  forEachIndex(static_cast<std::size_t>(slopes.size()), threads, examine, nearest.size());
+  Index steepest = 0;
+  const double slope = slopes.maxCoeff(&steepest);
+  return {slope, std::min(steepest / of_each, n)};
 }
 
 /// The motion of all landmarks, and of the sphere with them. It begins again without a landmark
@@ -410,9 +405,8 @@ public:
   LandmarkMotion(const Positions& sphere, const Triangles& triangles,
                  const std::vector<Landmark>& landmarks, int threads, const FractionReport& report)
       : sphere_(sphere), triangles_(triangles), landmarks_(landmarks), threads_(threads),
-        report_(report), spread_(spreadDirections(kSpread)),
-        is_fixed_(static_cast<std::size_t>(sphere.cols()), 0),
-        untangler_(triangles, sphere.cols(), is_fixed_) {}
+        report_(report), spread_(spreadDirections(kSpread)), is_fixed_(columnCount(sphere), 0),
+        untangler_(triangles, is_fixed_) {}
 
   SphereWarp run() {
     warp_.reasons.resize(landmarks_.size());
@@ -433,14 +427,12 @@ public:
 private:
   void giveUp(std::size_t landmark, const char* reason) {
     warp_.reasons[landmark] = reason;
-    is_fixed_[static_cast<std::size_t>(landmarks_[landmark].vertex)] = 0;
+    is_fixed_[landmarks_[landmark].vertex] = 0;
   }
 
-  const Path& pathOf(Eigen::Index i) const { return paths_[active_[static_cast<std::size_t>(i)]]; }
-  Index vertexOf(Eigen::Index i) const {
-    return landmarks_[active_[static_cast<std::size_t>(i)]].vertex;
-  }
-  Eigen::Index count() const { return static_cast<Eigen::Index>(active_.size()); }
+  const Path& pathOf(Index i) const { return paths_[active_[i]]; }
+  Index vertexOf(Index i) const { return landmarks_[active_[i]].vertex; }
+  Index count() const { return indexCount(active_); }
 
   /// Finds paths that keep the landmarks apart, and gives up those that have none.
   void planAll() {
@@ -450,16 +442,15 @@ private:
       paths_.emplace_back(sphere_.col(landmarks_[i].vertex), landmarks_[i].target);
       if (warp_.reasons[i].empty()) {
         active_.push_back(i);
-        is_fixed_[static_cast<std::size_t>(landmarks_[i].vertex)] = 1;
+        is_fixed_[landmarks_[i].vertex] = 1;
       }
     }
     while (!active_.empty()) {
-      const std::ptrdiff_t worst = planPaths(paths_, active_, threads_);
-      if (worst < 0)
+      const std::optional<std::size_t> worst = planPaths(paths_, active_, threads_);
+      if (!worst)
         break;
-      giveUp(static_cast<std::size_t>(worst),
-             "no way was found to its place that keeps it apart from the other pairs");
-      active_.erase(std::find(active_.begin(), active_.end(), static_cast<std::size_t>(worst)));
+      giveUp(*worst, "no way was found to its place that keeps it apart from the other pairs");
+      active_.erase(std::find(active_.begin(), active_.end(), *worst));
     }
   }
 
@@ -472,7 +463,7 @@ private:
     places_.resize(3, count());
     ends_.resize(3, count());
     double longest = 0.0;
-    for (Eigen::Index i = 0; i < count(); ++i) {
+    for (Index i = 0; i < count(); ++i) {
       places_.col(i) = pathOf(i).from;
       ends_.col(i) = pathOf(i).to;
       longest = std::max(longest, pathOf(i).angle + 2.0 * std::abs(pathOf(i).detour));
@@ -508,7 +499,7 @@ private:
       if (farthest > kMaxStep || !field.isFinite() || !(slope <= kMaxWarpSlope * kMaxWarpSlope)) {
         step = 0.5 * (goal - t);
         if (is_last || step < kMinStep)
-          return active_[std::min(where, active_.size() - 1)];
+          return active_[std::min(where, count() - 1)];
         continue;
       }
       carry(field);
@@ -526,9 +517,9 @@ private:
   std::pair<Positions, double> motionTo(double time) const {
     Positions values(3, count());
     double farthest = 0.0;
-    for (Eigen::Index i = 0; i < count(); ++i) {
-      const Eigen::Vector3d place = places_.col(i);
-      const Eigen::Vector3d next = pathOf(i).at(time);
+    for (Index i = 0; i < count(); ++i) {
+      const Vector3d place = places_.col(i);
+      const Vector3d next = pathOf(i).at(time);
       values.col(i) = next / std::max(0.5, next.dot(place)) - place;
       values.col(i) -= place.dot(values.col(i)) * place;
       farthest = std::max(farthest, (next - place).norm());
@@ -538,14 +529,12 @@ private:
 
   /// One step of all vertices.
   void carry(const Field& field) {
-    const auto vertices = static_cast<std::size_t>(warp_.sphere.cols());
-    forEachItem(vertices, threadCount(threads_, vertices * active_.size()),
-                [&](std::size_t, std::size_t v) {
-                  const auto i = static_cast<Eigen::Index>(v);
-                  const Eigen::Vector3d x = warp_.sphere.col(i);
-                  warp_.sphere.col(i) = (x + field.at(x)).normalized();
-                });
-    for (Eigen::Index i = 0; i < count(); ++i)
+    const auto move = [&](Index v) {
+      const Vector3d x = warp_.sphere.col(v);
+      warp_.sphere.col(v) = (x + field.at(x)).normalized();
+    };
+    forEachIndex(is_fixed_.size(), threads_, move, active_.size());
+    for (Index i = 0; i < count(); ++i)
       places_.col(i) = warp_.sphere.col(vertexOf(i));
     untangle(kStepRounds);
     ++warp_.steps;
@@ -554,19 +543,19 @@ private:
   /// Puts the landmarks exactly on their targets. \return the landmark that is nearest to a
   /// triangle that stays flipped, if there is one: it is in the way
   std::optional<std::size_t> arrive() {
-    for (Eigen::Index i = 0; i < count(); ++i) {
+    for (Index i = 0; i < count(); ++i) {
       warp_.worst = std::max(warp_.worst, (places_.col(i) - ends_.col(i)).norm());
       warp_.sphere.col(vertexOf(i)) = ends_.col(i);
     }
     const std::vector<Index> bad = untangle(kEndRounds);
     if (bad.empty())
       return std::nullopt;
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    Vector3d middle = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
       middle += warp_.sphere.col(triangles_(k, bad[0]));
-    Eigen::Index nearest = 0;
+    Index nearest = 0;
     (ends_.colwise() - middle.normalized()).colwise().squaredNorm().minCoeff(&nearest);
-    return active_[static_cast<std::size_t>(nearest)];
+    return active_[nearest];
   }
 
   const Positions& sphere_;
@@ -575,29 +564,22 @@ private:
   int threads_;
   const FractionReport& report_;
   Positions spread_;
-  std::vector<char> is_fixed_;
+  Indexed<char> is_fixed_;
   Untangler untangler_;
   SphereWarp warp_;
-  std::vector<std::size_t> active_;  ///< landmarks that are not given up
-  std::vector<Path> paths_;          ///< of all landmarks
-  Positions places_;                 ///< of the active landmarks, now
-  Positions ends_;                   ///< their targets
-  double support_ = 0.0;             ///< of the fields [chord]
+  Indexed<std::size_t> active_;  ///< landmarks that are not given up
+  std::vector<Path> paths_;      ///< of all landmarks
+  Positions places_;             ///< of the active landmarks, now
+  Positions ends_;               ///< their targets
+  double support_ = 0.0;         ///< of the fields [chord]
   double reported_ = 0.0;
 };
 
 }  // namespace
 
 Index countFlipped(const Positions& sphere, const Triangles& triangles, int threads) {
-  const auto m = static_cast<std::size_t>(triangles.cols());
-  return sumOfBlocks(m, threadCount(threads, m), Index{0}, [&](std::size_t begin, std::size_t end) {
-    Index count = 0;
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto corners = triangles.col(static_cast<Eigen::Index>(t));
-      count += isFlipped(sphere, corners[0], corners[1], corners[2]) ? 1 : 0;
-    }
-    return count;
-  });
+  return sumOfIndices(columnCount(triangles), threads, Index{0},
+                      [&](Index t) { return isFlipped(sphere, triangles, t) ? 1 : 0; });
 }
 
 SphereWarp moveLandmarks(const Positions& sphere, const Triangles& triangles,

@@ -1,6 +1,6 @@
 #include "spherical_param/map/spherical_harmonics.h"
 
-#include "parallel.h"
+#include "index_loops.h"
 #include "pi.h"
 #include "spherical_param/errors.h"
 
@@ -44,16 +44,16 @@ Eigen::Index coefficientCount(int degree) {
 /// underflow only where all that follow are negligible.
 class Legendre {
 public:
-  explicit Legendre(int degree) : degree_(degree), starts_(static_cast<std::size_t>(degree) + 1) {
+  explicit Legendre(int degree) : degree_(degree), starts_(degree + 1) {
     double start = 1.0 / std::sqrt(4.0 * kPi);
     for (int m = 0; m <= degree; ++m) {
       if (m > 0)
         start *= std::sqrt((m == 1 ? 2.0 : 1.0) * (2.0 * m + 1.0) / (2.0 * m));
-      starts_[static_cast<std::size_t>(m)] = start;
+      starts_[m] = start;
       for (int l = m; l <= degree; ++l)
-        factors_.push_back(l == m ? 0.0
-                                  : std::sqrt((2.0 * l - 1.0) * (2.0 * l + 1.0) /
-                                              (static_cast<double>(l - m) * (l + m))));
+        factors_.push_back(
+            l == m ? 0.0
+                   : std::sqrt((2.0 * l - 1.0) * (2.0 * l + 1.0) / (1.0 * (l - m) * (l + m))));
     }
   }
 
@@ -66,7 +66,7 @@ public:
   void forEachDegree(int m, double z, double power, const Visit& visit) const {
     const double* factors = factors_.data() + (m * (2 * degree_ + 3 - m)) / 2;
     double before = 0.0;
-    double value = starts_[static_cast<std::size_t>(m)] * power;
+    double value = starts_[m] * power;
     visit(m, value);
     for (int i = 1; m + i <= degree_; ++i) {
       const double last = factors[i - 1];
@@ -79,7 +79,7 @@ public:
 
 private:
   int degree_;
-  std::vector<double> starts_;   ///< l = m, without the power of the sine; one for each m
+  Eigen::VectorXd starts_;       ///< l = m, without the power of the sine; one for each m
   std::vector<double> factors_;  ///< of the recurrence, l = m ... degree for each m
 };
 
@@ -108,11 +108,10 @@ void evaluateAll(const Legendre& legendre, const Vector3d& direction, Values& va
 
 /// Nodes and weights of the Gauss-Legendre rule on [-1, 1]; the nodes ascend.
 struct GaussRule {
-  std::vector<double> nodes;
-  std::vector<double> weights;
+  Eigen::VectorXd nodes;
+  Eigen::VectorXd weights;
 
-  explicit GaussRule(int count)
-      : nodes(static_cast<std::size_t>(count)), weights(static_cast<std::size_t>(count)) {
+  explicit GaussRule(int count) : nodes(count), weights(count) {
     for (int i = 0; i < (count + 1) / 2; ++i) {
       double z = std::cos(kPi * (i + 0.75) / (count + 0.5));
       double slope = 1.0;
@@ -134,11 +133,9 @@ struct GaussRule {
       if (2 * i + 1 == count)
         z = 0.0;
       const double weight = 2.0 / ((1.0 - z * z) * slope * slope);
-      const auto near = static_cast<std::size_t>(i);
-      const auto far = static_cast<std::size_t>(count - 1 - i);
-      nodes[near] = -z;
-      nodes[far] = z;
-      weights[near] = weights[far] = weight;
+      nodes[i] = -z;
+      nodes[count - 1 - i] = z;
+      weights[i] = weights[count - 1 - i] = weight;
     }
   }
 };
@@ -156,13 +153,13 @@ public:
     }
   }
 
-  std::size_t count() const { return rule_.nodes.size(); }
+  Eigen::Index count() const { return rule_.nodes.size(); }
 
   Positions directions() const {
-    Positions result(3, static_cast<Eigen::Index>(count()) * around_);
+    Positions result(3, count() * around_);
     Eigen::Index i = 0;
-    for (std::size_t ring = 0; ring < count(); ++ring)
-      for (std::size_t k = 0; k < cosines_.size(); ++k)
+    for (Index ring = 0; ring < count(); ++ring)
+      for (Index k = 0; k < around_; ++k)
         result.col(i++) << sineOf(ring) * cosines_[k], sineOf(ring) * sines_[k], rule_.nodes[ring];
     return result;
   }
@@ -170,8 +167,8 @@ public:
   /// The coefficients of values at the directions.
   Positions coefficients(const Positions& values, int threads) const {
     // First along the rings: column ring * (2 degree + 1) + degree + m.
-    Positions waves(3, static_cast<Eigen::Index>(count()) * (2 * degree_ + 1));
-    forEachRing(threads, [&](std::size_t ring) {
+    Positions waves(3, count() * (2 * degree_ + 1));
+    forEachTask(count(), threads, [&](Index ring) {
       for (int m = 0; m <= degree_; ++m) {
         Vector3d of_cosine = Vector3d::Zero();
         Vector3d of_sine = Vector3d::Zero();
@@ -187,8 +184,8 @@ public:
     });
     // Then across them, each order by one thread.
     Positions result = Positions::Zero(3, coefficientCount(degree_));
-    forEachOrder(threads, [&](int m) {
-      for (std::size_t ring = 0; ring < count(); ++ring)
+    forEachTask(degree_ + 1, threads, [&](Index m) {
+      for (Index ring = 0; ring < count(); ++ring)
         legendre_.forEachDegree(m, rule_.nodes[ring], std::pow(sineOf(ring), m),
                                 [&](int l, double value) {
                                   result.col(place(l, m)) += value * waves.col(wave(ring, m));
@@ -201,8 +198,8 @@ public:
 
   /// Root mean square over the sphere of the distance of values from a series.
   double residual(const Positions& values, const Positions& coefficients, int threads) const {
-    std::vector<double> sums(count());
-    forEachRing(threads, [&](std::size_t ring) {
+    Eigen::VectorXd sums(count());
+    forEachTask(count(), threads, [&](Index ring) {
       Positions rest(3, around_);
       for (int k = 0; k < around_; ++k)
         rest.col(k) = values.col(column(ring, k));
@@ -229,45 +226,38 @@ public:
 
 private:
   /// 1 - z^2 as a product: it has all digits near the poles.
-  double sineOf(std::size_t ring) const {
+  double sineOf(Index ring) const {
     const double z = rule_.nodes[ring];
     return std::sqrt((1.0 - z) * (1.0 + z));
   }
-  Eigen::Index column(std::size_t ring, int k) const {
-    return static_cast<Eigen::Index>(ring) * around_ + k;
-  }
-  Eigen::Index wave(std::size_t ring, int m) const {
-    return static_cast<Eigen::Index>(ring) * (2 * degree_ + 1) + degree_ + m;
+  Eigen::Index column(Eigen::Index ring, int k) const { return ring * around_ + k; }
+  Eigen::Index wave(Eigen::Index ring, int m) const {
+    return ring * (2 * degree_ + 1) + degree_ + m;
   }
   /// Calls visit(k, cos(m phi), sin(m phi)) for the places along a ring.
   template <typename Visit>
   void forEachPlace(int m, const Visit& visit) const {
     int angle = 0;
     for (int k = 0; k < around_; ++k) {
-      visit(k, cosines_[static_cast<std::size_t>(angle)], sines_[static_cast<std::size_t>(angle)]);
+      visit(k, cosines_[angle], sines_[angle]);
       angle += m;
       angle -= angle >= around_ ? around_ : 0;
     }
   }
-  int workers(int threads) const {
-    return internal::threadCount(threads, count() * static_cast<std::size_t>(around_));
-  }
+  /// Calls work(i) for each ring or order.
   template <typename Work>
-  void forEachRing(int threads, const Work& work) const {
-    internal::forEachTask(count(), workers(threads), [&](std::size_t ring) { work(ring); });
-  }
-  template <typename Work>
-  void forEachOrder(int threads, const Work& work) const {
-    internal::forEachTask(static_cast<std::size_t>(degree_) + 1, workers(threads),
-                          [&](std::size_t m) { work(static_cast<int>(m)); });
+  void forEachTask(Eigen::Index tasks, int threads, const Work& work) const {
+    const auto places = static_cast<std::size_t>(count() * around_);
+    internal::forEachTask(static_cast<std::size_t>(tasks), internal::threadCount(threads, places),
+                          [&](std::size_t i) { work(static_cast<Index>(i)); });
   }
 
   int degree_;
   int around_;
   GaussRule rule_;
   Legendre legendre_;
-  std::vector<double> cosines_;
-  std::vector<double> sines_;
+  internal::Indexed<double> cosines_;
+  internal::Indexed<double> sines_;
 };
 
 }  // namespace
@@ -305,15 +295,15 @@ Positions evaluateSphericalHarmonics(const SphericalHarmonics& harmonics,
   for (Eigen::Index i = 0; i < directions.cols(); ++i)
     checkDirection(function, directions.col(i));
   const Legendre legendre(harmonics.degree);
-  const auto count = static_cast<std::size_t>(directions.cols());
+  const std::size_t count = internal::columnCount(directions);
   Positions result(3, directions.cols());
   internal::forEachBlock(count, internal::threadCount(threads, count, internal::kBlockSize),
                          [&](std::size_t, std::size_t begin, std::size_t end) {
                            Eigen::VectorXd values(terms);
-                           for (std::size_t i = begin; i < end; ++i) {
-                             const auto column = static_cast<Eigen::Index>(i);
-                             evaluateAll(legendre, directions.col(column), values);
-                             result.col(column).noalias() = harmonics.coefficients * values;
+                           for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end);
+                                ++i) {
+                             evaluateAll(legendre, directions.col(i), values);
+                             result.col(i).noalias() = harmonics.coefficients * values;
                            }
                          });
   return result;

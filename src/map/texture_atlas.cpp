@@ -3,10 +3,11 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 
-#include "exact_predicates.h"
+#include "index_loops.h"
 #include "option_checks.h"
 #include "pi.h"
 #include "sphere_cutting.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
@@ -15,13 +16,19 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace spherical_param {
 namespace {
 
+using Eigen::Vector2d;
+using Eigen::Vector3d;
 using internal::CellSide;
 using internal::CutSphere;
+using internal::entry;
+using internal::indexCount;
+using internal::Indexed;
 using internal::PlaneSigns;
 using internal::SphereCells;
 
@@ -47,7 +54,7 @@ constexpr std::array<CubeFace, 6> cube_faces = {{
     {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
 }};
 
-double along(const std::array<int, 3>& axis, const Eigen::Vector3d& point) {
+double along(const std::array<int, 3>& axis, const Vector3d& point) {
   return axis[0] * point.x() + axis[1] * point.y() + axis[2] * point.z();
 }
 
@@ -92,8 +99,8 @@ SphereCells cellsOf(SphereChart chart) {
 }
 
 /// The place of a point, of any length, that is in a cell.
-Eigen::Vector2d coordinatesIn(const TextureAtlasOptions& options, const std::vector<CellSide>& cell,
-                              std::size_t index, const Eigen::Vector3d& point) {
+Vector2d coordinatesIn(const TextureAtlasOptions& options, const std::vector<CellSide>& cell,
+                       Index index, const Vector3d& point) {
   switch (options.chart) {
   case SphereChart::Equirectangular: {
     const double y_sign = cell[1].sign;
@@ -108,29 +115,28 @@ Eigen::Vector2d coordinatesIn(const TextureAtlasOptions& options, const std::vec
   }
   case SphereChart::Octahedral: {
     const double sum = point.cwiseAbs().sum();
-    Eigen::Vector2d place(point.x() / sum, point.y() / sum);
+    Vector2d place(point.x() / sum, point.y() / sum);
     if (point.z() < 0.0)
       place = {cell[0].sign * (1.0 - std::abs(point.y()) / sum),
                cell[1].sign * (1.0 - std::abs(point.x()) / sum)};
-    return ((Eigen::Vector2d::Ones() + place) / 2.0).cwiseMax(0.0).cwiseMin(1.0);
+    return ((Vector2d::Ones() + place) / 2.0).cwiseMax(0.0).cwiseMin(1.0);
   }
   case SphereChart::CubeMap: {
-    const CubeFace& face = cube_faces[index];
+    const CubeFace& face = entry(cube_faces, index);
     const double depth = along(face.outward, point);
     const double free = 1.0 - 2.0 * options.margin;
     const auto place = [&](const std::array<int, 3>& axis) {
       return options.margin +
              free * (1.0 + std::clamp(along(axis, point) / depth, -1.0, 1.0)) / 2.0;
     };
-    const auto column = static_cast<double>(index % 3);
     const double row = index < 3 ? 1.0 : 0.0;
-    return {(column + place(face.right)) / 3.0, (row + place(face.up)) / 2.0};
+    return {(index % 3 + place(face.right)) / 3.0, (row + place(face.up)) / 2.0};
   }
   }
-  return Eigen::Vector2d::Zero();
+  return Vector2d::Zero();
 }
 
-bool isPole(const Eigen::Vector3d& point) {
+bool isPole(const Vector3d& point) {
   return point.x() == 0.0 && point.y() == 0.0;
 }
 
@@ -140,24 +146,17 @@ public:
   Places(const TextureAtlasOptions& options, const SphereCells& cells, const CutSphere& sphere)
       : options_(options), cells_(cells), sphere_(sphere) {}
 
-  std::array<Eigen::Vector2d, 3> of(std::size_t t) const {
+  std::array<Vector2d, 3> of(Index t) const {
     const std::array<Index, 3>& triangle = sphere_.triangles[t];
-    std::array<Eigen::Vector2d, 3> places;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto cell = static_cast<std::size_t>(sphere_.cells[t]);
-      places[k] = coordinatesIn(options_, cells_[cell], cell,
-                                sphere_.points[static_cast<std::size_t>(triangle[k])]);
-    }
+    const Index cell = sphere_.cells[t];
+    std::array<Vector2d, 3> places;
+    for (std::size_t k = 0; k < 3; ++k)
+      places[k] = coordinatesIn(options_, cells_[cell], cell, sphere_.points[triangle[k]]);
     // A pole is the whole upper or lower side of the image; each triangle has its part of that.
     for (std::size_t k = 0; k < 3; ++k)
-      if (hasPoleAt(t, k))
+      if (options_.chart == SphereChart::Equirectangular && isPole(sphere_.points[triangle[k]]))
         places[k].x() = (places[(k + 1) % 3].x() + places[(k + 2) % 3].x()) / 2.0;
     return places;
-  }
-
-  bool hasPoleAt(std::size_t t, std::size_t corner) const {
-    return options_.chart == SphereChart::Equirectangular &&
-           isPole(sphere_.points[static_cast<std::size_t>(sphere_.triangles[t][corner])]);
   }
 
 private:
@@ -176,34 +175,34 @@ public:
   Straightening(const Places& places, CutSphere& sphere) : places_(places), sphere_(sphere) {}
 
   void run() {
-    std::vector<std::size_t> turned;
-    for (std::size_t t = 0; t < sphere_.triangles.size(); ++t)
+    std::vector<Index> turned;
+    for (Index t = 0; t < indexCount(sphere_.triangles); ++t)
       if (isTurnedOver(t))
         turned.push_back(t);
     if (turned.empty())
       return;
-    for (std::size_t t = 0; t < sphere_.triangles.size(); ++t)
+    for (Index t = 0; t < indexCount(sphere_.triangles); ++t)
       addSides(t);
     // Each split shortens edges, whose images then are straighter. What is left after this number
     // is as small as rounding.
     std::size_t budget = 64 * sphere_.triangles.size() + 4096;
     while (!turned.empty() && budget > 0) {
-      const std::size_t t = turned.back();
+      const Index t = turned.back();
       turned.pop_back();
       if (!isTurnedOver(t))
         continue;
       --budget;
-      for (const std::size_t part : split(t))
+      for (const Index part : split(t))
         if (isTurnedOver(part))
           turned.push_back(part);
     }
   }
 
 private:
-  bool isTurnedOver(std::size_t t) const {
-    const std::array<Eigen::Vector2d, 3> p = places_.of(t);
-    const Eigen::Vector2d b = p[1] - p[0];
-    const Eigen::Vector2d c = p[2] - p[0];
+  bool isTurnedOver(Index t) const {
+    const std::array<Vector2d, 3> p = places_.of(t);
+    const Vector2d b = p[1] - p[0];
+    const Vector2d c = p[2] - p[0];
     const double doubled_area = b.x() * c.y() - b.y() * c.x();
     // Places are rounded: below this nothing is certain.
     const double rounding =
@@ -211,25 +210,21 @@ private:
     return doubled_area < -rounding;
   }
 
-  void addSides(std::size_t t) {
+  void addSides(Index t) {
     const std::array<Index, 3>& triangle = sphere_.triangles[t];
     for (std::size_t k = 0; k < 3; ++k)
       left_of_[{triangle[k], triangle[(k + 1) % 3]}] = t;
   }
 
-  const Eigen::Vector3d& pointOf(Index v) const {
-    return sphere_.points[static_cast<std::size_t>(v)];
-  }
-
   /// Splits the longest side of a triangle. \return the triangles that there are now instead.
-  std::vector<std::size_t> split(std::size_t t) {
+  std::vector<Index> split(Index t) {
     const std::array<Index, 3> triangle = sphere_.triangles[t];
     std::size_t longest = 0;
     double length = -1.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double other =
-          (pointOf(triangle[k]).normalized() - pointOf(triangle[(k + 1) % 3]).normalized())
-              .squaredNorm();
+      const double other = (sphere_.points[triangle[k]].normalized() -
+                            sphere_.points[triangle[(k + 1) % 3]].normalized())
+                               .squaredNorm();
       if (other > length) {
         length = other;
         longest = k;
@@ -241,20 +236,18 @@ private:
     const auto across = left_of_.find({b, a});
     if (across == left_of_.end())
       return {};
-    const std::size_t other = across->second;
-    const double fraction = fractionBeside(pointOf(a), pointOf(b), pointOf(c));
+    const Index other = across->second;
+    const double fraction = fractionBeside(sphere_.points[a], sphere_.points[b], sphere_.points[c]);
     const Index middle = addVertex(a, b, fraction);
     if (middle < 0)
       return {};
-    const std::size_t new_part = replace(t, a, b, middle);
-    const std::size_t new_other = replace(other, b, a, middle);
-    return {t, new_part, other, new_other};
+    const Index new_part = replace(t, a, b, middle);
+    return {t, new_part, other, replace(other, b, a, middle)};
   }
 
   /// How far along from a to b the point is that is closest to c.
-  static double fractionBeside(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                               const Eigen::Vector3d& c) {
-    const Eigen::Vector3d normal = a.cross(b);
+  static double fractionBeside(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    const Vector3d normal = a.cross(b);
     const double of_a = c.cross(b).dot(normal);
     const double of_b = a.cross(c).dot(normal);
     const double fraction = of_b / (of_a + of_b);
@@ -264,38 +257,36 @@ private:
 
   /// A new vertex on an edge, -1 if there is no room for one.
   Index addVertex(Index a, Index b, double fraction) {
-    const Eigen::Vector3d point = (1.0 - fraction) * pointOf(a) + fraction * pointOf(b);
-    if (point == pointOf(a) || point == pointOf(b))
+    const Vector3d point = (1.0 - fraction) * sphere_.points[a] + fraction * sphere_.points[b];
+    if (point == sphere_.points[a] || point == sphere_.points[b])
       return -1;
     // Both ends are in one triangle of the mesh.
-    std::array<std::pair<Index, double>, 3> parts;
-    std::size_t count = 0;
+    std::vector<std::pair<Index, double>> parts;
     for (const auto& [end, weight] : {std::pair(a, 1.0 - fraction), std::pair(b, fraction)}) {
-      const CutVertex& vertex = sphere_.vertices[static_cast<std::size_t>(end)];
-      for (Eigen::Index k = 0; k < 3; ++k) {
-        const Index v = vertex.vertices[static_cast<std::size_t>(k)];
+      const CutVertex& vertex = sphere_.vertices[end];
+      for (Index k = 0; k < 3; ++k) {
+        const Index v = entry(vertex.vertices, k);
         if (vertex.weights[k] == 0.0)
           continue;
-        const auto known = std::find_if(parts.begin(), parts.begin() + count,
+        const auto known = std::find_if(parts.begin(), parts.end(),
                                         [v](const auto& part) { return part.first == v; });
-        if (known == parts.end() || known == parts.begin() + count)
-          parts[count++] = {v, weight * vertex.weights[k]};
+        if (known == parts.end())
+          parts.emplace_back(v, weight * vertex.weights[k]);
         else
           known->second += weight * vertex.weights[k];
       }
     }
+    parts.resize(3, {parts.back().first, 0.0});
     CutVertex vertex;
-    for (std::size_t k = 0; k < 3; ++k) {
-      vertex.vertices[k] = parts[std::min(k, count - 1)].first;
-      vertex.weights[static_cast<Eigen::Index>(k)] = k < count ? parts[k].second : 0.0;
-    }
+    for (Index k = 0; k < 3; ++k)
+      std::tie(entry(vertex.vertices, k), vertex.weights[k]) = entry(parts, k);
     sphere_.vertices.push_back(vertex);
     sphere_.points.push_back(point);
-    return static_cast<Index>(sphere_.points.size()) - 1;
+    return indexCount(sphere_.points) - 1;
   }
 
   /// Replaces the triangle left of the edge from a to b by two. \return the new one.
-  std::size_t replace(std::size_t t, Index a, Index b, Index middle) {
+  Index replace(Index t, Index a, Index b, Index middle) {
     std::array<Index, 3>& triangle = sphere_.triangles[t];
     left_of_.erase({a, b});
     std::array<Index, 3> part = triangle;
@@ -305,13 +296,13 @@ private:
     sphere_.cells.push_back(sphere_.cells[t]);
     sphere_.source.push_back(sphere_.source[t]);
     addSides(t);
-    addSides(sphere_.triangles.size() - 1);
-    return sphere_.triangles.size() - 1;
+    addSides(indexCount(sphere_.triangles) - 1);
+    return indexCount(sphere_.triangles) - 1;
   }
 
   const Places& places_;
   CutSphere& sphere_;
-  std::map<std::pair<Index, Index>, std::size_t> left_of_;  // directed edge -> triangle
+  std::map<std::pair<Index, Index>, Index> left_of_;  // directed edge -> triangle
 };
 
 void checkOptions(const TextureAtlasOptions& options, const std::string& function) {
@@ -323,7 +314,7 @@ void checkOptions(const TextureAtlasOptions& options, const std::string& functio
 
 void checkMesh(const Triangles& triangles, const Positions& sphere) {
   const std::string function = "makeTextureAtlas";
-  const MeshTopology topology = checkTopology(triangles, static_cast<std::size_t>(sphere.cols()));
+  const MeshTopology topology = checkTopology(triangles, internal::columnCount(sphere));
   if (!topology.isSphere() && !topology.isOpenSurface())
     throw InvalidInput(function +
                        ": the triangles are not an oriented manifold of genus 0 over all vertices; "
@@ -334,8 +325,7 @@ void checkMesh(const Triangles& triangles, const Positions& sphere) {
       throw InvalidInput(function + ": vertex " + std::to_string(v) +
                          " is not of unit length; give directions");
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    if (internal::orientation3d(Eigen::Vector3d::Zero(), sphere.col(triangles(0, t)),
-                                sphere.col(triangles(1, t)), sphere.col(triangles(2, t))) <= 0)
+    if (internal::isFlipped(sphere, triangles, t))
       throw InvalidInput(function + ": triangle " + std::to_string(t) +
                          " is flipped on the sphere; give a map that is one to one, as "
                          "computeSphereMap() makes it");
@@ -357,36 +347,34 @@ TextureAtlas makeTextureAtlas(const Triangles& triangles, const Positions& spher
 
   TextureAtlas atlas;
   atlas.chart = options.chart;
-  const auto count = static_cast<Eigen::Index>(cut.triangles.size());
+  const Index count = indexCount(cut.triangles);
   atlas.triangles.resize(3, count);
   atlas.coordinate_triangles.resize(3, count);
-  std::vector<Eigen::Vector2d> columns;
+  Indexed<Vector2d> columns;
   columns.reserve(cut.vertices.size());
   // The columns of a vertex are a list that begins at the first.
-  std::vector<Index> first(cut.vertices.size(), -1);
-  std::vector<Index> next;
+  Indexed<Index> first(cut.vertices.size(), -1);
+  Indexed<Index> next;
   next.reserve(cut.vertices.size());
-  for (Eigen::Index t = 0; t < count; ++t) {
-    const std::array<Eigen::Vector2d, 3> corners = places.of(static_cast<std::size_t>(t));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index vertex = cut.triangles[static_cast<std::size_t>(t)][k];
-      Index* column = &first[static_cast<std::size_t>(vertex)];
-      while (*column >= 0 && columns[static_cast<std::size_t>(*column)] != corners[k])
-        column = &next[static_cast<std::size_t>(*column)];
+  for (Index t = 0; t < count; ++t) {
+    const std::array<Vector2d, 3> corners = places.of(t);
+    for (Index k = 0; k < 3; ++k) {
+      const Index vertex = entry(cut.triangles[t], k);
+      Index* column = &first[vertex];
+      while (*column >= 0 && columns[*column] != entry(corners, k))
+        column = &next[*column];
+      atlas.triangles(k, t) = vertex;
+      atlas.coordinate_triangles(k, t) = *column < 0 ? indexCount(columns) : *column;
       if (*column < 0) {
-        *column = static_cast<Index>(columns.size());
-        columns.push_back(corners[k]);
-        atlas.coordinate_triangles(static_cast<Eigen::Index>(k), t) = *column;
+        *column = indexCount(columns);
+        columns.push_back(entry(corners, k));
         next.push_back(-1);
-      } else {
-        atlas.coordinate_triangles(static_cast<Eigen::Index>(k), t) = *column;
       }
-      atlas.triangles(static_cast<Eigen::Index>(k), t) = vertex;
     }
   }
-  atlas.coordinates.resize(2, static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    atlas.coordinates.col(static_cast<Eigen::Index>(i)) = columns[i];
+  atlas.coordinates.resize(2, indexCount(columns));
+  for (Index i = 0; i < indexCount(columns); ++i)
+    atlas.coordinates.col(i) = columns[i];
   atlas.vertices = std::move(cut.vertices);
   atlas.source = std::move(cut.source);
   return atlas;
@@ -404,10 +392,10 @@ Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& 
     throw InvalidInput("atCutVertices: there are values of " + std::to_string(values.cols()) +
                        " vertices, the mesh has " + std::to_string(last + 1) +
                        "; give one column for each");
-  Eigen::MatrixXd result(values.rows(), static_cast<Eigen::Index>(atlas.vertices.size()));
-  for (std::size_t i = 0; i < atlas.vertices.size(); ++i) {
-    const CutVertex& vertex = atlas.vertices[i];
-    auto column = result.col(static_cast<Eigen::Index>(i));
+  Eigen::MatrixXd result(values.rows(), indexCount(atlas.vertices));
+  for (Index i = 0; i < result.cols(); ++i) {
+    const CutVertex& vertex = entry(atlas.vertices, i);
+    auto column = result.col(i);
     // What has no weight has no say, be it no number.
     if (vertex.weights[0] == 1.0) {
       column = values.col(vertex.vertices[0]);
@@ -416,20 +404,19 @@ Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& 
     column.setZero();
     for (Eigen::Index k = 0; k < 3; ++k)
       if (vertex.weights[k] > 0.0)
-        column += vertex.weights[k] * values.col(vertex.vertices[static_cast<std::size_t>(k)]);
+        column += vertex.weights[k] * values.col(entry(vertex.vertices, k));
   }
   return result;
 }
 
-Eigen::Vector2d chartCoordinates(const TextureAtlasOptions& options,
-                                 const Eigen::Vector3d& direction) {
+Vector2d chartCoordinates(const TextureAtlasOptions& options, const Vector3d& direction) {
   checkOptions(options, "chartCoordinates");
   if (!direction.allFinite() || direction.isZero(0.0))
     throw InvalidInput("chartCoordinates: the direction is zero or not finite; give a vector with "
                        "a length");
   const SphereCells cells = cellsOf(options.chart);
   const PlaneSigns signs = internal::planeSigns(direction);
-  std::size_t cell = 0;
+  Index cell = 0;
   while (!internal::isInCell(signs, cells[cell]))
     ++cell;
   return coordinatesIn(options, cells[cell], cell, direction);

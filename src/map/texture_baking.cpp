@@ -4,8 +4,8 @@
 
 #include "corner_table.h"
 #include "exact_predicates.h"
+#include "index_loops.h"
 #include "option_checks.h"
-#include "parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -47,8 +47,7 @@ void checkOptions(const std::string& function, const BakeOptions& options) {
 void checkAtlas(const char* function, const TextureAtlas& atlas) {
   internal::checkEnum((std::string(function) + ": chart").c_str(), atlas.chart,
                       SphereChart::CubeMap);
-  internal::checkTriangles(function, atlas.triangles,
-                           static_cast<Eigen::Index>(atlas.vertices.size()));
+  internal::checkTriangles(function, atlas.triangles, internal::indexCount(atlas.vertices));
   internal::checkTriangles(function, atlas.coordinate_triangles, atlas.coordinates.cols());
   if (atlas.triangles.cols() != atlas.coordinate_triangles.cols() ||
       !(atlas.coordinates.array() >= 0.0 && atlas.coordinates.array() <= 1.0).all())
@@ -64,18 +63,17 @@ public:
   Painter(const TextureAtlas& atlas, const BakeOptions& options) : atlas_(atlas) {
     image_.height = options.height;
     image_.width = widthOf(atlas.chart, options.height);
-    image_.pixels.assign(3 * size(), 0);
-    image_.covered.assign(size(), 0);
-    threads_ = internal::threadCount(options.threads, size());
+    image_.covered.assign(at(0, image_.height), 0);
+    image_.pixels.assign(3 * image_.covered.size(), 0);
+    threads_ = internal::threadCount(options.threads, image_.covered.size());
   }
 
   /// \param color of a triangle and weights of its corners.
   template <typename ColorOf>
   void paintTriangles(const ColorOf& color) {
-    const int bands = (image_.height + band_height - 1) / band_height;
     // The triangles that may reach into a band, ascending.
-    std::vector<std::vector<Index>> of_band(static_cast<std::size_t>(bands));
-    for (Eigen::Index t = 0; t < atlas_.coordinate_triangles.cols(); ++t) {
+    std::vector<std::vector<Index>> of_band(bandCount(image_.height));
+    for (Index t = 0; t < atlas_.coordinate_triangles.cols(); ++t) {
       double lowest = 1.0;
       double highest = 0.0;
       for (Eigen::Index k = 0; k < 3; ++k) {
@@ -86,9 +84,9 @@ public:
       const int first = firstPixel(1.0 - highest, image_.height);
       const int last = lastPixel(1.0 - lowest, image_.height);
       for (int band = first / band_height; first <= last && band <= last / band_height; ++band)
-        of_band[static_cast<std::size_t>(band)].push_back(static_cast<Index>(t));
+        internal::entry(of_band, band).push_back(t);
     }
-    internal::forEachTask(static_cast<std::size_t>(bands), threads_, [&](std::size_t band) {
+    internal::forEachTask(of_band.size(), threads_, [&](std::size_t band) {
       const int first = static_cast<int>(band) * band_height;
       const int last = std::min(first + band_height, image_.height) - 1;
       for (const Index t : of_band[band])
@@ -101,7 +99,7 @@ public:
     if (gutter == 0)
       return;
     // Of each pixel, the row of the nearest one in its column that is covered.
-    std::vector<int> nearest(size(), -1);
+    std::vector<int> nearest(image_.covered.size(), -1);
     forEachLine(image_.width, [&](int x) {
       int above = -1;
       for (int y = 0; y < image_.height; ++y) {
@@ -145,8 +143,7 @@ public:
           continue;
         const std::size_t i = at(x, y);
         image_.covered[i] = 2;
-        std::copy_n(image_.pixels.begin() + static_cast<std::ptrdiff_t>(3 * source), 3,
-                    image_.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+        std::copy_n(&image_.pixels[3 * source], 3, &image_.pixels[3 * i]);
       }
     });
   }
@@ -154,12 +151,11 @@ public:
   TextureImage take() { return std::move(image_); }
 
 private:
-  std::size_t size() const {
-    return static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.height);
-  }
   std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
-           static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y * Eigen::Index{image_.width} + x);
+  }
+  static std::size_t bandCount(int lines) {
+    return static_cast<std::size_t>((lines + band_height - 1) / band_height);
   }
   /// The first and last pixel whose centre may be on a side of a coordinate, with one to spare for
   /// rounding.
@@ -173,8 +169,7 @@ private:
   /// Calls work(line) for rows or columns, several next to each other by one thread.
   template <typename Work>
   void forEachLine(int count, const Work& work) {
-    const auto bands = static_cast<std::size_t>((count + band_height - 1) / band_height);
-    internal::forEachTask(bands, threads_, [&](std::size_t band) {
+    internal::forEachTask(bandCount(count), threads_, [&](std::size_t band) {
       const int first = static_cast<int>(band) * band_height;
       for (int line = first; line < std::min(first + band_height, count); ++line)
         work(line);
@@ -185,17 +180,17 @@ private:
   /// has done so: borders then have no gaps, as the test is exact.
   template <typename ColorOf>
   void paintTriangle(Index t, int first_row, int last_row, const ColorOf& color) {
-    std::array<Eigen::Vector2d, 3> p;
-    for (std::size_t k = 0; k < 3; ++k)
-      p[k] = atlas_.coordinates.col(atlas_.coordinate_triangles(static_cast<Eigen::Index>(k), t));
-    if (internal::orientation2d(p[0], p[1], p[2]) <= 0)
+    Eigen::Matrix<double, 2, 3> p;
+    for (Index k = 0; k < 3; ++k)
+      p.col(k) = atlas_.coordinates.col(atlas_.coordinate_triangles(k, t));
+    if (internal::orientation2d(p.col(0), p.col(1), p.col(2)) <= 0)
       return;
-    const auto [left, right] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
-    const auto [low, high] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
-    first_row = std::max(first_row, firstPixel(1.0 - high, image_.height));
-    last_row = std::min(last_row, lastPixel(1.0 - low, image_.height));
-    const int first_column = firstPixel(left, image_.width);
-    const int last_column = lastPixel(right, image_.width);
+    const Eigen::Vector2d low = p.rowwise().minCoeff();
+    const Eigen::Vector2d high = p.rowwise().maxCoeff();
+    first_row = std::max(first_row, firstPixel(1.0 - high.y(), image_.height));
+    last_row = std::min(last_row, lastPixel(1.0 - low.y(), image_.height));
+    const int first_column = firstPixel(low.x(), image_.width);
+    const int last_column = lastPixel(high.x(), image_.width);
     for (int y = first_row; y <= last_row; ++y)
       for (int x = first_column; x <= last_column; ++x) {
         const std::size_t i = at(x, y);
@@ -204,13 +199,12 @@ private:
         const Eigen::Vector2d center((x + 0.5) / image_.width, 1.0 - (y + 0.5) / image_.height);
         Eigen::Vector3d weights;
         bool is_inside = true;
-        for (std::size_t k = 0; is_inside && k < 3; ++k) {
-          const Eigen::Vector2d& a = p[(k + 1) % 3];
-          const Eigen::Vector2d& b = p[(k + 2) % 3];
+        for (Index k = 0; is_inside && k < 3; ++k) {
+          const Eigen::Vector2d a = p.col((k + 1) % 3);
+          const Eigen::Vector2d b = p.col((k + 2) % 3);
           is_inside = internal::orientation2d(a, b, center) >= 0;
-          weights[static_cast<Eigen::Index>(k)] =
-              std::max(0.0, (a.x() - center.x()) * (b.y() - center.y()) -
-                                (a.y() - center.y()) * (b.x() - center.x()));
+          weights[k] = std::max(0.0, (a.x() - center.x()) * (b.y() - center.y()) -
+                                         (a.y() - center.y()) * (b.x() - center.x()));
         }
         if (!is_inside)
           continue;
@@ -219,8 +213,7 @@ private:
                             : Eigen::Vector3d(Eigen::Vector3d::Constant(1.0 / 3.0));
         const Color painted = color(t, weights);
         image_.covered[i] = 1;
-        std::copy(painted.begin(), painted.end(),
-                  image_.pixels.begin() + static_cast<std::ptrdiff_t>(3 * i));
+        std::copy(painted.begin(), painted.end(), &image_.pixels[3 * i]);
       }
   }
 
@@ -244,9 +237,9 @@ Color checkerColor(const Eigen::Vector3d& direction, int cells) {
   // Three squares meet at a corner of the cube: along some of its edges, equal ones have to.
   const bool is_light = squares % 2 == 0;
   Color color{};
-  for (Eigen::Index d = 0; d < 3; ++d) {
+  for (Index d = 0; d < 3; ++d) {
     const bool is_positive = direction[d] >= 0.0;
-    color[static_cast<std::size_t>(d)] =
+    internal::entry(color, d) =
         static_cast<std::uint8_t>(is_light ? (is_positive ? 255 : 205) : (is_positive ? 150 : 45));
   }
   return color;
@@ -266,11 +259,11 @@ TextureImage bakeColors(const TextureAtlas& atlas,
   Painter painter(atlas, options);
   painter.paintTriangles([&](Index t, const Eigen::Vector3d& weights) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Eigen::Index k = 0; k < 3; ++k)
+    for (Index k = 0; k < 3; ++k)
       sum += weights[k] * at_vertices.col(atlas.triangles(k, t));
     Color color{};
-    for (Eigen::Index c = 0; c < 3; ++c)
-      color[static_cast<std::size_t>(c)] =
+    for (Index c = 0; c < 3; ++c)
+      internal::entry(color, c) =
           static_cast<std::uint8_t>(std::clamp(std::floor(sum[c] + 0.5), 0.0, 255.0));
     return color;
   });

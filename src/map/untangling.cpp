@@ -1,15 +1,16 @@
 #include "boundary_loops.h"
 #include "corner_table.h"
-#include "exact_predicates.h"
-#include "parallel.h"
+#include "index_loops.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/self_intersection.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,13 +34,13 @@ class Sliding {
 public:
   Sliding(const SphereSurface& surface, ResampledMesh& mesh, int threads)
       : surface_(surface), mesh_(mesh), threads_(threads),
-        corners_(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()), threads),
-        moved_(static_cast<std::size_t>(mesh.points.cols()), false), is_fixed_(moved_) {
+        corners_(mesh.triangles, internal::columnCount(mesh.points), threads),
+        moved_(internal::columnCount(mesh.points), 0), is_fixed_(moved_) {
     if (surface.isOpen())
       for (const std::vector<Index>& loop :
            internal::boundaryLoops(mesh.triangles, is_fixed_.size()))
         for (const Index v : loop)
-          is_fixed_[static_cast<std::size_t>(v)] = true;
+          is_fixed_[v] = 1;
   }
 
   UntanglingReport run() {
@@ -50,7 +51,7 @@ public:
     report.before = pairs.size();
     report.after = pairs.size();
     ResampledMesh best;
-    std::vector<bool> moved_of_best;
+    internal::Indexed<char> moved_of_best;
     for (; !pairs.empty() && report.rounds < kMaxRounds; ++report.rounds) {
       if (best.points.cols() == 0) {
         best = mesh_;
@@ -70,8 +71,7 @@ public:
     }
     if (report.rounds > 0) {
       mesh_ = std::move(best);
-      report.moved =
-          static_cast<Index>(std::count(moved_of_best.begin(), moved_of_best.end(), true));
+      report.moved = std::accumulate(moved_of_best.begin(), moved_of_best.end(), Index{0});
     }
     return report;
   }
@@ -84,13 +84,13 @@ private:
       for (const Index t : pair)
         for (Index k = 0; k < 3; ++k)
           zone.push_back(mesh_.triangles(k, t));
-    sortUnique(zone);
+    internal::sortUnique(zone);
     for (int ring = 0; ring < rings; ++ring) {
       std::vector<Index> wider = zone;
       for (const Index t : trianglesAt(zone))
         for (Index k = 0; k < 3; ++k)
           wider.push_back(mesh_.triangles(k, t));
-      sortUnique(wider);
+      internal::sortUnique(wider);
       zone = std::move(wider);
     }
     return zone;
@@ -100,19 +100,14 @@ private:
     std::vector<Index> triangles;
     for (const Index v : vertices)
       corners_.forEachCorner(v, [&](Index t, Index) { triangles.push_back(t); });
-    sortUnique(triangles);
+    internal::sortUnique(triangles);
     return triangles;
-  }
-
-  static void sortUnique(std::vector<Index>& indices) {
-    std::sort(indices.begin(), indices.end());
-    indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
   }
 
   /// Moves a vertex towards its neighbours on the sphere, towards those that are far in space most,
   /// as far as no triangle is flipped.
   void slide(Index v) {
-    if (is_fixed_[static_cast<std::size_t>(v)])
+    if (is_fixed_[v] != 0)
       return;
     Vector3d sum = Vector3d::Zero();
     double weights = 0.0;
@@ -134,7 +129,7 @@ private:
       mesh_.directions.col(v) = to;
       mesh_.points.col(v) = sample.position;
       mesh_.normals.col(v) = sample.normal;
-      moved_[static_cast<std::size_t>(v)] = true;
+      moved_[v] = 1;
       return;
     }
   }
@@ -142,11 +137,10 @@ private:
   bool fits(Index v, const Vector3d& direction) const {
     bool is_fit = direction.allFinite();
     corners_.forEachCorner(v, [&](Index t, Index k) {
-      is_fit =
-          is_fit && internal::orientation3d(
-                        Vector3d::Zero(), direction,
-                        mesh_.directions.col(mesh_.triangles(internal::nextCorner(k), t)),
-                        mesh_.directions.col(mesh_.triangles(internal::previousCorner(k), t))) > 0;
+      is_fit = is_fit &&
+               internal::isOutward(
+                   direction, mesh_.directions.col(mesh_.triangles(internal::nextCorner(k), t)),
+                   mesh_.directions.col(mesh_.triangles(internal::previousCorner(k), t)));
     });
     return is_fit;
   }
@@ -155,8 +149,8 @@ private:
   ResampledMesh& mesh_;
   int threads_;
   internal::CornerTable corners_;
-  std::vector<bool> moved_;
-  std::vector<bool> is_fixed_;  ///< on the boundary
+  internal::Indexed<char> moved_;
+  internal::Indexed<char> is_fixed_;  ///< on the boundary
 };
 
 }  // namespace
@@ -169,7 +163,7 @@ UntanglingReport untangle(const SphereSurface& surface, ResampledMesh& mesh, int
                        std::to_string(mesh.directions.cols()) +
                        " directions; give a mesh of resampleSurface()");
   internal::checkTriangles("untangle", mesh.triangles, n);
-  const int most = internal::threadCount(threads, static_cast<std::size_t>(n));
+  const int most = internal::threadCount(threads, internal::columnCount(mesh.points));
   return Sliding(surface, mesh, most).run();
 }
 

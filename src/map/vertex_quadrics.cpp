@@ -1,7 +1,7 @@
 #include "vertex_quadrics.h"
 
-#include "parallel.h"
 #include "tangent_basis.h"
+#include "triangle_geometry.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -54,18 +54,17 @@ Vector5d monomials(double x, double y) {
 
 VertexQuadrics::VertexQuadrics(const Positions& points, const Triangles& triangles,
                                const Positions& normals, const CornerTable& corners, int threads)
-    : points_(points), triangles_(triangles), normals_(normals),
-      quadrics_(static_cast<std::size_t>(points.cols())) {
+    : points_(points), triangles_(triangles), normals_(normals), quadrics_(columnCount(points)) {
   forEachBlock(quadrics_.size(), threadCount(threads, quadrics_.size()),
                [&](std::size_t, std::size_t begin, std::size_t end) {
-                 std::vector<Index> around;
-                 for (std::size_t i = begin; i < end; ++i)
-                   quadrics_[i] = fit(static_cast<Index>(i), corners, around);
+                 Indexed<Index> around;
+                 for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v)
+                   quadrics_[v] = fit(v, corners, around);
                });
 }
 
 VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& corners,
-                                            std::vector<Index>& around) const {
+                                            Indexed<Index>& around) const {
   Quadric quadric;
   around.clear();
   const auto add_neighbors = [&](Index v) {
@@ -73,17 +72,16 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
         v, [&](Index t, Index k) { around.push_back(triangles_(nextCorner(k), t)); });
   };
   add_neighbors(vertex);
-  const std::size_t nearest = around.size();
+  const Index nearest = indexCount(around);
   for (const Index v : around)
     quadric.size += (points_.col(v) - points_.col(vertex)).norm();
-  quadric.size /= static_cast<double>(nearest);
+  quadric.size /= nearest;
   if (!(quadric.size > 0.0))
     return quadric;
-  for (std::size_t i = 0; i < nearest; ++i)
+  for (Index i = 0; i < nearest; ++i)
     if (corners.countAt(around[i]) <= kMaxAround)
       add_neighbors(around[i]);
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sortUnique(around);
   around.erase(std::remove(around.begin(), around.end(), vertex), around.end());
   if (around.size() < kMinNeighbors)
     return quadric;
@@ -114,7 +112,7 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
   Eigen::Map<Vector5d>(quadric.coefficients.data()) = solution;
 
   // What is left of the squares, for as many heights as are not used up.
-  const double n = static_cast<double>(around.size());
+  const double n = indexCount(around);
   const double residual = std::sqrt(std::max(0.0, sum_of_squares - solution.dot(right)) /
                                     sum_of_weights * n / (n - 5.0));
   const double height = std::sqrt(sum_of_squares / sum_of_weights);
@@ -130,9 +128,7 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
 double VertexQuadrics::spreadOfNormals(Index vertex, const CornerTable& corners) const {
   double least = 1.0;
   corners.forEachCorner(vertex, [&](Index t, Index) {
-    const Vector3d a = points_.col(triangles_(0, t));
-    const Vector3d normal =
-        (points_.col(triangles_(1, t)) - a).cross(points_.col(triangles_(2, t)) - a);
+    const Vector3d normal = areaNormal(points_, triangles_, t);
     const double length = normal.norm();
     if (length > 0.0)
       least = std::min(least, normal.dot(normals_.col(vertex)) / length);
@@ -149,7 +145,7 @@ VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights
   for (Index k = 0; k < 3; ++k) {
     const Index v = triangles_(k, triangle);
     const Vector3d vertex_normal = normals_.col(v);
-    const Quadric& quadric = quadrics_[static_cast<std::size_t>(v)];
+    const Quadric& quadric = quadrics_[v];
     normal += (1.0 - quadric.reliability) * weights[k] * vertex_normal;
     if (quadric.reliability == 0.0 || weights[k] == 0.0)
       continue;

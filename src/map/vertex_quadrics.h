@@ -1,10 +1,10 @@
 #pragma once
 
 #include "corner_table.h"
+#include "index_loops.h"
 #include "spherical_param/types.h"
 
 #include <array>
-#include <vector>
 
 namespace spherical_param::internal {
 
@@ -35,13 +35,13 @@ private:
     double reliability = 0.0;  ///< in [0, 1]
   };
 
-  Quadric fit(Index vertex, const CornerTable& corners, std::vector<Index>& around) const;
+  Quadric fit(Index vertex, const CornerTable& corners, Indexed<Index>& around) const;
   double spreadOfNormals(Index vertex, const CornerTable& corners) const;
 
   const Positions& points_;
   const Triangles& triangles_;
   const Positions& normals_;
-  std::vector<Quadric> quadrics_;
+  Indexed<Quadric> quadrics_;
 };
 
 }  // namespace spherical_param::internal

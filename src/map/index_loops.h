@@ -1,0 +1,60 @@
+#pragma once
+
+#include "indexed.h"
+#include "parallel.h"
+
+#include <algorithm>
+
+namespace spherical_param::internal {
+
+/// Columns of a matrix, as the size of a list with an entry for each.
+template <typename Matrix>
+std::size_t columnCount(const Matrix& matrix) {
+  return static_cast<std::size_t>(matrix.cols());
+}
+
+/// Entries of a list, as the index of the next one.
+template <typename List>
+Index indexCount(const List& list) {
+  return static_cast<Index>(list.size());
+}
+
+/// Entry of a list that is no Indexed, as those of the public headers.
+template <typename List>
+auto& entry(List& list, Eigen::Index i) {
+  return list[static_cast<std::size_t>(i)];
+}
+
+/// Calls work(i) for each i in [0, count), on several threads where that pays.
+///
+/// \param cost of an item, in passes over a neighbourhood.
+template <typename Work>
+void forEachIndex(std::size_t count, int threads, const Work& work, std::size_t cost = 1) {
+  forEachItem(count, threadCount(threads, count * cost),
+              [&](std::size_t, std::size_t i) { work(static_cast<Index>(i)); });
+}
+
+/// The sum of term(i) over i in [0, count); the same bits for any number of threads.
+template <typename Value, typename Term>
+Value sumOfIndices(std::size_t count, int threads, const Value& zero, const Term& term) {
+  return sumOfBlocks(count, threadCount(threads, count), zero,
+                     [&](std::size_t begin, std::size_t end) {
+                       Value sum = zero;
+                       for (std::size_t i = begin; i < end; ++i)
+                         sum += term(static_cast<Index>(i));
+                       return sum;
+                     });
+}
+
+/// The column of each of some indices: `columns` in their order.
+inline Positions columnsOf(const Positions& columns, const std::vector<Index>& indices) {
+  return columns(Eigen::all, indices);
+}
+
+/// Sorts indices and leaves each once.
+inline void sortUnique(std::vector<Index>& indices) {
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+}  // namespace spherical_param::internal
