@@ -3,6 +3,7 @@
 #include "caps.h"
 #include "corner_table.h"
 #include "index_loops.h"
+#include "input_checks.h"
 #include "option_checks.h"
 #include "progress.h"
 #include "rotation_search.h"
@@ -32,28 +33,17 @@ using Eigen::Vector3d;
 using internal::CornerTable;
 using internal::Indexed;
 
-constexpr std::size_t kMinSamples = 12;
-constexpr std::size_t kMaxGridSamples = std::size_t{1} << 24U;
-/// The motion solves dense systems of twice the size.
-constexpr std::size_t kMaxPairs = 4096;
 /// Vertices of both meshes become one if they are nearer than this fraction of the shortest of
 /// their edges: it moves the map by less than a mesh can show, and both shapes keep all their
 /// vertices.
 constexpr double kSameVertex = 0.1;
 
-[[noreturn]] void fail(const std::string& what) {
-  throw InvalidInput("morphSurfaces: " + what);
-}
-
 void checkOptions(const MorphOptions& options) {
   internal::checkEnum("morphSurfaces: connectivity", options.connectivity,
                       MorphConnectivity::Resampled);
-  if (options.samples < kMinSamples || options.samples > kMaxGridSamples)
-    fail("samples = " + std::to_string(options.samples) + " is out of range; use " +
-         std::to_string(kMinSamples) + " to " + std::to_string(kMaxGridSamples));
-  if (options.pairs.size() > kMaxPairs)
-    fail(std::to_string(options.pairs.size()) + " pairs are too many; use " +
-         std::to_string(kMaxPairs) + " at most");
+  internal::checkRange("morphSurfaces: samples", options.samples, 12, std::size_t{1} << 24U);
+  // The motion solves dense systems of twice the size.
+  internal::checkRange("morphSurfaces: number of pairs", options.pairs.size(), 0, 4096);
 }
 
 /// The pairs that may be honoured, each once.

@@ -4,6 +4,7 @@
 #include "caps.h"
 #include "corner_table.h"
 #include "index_loops.h"
+#include "input_checks.h"
 #include "option_checks.h"
 #include "sample_elimination.h"
 #include "sphere_mesh.h"
@@ -473,9 +474,7 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
 }
 
 SurfacePoints sampleEvenly(const SphereSurface& surface, std::size_t count, std::uint32_t seed) {
-  if (count < 1 || count > std::size_t{1} << 24U)
-    throw InvalidInput("sampleEvenly: count = " + std::to_string(count) +
-                       " is out of range; use 1 to 2^24");
+  internal::checkRange("sampleEvenly: count", count, 1, std::size_t{1} << 24U);
   if (!(surface.area() > 0.0))
     throw InvalidInput("sampleEvenly: the surface has no area; scale it to a larger unit");
   const SurfacePoints all = randomPoints(surface, candidateCount(count), seed);

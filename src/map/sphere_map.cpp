@@ -2,8 +2,10 @@
 
 #include "caps.h"
 #include "index_loops.h"
+#include "input_checks.h"
 #include "map_hierarchy.h"
 #include "map_relaxation.h"
+#include "pi.h"
 #include "progress.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
@@ -34,14 +36,8 @@ using internal::MapMesh;
 using internal::MapRows;
 
 void checkOptions(const SphereMapOptions& options) {
-  const std::string caller = "computeSphereMap: ";
-  if (!(options.area_weight >= 0.0 && options.area_weight <= 1.0))
-    throw InvalidInput(caller + "area_weight = " + std::to_string(options.area_weight) +
-                       " is out of range; use 0 to 1");
-  constexpr int most_sweeps = 1000;
-  if (options.sweeps < 0 || options.sweeps > most_sweeps)
-    throw InvalidInput(caller + "sweeps = " + std::to_string(options.sweeps) +
-                       " is out of range; use 0 to " + std::to_string(most_sweeps));
+  internal::checkRange("computeSphereMap: area_weight", options.area_weight, 0.0, 1.0);
+  internal::checkRange("computeSphereMap: sweeps", options.sweeps, 0, 1000);
 }
 
 /// Throws for a mesh that cannot be mapped; caps its openings.
@@ -63,11 +59,7 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
   if (!points.allFinite())
     throw InvalidInput(caller + "a coordinate of a vertex is not finite; remove such points first");
   // Also what was rounded to float passes.
-  constexpr double tolerance = 1e-3;
-  for (Eigen::Index v = 0; v < start.cols(); ++v)
-    if (!(std::abs(start.col(v).norm() - 1.0) <= tolerance))
-      throw InvalidInput(caller + "the start of vertex " + std::to_string(v) + " has length " +
-                         std::to_string(start.col(v).norm()) + "; normalise it");
+  internal::checkUnitVectors("computeSphereMap", start, 1e-3);
   MeshTopology topology = checkTopology(triangles, internal::columnCount(points), threads);
   if (topology.isSphere())
     return std::nullopt;
@@ -219,7 +211,7 @@ public:
       mass_ += mass;
     const double area = options.area_weight;
     const double angle = std::max(1.0 - area, kMinAngleWeight);
-    const double area_of_mass = kAreaOfSphere / mass_;
+    const double area_of_mass = 4.0 * internal::kPi / mass_;
     final_ = {angle, (1.0 - kRatioFraction) * area, kRatioFraction * area, area_of_mass};
     const double mild_area = std::min(area, kMildAreaWeight);
     mild_ = {1.0 - mild_area, 0.0, mild_area, area_of_mass};
@@ -243,7 +235,6 @@ public:
 private:
   /// Areas alone do not say where in its ring a vertex is best.
   static constexpr double kMinAngleWeight = 0.02;
-  static constexpr double kAreaOfSphere = 12.566370614359172;  // 4 pi
   /// Share of the ratio in the weight of areas, the logarithm has the rest. The more of that, the
   /// more triangles have just their areas, but the rougher is the map: others next to them are
   /// sheared for it.

@@ -3,6 +3,7 @@
 #include "caps.h"
 #include "corner_table.h"
 #include "index_loops.h"
+#include "input_checks.h"
 #include "option_checks.h"
 #include "pi.h"
 #include "sphere_locator.h"
@@ -28,15 +29,6 @@ using Eigen::Vector3d;
 
 using internal::kPi;
 
-/// Throws InvalidInput for the first column of positions that check() does not pass.
-template <typename Check>
-void requireAll(const Positions& positions, const Check& check, const std::string& what,
-                const std::string& remedy) {
-  for (Eigen::Index i = 0; i < positions.cols(); ++i)
-    if (!check(positions.col(i)))
-      throw InvalidInput(what + " " + std::to_string(i) + " " + remedy);
-}
-
 /// The solid angle of a triangle on the unit sphere (A. van Oosterom and J. Strackee, 1983).
 double solidAngle(const Positions& sphere, const Triangles& triangles, Eigen::Index t) {
   const Vector3d a = sphere.col(triangles(0, t));
@@ -51,13 +43,10 @@ void checkInput(const Positions& points, const Triangles& triangles, const Posit
     throw InvalidInput("SphereSurface: " + std::to_string(points.cols()) + " points, but " +
                        std::to_string(sphere.cols()) + " on the sphere; they must be the same");
   internal::checkTriangles("SphereSurface", triangles, points.cols());
-  requireAll(
-      points, [](const Vector3d& p) { return p.allFinite(); }, "SphereSurface: point",
-      "is not finite; leave such points out before the mesh is made");
-  constexpr double tolerance = 1e-9;
-  requireAll(
-      sphere, [](const Vector3d& u) { return std::abs(u.squaredNorm() - 1.0) <= tolerance; },
-      "SphereSurface: vertex", "is not of unit length on the sphere; normalise the sphere first");
+  if (!points.allFinite())
+    throw InvalidInput("SphereSurface: a coordinate of a point is not finite; leave such points "
+                       "out before the mesh is made");
+  internal::checkUnitVectors("SphereSurface", sphere, 1e-9);
   if (!checkTopology(triangles, internal::columnCount(points), threads).isSphere())
     throw InvalidInput("SphereSurface: the triangles must be a manifold, consistently oriented "
                        "mesh of genus 0 over all points, with the caps of SphereMap if it has "
@@ -220,10 +209,6 @@ bool SphereSurface::isCap(Index triangle) const {
 
 namespace {
 
-bool isDirection(const Vector3d& direction) {
-  return direction.allFinite() && !direction.isZero(0.0);
-}
-
 void requireHit(const internal::SphereHit& hit) {
   if (hit.triangle < 0)
     throw ComputeError("SphereSurface: no triangle holds a direction, as coordinates on the sphere "
@@ -233,8 +218,7 @@ void requireHit(const internal::SphereHit& hit) {
 }  // namespace
 
 SphereLocation SphereSurface::locate(const Vector3d& direction) const {
-  if (!isDirection(direction))
-    throw InvalidInput("SphereSurface: the direction is zero or not finite; any other will do");
+  internal::checkDirections("SphereSurface", direction);
   const internal::SphereHit hit = data_->locator.locate(direction);
   requireHit(hit);
   return {hit.triangle, hit.weights};
@@ -253,8 +237,7 @@ SurfaceSample SphereSurface::evaluate(const SphereLocation& location) const {
 }
 
 SurfaceSamples SphereSurface::evaluate(const Positions& directions) const {
-  requireAll(directions, isDirection, "SphereSurface: direction",
-             "is zero or not finite; any other will do");
+  internal::checkDirections("SphereSurface", directions);
   SurfaceSamples samples;
   samples.positions.resize(3, directions.cols());
   samples.normals.resize(3, directions.cols());

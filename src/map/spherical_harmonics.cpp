@@ -1,6 +1,7 @@
 #include "spherical_param/map/spherical_harmonics.h"
 
 #include "index_loops.h"
+#include "input_checks.h"
 #include "pi.h"
 #include "spherical_param/errors.h"
 
@@ -16,18 +17,9 @@ namespace {
 using Eigen::Vector3d;
 
 using internal::kPi;
-constexpr int kMaxDegree = 512;
 
-void checkDegree(const char* function, int degree) {
-  if (degree < 0 || degree > kMaxDegree)
-    throw InvalidInput(std::string(function) + ": degree = " + std::to_string(degree) +
-                       " is out of range; use 0 to " + std::to_string(kMaxDegree));
-}
-
-void checkDirection(const char* function, const Vector3d& direction) {
-  if (!direction.allFinite() || direction.isZero(0.0))
-    throw InvalidInput(std::string(function) +
-                       ": a direction is zero or not finite; any other will do");
+void checkDegree(const std::string& function, int degree) {
+  internal::checkRange(function + ": degree", degree, 0, 512);
 }
 
 Eigen::Index place(int l, int m) {
@@ -264,7 +256,7 @@ private:
 
 Eigen::VectorXd sphericalHarmonicsAt(const Vector3d& direction, int degree) {
   checkDegree("sphericalHarmonicsAt", degree);
-  checkDirection("sphericalHarmonicsAt", direction);
+  internal::checkDirections("sphericalHarmonicsAt", direction);
   Eigen::VectorXd values(coefficientCount(degree));
   evaluateAll(Legendre(degree), direction, values);
   return values;
@@ -292,8 +284,7 @@ Positions evaluateSphericalHarmonics(const SphericalHarmonics& harmonics,
                        std::to_string(harmonics.coefficients.cols()) +
                        " coefficients; a series of degree " + std::to_string(harmonics.degree) +
                        " has " + std::to_string(terms));
-  for (Eigen::Index i = 0; i < directions.cols(); ++i)
-    checkDirection(function, directions.col(i));
+  internal::checkDirections(function, directions);
   const Legendre legendre(harmonics.degree);
   const std::size_t count = internal::columnCount(directions);
   Positions result(3, directions.cols());

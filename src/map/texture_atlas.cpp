@@ -4,6 +4,7 @@
 #include "spherical_param/mesh_topology.h"
 
 #include "index_loops.h"
+#include "input_checks.h"
 #include "option_checks.h"
 #include "pi.h"
 #include "sphere_cutting.h"
@@ -319,11 +320,7 @@ void checkMesh(const Triangles& triangles, const Positions& sphere) {
     throw InvalidInput(function +
                        ": the triangles are not an oriented manifold of genus 0 over all vertices; "
                        "give a mesh as reconstruct() makes it");
-  constexpr double tolerance = 1e-6;  // that of single precision, and no more
-  for (Eigen::Index v = 0; v < sphere.cols(); ++v)
-    if (!(std::abs(sphere.col(v).norm() - 1.0) <= tolerance))
-      throw InvalidInput(function + ": vertex " + std::to_string(v) +
-                         " is not of unit length; give directions");
+  internal::checkUnitVectors("makeTextureAtlas", sphere, 2e-6);  // single precision passes
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     if (internal::isFlipped(sphere, triangles, t))
       throw InvalidInput(function + ": triangle " + std::to_string(t) +
@@ -411,9 +408,7 @@ Eigen::MatrixXd atCutVertices(const TextureAtlas& atlas, const Eigen::MatrixXd& 
 
 Vector2d chartCoordinates(const TextureAtlasOptions& options, const Vector3d& direction) {
   checkOptions(options, "chartCoordinates");
-  if (!direction.allFinite() || direction.isZero(0.0))
-    throw InvalidInput("chartCoordinates: the direction is zero or not finite; give a vector with "
-                       "a length");
+  internal::checkDirections("chartCoordinates", direction);
   const SphereCells cells = cellsOf(options.chart);
   const PlaneSigns signs = internal::planeSigns(direction);
   Index cell = 0;

@@ -5,6 +5,7 @@
 #include "corner_table.h"
 #include "exact_predicates.h"
 #include "index_loops.h"
+#include "input_checks.h"
 #include "option_checks.h"
 
 #include <algorithm>
@@ -32,14 +33,8 @@ int widthOf(SphereChart chart, int height) {
 }
 
 void checkOptions(const std::string& function, const BakeOptions& options) {
-  const auto check = [&](const char* name, int value, int lowest, int highest) {
-    if (value < lowest || value > highest)
-      throw InvalidInput(function + ": " + name + " is " + std::to_string(value) +
-                         "; give a number from " + std::to_string(lowest) + " to " +
-                         std::to_string(highest));
-  };
-  check("height", options.height, 16, 16384);
-  check("gutter", options.gutter, 0, 256);
+  internal::checkRange(function + ": height", options.height, 16, 16384);
+  internal::checkRange(function + ": gutter", options.gutter, 0, 256);
   internal::checkThreads(options.threads);
 }
 
@@ -275,9 +270,7 @@ TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere
                               const BakeOptions& options) {
   checkOptions("bakeCheckerboard", options);
   checkAtlas("bakeCheckerboard", atlas);
-  if (cells < 1 || cells > 4096)
-    throw InvalidInput("bakeCheckerboard: cells is " + std::to_string(cells) +
-                       "; give a number from 1 to 4096");
+  internal::checkRange("bakeCheckerboard: cells", cells, 1, 4096);
   if (!sphere.allFinite())
     throw InvalidInput("bakeCheckerboard: a vertex on the sphere is not finite; give unit vectors");
   // In the flat triangles of the mesh: pieces of a triangle have the pattern of the whole.
