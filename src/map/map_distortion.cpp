@@ -20,14 +20,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Twice an area below this many times the longest side squared is rounding of the cross product.
-constexpr double kMinArea = 16.0 * std::numeric_limits<double>::epsilon();
-/// Values that are not finite count as this, so that means are finite: a triangle that is collapsed
-/// on the sphere has no finite distortion.
-constexpr double kUnbounded = 1e300;
-
+/// Values that are not finite count as 1e300, so that means are finite: a triangle that is
+/// collapsed on the sphere has no finite distortion.
 double bounded(double value) {
-  return value < kUnbounded ? value : kUnbounded;
+  return std::fmin(value, 1e300);
 }
 
 /// A triangle by two of its sides, from the same corner.
@@ -44,7 +40,10 @@ struct Sides {
   double longestSquared() const {
     return std::max({first.squaredNorm(), second.squaredNorm(), (second - first).squaredNorm()});
   }
-  bool isDegenerate() const { return !(twice_area > kMinArea * longestSquared()); }
+  /// Whether the area is rounding of the cross product.
+  bool isDegenerate() const {
+    return !(twice_area > 16.0 * std::numeric_limits<double>::epsilon() * longestSquared());
+  }
 
   /// Angles at the corners [rad].
   Vector3d angles() const {

@@ -25,8 +25,6 @@ using Eigen::Vector3d;
 constexpr double kThinnest = 0.05;
 /// Logarithms of ratios of areas below this count by their squares rather.
 constexpr double kSmallLog = 0.05;
-/// Vertices of a colour for several threads: to move one takes about a microsecond.
-constexpr std::size_t kMinParallelColor = 2048;
 
 /// A triangle of vertex u and two neighbours, on the sphere.
 struct Image {
@@ -362,7 +360,7 @@ double sweepMap(Positions& sphere, const MapRows& rows, const MapEnergy& energy,
   for (std::size_t c = 0; c + 1 < rows.colors.size(); ++c) {
     const std::size_t first = rows.colors[c];
     const std::size_t count = rows.colors[c + 1] - first;
-    const int threads = threadCount(requested, count, kMinParallelColor);
+    const int threads = threadCount(requested, count);
     gain += sumOfBlocks(count, threads, 0.0, [&](std::size_t begin, std::size_t end) {
       double part = 0.0;
       for (std::size_t i = first + begin; i < first + end; ++i)

@@ -33,8 +33,6 @@ constexpr double kSameEnd = 0.05;
 /// Of these the best are improved once more.
 constexpr std::size_t kFinalists = 3;
 constexpr Index kFineSamples = 4096;
-/// Half the side of the table of positions, in cells.
-constexpr int kTableCells = 48;
 constexpr int kMaxSteps = 60;
 /// A descent has ended when its steps are as short [rad].
 constexpr double kMinTurn = 1e-9;
@@ -142,8 +140,8 @@ class PositionTable {
 public:
   PositionTable(const UnitSurface& surface, int threads) : positions_(std::size_t{kSide * kSide}) {
     forEachIndex(positions_.size(), threads, [&](Index i) {
-      const double s = 1.0 * (i % kSide) / kTableCells - 1.0;
-      const double t = 1.0 * (i / kSide) / kTableCells - 1.0;
+      const double s = 2.0 * (i % kSide) / (kSide - 1) - 1.0;
+      const double t = 2.0 * (i / kSide) / (kSide - 1) - 1.0;
       Vector3d direction(s, t, 1.0 - std::abs(s) - std::abs(t));
       if (direction.z() < 0.0) {
         direction.x() = std::copysign(1.0 - std::abs(t), s);
@@ -162,8 +160,8 @@ public:
       t = std::copysign(1.0 - std::abs(s), t);
       s = folded;
     }
-    const double x = std::clamp((s + 1.0) * kTableCells, 0.0, kSide - 1.0);
-    const double y = std::clamp((t + 1.0) * kTableCells, 0.0, kSide - 1.0);
+    const double x = std::clamp((s + 1.0) / 2.0 * (kSide - 1), 0.0, kSide - 1.0);
+    const double y = std::clamp((t + 1.0) / 2.0 * (kSide - 1), 0.0, kSide - 1.0);
     const Index column = std::min(static_cast<Index>(x), kSide - 2);
     const Index row = std::min(static_cast<Index>(y), kSide - 2);
     const double right = x - column;
@@ -174,7 +172,7 @@ public:
   }
 
 private:
-  static constexpr Index kSide = 2 * kTableCells + 1;
+  static constexpr Index kSide = 97;
   Indexed<Vector3d> positions_;
 };
 

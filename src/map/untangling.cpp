@@ -24,8 +24,6 @@ constexpr int kMaxRounds = 100;
 constexpr int kSweepsOfRound = 5;
 constexpr int kMinRings = 2;       ///< that are slid around triangles that intersect
 constexpr int kRoundsOfRing = 10;  ///< after which there is one more
-constexpr int kTriedSteps = 4;     ///< each half as long as the one before
-constexpr double kFirstStep = 0.5;
 
 using Pairs = std::vector<std::array<Index, 2>>;
 
@@ -120,8 +118,7 @@ private:
     if (!(weights > 0.0))
       return;
     const Vector3d from = mesh_.directions.col(v);
-    double step = kFirstStep;
-    for (int tried = 0; tried < kTriedSteps; ++tried, step *= 0.5) {
+    for (const double step : {0.5, 0.25, 0.125, 0.0625}) {
       const Vector3d to = ((1.0 - step) * from + step / weights * sum).normalized();
       if (!fits(v, to))
         continue;
