@@ -260,6 +260,8 @@ Indexed<double> massesOf(const Positions& points, const Triangles& triangles, in
 
 /// Takes out vertices, and writes down how.
 class Coarsening {
+  static constexpr Index none = -1;
+
 public:
   Coarsening(const Positions& points, const Triangles& triangles, int requested, int threads)
       : points_(points), requested_threads_(requested),
@@ -325,7 +327,6 @@ private:
   }
 
   void findCandidates(Index most_neighbors) {
-    constexpr Index none = -1;
     found_.resize(alive_.size());
     const int threads = threadCount(requested_threads_, alive_.size());
     forEachBlock(alive_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -335,17 +336,8 @@ private:
         found_[i] = {0, w, none};
         if (mesh_.valence(w) > most_neighbors)
           continue;
-        const Vector3d normal = ringOf(w, ring);
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < ring.size(); ++j) {
-          const double cost =
-              costOf(points_, ring, j, normal, mesh_.valence(ring[j]) + mesh_.valence(w) - 4);
-          if (cost < least || found_[i].target == none) {
-            least = cost;
-            found_[i].target = ring[j];
-          }
-        }
-        found_[i].key = keyOf(least);
+        const auto [cost, target] = cheapestTarget(w, ring, [](Index) { return true; });
+        found_[i] = {keyOf(cost), w, target};
       }
     });
     candidates_.clear();
@@ -376,19 +368,27 @@ private:
     const Index w = candidate.vertex;
     if (mesh_.canCollapse(w, candidate.target))
       return true;
-    const Vector3d normal = ringOf(w, work_ring_);
-    double least = std::numeric_limits<double>::infinity();
-    bool found = false;
-    for (std::size_t j = 0; j < work_ring_.size(); ++j) {
-      const double cost = costOf(points_, work_ring_, j, normal,
-                                 mesh_.valence(work_ring_[j]) + mesh_.valence(w) - 4);
-      if ((cost < least || !found) && mesh_.canCollapse(w, work_ring_[j])) {
-        least = cost;
-        candidate.target = work_ring_[j];
-        found = true;
-      }
+    candidate.target =
+        cheapestTarget(w, work_ring_, [&](Index v) { return mesh_.canCollapse(w, v); }).second;
+    return candidate.target != none;
+  }
+
+  /// The least cost of moving w to one of its neighbours for which is_allowed(), and that
+  /// neighbour.
+  ///
+  /// \param ring to work in.
+  template <typename IsAllowed>
+  std::pair<double, Index> cheapestTarget(Index w, std::vector<Index>& ring,
+                                          const IsAllowed& is_allowed) const {
+    const Vector3d normal = ringOf(w, ring);
+    std::pair<double, Index> best(std::numeric_limits<double>::infinity(), none);
+    for (std::size_t j = 0; j < ring.size(); ++j) {
+      const Index v = ring[j];
+      const double cost = costOf(points_, ring, j, normal, mesh_.valence(v) + mesh_.valence(w) - 4);
+      if ((cost < best.first || best.second == none) && is_allowed(v))
+        best = {cost, v};
     }
-    return found;
+    return best;
   }
 
   void keepMesh() {

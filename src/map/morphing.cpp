@@ -124,26 +124,22 @@ bool moveVertex(Positions& sphere, const Triangles& triangles, const CornerTable
 /// Puts vertices of the second mesh that are next to one of the first at its place.
 void joinVertices(const SphereSurface& first, const Triangles& triangles, Positions& sphere,
                   Indexed<Index>& partner) {
-  const Index a = static_cast<Index>(first.sphere().cols());
-  Positions points(3, a + sphere.cols());
+  Positions points(3, first.sphere().cols() + sphere.cols());
   points << first.sphere(), sphere;
   Indexed<char> is_taken(internal::columnCount(first.sphere()), 0);
   for (const Index i : partner)
     if (i >= 0)
       is_taken[i] = 1;
-  std::vector<Index> queries;
-  for (const Index i : internal::mortonOrder(sphere))
-    if (partner[i] < 0)
-      queries.push_back(a + i);
-  const std::vector<SphereLocation> places =
-      internal::locateAll(points, first.triangles(), queries);
+  const Indexed<SphereLocation> places =
+      internal::locateAll(points, first.triangles(), first.sphere().cols());
   const CornerTable at_first = cornersOf(first.triangles(), first.sphere());
   const CornerTable at_second = cornersOf(triangles, sphere);
-  for (std::size_t q = 0; q < places.size(); ++q) {
-    const Index v = queries[q] - a;
+  for (const Index v : internal::mortonOrder(sphere)) {
+    if (partner[v] >= 0)
+      continue;
     Eigen::Index corner = 0;
-    places[q].weights.maxCoeff(&corner);
-    const Index other = first.triangles()(corner, places[q].triangle);
+    places[v].weights.maxCoeff(&corner);
+    const Index other = first.triangles()(corner, places[v].triangle);
     const Vector3d place = first.sphere().col(other);
     if (is_taken[other] != 0 ||
         (place - sphere.col(v)).norm() >
@@ -315,21 +311,10 @@ GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Vector3d
 
 void sampleBoth(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
                 MorphResult& morph) {
-  const std::vector<Index> order = internal::mortonOrder(morph.sphere);
   const auto locate = [&](const Positions& of_mesh, const Triangles& triangles) {
     Positions points(3, of_mesh.cols() + morph.sphere.cols());
     points << of_mesh, morph.sphere;
-    std::vector<Index> queries(order);
-    for (Index& query : queries)
-      query += static_cast<Index>(of_mesh.cols());
-    const std::vector<SphereLocation> found = internal::locateAll(points, triangles, queries);
-    if (found.empty())
-      throw ComputeError("morphSurfaces: a triangulation of the sphere does not cover it once; "
-                         "use maps that are one to one");
-    std::vector<SphereLocation> places(found.size());
-    for (std::size_t q = 0; q < found.size(); ++q)
-      internal::entry(places, order[q]) = found[q];
-    return places;
+    return internal::locateAll(points, triangles, of_mesh.cols());
   };
   morph.first_places = locate(first.sphere(), first.triangles());
   morph.second_places = locate(sphere, second.triangles());

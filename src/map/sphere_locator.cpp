@@ -16,8 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kLeafSize = 4;   ///< triangles, at most
-constexpr unsigned kSerialLevels = 4;  ///< whose nodes are split level by level, then by subtrees
+constexpr std::size_t kLeafSize = 4;  ///< triangles, at most
 
 /// Of the coordinates of a unit vector after its normalisation, and of a corner after its own:
 /// each less than 1e-15.
@@ -59,30 +58,21 @@ SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles
     centers.col(t) =
         sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
   });
-  const unsigned serial_levels = std::min(levels_, kSerialLevels);
-  for (unsigned level = 0; level < serial_levels; ++level)
-    forEachTask(std::size_t{1} << level, threads, [&](std::size_t i) {
-      split((std::size_t{1} << level) + i, level, level, centers);
-    });
-  forEachTask(std::size_t{1} << serial_levels, threads, [&](std::size_t i) {
-    split((std::size_t{1} << serial_levels) + i, serial_levels, levels_, centers);
-  });
-  for (std::size_t node = (std::size_t{1} << serial_levels) - 1; node > 0; --node)
-    makeBox(node);
+  for (unsigned level = 0; level < levels_; ++level)
+    forEachTask(std::size_t{1} << level, threads,
+                [&](std::size_t i) { split((std::size_t{1} << level) + i, level, centers); });
+  for (unsigned level = levels_ + 1; level-- > 0;)
+    forEachItem(std::size_t{1} << level, threads,
+                [&](std::size_t, std::size_t i) { makeBox((std::size_t{1} << level) + i); });
 }
 
 std::size_t SphereLocator::begin(std::size_t leaf) const {
   return order_.size() * leaf >> levels_;
 }
 
-void SphereLocator::split(std::size_t node, unsigned level, unsigned last_level,
-                          const Positions& centers) {
+void SphereLocator::split(std::size_t node, unsigned level, const Positions& centers) {
   const std::size_t leaves = std::size_t{1} << (levels_ - level);
   const std::size_t first_leaf = (node << (levels_ - level)) - (std::size_t{1} << levels_);
-  if (level == levels_) {
-    makeBox(node);
-    return;
-  }
   const auto at = [&](std::size_t leaf) { return order_.data() + begin(leaf); };
   Index* const first = at(first_leaf);
   Index* const end = at(first_leaf + leaves);
@@ -99,11 +89,6 @@ void SphereLocator::split(std::size_t node, unsigned level, unsigned last_level,
     const double at_b = centers(axis, b);
     return at_a != at_b ? at_a < at_b : a < b;
   });
-  if (level == last_level)
-    return;
-  split(2 * node, level + 1, last_level, centers);
-  split(2 * node + 1, level + 1, last_level, centers);
-  makeBox(node);
 }
 
 void SphereLocator::makeBox(std::size_t node) {

@@ -42,9 +42,8 @@ private:
 
   Box boxOf(Index triangle) const;
   std::size_t begin(std::size_t leaf) const;
-  /// Splits the triangles of a node at their median; below `last_level` nodes, also its parts, and
-  /// their boxes.
-  void split(std::size_t node, unsigned level, unsigned last_level, const Positions& centers);
+  /// Splits the triangles of a node at their median.
+  void split(std::size_t node, unsigned level, const Positions& centers);
   void makeBox(std::size_t node);
 
   const Positions* sphere_;

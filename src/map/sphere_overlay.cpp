@@ -284,14 +284,16 @@ ArcMesh::Walk ArcMesh::walk(Index from, Index to, Index start, std::vector<Index
   return {true, -1, -1};
 }
 
-std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& triangles,
-                                      const std::vector<Index>& queries) {
+Indexed<SphereLocation> locateAll(const Positions& points, const Triangles& triangles,
+                                  Eigen::Index first) {
   const ArcMesh mesh(points, triangles);
-  std::vector<SphereLocation> locations(queries.size());
+  // In an order in which neighbours are near each other: each walk is short.
+  const std::vector<Index> order = mortonOrder(points.rightCols(points.cols() - first));
+  Indexed<SphereLocation> locations(order.size());
   std::vector<Index> crossed;
   Index last = 0;
-  for (std::size_t q = 0; q < queries.size(); ++q) {
-    const Index point = queries[q];
+  for (const Index q : order) {
+    const Index point = static_cast<Index>(first) + q;
     if (mesh.isVertex(point)) {
       mesh.forEachEdgeAt(point, [&](Index edge, bool, Index) {
         const Index corner = mesh.cornerOppositeTo(edge);
@@ -305,7 +307,7 @@ std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& 
     crossed.clear();
     const ArcMesh::Walk walk = mesh.walk(mesh.vertex(last, 0), point, -1, crossed);
     if (walk.lost || walk.triangle < 0)
-      return {};
+      failLost();
     last = walk.triangle;
     locations[q] = placeIn(points, triangles, last, point);
   }
@@ -356,18 +358,9 @@ public:
 
 private:
   void locateVertices() {
-    const std::vector<Index> order = mortonOrder(points_);
-    const std::array<std::vector<SphereLocation>*, 2> places{&overlay_.first, &overlay_.second};
-    std::array<bool, 2> is_lost{};
-    forEachTask(2, std::min(threads_, 2), [&](std::size_t m) {
-      const std::vector<SphereLocation> found = locateAll(points_, *triangles_[m], order);
-      is_lost[m] = found.size() != order.size();
-      places[m]->resize(order.size());
-      for (std::size_t q = 0; q < found.size(); ++q)
-        entry(*places[m], order[q]) = found[q];
-    });
-    if (is_lost[0] || is_lost[1])
-      failLost();
+    const std::array<Indexed<SphereLocation>*, 2> places{&overlay_.first, &overlay_.second};
+    forEachTask(2, std::min(threads_, 2),
+                [&](std::size_t m) { *places[m] = locateAll(points_, *triangles_[m], 0); });
   }
 
   void findCrossings() {
@@ -428,7 +421,7 @@ private:
         fraction_of_b[x] = fractions[1];
         ascend(fraction_of_a[x], least);
         from_left_[x] = orientationOf(points_, ends[0], ends[1], other[0]) > 0 ? 1 : 0;
-        entry(overlay_.first, node) = placeOn(mesh_a_, e, fraction_of_a[x]);
+        overlay_.first[node] = placeOn(mesh_a_, e, fraction_of_a[x]);
       }
     }
     overlay_.directions.resize(3, node_count_);
@@ -437,7 +430,7 @@ private:
       double least = 0.0;
       for (Index x = of_b_.begin(e); x < of_b_.end(e); ++x) {
         ascend(fraction_of_b[x], least);
-        entry(overlay_.second, vertex_count_ + x) = placeOn(mesh_b_, e, fraction_of_b[x]);
+        overlay_.second[vertex_count_ + x] = placeOn(mesh_b_, e, fraction_of_b[x]);
         const std::array<Index, 2> ends = mesh_a_.ends(entry(of_b_.edges, x));
         overlay_.directions.col(vertex_count_ + x) =
             ((1.0 - fraction_of_a[x]) * points_.col(ends[0]) +

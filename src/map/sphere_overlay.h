@@ -92,20 +92,23 @@ private:
   Indexed<Index> corner_at_;    ///< of each point; -1: no vertex
 };
 
-/// The triangle that holds each of some points; each point is a vertex or in the mesh's sphere.
-/// \param queries columns of `points`, in an order in which neighbours are near each other.
-/// \return empty if the triangles do not cover the sphere once; of vertices, some triangle at them.
-std::vector<SphereLocation> locateAll(const Positions& points, const Triangles& triangles,
-                                      const std::vector<Index>& queries);
+/// Where each of the points from `first` on is on a triangulated sphere; of vertices, in some
+/// triangle at them.
+///
+/// \param points 3 x n, directions, the vertices of the triangles among them.
+/// \return n - first places.
+/// \throw ComputeError if the triangles do not cover the sphere once.
+Indexed<SphereLocation> locateAll(const Positions& points, const Triangles& triangles,
+                                  Eigen::Index first);
 
 /// Both of two triangulations of the sphere at once: their vertices, and the points where edges of
 /// one cross those of the other. Each face is a part of one triangle of each.
 struct SphereOverlay {
-  Positions directions;  ///< 3 x w: vertices of the first, others of the second, crossings
-  std::vector<SphereLocation> first;   ///< w, places in the first mesh
-  std::vector<SphereLocation> second;  ///< w, places in the second mesh
-  std::vector<std::size_t> offsets;    ///< faces + 1, positions in `corners`
-  std::vector<Index> corners;          ///< of the faces, counter-clockwise; convex, 3 to 6 each
+  Positions directions;           ///< 3 x w: vertices of the first, others of the second, crossings
+  Indexed<SphereLocation> first;  ///< w, places in the first mesh
+  Indexed<SphereLocation> second;    ///< w, places in the second mesh
+  std::vector<std::size_t> offsets;  ///< faces + 1, positions in `corners`
+  std::vector<Index> corners;        ///< of the faces, counter-clockwise; convex, 3 to 6 each
 };
 
 /// Lays one triangulation of the sphere over another. Which faces there are is decided exactly.
