@@ -34,7 +34,6 @@ using internal::entry;
 using internal::Indexed;
 
 constexpr Index kMaxVertices = Index{1} << 29;
-constexpr int kLargestSide = 16385;
 
 /// A grid has `factor` f^2 + 2 vertices.
 Index factorOf(SphereGrid grid) {
@@ -292,11 +291,10 @@ SurfacePoints randomPoints(const SphereSurface& surface, std::size_t count, std:
   return result;
 }
 
-void checkSide(const char* function, int side) {
-  if (side < 3 || side > kLargestSide || side % 2 == 0)
-    throw InvalidInput(std::string(function) + ": side = " + std::to_string(side) +
-                       " is not possible; use an odd number from 3 to " +
-                       std::to_string(kLargestSide));
+void checkSide(const std::string& function, int side) {
+  internal::checkRange(function + ": side", side, 3, 16385);
+  if (side % 2 == 0)
+    throw InvalidInput(function + ": side = " + std::to_string(side) + " is even; use an odd one");
 }
 
 Positions pixelDirections(int side) {
@@ -501,7 +499,8 @@ GeometryImage geometryImageOfMesh(const ResampledMesh& mesh) {
   const std::size_t count = internal::columnCount(mesh.points);
   const int frequency = gridFrequency(SphereGrid::Octahedral, count);
   const int side = 2 * frequency + 1;
-  if (side > kLargestSide || gridVertices(SphereGrid::Octahedral, frequency) != count)
+  checkSide("geometryImageOfMesh", side);
+  if (gridVertices(SphereGrid::Octahedral, frequency) != count)
     throw InvalidInput("geometryImageOfMesh: " + std::to_string(count) +
                        " vertices are not those of an octahedral grid; use makeGridSphere()");
   const OctahedralSquare square(frequency);

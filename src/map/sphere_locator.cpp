@@ -16,8 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kLeafSize = 4;  ///< triangles, at most
-
 /// Of the coordinates of a unit vector after its normalisation, and of a corner after its own:
 /// each less than 1e-15.
 constexpr double kRounding = 4e-15;
@@ -47,7 +45,8 @@ Vector3d unitVector(const Vector3d& direction) {
 SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles, int threads)
     : sphere_(&sphere), triangles_(&triangles) {
   const std::size_t count = columnCount(triangles);
-  while (count > kLeafSize << levels_)
+  // A leaf has four triangles at most.
+  while (count > std::size_t{4} << levels_)
     ++levels_;
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), Index{0});

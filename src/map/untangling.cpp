@@ -22,8 +22,6 @@ using Eigen::Vector3d;
 
 constexpr int kMaxRounds = 100;
 constexpr int kSweepsOfRound = 5;
-constexpr int kMinRings = 2;       ///< that are slid around triangles that intersect
-constexpr int kRoundsOfRing = 10;  ///< after which there is one more
 
 using Pairs = std::vector<std::array<Index, 2>>;
 
@@ -55,7 +53,8 @@ public:
         best = mesh_;
         moved_of_best = moved_;
       }
-      const std::vector<Index> zone = around(pairs, kMinRings + report.rounds / kRoundsOfRing);
+      // Two rings around the triangles that intersect, and one more after every ten rounds.
+      const std::vector<Index> zone = around(pairs, 2 + report.rounds / 10);
       for (int sweep = 0; sweep < kSweepsOfRound; ++sweep)
         for (const Index v : zone)
           slide(v);
