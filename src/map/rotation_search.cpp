@@ -28,10 +28,7 @@ constexpr Index kCoarseSamples = 160;
 constexpr std::size_t kCandidates = 12;
 constexpr double kApart = 0.25;
 constexpr Index kMediumSamples = 512;
-/// Descents that end nearer to each other have found the same rotation [rad].
-constexpr double kSameEnd = 0.05;
-/// Of these the best are improved once more.
-constexpr std::size_t kFinalists = 3;
+/// The best of these is improved once more.
 constexpr Index kFineSamples = 4096;
 constexpr int kMaxSteps = 60;
 /// A descent has ended when its steps are as short [rad].
@@ -390,27 +387,14 @@ Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& second,
     forEachTask(starts.size(), used,
                 [&](std::size_t i) { ends[i] = medium.descend(starts[i], pairs, 1); });
   }
-  reportFraction(report, 0.0);
-  std::stable_sort(ends.begin(), ends.end(),
-                   [](const auto& one, const auto& other) { return one.first < other.first; });
-
-  const Problem fine(unit_first, unit_second, kFineSamples);
-  std::pair<double, Matrix3d> best = ends[0];
-  std::vector<Matrix3d> tried;
-  for (const auto& end : ends) {
-    // Descents from several starts often end at one place.
-    if (!isApart(end.second, tried, kSameEnd))
-      continue;
-    tried.push_back(end.second);
-    const auto improved = fine.descend(end.second, pairs, threads);
-    if (tried.size() == 1 || improved.first < best.first)
-      best = improved;
-    reportFraction(report, static_cast<double>(tried.size()) / kFinalists);
-    if (tried.size() == kFinalists)
-      break;
-  }
+  reportFraction(report, 0.5);
+  const auto best =
+      std::min_element(ends.begin(), ends.end(),
+                       [](const auto& one, const auto& other) { return one.first < other.first; });
+  const Matrix3d rotation =
+      Problem(unit_first, unit_second, kFineSamples).descend(best->second, pairs, threads).second;
   reportFraction(report, 1.0);
-  return best.second;
+  return rotation;
 }
 
 }  // namespace spherical_param::internal
