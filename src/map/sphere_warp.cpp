@@ -33,23 +33,16 @@ constexpr double kMinApproach = 0.25;
 constexpr std::size_t kPathSamples = 48;
 /// Detours that are tried [rad at the middle, as a fraction of the way and 0.1].
 constexpr double kDetours[] = {0.0, 0.2, -0.2, 0.45, -0.45, 0.9, -0.9};
-constexpr int kDetourRounds = 6;
-/// Steps along the paths [fraction of the path]: the first, the shortest, and how they grow.
-constexpr double kFirstStep = 0.25;
+/// The shortest step along the paths [fraction of the path].
 constexpr double kMinStep = 1e-3;
-constexpr double kStepGrowth = 1.5;
-/// No landmark goes farther in a step [chord].
-constexpr double kMaxStep = 0.25;
-/// A field's support, in distances [chord]: of landmarks, and ways that they go.
-constexpr double kSupportOfDistance = 3.0;
-constexpr double kSupportOfWay = 4.0;
-/// Rounds over flipped triangles after each step, and at the end.
+/// A field's support, in distances of landmarks and in ways that they go [chord].
+constexpr double kSupport = 4.0;
+/// Rounds over flipped triangles after each step, and at the end: as many after each step take half
+/// as long again and honour no more pairs.
 constexpr int kStepRounds = 4;
 constexpr int kEndRounds = 30;
 /// Steps towards the middle of the kernel of a vertex's ring.
 constexpr int kKernelSteps = 40;
-/// Places besides the landmarks where a field is examined.
-constexpr int kSpread = 512;
 
 /// The way of a landmark: an arc, pushed aside most in its middle.
 struct Path {
@@ -118,9 +111,10 @@ std::optional<std::size_t> planPaths(std::vector<Path>& paths,
     return std::max_element(conflicts.begin(), conflicts.end());
   };
   auto worst = find_worst();
-  for (int round = 0; round < kDetourRounds; ++round) {
+  for (double before = std::numeric_limits<double>::infinity(); *worst < before;) {
     if (*worst == 0.0)
       return std::nullopt;
+    before = *worst;
     for (const std::size_t i : active) {
       double least = conflict_of(i);
       if (least == 0.0)
@@ -139,8 +133,6 @@ std::optional<std::size_t> planPaths(std::vector<Path>& paths,
     }
     worst = find_worst();
   }
-  if (*worst == 0.0)
-    return std::nullopt;
   return worst - conflicts.begin();
 }
 
@@ -405,7 +397,7 @@ public:
   LandmarkMotion(const Positions& sphere, const Triangles& triangles,
                  const std::vector<Landmark>& landmarks, int threads, const FractionReport& report)
       : sphere_(sphere), triangles_(triangles), landmarks_(landmarks), threads_(threads),
-        report_(report), spread_(spreadDirections(kSpread)), is_fixed_(columnCount(sphere), 0),
+        report_(report), spread_(spreadDirections(512)), is_fixed_(columnCount(sphere), 0),
         untangler_(triangles, is_fixed_) {}
 
   SphereWarp run() {
@@ -471,9 +463,9 @@ private:
     support_ = 0.0;
     for (const Positions& where : {places_, ends_})
       for (const double distance : nearestDistances(where))
-        support_ = std::max(support_, kSupportOfDistance * distance);
+        support_ = std::max(support_, kSupport * distance);
     // Wider than what is moved, so that it is not squeezed; more than the diameter is no use.
-    support_ = std::min(2.0, std::max(support_, kSupportOfWay * longest));
+    support_ = std::min(2.0, std::max(support_, kSupport * longest));
     untangle(kEndRounds);
   }
 
@@ -486,7 +478,7 @@ private:
   /// landmark that no short step takes further, if there is one
   std::optional<std::size_t> followPaths() {
     double t = 0.0;
-    double step = kFirstStep;
+    double step = 1.0;
     // The last step goes nowhere but to the targets, from where rounding has left the landmarks.
     for (bool is_last = active_.empty(); !is_last;) {
       is_last = t >= 1.0;
@@ -496,7 +488,7 @@ private:
         break;
       const Field field(places_, values, support_);
       const auto [slope, where] = steepestOf(field, places_, spread_, threads_);
-      if (farthest > kMaxStep || !field.isFinite() || !(slope <= kMaxWarpSlope * kMaxWarpSlope)) {
+      if (!field.isFinite() || !(slope <= kMaxWarpSlope * kMaxWarpSlope)) {
         step = 0.5 * (goal - t);
         if (is_last || step < kMinStep)
           return active_[std::min(where, count() - 1)];
@@ -504,7 +496,7 @@ private:
       }
       carry(field);
       t = goal;
-      step *= kStepGrowth;
+      step *= 2.0;
       // A motion that begins again does not report less than before.
       reported_ = std::max(reported_, 0.99 * t);
       reportFraction(report_, reported_);
