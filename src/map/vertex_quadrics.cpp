@@ -28,12 +28,8 @@ constexpr double kSureResidual = 0.08;
 constexpr double kWrongResidual = 0.25;
 /// Residuals below this fraction of the length of the edges are no reason to be unsure.
 constexpr double kSmallResidual = 1e-3;
-/// Cosines between the normals of a vertex and of its triangles: likewise.
-constexpr double kSureCosine = 0.9;
-constexpr double kWrongCosine = 0.65;
-/// Ratio of the pivots of the equations: likewise.
-constexpr double kSurePivots = 1e-2;
-constexpr double kWrongPivots = 1e-3;
+/// Least ratio of the pivots of the equations.
+constexpr double kMinPivots = 1e-3;
 /// The surface leaves the triangles by no more than this fraction of the length of the edges: the
 /// height of an arc over its chord, for an arc of 90 degrees.
 constexpr double kMaxDisplacement = 0.2;
@@ -106,7 +102,7 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
   }
   const Eigen::LDLT<Matrix5d> factors(matrix);
   const Vector5d pivots = factors.vectorD();
-  if (!(pivots.minCoeff() > kWrongPivots * pivots.maxCoeff()))
+  if (!(pivots.minCoeff() > kMinPivots * pivots.maxCoeff()))
     return quadric;
   const Vector5d solution = factors.solve(right);
   Eigen::Map<Vector5d>(quadric.coefficients.data()) = solution;
@@ -118,22 +114,8 @@ VertexQuadrics::Quadric VertexQuadrics::fit(Index vertex, const CornerTable& cor
   const double height = std::sqrt(sum_of_squares / sum_of_weights);
   quadric.reliability =
       smoothStep(kWrongResidual, kSureResidual,
-                 std::max(0.0, residual - kSmallResidual) / (height + kSmallResidual)) *
-      smoothStep(kWrongCosine, kSureCosine, spreadOfNormals(vertex, corners)) *
-      smoothStep(kWrongPivots, kSurePivots, pivots.minCoeff() / pivots.maxCoeff());
+                 std::max(0.0, residual - kSmallResidual) / (height + kSmallResidual));
   return quadric;
-}
-
-/// The least cosine between the normal of a vertex and those of its triangles.
-double VertexQuadrics::spreadOfNormals(Index vertex, const CornerTable& corners) const {
-  double least = 1.0;
-  corners.forEachCorner(vertex, [&](Index t, Index) {
-    const Vector3d normal = areaNormal(points_, triangles_, t);
-    const double length = normal.norm();
-    if (length > 0.0)
-      least = std::min(least, normal.dot(normals_.col(vertex)) / length);
-  });
-  return least;
 }
 
 VertexQuadrics::Point VertexQuadrics::at(Index triangle, const Vector3d& weights) const {

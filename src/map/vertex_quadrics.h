@@ -36,7 +36,6 @@ private:
   };
 
   Quadric fit(Index vertex, const CornerTable& corners, Indexed<Index>& around) const;
-  double spreadOfNormals(Index vertex, const CornerTable& corners) const;
 
   const Positions& points_;
   const Triangles& triangles_;
