@@ -24,10 +24,6 @@ using Eigen::Vector3d;
 constexpr double kMinMass = 1e-6;
 /// A vertex of more neighbours is only taken out if there are too few others.
 constexpr Index kMaxCoarseNeighbors = 8;
-/// This fraction of the candidates, the cheapest, is considered for a batch.
-constexpr double kFractionOfCandidates = 0.7;
-/// With fewer vertices than this they are taken out one at a time.
-constexpr Index kFewVertices = 64;
 
 double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return 0.5 * (b - a).cross(c - a).norm();
@@ -279,7 +275,7 @@ public:
       takeOut(most_neighbors);
       const Index gone = before - indexCount(alive_);
       // With more than 4 vertices there is an edge that can be contracted.
-      if (gone == 0 || (gone < before / 20 && before > kFewVertices))
+      if (gone == 0 || gone < before / 20)
         most_neighbors = most_neighbors < (Index{1} << 29) ? 2 * most_neighbors : most_neighbors;
       else
         most_neighbors = std::max(kMaxCoarseNeighbors, most_neighbors / 2);
@@ -296,14 +292,12 @@ public:
 private:
   void takeOut(Index most_neighbors) {
     findCandidates(most_neighbors);
-    const Index alive = indexCount(alive_);
-    const bool are_few = alive <= kFewVertices;
-    const double count = indexCount(candidates_) * (are_few ? 1.0 : kFractionOfCandidates);
-    const Index most = are_few ? 1 : alive - kFewVertices;
+    const Index most = indexCount(alive_) - 4;
     const std::size_t first = removed_.size();
     blocked_.clear();
-    for (Index i = 0; i < count && indexCount(gone_) < most; ++i) {
-      Candidate candidate = candidates_[i];
+    for (Candidate candidate : candidates_) {
+      if (indexCount(gone_) == most)
+        break;
       if (blocked_.contains(candidate.vertex) || !chooseTarget(candidate))
         continue;
       mesh_.collapse(candidate.vertex, candidate.target);
