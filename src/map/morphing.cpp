@@ -309,8 +309,19 @@ GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Vector3d
   return grid;
 }
 
-void sampleBoth(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
-                MorphResult& morph) {
+/// The morph on a grid, with vertices at `places`.
+void morphOnGrid(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
+                 const MorphOptions& options, const std::vector<Vector3d>& places,
+                 const std::optional<OpenPart>& open, MorphResult& morph) {
+  GridSphere grid = gridWithPairs(options, places);
+  if (open) {
+    internal::OpenSphere cut = internal::cutOpenings(
+        grid.directions, grid.triangles, [&](const Vector3d& u) { return open->holds(u); });
+    grid.directions = std::move(cut.directions);
+    grid.triangles = std::move(cut.triangles);
+  }
+  morph.triangles = std::move(grid.triangles);
+  morph.sphere = std::move(grid.directions);
   const auto locate = [&](const Positions& of_mesh, const Triangles& triangles) {
     Positions points(3, of_mesh.cols() + morph.sphere.cols());
     points << of_mesh, morph.sphere;
@@ -318,6 +329,23 @@ void sampleBoth(const SphereSurface& first, const SphereSurface& second, const P
   };
   morph.first_places = locate(first.sphere(), first.triangles());
   morph.second_places = locate(sphere, second.triangles());
+  morph.first = positionsAt(first, morph.first_places, options.threads);
+  morph.second = positionsAt(second, morph.second_places, options.threads);
+}
+
+/// The morph of all vertices of both meshes and the crossings of their edges.
+void morphOnOverlay(const SphereSurface& first, const SphereSurface& second,
+                    const Positions& sphere, const Indexed<Index>& partner, int threads,
+                    MorphResult& morph) {
+  internal::SphereOverlay overlay = internal::overlaySpheres(
+      first.sphere(), first.triangles(), sphere, second.triangles(), partner,
+      internal::threadCount(threads, internal::columnCount(sphere)));
+  morph.first_places = std::move(overlay.first);
+  morph.second_places = std::move(overlay.second);
+  morph.first = positionsAt(first, morph.first_places, threads);
+  morph.second = positionsAt(second, morph.second_places, threads);
+  morph.triangles = triangulateFaces(overlay, morph, inverseArea(first), inverseArea(second));
+  morph.sphere = std::move(overlay.directions);
 }
 
 /// Sets the partners of the vertices whose landmarks arrived, and adds the other pairs to the
@@ -384,33 +412,13 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);
     internal::reportFraction(report, 0.0);
-    internal::SphereOverlay overlay = internal::overlaySpheres(
-        first.sphere(), first.triangles(), sphere, second.triangles(), partner,
-        internal::threadCount(options.threads, internal::columnCount(sphere)));
-    internal::reportFraction(report, 0.0);
-    morph.first_places = std::move(overlay.first);
-    morph.second_places = std::move(overlay.second);
-    morph.first = positionsAt(first, morph.first_places, options.threads);
-    morph.second = positionsAt(second, morph.second_places, options.threads);
-    morph.triangles = triangulateFaces(overlay, morph, inverseArea(first), inverseArea(second));
-    morph.sphere = std::move(overlay.directions);
+    morphOnOverlay(first, second, sphere, partner, options.threads, morph);
     if (open)
       cutOpenings(*open, morph);
   } else {
-    GridSphere grid = gridWithPairs(options, places);
-    if (open) {
-      internal::OpenSphere cut = internal::cutOpenings(
-          grid.directions, grid.triangles, [&](const Vector3d& u) { return open->holds(u); });
-      grid.directions = std::move(cut.directions);
-      grid.triangles = std::move(cut.triangles);
-    }
-    morph.triangles = std::move(grid.triangles);
-    morph.sphere = std::move(grid.directions);
-    sampleBoth(first, second, sphere, morph);
-    internal::reportFraction(report, 0.0);
-    morph.first = positionsAt(first, morph.first_places, options.threads);
-    morph.second = positionsAt(second, morph.second_places, options.threads);
+    morphOnGrid(first, second, sphere, options, places, open, morph);
   }
+  internal::reportFraction(report, 0.0);
   leaveCaps(first, morph.first_places);
   leaveCaps(second, morph.second_places);
   internal::reportFraction(report, 1.0);
