@@ -1,18 +1,12 @@
 #pragma once
 
+#include "corner_table.h"
 #include "exact_predicates.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Geometry>
 
 namespace spherical_param::internal {
-
-/// Normal of a triangle, as long as twice its area.
-inline Eigen::Vector3d areaNormal(const Positions& points, const Triangles& triangles,
-                                  Eigen::Index t) {
-  const Eigen::Vector3d a = points.col(triangles(0, t));
-  return (points.col(triangles(1, t)) - a).cross(points.col(triangles(2, t)) - a);
-}
 
 /// Exact sign of the determinant | a, b, c | of directions.
 inline int determinantSign(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
