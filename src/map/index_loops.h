@@ -3,15 +3,10 @@
 #include "indexed.h"
 #include "parallel.h"
 
-#include <algorithm>
+#include <cstddef>
+#include <vector>
 
 namespace spherical_param::internal {
-
-/// Columns of a matrix, as the size of a list with an entry for each.
-template <typename Matrix>
-std::size_t columnCount(const Matrix& matrix) {
-  return static_cast<std::size_t>(matrix.cols());
-}
 
 /// Entries of a list, as the index of the next one.
 template <typename List>
@@ -49,12 +44,6 @@ Value sumOfIndices(std::size_t count, int threads, const Value& zero, const Term
 /// The column of each of some indices: `columns` in their order.
 inline Positions columnsOf(const Positions& columns, const std::vector<Index>& indices) {
   return columns(Eigen::all, indices);
-}
-
-/// Sorts indices and leaves each once.
-inline void sortUnique(std::vector<Index>& indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
 }  // namespace spherical_param::internal
