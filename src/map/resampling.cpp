@@ -446,7 +446,9 @@ IntersectionRemoval removeIntersections(ResampledMesh& mesh, int threads) {
   auto pairs = findSelfIntersections(mesh.points, mesh.triangles, options);
   IntersectionRemoval result{pairs.size(), pairs.size(), 0};
   const int workers = internal::threadCount(threads, internal::columnCount(mesh.triangles));
-  if (checkTopology(mesh.triangles, internal::columnCount(mesh.points), workers).isOpenSurface())
+  const MeshTopology topology =
+      checkTopology(mesh.triangles, internal::columnCount(mesh.points), workers);
+  if (topology.isOpenSurface())
     return result;
   if (!topology.isSphere())
     throw InvalidInput("removeIntersections: the triangles must be a closed, manifold, "

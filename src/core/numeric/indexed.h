@@ -14,10 +14,14 @@ template <typename T>
 class Indexed : public std::vector<T> {
 public:
   using std::vector<T>::vector;
-  using std::vector<T>::operator[];
 
-  T& operator[](Index i) { return std::vector<T>::operator[](static_cast<std::size_t>(i)); }
-  const T& operator[](Index i) const {
+  /// \param i an Index, or any other integer.
+  template <typename Integer>
+  T& operator[](Integer i) {
+    return std::vector<T>::operator[](static_cast<std::size_t>(i));
+  }
+  template <typename Integer>
+  const T& operator[](Integer i) const {
     return std::vector<T>::operator[](static_cast<std::size_t>(i));
   }
   /// Number of entries.

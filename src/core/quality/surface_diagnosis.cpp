@@ -4,7 +4,6 @@
 #include "graph_building.h"
 #include "graph_cycles.h"
 #include "indexed.h"
-#include "node_spacing.h"
 #include "rows.h"
 #include "union_find.h"
 
@@ -124,7 +123,7 @@ public:
   /// Distance of the points around v in the graph.
   double spacing(Index v) const {
     std::vector<double> lengths;
-    return internal::nodeSpacing(graph_, static_cast<std::size_t>(v), lengths);
+    return internal::nodeSpacing(graph_, v, lengths);
   }
 
   Differences differences() const {
