@@ -403,7 +403,8 @@ std::size_t gridVertices(SphereGrid grid, int frequency) {
   if (frequency < 1 || frequency > most)
     throw InvalidInput("gridVertices: frequency = " + std::to_string(frequency) +
                        " is not possible; use 1 to " + std::to_string(most));
-  return static_cast<std::size_t>(factorOf(grid) * frequency * frequency + 2);
+  const Index vertices = factorOf(grid) * frequency * frequency + 2;
+  return static_cast<std::size_t>(vertices);
 }
 
 GridSphere makeGridSphere(SphereGrid grid, int frequency) {

@@ -137,8 +137,9 @@ class PositionTable {
 public:
   PositionTable(const UnitSurface& surface, int threads) : positions_(std::size_t{kSide * kSide}) {
     forEachIndex(positions_.size(), threads, [&](Index i) {
+      const Index row = i / kSide;
       const double s = 2.0 * (i % kSide) / (kSide - 1) - 1.0;
-      const double t = 2.0 * (i / kSide) / (kSide - 1) - 1.0;
+      const double t = 2.0 * row / (kSide - 1) - 1.0;
       Vector3d direction(s, t, 1.0 - std::abs(s) - std::abs(t));
       if (direction.z() < 0.0) {
         direction.x() = std::copysign(1.0 - std::abs(t), s);
@@ -391,7 +392,7 @@ Matrix3d searchRotation(const SphereSurface& first, const SphereSurface& second,
   const auto best =
       std::min_element(ends.begin(), ends.end(),
                        [](const auto& one, const auto& other) { return one.first < other.first; });
-  const Matrix3d rotation =
+  Matrix3d rotation =
       Problem(unit_first, unit_second, kFineSamples).descend(best->second, pairs, threads).second;
   reportFraction(report, 1.0);
   return rotation;

@@ -12,9 +12,13 @@ std::vector<std::vector<Index>> boundaryLoops(const Triangles& triangles,
                                               std::size_t vertex_count) {
   const CornerTable corners(triangles, vertex_count, 1);
   const auto has_side = [&](Index v, Index w) {
+    // At the end with fewer triangles: the other one may be a hub.
+    const bool at_first = corners.countAt(v) <= corners.countAt(w);
     bool is_found = false;
-    corners.forEachCorner(
-        v, [&](Index t, Index k) { is_found = is_found || triangles(nextCorner(k), t) == w; });
+    corners.forEachCorner(at_first ? v : w, [&](Index t, Index k) {
+      is_found = is_found ||
+                 triangles(at_first ? nextCorner(k) : previousCorner(k), t) == (at_first ? w : v);
+    });
     return is_found;
   };
   // The vertex after each in the boundary: where an edge has no triangle on its other side.
