@@ -32,13 +32,8 @@ void forEachIndex(std::size_t count, int threads, const Work& work, std::size_t 
 /// The sum of term(i) over i in [0, count); the same bits for any number of threads.
 template <typename Value, typename Term>
 Value sumOfIndices(std::size_t count, int threads, const Value& zero, const Term& term) {
-  return sumOfBlocks(count, threadCount(threads, count), zero,
-                     [&](std::size_t begin, std::size_t end) {
-                       Value sum = zero;
-                       for (std::size_t i = begin; i < end; ++i)
-                         sum += term(static_cast<Index>(i));
-                       return sum;
-                     });
+  return accumulate(count, threadCount(threads, count), zero,
+                    [&](Index i, Value& sum) { sum += term(i); });
 }
 
 /// The column of each of some indices: `columns` in their order.

@@ -15,7 +15,7 @@ EmbeddingEnergy::EmbeddingEnergy(const Graph& graph, int threads)
     : graph_(graph), threads_(threadCount(threads, graph.size())) {}
 
 double EmbeddingEnergy::value(const Positions& u) const {
-  const double sum = sumOfNodes(graph_, threads_, 0.0, [&](double& energy, Index i) {
+  const double sum = accumulate(graph_.size(), threads_, 0.0, [&](Index i, double& energy) {
     for (const std::size_t e : graph_.entries(i)) {
       const Index j = graph_.neighbors[e];
       if (j > i)
@@ -45,7 +45,7 @@ EmbeddingEnergy::Residual EmbeddingEnergy::gradient(const Positions& u, Position
     const Eigen::Vector3d centroid = u * masses_;
     pull = 2.0 * barrier_ / (1.0 - centroid.squaredNorm()) * centroid;
   }
-  Residual residual = sumOfNodes(graph_, threads_, Residual(), [&](Residual& sums, Index i) {
+  Residual residual = accumulate(graph_.size(), threads_, Residual(), [&](Index i, Residual& sums) {
     const Eigen::Vector3d center = u.col(i);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     if (has_barrier)

@@ -76,18 +76,14 @@ Indexed<Index> independentSet(const Graph& graph, std::uint32_t seed, int thread
       states[j].store(Out, std::memory_order_relaxed);
     return true;
   };
-  std::vector<std::vector<Index>> waiting((n + kBlockSize - 1) / kBlockSize);
-  forEachBlock(n, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end)))
-      if (!judge(i))
-        waiting[block].push_back(i);
-  });
-  for (bool waits = true; waits;) {
-    waits = false;
-    for (std::vector<Index>& nodes : waiting) {
-      nodes.erase(std::remove_if(nodes.begin(), nodes.end(), judge), nodes.end());
-      waits = waits || !nodes.empty();
-    }
+  std::vector<Index> waiting = collectBlocks<Index>(
+      n, threads, report, [&](Index begin, Index end, std::vector<Index>& nodes) {
+        for (const Index i : NumberRange(begin, end))
+          if (!judge(i))
+            nodes.push_back(i);
+      });
+  while (!waiting.empty()) {
+    waiting.erase(std::remove_if(waiting.begin(), waiting.end(), judge), waiting.end());
     reportFraction(report, 0.0);
   }
   Indexed<Index> taken;
@@ -136,19 +132,16 @@ Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int th
   }
   reportFraction(report, 0.0);
   Aggregates cells = near;
-  std::vector<std::vector<Index>> changed((n + kBlockSize - 1) / kBlockSize);
-  forEachBlock(n, threads, report, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end))) {
-      bool changes = false;
-      for (const std::size_t e : graph.entries(i))
-        changes = cells.join(i, near, graph.neighbors[e], graph.lengths[e]) || changes;
-      if (changes)
-        changed[block].push_back(i);
-    }
-  });
-  std::vector<Index> queue;
-  for (const std::vector<Index>& nodes : changed)
-    queue.insert(queue.end(), nodes.begin(), nodes.end());
+  std::vector<Index> queue = collectBlocks<Index>(
+      n, threads, report, [&](Index begin, Index end, std::vector<Index>& changed) {
+        for (const Index i : NumberRange(begin, end)) {
+          bool changes = false;
+          for (const std::size_t e : graph.entries(i))
+            changes = cells.join(i, near, graph.neighbors[e], graph.lengths[e]) || changes;
+          if (changes)
+            changed.push_back(i);
+        }
+      });
   for (std::size_t head = 0; head < queue.size(); ++head)
     for (const std::size_t e : graph.entries(queue[head])) {
       const Index i = graph.neighbors[e];

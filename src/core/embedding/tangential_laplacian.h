@@ -53,17 +53,6 @@ inline Eigen::Vector3d tangentialLaplacian(const Graph& graph, EdgeWeights weigh
   return (sum - sum.dot(center) * center) / sum_of_weights;
 }
 
-/// The sum over the nodes, by block: add(sum, i) adds the term of node i.
-template <typename Sum, typename Add>
-Sum sumOfNodes(const Graph& graph, int threads, const Sum& zero, const Add& add) {
-  return sumOfBlocks(graph.size(), threads, zero, [&](std::size_t begin, std::size_t end) {
-    Sum sum = zero;
-    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end)))
-      add(sum, i);
-    return sum;
-  });
-}
-
 /// Fractions of a surface of the nodes: the mean of square(i, e) over the entries e of each node i,
 /// scaled to sum 1.
 template <typename Square>
@@ -86,7 +75,7 @@ Eigen::VectorXd meanSquares(const Graph& graph, const Square& square) {
 /// \return the mean length of the tangential Laplacian before it [radius].
 inline double sweep(const Graph& graph, EdgeWeights weights, double damping, const Positions& u,
                     Positions& moved, int threads) {
-  const double sum = sumOfNodes(graph, threads, 0.0, [&](double& lengths, Index i) {
+  const double sum = accumulate(graph.size(), threads, 0.0, [&](Index i, double& lengths) {
     const Eigen::Vector3d step = tangentialLaplacian(graph, weights, u, i);
     moved.col(i) = (u.col(i) + damping * step).normalized();
     lengths += step.norm();
