@@ -13,10 +13,6 @@
 namespace spherical_param {
 namespace {
 
-/// Volumes below this fraction of the box's diagonal cubed are rounding: a centroid would be the
-/// quotient of two errors.
-constexpr double kMinVolume = 1e-12;
-
 /// Sums over a mesh, corners as seen from an origin.
 struct SolidSums {
   double volume = 0.0;                               // 6 times the volume
@@ -62,16 +58,15 @@ SurfaceSums sumOverSurface(const Positions& points, const Triangles& triangles,
   sums.box_max = origin;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
     const Eigen::Matrix3d corners = cornersOf(points, triangles, t, origin);
-    const Eigen::Vector3d normal =
-        (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
-    sums.first += normal.norm() * corners.rowwise().sum();
+    const double twice_area = internal::areaNormal(points, triangles, t).norm();
+    sums.area += twice_area;
+    sums.first += twice_area * corners.rowwise().sum();
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d corner = points.col(triangles(k, t));
       sums.box_min = sums.box_min.cwiseMin(corner);
       sums.box_max = sums.box_max.cwiseMax(corner);
       sums.length += (corners.col((k + 1) % 3) - corners.col(k)).norm();
     }
-    sums.area += internal::areaNormal(points, triangles, t).norm();  // as surfaceArea() does
   }
   return sums;
 }
@@ -105,7 +100,8 @@ MeshMeasures measureMesh(const Positions& points, const Triangles& triangles,
 
   const double diagonal = (measures.box_max - measures.box_min).norm();
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // from the origin of the sums
-  if (std::abs(measures.volume) > kMinVolume * diagonal * diagonal * diagonal)
+  // Below this the volume is rounding: a centroid would be the quotient of two errors.
+  if (std::abs(measures.volume) > 1e-12 * diagonal * diagonal * diagonal)
     center = solid.first / (24.0 * measures.volume);
   else if (measures.area > 0.0)
     center = surface.first / (6.0 * measures.area);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "spherical_param/types.h"
 
 #include <vector>
@@ -10,9 +11,9 @@ namespace spherical_param::internal {
 /// next outer ring; their distance is the mean of their edge lengths. Inside the last ring, of at
 /// most 9 vertices, is a pole. In all, up to 2.4 times as many vertices inside as on the rim.
 struct RingedDisc {
-  std::vector<double> angles;  ///< of the vertices [rad]: the rim, ring by ring, the pole
-  std::vector<double> radii;   ///< of the vertices, 1 at the rim
-  Triangles triangles;         ///< clockwise: a rim that has a surface on its left is continued
+  Indexed<double> angles;  ///< of the vertices [rad]: the rim, ring by ring, the pole
+  Indexed<double> radii;   ///< of the vertices, 1 at the rim
+  Triangles triangles;     ///< clockwise: a rim that has a surface on its left is continued
 
   /// Distance of two vertices.
   double distance(Index a, Index b) const;

@@ -108,25 +108,14 @@ Index SphereMesh::merge(Index v) {
 bool SphereMesh::areJoined(Index v, Index w) const {
   if (degree(w) < degree(v))
     std::swap(v, w);
-  const Index first = triangleAt(v);
-  Index t = first;
-  do {
-    const int corner = cornerOf(t, v);
-    if (vertex(t, (corner + 1) % 3) == w)
-      return true;
-    t = neighbor(t, (corner + 1) % 3);
-  } while (t != first);
-  return false;
+  return anyAround(v, [&](Index t, int corner) { return vertex(t, (corner + 1) % 3) == w; });
 }
 
 bool SphereMesh::flip(Index triangle, int corner) {
   const Index other = neighbor(triangle, corner);
   const int other_corner = oppositeCorner(triangle, corner);
-  const Index c = vertex(triangle, corner);
-  const Index a = vertex(triangle, (corner + 1) % 3);
-  const Index b = vertex(triangle, (corner + 2) % 3);
-  const Index d = vertex(other, other_corner);
-  if (c == d || areJoined(c, d))
+  const auto [a, b, c, d] = diamond(triangle, corner);
+  if (!isFree({a, b, c, d}))
     return false;
   const Index beyond_bc = neighbor(triangle, (corner + 1) % 3);
   const Index beyond_ca = neighbor(triangle, (corner + 2) % 3);
@@ -156,18 +145,11 @@ void SphereMesh::rollBack(std::size_t first) {
 }
 
 Triangles SphereMesh::triangles() const {
-  static_assert(sizeof(std::array<Index, 3>) == 3 * sizeof(Index), "columns of a matrix");
-  if (triangle_count_ == size())
-    return Eigen::Map<const Triangles>(vertices_.data()->data(), 3, triangle_count_);
   Triangles result(3, triangle_count_);
   Eigen::Index column = 0;
-  for (Index t = 0; t < size(); ++t) {
-    if (!isTriangle(t))
-      continue;
-    for (int k = 0; k < 3; ++k)
-      result(k, column) = vertex(t, k);
-    ++column;
-  }
+  for (const auto& [a, b, c] : vertices_)
+    if (a >= 0)
+      result.col(column++) << a, b, c;
   return result;
 }
 

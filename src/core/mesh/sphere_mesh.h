@@ -48,22 +48,45 @@ public:
   Index triangleAt(Index vertex) const { return triangle_at_[vertex]; }
   Index degree(Index vertex) const { return degree_[vertex]; }
 
-  /// Calls visit(triangle, corner) for the triangles around a vertex of the mesh,
-  /// counter-clockwise.
-  template <typename Visit>
-  void forEachAround(Index v, const Visit& visit) const {
+  /// Whether is(triangle, corner) is true for one of the triangles around a vertex of the mesh,
+  /// asked counter-clockwise.
+  template <typename Predicate>
+  bool anyAround(Index v, const Predicate& is) const {
     const Index first = triangleAt(v);
     Index t = first;
     do {
       const int corner = cornerOf(t, v);
-      const Index next = neighbor(t, (corner + 1) % 3);
-      visit(t, corner);
-      t = next;
+      if (is(t, corner))
+        return true;
+      t = neighbor(t, (corner + 1) % 3);
     } while (t != first);
+    return false;
+  }
+  /// Calls visit(triangle, corner) for the triangles around a vertex of the mesh,
+  /// counter-clockwise.
+  template <typename Visit>
+  void forEachAround(Index v, const Visit& visit) const {
+    anyAround(v, [&](Index t, int corner) {
+      visit(t, corner);
+      return false;
+    });
   }
 
   /// Whether two vertices of the mesh have a common edge.
   bool areJoined(Index v, Index w) const;
+
+  /// The vertices of two triangles with a common side: (c, a, b), and (d, b, a) beyond the side.
+  struct Diamond {
+    Index a, b, c, d;
+  };
+  /// The diamond of the side opposite to a corner, which is c.
+  Diamond diamond(Index triangle, int corner) const {
+    return {vertex(triangle, (corner + 1) % 3), vertex(triangle, (corner + 2) % 3),
+            vertex(triangle, corner),
+            vertex(neighbor(triangle, corner), oppositeCorner(triangle, corner))};
+  }
+  /// Whether the side may be replaced by the other diagonal: its ends are not joined already.
+  bool isFree(const Diamond& at) const { return at.c != at.d && !areJoined(at.c, at.d); }
 
   /// Splits a triangle in three by a vertex that is not in the mesh. The parts are the triangle
   /// itself and two new ones; the new vertex is corner 0 of each.
@@ -73,8 +96,8 @@ public:
   /// replaces its three, or -1.
   Index merge(Index vertex);
 
-  /// Replaces the side opposite to `corner` by the other diagonal of the two triangles, unless its
-  /// ends are joined already. Returns whether it did. Corner 0 of both triangles is then the vertex
+  /// Replaces the side opposite to `corner` by the other diagonal of its diamond, if that is free.
+  /// Returns whether it did. Corner 0 of both triangles is then the vertex
   /// that was at `corner`.
   bool flip(Index triangle, int corner);
 

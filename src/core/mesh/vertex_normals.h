@@ -1,7 +1,7 @@
 #pragma once
 
 #include "corner_table.h"
-#include "parallel.h"
+#include "rows.h"
 #include "spherical_param/types.h"
 
 #include <Eigen/Geometry>
@@ -19,8 +19,7 @@ inline Positions vertexNormals(const Positions& points, const Triangles& triangl
                                const Positions& sphere, const CornerTable& corners, int threads) {
   const auto count = columnCount(points);
   Positions normals(3, points.cols());
-  forEachItem(count, threadCount(threads, count), [&](std::size_t, std::size_t i) {
-    const auto v = static_cast<Index>(i);
+  forEachIndex(count, threadCount(threads, count), {}, [&](Index v) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     corners.forEachCorner(v, [&](Index t, Index k) {
       const Eigen::Vector3d a = points.col(triangles(nextCorner(k), t)) - points.col(v);
