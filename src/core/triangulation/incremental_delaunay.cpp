@@ -298,14 +298,8 @@ std::vector<std::array<Index, 3>> twoSidedPolygon(const std::vector<Index>& ring
   return triangles;
 }
 
-/// A vertex, and the one that it coincides with.
-struct Coincidence {
-  Index anchor;
-  Index vertex;
-  bool operator<(const Coincidence& other) const {
-    return anchor != other.anchor ? anchor < other.anchor : vertex < other.vertex;
-  }
-};
+/// {a vertex, another one that coincides with it}
+using Coincidence = std::array<Index, 2>;
 
 /// Puts the vertices that coincide with others beside them, so that those at one place share its
 /// triangles evenly.
@@ -348,7 +342,6 @@ struct Vertices {
   Indexed<Eigen::Vector2d> places;  ///< in the plane
   Index in_plane = 0;               ///< vertices from here on are too near the pole to have a place
 
-  const Eigen::Vector2d& place(Index v) const { return places[v]; }
   void swap(Index v, Index w) {
     std::swap(input[v], input[w]);
     std::swap(places[v], places[w]);
@@ -394,10 +387,10 @@ Vertices projectInOrder(const Positions& directions, const FractionReport& repor
 /// False if there are none.
 bool beginWithTriangle(Vertices& vertices) {
   Index second = 2;
-  while (second < vertices.in_plane && vertices.place(second) == vertices.place(1))
+  while (second < vertices.in_plane && vertices.places[second] == vertices.places[1])
     ++second;
   const auto orientation = [&](Index third) {
-    return orientation2d(vertices.place(1), vertices.place(second), vertices.place(third));
+    return orientation2d(vertices.places[1], vertices.places[second], vertices.places[third]);
   };
   Index third = second + 1;
   while (third < vertices.in_plane && orientation(third) == 0)
@@ -418,13 +411,13 @@ std::vector<Index> ringThroughPole(const Vertices& vertices, Indexed<Coincidence
   std::vector<Index> line(static_cast<std::size_t>(vertices.in_plane) - 1);
   std::iota(line.begin(), line.end(), Index{1});
   std::stable_sort(line.begin(), line.end(), [&](Index v, Index w) {
-    const Eigen::Vector2d& a = vertices.place(v);
-    const Eigen::Vector2d& b = vertices.place(w);
+    const Eigen::Vector2d& a = vertices.places[v];
+    const Eigen::Vector2d& b = vertices.places[w];
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });
   std::vector<Index> ring{kPole};
   for (const Index v : line)
-    if (ring.back() != kPole && vertices.place(v) == vertices.place(ring.back()))
+    if (ring.back() != kPole && vertices.places[v] == vertices.places[ring.back()])
       coincidences.push_back({ring.back(), v});
     else
       ring.push_back(v);
@@ -458,8 +451,8 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionRe
     result.coincident = coincidences.count();
     // A mesh has at least four vertices: at three places or fewer, some begin beside their anchor.
     for (; ring.size() < 4; coincidences.pop_back()) {
-      const auto anchor = std::find(ring.begin(), ring.end(), coincidences.back().anchor);
-      ring.insert(anchor + 1, coincidences.back().vertex);
+      const auto anchor = std::find(ring.begin(), ring.end(), coincidences.back()[0]);
+      ring.insert(anchor + 1, coincidences.back()[1]);
     }
     triangulation.begin(twoSidedPolygon(ring));
   }

@@ -12,9 +12,6 @@ struct SphereDelaunay {
   Index coincident = 0;
 };
 
-/// Maximum number of points: sides of triangles are numbered in 32 bits.
-constexpr Index kMaxDelaunayPoints = Index{1} << 29;
-
 /// Triangulates points on the sphere by inserting each into the triangle that contains it, with
 /// edge flips until all triangles around it are Delaunay (C. L. Lawson, 1977).
 ///
@@ -25,7 +22,8 @@ constexpr Index kMaxDelaunayPoints = Index{1} << 29;
 /// of the points, except for four or more points on one circle. Points that coincide in the plane
 /// share the triangles of the first of them evenly.
 ///
-/// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= kMaxDelaunayPoints.
+/// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= 2^29: sides of triangles are
+///                   numbered in 32 bits.
 /// \param report     called with the fraction that is done.
 /// Cost: O(n log n) expected, about 100 bytes a point.
 SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report = {});
