@@ -30,8 +30,7 @@ struct FloatBox {
 /// Eight boxes side by side, to compare a box with all of them at once. Unused ones overlap
 /// nothing.
 struct BoxGroup {
-  static constexpr unsigned kBits = 3;
-  static constexpr std::size_t kSize = 1U << kBits;
+  static constexpr std::size_t kSize = 8;
   using Lanes = Eigen::Array<float, kSize, 3>;
 
   Lanes lower = Lanes::Constant(std::numeric_limits<float>::infinity());
@@ -100,7 +99,7 @@ public:
   template <typename Visit>
   void forEachPair(Index begin, const Visit& visit) const {
     constexpr std::size_t block_level = 3;
-    static_assert(1U << block_level * BoxGroup::kBits == kBlockSize);
+    static_assert(1U << 3 * block_level == kBlockSize && 1U << 3 == BoxGroup::kSize);
     const std::size_t block = static_cast<std::size_t>(begin) / kBlockSize;
     const std::size_t top = levels_.size() - 1;
     if (top < block_level)
@@ -129,7 +128,7 @@ private:
     boxes.forEachOverlapping(box, [&](std::size_t lane) {
       const std::size_t i = node.group * BoxGroup::kSize + lane;
       const FloatBox found = boxes.at(lane);
-      if (i < first >> BoxGroup::kBits * node.level || skips(found))
+      if (i < first >> 3 * node.level || skips(found))
         return;
       if (node.level == last)
         visit(i, found);

@@ -69,8 +69,6 @@ public:
   TriangleTree(const Mesh& mesh, const internal::Indexed<Index>& subset, int threads,
                const FractionReport& report);
 
-  std::size_t size() const { return order_.size(); }
-
   /// Appends the intersecting pairs of a triangle of the block from `begin` on and one of the same
   /// or a later one.
   void findPairsOfBlock(Index begin, Pairs& pairs) const;
@@ -199,18 +197,37 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
   return internal::scaleToUnit(most);
 }
 
-/// The pairs that find(begin, end, pairs) appends for the blocks of [0, count).
-template <typename Find>
-Pairs findInBlocks(std::size_t count, int threads, const FractionReport& report, const Find& find) {
-  // Where the mesh is a tangle, a block takes a tenth of a second.
-  return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
-                                                       8 * internal::kBlockSize);
-}
-
-Pairs pairsWithin(const TriangleTree& tree, int threads, const FractionReport& report) {
-  return findInBlocks(tree.size(), threads, report, [&](Index begin, Index, Pairs& pairs) {
-    tree.findPairsOfBlock(begin, pairs);
+/// The intersecting pairs of a triangle of a subset and any other.
+///
+/// \param subset ascending.
+Pairs pairsOf(const Mesh& mesh, const internal::Indexed<Index>& subset,
+              const Execution& execution) {
+  if (subset.empty())
+    return {};
+  const int threads = internal::threadCount(execution.threads, mesh.size());
+  const FractionReport report = internal::reportOf(execution, "intersections");
+  const TriangleTree tree(mesh, subset, threads, report);
+  const auto collect = [&](std::size_t count, const auto& find) {
+    // Where the mesh is a tangle, a block takes a tenth of a second.
+    return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
+                                                         8 * internal::kBlockSize);
+  };
+  Pairs pairs = collect(subset.size(), [&](Index begin, Index, Pairs& found) {
+    tree.findPairsOfBlock(begin, found);
   });
+  if (subset.size() < mesh.size()) {
+    const Pairs others = collect(mesh.size(), [&](Index begin, Index end, Pairs& found) {
+      auto next = std::lower_bound(subset.begin(), subset.end(), begin);
+      for (Index t = begin; t < end; ++t)
+        if (next != subset.end() && *next == t)
+          ++next;
+        else
+          tree.findPairs(mesh.face(t), 0, found);
+    });
+    pairs.insert(pairs.end(), others.begin(), others.end());
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace
@@ -222,14 +239,7 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
   const Mesh mesh{points, triangles, checkedScale(points, triangles)};
   internal::Indexed<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
-  if (all.empty())
-    return {};
-  const int threads = internal::threadCount(execution.threads, all.size());
-  const FractionReport report = internal::reportOf(execution, "intersections");
-  const TriangleTree tree(mesh, all, threads, report);
-  Pairs pairs = pairsWithin(tree, threads, report);
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+  return pairsOf(mesh, all, execution);
 }
 
 std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
@@ -238,32 +248,13 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
                                                           const Execution& execution) {
   internal::checkThreads(execution.threads);
   const Mesh mesh{points, triangles, checkedScale(points, triangles)};
-  internal::Indexed<std::uint8_t> in_set(mesh.size(), 0);
-  for (const Index t : of) {
-    if (t < 0 || t >= in_set.count())
+  for (const Index t : of)
+    if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
       refuse("triangle " + std::to_string(t) + " is asked for, but there are " +
              std::to_string(mesh.size()));
-    in_set[t] = 1;
-  }
-  internal::Indexed<Index> subset;
-  for (Index t = 0; t < in_set.count(); ++t)
-    if (in_set[t] != 0)
-      subset.push_back(t);
-  if (subset.empty())
-    return {};
-  const int threads = internal::threadCount(execution.threads, mesh.size());
-  const FractionReport report = internal::reportOf(execution, "intersections");
-  const TriangleTree tree(mesh, subset, threads, report);
-  Pairs pairs = pairsWithin(tree, threads, report);
-  const Pairs others =
-      findInBlocks(mesh.size(), threads, report, [&](Index begin, Index end, Pairs& found) {
-        for (Index t = begin; t < end; ++t)
-          if (in_set[t] == 0)
-            tree.findPairs(mesh.face(t), 0, found);
-      });
-  pairs.insert(pairs.end(), others.begin(), others.end());
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+  internal::Indexed<Index> subset(of.begin(), of.end());
+  internal::sortUnique(subset);
+  return pairsOf(mesh, subset, execution);
 }
 
 std::size_t countTriangles(const Pairs& pairs) {

@@ -32,32 +32,10 @@ namespace {
 /// shortest edges of each point are looked at: with the 25 nearest, no handle of a torus is found.
 constexpr std::size_t kThinnedDegree = 8;
 
-/// Neighbours in the graph that are more steps apart on the mesh were torn apart.
-constexpr int kMinHandleSteps = 8;
-
-/// Torn neighbours whose normals have a smaller cosine are false, on the two sheets of a thin
-/// plate.
-constexpr double kMinNormalCosine = -0.8;
-
 /// The least number of torn neighbours of a handle. A cut with 9 points around it tears 18. The
 /// torus has 76, 191 and 1,796 in one place at 1,000, 5,000 and 50,000 points, one of 395
 /// points 28.
 constexpr std::size_t kMinTornEdges = 12;
-
-/// The numbers of cycles that are found with narrow and wide gaps in the graph differ by no more
-/// where torn neighbours may be a handle. They do by 1 on tori of 395 to 2,300 points; on closed
-/// scans whose sheets nearly touch, and their variants, by 8 and more: 8 and 0, 12 and 3, 42
-/// and 13.
-constexpr int kMaxUnsureCycles = 1;
-
-/// Above this fraction of edges outside the graph the mesh is folded. Closed scans have up to 0.05,
-/// optimised meshes of scans from one side 0.04, of the torus 0.06 and of closed shapes with noise
-/// of half the distance of neighbours less still; noise twice as strong has 0.11 and more, and the
-/// torus 0.28 and more as long as its mesh is folded.
-constexpr double kMaxOutsideGraph = 0.1;
-
-/// The least gap between parts [distance of the points at the gap].
-constexpr double kMinPartGap = 4.0;
 
 /// {lower, higher}
 using Edge = std::array<Index, 2>;
@@ -127,25 +105,17 @@ public:
   }
 
   Differences differences() const {
-    return internal::sumOfBlocks(graph_.size(), threads_, Differences{},
-                                 [&](std::size_t begin, std::size_t end) {
-                                   Differences found;
-                                   std::vector<Index> ring;
-                                   for (std::size_t v = begin; v < end; ++v)
-                                     collectAt(static_cast<Index>(v), ring, found);
-                                   return found;
-                                 });
+    return internal::accumulate(graph_.size(), threads_, Differences{},
+                                [&](Index v, Differences& found) { collectAt(v, found); });
   }
 
 private:
   /// Compares the edges from `a` to higher vertices.
-  ///
-  /// \param ring scratch.
-  void collectAt(Index a, std::vector<Index>& ring, Differences& found) const {
+  void collectAt(Index a, Differences& found) const {
+    std::vector<Index> ring;
     const auto is_around = [&](Index v) {
       return std::find(ring.begin(), ring.end(), v) != ring.end();
     };
-    ring.clear();
     std::size_t unknown = 0;  // edges of the mesh that were not met in the graph
     forEachTriangle(a, [&](Index, Index next, Index) {
       ring.push_back(next);
@@ -196,51 +166,21 @@ private:
 
 // --- Handles -------------------------------------------------------------------------------------
 
-/// Measures how far apart vertices are on the mesh.
-class MeshDistance {
-public:
-  explicit MeshDistance(const MeshAndGraph& surface)
-      : surface_(surface), mark_(surface.vertexCount(), 0) {}
-
-  /// Whether a and b are more than `steps` edges apart: the discs of half as many do not meet.
-  bool exceeds(Index a, Index b, int steps) {
-    const Mark of_a = ++last_mark_;
-    const Mark of_b = ++last_mark_;
-    markDisc(a, steps - steps / 2, of_a, of_b);
-    return !markDisc(b, steps / 2, of_b, of_a);
-  }
-
-private:
-  using Mark = std::uint64_t;
-
-  /// Whether it met the mark `other`, where it ends.
-  bool markDisc(Index center, int steps, Mark own, Mark other) {
-    if (mark_[center] == other)
-      return true;
-    mark_[center] = own;
-    disc_.assign(1, center);
-    bool met = false;
-    std::size_t begin = 0;
-    for (int step = 0; step < steps; ++step)
-      for (const std::size_t end = disc_.size(); begin < end; ++begin) {
-        surface_.forEachTriangle(disc_[begin], [&](Index, Index next, Index) {
-          Mark& mark = mark_[next];
-          met = met || mark == other;
-          if (mark != own)
-            disc_.push_back(next);
-          mark = own;
-        });
-        if (met)
-          return true;
-      }
-    return false;
-  }
-
-  const MeshAndGraph& surface_;
-  internal::Indexed<Mark> mark_;
-  std::vector<Index> disc_;
-  Mark last_mark_ = 0;
-};
+/// The vertices up to some edges away from one on the mesh; they are then in the set `seen`.
+std::vector<Index> discOn(const MeshAndGraph& surface, Index center, int steps,
+                          internal::IndexSet& seen) {
+  seen.clear();
+  seen.insert(center);
+  std::vector<Index> disc{center};
+  std::size_t begin = 0;
+  for (int step = 0; step < steps; ++step)
+    for (const std::size_t end = disc.size(); begin < end; ++begin)
+      surface.forEachTriangle(disc[begin], [&](Index, Index next, Index) {
+        if (seen.insert(next))
+          disc.push_back(next);
+      });
+  return disc;
+}
 
 /// The edges of the graph along the surface whose ends are far apart on the mesh.
 ///
@@ -249,12 +189,20 @@ internal::Indexed<Edge> tornEdges(const MeshAndGraph& surface, const std::vector
                                   const std::vector<Edge>& bridges) {
   if (apart.empty())
     return {};
-  MeshDistance distance(surface);
+  internal::IndexSet seen(surface.vertexCount());
+  internal::IndexSet seen_from_other(surface.vertexCount());
+  // Neighbours were torn apart that are more than 8 steps apart on the mesh: the discs of half as
+  // many do not meet.
+  const auto are_torn = [&](const Edge& edge) {
+    discOn(surface, edge[0], 4, seen);
+    const std::vector<Index> disc = discOn(surface, edge[1], 4, seen_from_other);
+    return std::none_of(disc.begin(), disc.end(), [&](Index v) { return seen.contains(v); });
+  };
   internal::Indexed<Edge> torn;
   std::copy_if(apart.begin(), apart.end(), std::back_inserter(torn), [&](const Edge& edge) {
-    return distance.exceeds(edge[0], edge[1], kMinHandleSteps) &&
-           !std::binary_search(bridges.begin(), bridges.end(), edge) &&
-           surface.normal(edge[0]).dot(surface.normal(edge[1])) >= kMinNormalCosine;
+    // Neighbours with opposite normals are false, on the two sheets of a thin plate.
+    return are_torn(edge) && !std::binary_search(bridges.begin(), bridges.end(), edge) &&
+           surface.normal(edge[0]).dot(surface.normal(edge[1])) >= -0.8;
   });
   return torn;
 }
@@ -313,8 +261,10 @@ struct Cycles {
     const int of_handles = *wide - (openings > 1 ? static_cast<int>(openings) - 1 : 0);
     return of_handles >= 0 && of_handles % 2 == 0 ? std::optional(of_handles / 2) : std::nullopt;
   }
-  /// Whether there may be handles where genus() is empty.
-  bool mayBeHandles() const { return wide && *narrow - *wide <= kMaxUnsureCycles; }
+  /// Whether there may be handles where genus() is empty. The numbers of cycles differ by 1 on tori
+  /// of 395 to 2,300 points; on closed scans whose sheets nearly touch, and their variants, by 8
+  /// and more: 8 and 0, 12 and 3, 42 and 13.
+  bool mayBeHandles() const { return wide && *narrow - *wide <= 1; }
 };
 
 /// Finds the handles of a surface in one part.
@@ -353,28 +303,23 @@ std::vector<Edge> edgesOf(const std::vector<Bridge>& bridges) {
   return edges;
 }
 
-/// Joins the nodes of each part of a graph: there are no bridges within one.
-internal::UnionFind partsOf(const Graph& graph, const std::vector<Edge>& bridges) {
+/// Pairs of parts with a gap of at least 4 times the distance of the points there; all ends are
+/// listed.
+std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& graph,
+                                    const std::vector<Edge>& bridges) {
+  if (bridges.empty())
+    return {};
+  // There are no bridges within a part.
   internal::UnionFind parts(graph.size());
   for (const Index a : graph.nodes())
     for (const Index b : graph.row(a))
       if (a < b && !std::binary_search(bridges.begin(), bridges.end(), Edge{a, b}))
         parts.unite(a, b);
-  return parts;
-}
-
-/// Pairs of parts with a gap that is wide against the distance of the points; all ends are listed.
-std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& graph,
-                                    const std::vector<Edge>& bridges) {
-  if (bridges.empty())
-    return {};
-  internal::UnionFind parts = partsOf(graph, bridges);
-  internal::Indexed<std::size_t> sizes(graph.size(), 0);
-  for (const Index v : graph.nodes())
-    ++sizes[parts.find(v)];
+  const internal::Indexed<Index> part = internal::representatives(parts, graph.size());
+  const internal::Indexed<std::size_t> sizes = internal::setSizes(part);
   std::map<Edge, std::vector<Edge>> joints;
   for (const Edge& edge : bridges) {
-    const Edge pair = edgeOf(parts.find(edge[0]), parts.find(edge[1]));
+    const Edge pair = edgeOf(part[edge[0]], part[edge[1]]);
     if (pair[0] != pair[1])
       joints[pair].push_back(edge);
   }
@@ -393,7 +338,7 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
     internal::sortUnique(joint.vertices);
     std::sort(spacings.begin(), spacings.end());
     joint.spacing = spacings[(spacings.size() - 1) / 2];
-    if (joint.gap < kMinPartGap * joint.spacing)
+    if (joint.gap < 4.0 * joint.spacing)
       continue;
     joint.center = surface.mean(joint.vertices);
     joint.points = std::min(sizes[pair[0]], sizes[pair[1]]);
@@ -486,7 +431,10 @@ void shorten(std::vector<Index>& vertices, std::size_t count) {
 }  // namespace
 
 bool SurfaceDiagnosis::isFolded() const {
-  return edges_outside_graph > kMaxOutsideGraph;
+  // Closed scans have up to 0.05, optimised meshes of scans from one side 0.04, of the torus 0.06
+  // and of closed shapes with noise of half the distance of neighbours less still; noise twice as
+  // strong has 0.11 and more, and the torus 0.28 and more as long as its mesh is folded.
+  return edges_outside_graph > 0.1;
 }
 
 SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& triangles,

@@ -140,14 +140,10 @@ inline bool evidentlyApart(const Face& a, const Plane& plane_a, const Face& b) {
   }
 }
 
-/// For triangles that evidentlyApart(a, plane_a, b) does not separate.
-inline bool intersectCarefully(const Face& a, const Face& b) {
-  return !evidentlyApart(b, Plane(b), a) && intersectExactly(a, b);
-}
-
 /// Whether two triangles intersect.
 inline bool intersect(const Face& a, const Plane& plane_a, const Face& b) {
-  return !evidentlyApart(a, plane_a, b) && intersectCarefully(a, b);
+  return !evidentlyApart(a, plane_a, b) && !evidentlyApart(b, Plane(b), a) &&
+         intersectExactly(a, b);
 }
 
 inline bool intersect(const Face& a, const Face& b) {
