@@ -13,19 +13,6 @@
 namespace spherical_param {
 namespace {
 
-/// No eigenvalue of the uniform Laplacian of a closed mesh, D^-1 (D - A) with degrees D and
-/// adjacency A, exceeds 3/2: each edge is in two triangles, so that x' (D + A) x is half the sum
-/// over the triangles of (x_i + x_j)^2 + (x_j + x_k)^2 + (x_k + x_i)^2 >= x_i^2 + x_j^2 + x_k^2,
-/// and a vertex is in as many triangles as it has neighbours: x' (D + A) x >= x' D x / 2.
-constexpr double kMaxFrequency = 1.5;
-
-/// To this, relative to the size of what is filtered, the filter of SmoothingMethod::Biharmonic is
-/// exact: far below any noise that is worth smoothing.
-constexpr double kMaxFilterError = 1e-7;
-
-/// Newton's method for the volume ends at this relative error.
-constexpr double kMaxVolumeError = 1e-12;
-
 /// Filters and volume of one mesh, on several threads.
 class Filter {
 public:
@@ -96,6 +83,11 @@ private:
 };
 
 /// The Chebyshev coefficients of 2^-(k / c)^2, c = 1 - 2^(-1 / steps), in x = 4/3 k - 1 of [-1, 1].
+///
+/// No eigenvalue k of the uniform Laplacian of a closed mesh, D^-1 (D - A) with degrees D and
+/// adjacency A, exceeds 3/2: each edge is in two triangles, so that x' (D + A) x is half the sum
+/// over the triangles of (x_i + x_j)^2 + (x_j + x_k)^2 + (x_k + x_i)^2 >= x_i^2 + x_j^2 + x_k^2,
+/// and a vertex is in as many triangles as it has neighbours: x' (D + A) x >= x' D x / 2.
 std::vector<double> biharmonicSeries(int steps) {
   const double cutoff = -std::expm1(-std::log(2.0) / steps);
   // In the angle of the nodes the filter is as wide as sqrt(c): this number of them resolves it to
@@ -105,13 +97,14 @@ std::vector<double> biharmonicSeries(int steps) {
   for (std::size_t q = 0; q < nodes; ++q) {
     const double angle =
         internal::kPi * (static_cast<double>(q) + 0.5) / static_cast<double>(nodes);
-    const double k = kMaxFrequency / 2.0 * (1.0 + std::cos(angle));
+    const double k = 0.75 * (1.0 + std::cos(angle));
     const double value = std::exp2(-(k / cutoff) * (k / cutoff)) / static_cast<double>(nodes);
     for (std::size_t i = 0; i < nodes; ++i)
       coefficients[i] += (i == 0 ? 1.0 : 2.0) * value * std::cos(static_cast<double>(i) * angle);
   }
+  // Exact to 1e-7, relative to the size of what is filtered: far below any noise.
   double omitted = 0.0;
-  while (coefficients.size() > 2 && omitted + std::abs(coefficients.back()) < kMaxFilterError) {
+  while (coefficients.size() > 2 && omitted + std::abs(coefficients.back()) < 1e-7) {
     omitted += std::abs(coefficients.back());
     coefficients.pop_back();
   }
@@ -127,15 +120,14 @@ std::vector<double> biharmonicSeries(int steps) {
 /// Laplacian: cheaper than solving with 1 + L^2 / c^2, and the same for any number of threads.
 void Filter::biharmonicFlow(Positions& points, int steps) const {
   const std::vector<double> coefficients = biharmonicSeries(steps);
-  const double half = kMaxFrequency / 2.0;
   // x applied to the points is -4/3 of the Laplacian minus the points.
   Positions before = points;  // T_0
   Positions last = -points;   // T_1
-  step(last, 1.0 / half, points);
+  step(last, 1.0 / 0.75, points);
   points = coefficients[0] * before + coefficients[1] * last;
   for (std::size_t degree = 2; degree < coefficients.size(); ++degree) {
     forEachPoint([&](Index i) {
-      before.col(i) = -2.0 * (laplacian(last, i) / half + last.col(i)) - before.col(i);
+      before.col(i) = -2.0 * (laplacian(last, i) / 0.75 + last.col(i)) - before.col(i);
       points.col(i) += coefficients[degree] * before.col(i);
     });
     before.swap(last);
@@ -147,7 +139,7 @@ void Filter::biharmonicFlow(Positions& points, int steps) const {
 void Filter::restoreVolume(Positions& points, double volume) const {
   double error = volume - this->volume(points);
   Positions moved(3, points.cols());
-  while (std::abs(error) > kMaxVolumeError * std::abs(volume)) {
+  while (std::abs(error) > 1e-12 * std::abs(volume)) {
     const double slope = sum([&](Index v) { return normal(points, v).norm(); }) / 6.0;
     const double distance = error / slope;
     if (!std::isfinite(distance))
