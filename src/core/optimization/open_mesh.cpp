@@ -17,10 +17,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Edges of the boundary, and triangles of the surface, to which a vertex may be joined: the
-/// nearest.
-constexpr std::size_t kMaxPlaces = 64;
-
 /// Where a bare vertex may get triangles: an edge of the boundary or a triangle of the surface.
 struct Place {
   double distance;  ///< sum over its corners
@@ -28,9 +24,9 @@ struct Place {
   int corner;       ///< opposite to the edge; -1: the triangle
 };
 
+/// Leaves the 64 nearest places.
 void keepNearest(std::vector<Place>& places) {
-  const auto end =
-      places.begin() + static_cast<std::ptrdiff_t>(std::min(places.size(), kMaxPlaces));
+  const auto end = places.begin() + std::min<std::ptrdiff_t>(64, places.end() - places.begin());
   std::partial_sort(places.begin(), end, places.end(), [](const Place& a, const Place& b) {
     return std::tie(a.distance, a.triangle, a.corner) < std::tie(b.distance, b.triangle, b.corner);
   });
@@ -72,7 +68,8 @@ public:
 
   OpenMesh run() {
     for (const Index t : trianglesWithoutLoop(mesh_, openings_))
-      close(t);
+      is_open_[t] = 0;
+    gatherSurface();
     std::vector<Index> due;
     for (const Index v : verticesOfOpen())
       if (isBare(v))
@@ -106,19 +103,23 @@ private:
     return vertices;
   }
 
+  /// The triangles around a vertex, counter-clockwise.
+  std::vector<Index> trianglesAround(Index v) const {
+    std::vector<Index> around;
+    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+    return around;
+  }
+
   /// Open triangles around a vertex that follow each other, counter-clockwise.
   using Run = std::vector<Index>;
 
-  /// All runs around a vertex, none if all of its triangles are open.
+  /// All runs around a vertex with triangles on the surface.
   std::vector<Run> runsAt(Index v) const {
-    std::vector<Index> around;
-    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    const auto closed =
-        std::find_if(around.begin(), around.end(), [&](Index t) { return !isOpen(t); });
+    std::vector<Index> around = trianglesAround(v);
+    std::rotate(around.begin(),
+                std::find_if(around.begin(), around.end(), [&](Index t) { return !isOpen(t); }),
+                around.end());
     std::vector<Run> runs;
-    if (closed == around.end())
-      return runs;
-    std::rotate(around.begin(), closed, around.end());
     for (std::size_t i = 1; i < around.size(); ++i) {
       if (!isOpen(around[i]))
         continue;
@@ -131,9 +132,7 @@ private:
 
   /// Whether no triangle of a vertex is on the surface.
   bool isBare(Index v) const {
-    bool is_bare = true;
-    mesh_.forEachAround(v, [&](Index t, int) { is_bare = is_bare && isOpen(t); });
-    return is_bare;
+    return !mesh_.anyAround(v, [&](Index t, int) { return !isOpen(t); });
   }
 
   /// Whether the surface around a vertex is more than one fan.
@@ -176,7 +175,7 @@ private:
   }
 
   /// The nearest triangle of the surface that a vertex may split without intersections.
-  std::optional<Index> coverOf(Index v) {
+  std::optional<Index> coverOf(Index v) const {
     std::vector<Place> covers;
     for (Index t = 0; t < mesh_.size(); ++t)
       if (!isOpen(t))
@@ -192,7 +191,7 @@ private:
 
   /// Number of triangles of the surface that those of a vertex would intersect at a place; counting
   /// may stop beyond `most`.
-  int crossingsAt(Index v, const Place& place, int most) {
+  int crossingsAt(Index v, const Place& place, int most) const {
     const auto corner = [&](int k) { return mesh_.vertex(place.triangle, k % 3); };
     const auto with_side = [&](int k) {
       return crossings({corner(k + 1), corner(k + 2), v}, place.triangle, most);
@@ -212,9 +211,9 @@ private:
   Index besideEdge(Index v, Index a, Index b) {
     const auto at_edge = [&] {
       Index found = -1;
-      mesh_.forEachAround(a, [&](Index t, int corner) {
-        if (mesh_.vertex(t, (corner + 1) % 3) == b)
-          found = t;
+      mesh_.anyAround(a, [&](Index t, int corner) {
+        found = t;
+        return mesh_.vertex(t, (corner + 1) % 3) == b;
       });
       return found;
     };
@@ -232,12 +231,9 @@ private:
   }
 
   Index smallestAt(Index v) const {
-    Index smallest = mesh_.triangleAt(v);
-    mesh_.forEachAround(v, [&](Index t, int) {
-      if (perimeter(t) < perimeter(smallest))
-        smallest = t;
-    });
-    return smallest;
+    const std::vector<Index> around = trianglesAround(v);
+    return *std::min_element(around.begin(), around.end(),
+                             [&](Index t, Index u) { return perimeter(t) < perimeter(u); });
   }
 
   /// Leaves one fan less at a vertex: closes the narrowest gap between two for which that
@@ -267,14 +263,11 @@ private:
 
   /// Number of triangles of the surface, but for `without`, that one that is not on it would
   /// intersect; counting may stop beyond `most`.
-  int crossings(const std::array<Index, 3>& corners, Index without, int most) {
-    if (!has_surface_)
-      gatherSurface();
+  int crossings(const std::array<Index, 3>& corners, Index without, int most) const {
     return surface_.count(face(-1, corners), without, most);
   }
 
   void gatherSurface() {
-    has_surface_ = true;
     Indexed<Face> faces;
     for (Index t = 0; t < mesh_.size(); ++t)
       if (!isOpen(t))
@@ -313,22 +306,20 @@ private:
 
   void open(Index t) {
     is_open_[t] = 1;
-    if (has_surface_ && surface_.contains(t))
+    if (surface_.contains(t))
       surface_.remove(t);
   }
   void close(Index t) {
     is_open_[t] = 0;
-    if (has_surface_)
-      surface_.set(face(t, mesh_.vertices(t)));
+    surface_.set(face(t, mesh_.vertices(t)));
   }
 
   const Positions& points_;
   const OpenPlaces& openings_;
   SphereMesh mesh_;
   Indexed<std::uint8_t> is_open_;
-  double scale_;  ///< brings the coordinates to at most 1
-  bool has_surface_ = false;
-  LocalIntersections surface_;  ///< its triangles, from the first question on
+  double scale_;                ///< brings the coordinates to at most 1
+  LocalIntersections surface_;  ///< its triangles
 };
 
 }  // namespace
@@ -369,7 +360,7 @@ Triangles surfaceOf(const OpenMesh& mesh) {
   Triangles surface(3, std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{0}));
   Eigen::Index next = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
-    if (mesh.is_open[static_cast<std::size_t>(t)] == 0)
+    if (mesh.is_open[t] == 0)
       surface.col(next++) = mesh.triangles.col(t);
   return surface;
 }

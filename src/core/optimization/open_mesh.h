@@ -1,5 +1,6 @@
 #pragma once
 
+#include "indexed.h"
 #include "open_places.h"
 #include "sphere_mesh.h"
 #include "spherical_param/types.h"
@@ -14,8 +15,8 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
 
 /// A closed mesh with openings.
 struct OpenMesh {
-  Triangles triangles;                ///< the closed mesh, changed at the openings
-  std::vector<std::uint8_t> is_open;  ///< for each triangle, 1 if it is over an opening
+  Triangles triangles;            ///< the closed mesh, changed at the openings
+  Indexed<std::uint8_t> is_open;  ///< for each triangle, 1 if it is over an opening
 };
 
 /// Decides which triangles of a closed mesh are over openings, so that the others are a manifold

@@ -27,7 +27,7 @@ public:
   /// Whether a triangle is over an opening: its vertices are within two steps of loops, and a side
   /// is longer than edges of the surface; close() excludes vertices.
   bool isOpen(Index a, Index b, Index c) const {
-    return is_near_[a] != 0 && is_near_[b] != 0 && is_near_[c] != 0 &&
+    return nearest_[a] >= 0 && nearest_[b] >= 0 && nearest_[c] >= 0 &&
            (isLong(a, b) || isLong(b, c) || isLong(c, a));
   }
 
@@ -39,13 +39,11 @@ public:
   bool isRim(Index a, Index b) const;
 
 private:
-  static constexpr std::uint8_t kNear = 1;
-  static constexpr std::uint8_t kLoop = 2;
   bool isLong(Index a, Index b) const;
 
   const Positions& points_;
-  Indexed<std::uint8_t> is_near_;  ///< kNear, kLoop (in a loop) or 0
-  Indexed<Index> nearest_;         ///< of near vertices, the opening of the nearest loop
+  Indexed<Index> nearest_;  ///< opening of the nearest loop; -1: excluded, or not within two steps
+  Indexed<std::uint8_t> is_in_loop_;
   Indexed<double> spacing_;
   std::vector<std::array<Index, 2>> rim_edges_;  ///< {lower, higher}, ascending
 };
