@@ -121,7 +121,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   result.sphere = std::move(mesh.embedding.directions);
   result.history = std::move(mesh.embedding.history);
   result.embedding = std::move(mesh.embedding.report);
-  result.is_noisy = mesh.optimization.report.noise_steps > 0;
+  result.is_noisy = mesh.optimization.report.is_noisy;
   result.is_out_of_time = mesh.optimization.report.is_out_of_time;
   return result;
 }

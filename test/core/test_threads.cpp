@@ -84,11 +84,8 @@ Numbers numbersOf(const MeshTopology& topology) {
 }
 
 Numbers numbersOf(const MeshOptimization& optimization) {
-  Numbers numbers(optimization.triangles, optimization.self_intersections,
-                  optimization.report.noise_steps);
-  for (const OptimizationPhase& phase : optimization.report.phases)
-    numbers.add(Numbers(phase.name, phase.tried, phase.moves));
-  return numbers;
+  return Numbers(optimization.triangles, optimization.self_intersections,
+                 optimization.report.is_noisy, optimization.report.recreated);
 }
 
 Numbers numbersOf(const internal::GraphHierarchy& hierarchy) {

@@ -2,6 +2,7 @@
 
 #include "optimization_constants.h"
 #include "rows.h"
+#include "spherical_param/self_intersection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,10 +73,7 @@ double EnergyMesh::flipGain(Index t, int corner, double floor) const {
   // (c, a, b) and (d, b, a) would become (c, a, d) and (c, d, b).
   const Index o = mesh_.neighbor(t, corner);
   const int l = mesh_.oppositeCorner(t, corner);
-  const Index c = mesh_.vertex(t, corner);
-  const Index a = mesh_.vertex(t, (corner + 1) % 3);
-  const Index b = mesh_.vertex(t, (corner + 2) % 3);
-  const Index d = mesh_.vertex(o, l);
+  const auto [a, b, c, d] = mesh_.diamond(t, corner);
   if (c == d)
     return floor;
   const Facet& cab = facets_[t];
@@ -194,6 +192,31 @@ std::vector<Index> EnergyMesh::changed() const {
     changed.push_back(old_facets_[i].first);
   sortUnique(changed);
   return changed;
+}
+
+std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
+                                                    const FractionReport& report) {
+  Triangles triangles = mesh.mesh().triangles();
+  Indexed<Index> surface;  // slots, by the columns that are left
+  for (Index t = 0; t < mesh.mesh().size(); ++t)
+    if (!mesh.facet(t).isOpen()) {
+      triangles.col(surface.count()) = triangles.col(t);
+      surface.push_back(t);
+    }
+  triangles.conservativeResize(3, surface.count());
+  Execution execution;
+  execution.threads = mesh.threads();
+  if (report)
+    execution.progress = [&](const Progress& progress) {
+      report(progress.fraction);
+      return true;
+    };
+  auto pairs = findSelfIntersections(mesh.points(), triangles, execution);
+  for (auto& [t, u] : pairs) {
+    t = surface[t];
+    u = surface[u];
+  }
+  return pairs;
 }
 
 bool isGain(double change) {

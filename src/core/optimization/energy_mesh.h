@@ -92,6 +92,11 @@ private:
   std::vector<std::pair<Index, Facet>> old_facets_;
 };
 
+/// All pairs of triangles that intersect, by their slots in the mesh, none of which is free. Open
+/// triangles do not count.
+std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
+                                                    const FractionReport& report = {});
+
 /// Whether a change of the energy is a gain beyond rounding [EnergyMesh::unit()].
 bool isGain(double change);
 

@@ -10,7 +10,7 @@ void LocalIntersections::begin(std::size_t triangles, Indexed<Face> faces) {
     places_[face.triangle] = -1;
   places_.resize(triangles, -1);
   faces_ = std::move(faces);
-  counts_.assign(faces_.size(), kUnknown);
+  counts_.assign(faces_.size(), std::nullopt);
   has_counts_ = false;
   for (Index i = 0; i < faces_.count(); ++i)
     places_[faces_[i].triangle] = i;
@@ -25,7 +25,7 @@ void LocalIntersections::set(const Face& face) {
   } else {
     place = faces_.count();
     faces_.push_back(face);
-    counts_.push_back(kUnknown);
+    counts_.emplace_back();
   }
   faces_[place] = face;
   boxes_.set(place, FloatBox(boxOf(face.corners)));
@@ -46,25 +46,26 @@ void LocalIntersections::remove(Index triangle) {
   boxes_.set(last, FloatBox());
 }
 
-int LocalIntersections::addToCounts(const Face& face, int change) {
+std::optional<int> LocalIntersections::addToCounts(const Face& face, int change) {
   if (!has_counts_)
-    return kUnknown;
+    return std::nullopt;
   int found = 0;
   forEachIntersecting(face, face.triangle, [&](const Face& other) {
     ++found;
-    int& count = counts_[places_[other.triangle]];
-    count += count == kUnknown ? 0 : change;
+    std::optional<int>& count = counts_[places_[other.triangle]];
+    if (count)
+      *count += change;
     return true;
   });
   return found;
 }
 
 int LocalIntersections::countOf(Index triangle) {
-  int& known = counts_[places_[triangle]];
-  if (known == kUnknown)
+  std::optional<int>& known = counts_[places_[triangle]];
+  if (!known)
     known = count(face(triangle), triangle, std::numeric_limits<int>::max());
   has_counts_ = true;
-  return known;
+  return *known;
 }
 
 void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {

@@ -6,6 +6,7 @@
 #include "triangle_pair.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -57,12 +58,10 @@ private:
 
   /// Adds `change` to the known counts of triangles that intersect `face`; returns their number, if
   /// counts are kept.
-  int addToCounts(const Face& face, int change);
-
-  static constexpr int kUnknown = -1;
+  std::optional<int> addToCounts(const Face& face, int change);
 
   Indexed<Face> faces_;
-  Indexed<int> counts_;  ///< of each of faces_, or kUnknown
+  Indexed<std::optional<int>> counts_;  ///< of each of faces_, if known
   bool has_counts_ = false;
   BoxTree boxes_;          ///< of each of faces_
   Indexed<Index> places_;  ///< of each triangle of the mesh in faces_, or -1

@@ -35,15 +35,14 @@ public:
 private:
   /// A flip and its effect: change of the number of intersecting pairs, and of the energy.
   struct Repair {
-    Index triangle = -1;
-    int corner = 0;
-    int pairs = 0;
-    double cost = 0.0;
+    Index triangle;
+    int corner;
+    int pairs;
+    double cost;
   };
-  /// The effect of one flip, or of two: `second` is after `first`.
+  /// Up to two flips, one after the other, and their effect.
   struct Repairs {
-    Repair first;
-    std::optional<Repair> second;
+    std::vector<Repair> flips;
     int pairs = 0;
     double cost = 0.0;
   };
@@ -57,9 +56,9 @@ private:
   /// The flip of a side, unless it is impossible or changes the number of pairs by more than
   /// `most`.
   std::optional<Repair> repairOf(Index t, int corner, int most);
-  /// Keeps a flip, perhaps after another one, in `best` if it is better.
-  void consider(Index t, int corner, const Repair* first, Repairs& best);
-  /// The best one or two flips of an intersecting triangle; without a triangle if none helps.
+  /// Keeps a flip after those before it in `best` if it is better.
+  void consider(Index t, int corner, const Repairs& before, Repairs& best);
+  /// The best one or two flips of an intersecting triangle; no flips if none helps.
   Repairs bestRepairs(Index t);
   std::vector<std::pair<Index, int>> sidesNear(Index t) const;
   void flip(const Repair& repair);

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace spherical_param {
@@ -26,30 +25,20 @@ struct OptimizationOptions {
   std::uint32_t seed = 1;  ///< of the random choice of parts
 };
 
-/// Report of one phase.
-struct OptimizationPhase {
-  /// "flips", "relocate", "unfold", "flip apart", "untangle", "polish", or "roll back" (of the
-  /// polish)
-  std::string name;
-  std::size_t tried = 0;  ///< vertices or parts taken out
-  std::size_t moves = 0;  ///< flips, or successful relocations or rebuilds
-};
-
 /// Report of an optimisation.
 struct OptimizationReport {
-  std::vector<OptimizationPhase> phases;  ///< in the order of the work
-  /// Steps of smoothing of the positions for the optimisation of a noisy cloud; 0: not noisy.
-  int noise_steps = 0;
+  std::size_t recreated = 0;    ///< vertices of parts that were taken out and put back
+  bool is_noisy = false;        ///< the optimisation began on smoothed positions
   bool is_out_of_time = false;  ///< the time limit ended it early
 };
 
 /// An optimised mesh.
 struct MeshOptimization {
   Triangles triangles;  ///< 3 x m, as many as before
-  /// Pairs of triangles that intersect, on the given points; with `noise_steps` and without
+  /// Pairs of triangles that intersect, on the given points; if noisy and without
   /// OptimizationOptions::finish_on_points, on the smoothed ones. \see findSelfIntersections
   std::vector<std::array<Index, 2>> self_intersections;
-  OptimizationReport report;  ///< phases, noise
+  OptimizationReport report;
 };
 
 /// Changes the triangles of a closed genus-0 mesh on fixed points, for the least energy

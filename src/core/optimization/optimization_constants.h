@@ -27,30 +27,14 @@ constexpr double kEvenMu = 4.0;
 /// rises by 15 % in the mean (fandisk by 290 %); with all taken as even, by 29 %.
 constexpr double kMaxUnalignedSampling = 0.16;
 constexpr double kMaxEvenSampling = 0.3;
-/// Angles up to this one cost nothing in an even sampling [rad], 10 degrees. 0 and
-/// 20 degrees change 2 and 3 models, without self-intersections before and after. With 5 times the
-/// median angle around a vertex, where that is more, the models' RMS is 2 % higher.
-constexpr double kFreeAngle = 0.17453292519943295;
 
-// --- Openings ------------------------------------------------------------------------------------
-
-/// A triangle near a loop is over the opening if a side is longer than this [larger spacing of its
-/// ends].
-constexpr double kMaxSurfaceEdge = 1.6;
-/// Open triangles: fraction of mu R, and of the price of an edge between two of them. With 1 for
-/// mu R the RMS of clouds with holes rises by 1 %, with 1 for the price open clouds of several
-/// views keep 37 self-intersections instead of 0.
-constexpr double kOpen = 0.5;
-/// Price of an edge between an open triangle and the surface outside of loops [length of the edge]:
-/// the first, plus the second times mu. Too low makes holes, too high folds ears.
-constexpr double kRimPrice = 0.8;
-constexpr double kRimPriceOfMu = 2.0;
 // --- Gains ---------------------------------------------------------------------------------------
 
 /// Changes of the energy below this are rounding [mean length of the graph's edges]. With 0,
 /// 11 of 26 clouds change, without self-intersections before and after, and noisy ones for the
 /// better or the worse.
 constexpr double kMinGain = 1e-9;
+
 // --- Rough vertices ------------------------------------------------------------------------------
 
 /// Edges with a smaller cosine between their triangles' normals (37 degrees) are sharp, those below
@@ -68,42 +52,20 @@ constexpr double kMaxNearNeighbor = 1.5;
 /// of 56 open clouds keeps an intersection.
 constexpr int kMaxRounds = 4;
 
-// --- Noise ---------------------------------------------------------------------------------------
-
-/// Fraction of rough vertices above which the cloud is noisy, and steps of smoothing of the
-/// positions on which it is then optimised. Clouds of closed surfaces without noise have 0.003 to
-/// 0.16, and coarse ones with limbs of a few points 0.36; with noise of a quarter of the points'
-/// distance it is 0.75 and more. Without smoothing, noise of half a spacing on the hand and of 1.5
-/// on a sphere leaves 72 and 141 self-intersections instead of 0. More steps where more is rough
-/// gained nothing: 22082 instead of 21433 self-intersections on all clouds.
-constexpr double kMaxRough = 0.5;
-constexpr int kNoiseSteps = 3;
-/// Untangling on the given points is slow and fails above this number of intersections for each
-/// triangle; up to the other number it is tried in any case. Without either, 8 of 10 noisy clouds
-/// keep 9 to 122 intersections instead of 0; the first matters only above 150,000 points.
-constexpr double kMaxFewIntersectionsPerTriangle = 0.005;
-constexpr double kMaxFewIntersections = 1500.0;
-
 // --- Ruin and recreate ---------------------------------------------------------------------------
 
 /// With 2 rounds the cheburashka keeps 7 intersections; with none the energy of the models is 0.1 %
 /// higher, and two noisy clouds keep 5 and 19.
 constexpr int kMaxUnfoldingRounds = 5;
-/// Vertices of a part around a folded edge, from the first size to the last, doubled. From 8 on the
-/// cheburashka keeps 9 intersections, up to 16 the noisy sphere 9; from 6 to 48, 2 of 10 models and
-/// a noisy cloud keep some.
+/// Vertices of a part around a folded edge: this number, doubled up to 8 times as many. From 8 on
+/// the cheburashka keeps 9 intersections, up to 16 the noisy sphere 9; from 6 to 48, 2 of 10 models
+/// and a noisy cloud keep some.
 constexpr std::size_t kMinRuin = 4;
-constexpr std::size_t kMaxRuin = 32;
-/// Maximum work of all repairs [vertices taken out and put back]: the first, plus the second for
-/// each point. A search for two flips counts as the third in addition, because it takes as long. A
+/// Maximum work of all repairs for each point, and 1,000 more [vertices taken out and put back]. A
 /// vertex takes 10 to 16 us, a point of the first mesh some 20: on 112 clouds repairs took at most
-/// 9 times as long as all the rest. With 1 for the third, subsampled and cut clouds take more than
-/// twice as long. With a first of 2,000 a tube from a bad start keeps its spikes. 49 of the 56 runs
-/// below end without intersections, with 5 for each point 44, in 0.9 times as long, with 5,000 and
-/// 5, 40.
-constexpr std::size_t kMaxWork = 10000;
+/// 9 times as long as all the rest. With 200 more instead of 1,000 a tube from a bad start keeps
+/// its spikes. 49 of the 56 runs below end without intersections, with 5 for each point 40.
 constexpr std::size_t kMaxWorkOfPoint = 10;
-constexpr std::size_t kWorkOfTwoFlips = 8;
 
 // --- Untangling ----------------------------------------------------------------------------------
 
@@ -116,27 +78,17 @@ constexpr int kMaxRoundsByEnergy = 2;
 /// Rounds by number in a row without a gain. With 20, and 80 rounds in all, as many of the runs end
 /// without intersections, in 1.05 times as long.
 constexpr int kMaxIdleRounds = 12;
-/// Vertices of a part around two triangles that intersect, from the first size to the last,
-/// doubled. Rounds by number begin with parts up to four times the first; each round without a gain
+/// Vertices of a part around two triangles that intersect: this number, doubled up to 16 times as
+/// many. Rounds by number begin with parts up to four times as many; each round without a gain
 /// doubles that. Of parts of 6 vertices 61 % gain, of those of 96, 6 %, in 20 times as long. Rounds
-/// by energy have parts up to half of the last size: with 24 a tube from a bad start keeps its
+/// by energy have parts up to 8 times as many: with 24 vertices a tube from a bad start keeps its
 /// spikes; with 96 the runs keep 116 intersections instead of 24.
 constexpr std::size_t kMinUntangled = 6;
-constexpr std::size_t kMaxUntangled = 96;
 /// Vertices around two intersecting triangles whose edges are flipped. With 96 a tube from a bad
 /// start keeps its spikes.
 constexpr std::size_t kFlipRegion = 64;
 /// Intersections are counted among twice the vertices of the part plus this number. With 0 the
 /// springer keeps 32 intersections, with 96 subsampled clouds 30 instead of 10.
 constexpr std::size_t kWatchedVertices = 200;
-
-// --- Analysis of the sampling --------------------------------------------------------------------
-
-/// Approximate number of analysed points: the standard error of the mean is then below 0.02.
-/// With 500 one model of 26 clouds changes.
-constexpr std::size_t kTypicalSamples = 2500;
-/// With fewer points a quadric, of six coefficients, is not determined well enough. 5 changes one
-/// cloud of few points.
-constexpr std::size_t kMinQuadricPoints = 8;
 
 }  // namespace spherical_param::internal::optimization_constants

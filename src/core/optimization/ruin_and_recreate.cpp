@@ -26,9 +26,7 @@ bool RuinAndRecreate::remove(Index v) {
     int corner = 0;
     mesh.forEachAround(v, [&](Index t, int corner_of_v) {
       const int k = (corner_of_v + 1) % 3;
-      const Index c = mesh.vertex(t, k);
-      const Index d = mesh.vertex(mesh.neighbor(t, k), mesh.oppositeCorner(t, k));
-      if (c == d || mesh.areJoined(c, d))
+      if (!mesh.isFree(mesh.diamond(t, k)))
         return;
       const double gain = mesh_.flipGain(t, k, best);
       if (gain > best) {
@@ -105,10 +103,6 @@ bool RuinAndRecreate::recreate(const std::vector<Index>& vertices, const Accept&
   else
     mesh_.rollBack();
   return is_accepted;
-}
-
-bool RuinAndRecreate::relocate(Index v) {
-  return recreate({v}, isGain);
 }
 
 std::vector<Index> RuinAndRecreate::spread(const std::vector<Index>& seeds, std::size_t count) {

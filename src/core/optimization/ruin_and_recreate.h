@@ -25,8 +25,6 @@ public:
   /// in mesh and graph, and flips edges there. Commits if `accept` returns true, or rolls back.
   /// Returns which.
   bool recreate(const std::vector<Index>& vertices, const Accept& accept);
-  /// The same for one vertex, if that gains.
-  bool relocate(Index v);
 
   /// `count` vertices, or all, that spread randomly from the seeds over the edges of mesh and
   /// graph.

@@ -1,6 +1,6 @@
 #include "smoothed_mesh.h"
 
-#include "mesh_intersections.h"
+#include "energy_mesh.h"
 #include "spherical_param/self_intersection.h"
 #include "time_left.h"
 

@@ -47,8 +47,9 @@ struct RawFacet {
   }
 
   bool isOpen() const { return radius < 0.0; }
-  /// Makes it an open triangle.
-  void open() { radius *= -optimization_constants::kOpen; }
+  /// Makes it an open triangle, at half of the cost: in full, the RMS of clouds with holes rises by
+  /// 1 %.
+  void open() { radius *= -0.5; }
 
   Facet facet() const {
     if (!(twice_area > 0.0))
@@ -82,7 +83,7 @@ struct SurfaceEnergy {
   enum class Bend {
     Angle,   ///< the angle: together, the total absolute mean curvature
     Power,   ///< angle^1.5
-    Excess,  ///< the excess over kFreeAngle
+    Excess,  ///< the excess over 10 degrees
   };
 
   Bend bend = Bend::Angle;
@@ -108,18 +109,22 @@ struct SurfaceEnergy {
     case Bend::Excess:
       break;
     }
-    return length * std::max(0.0, angle - optimization_constants::kFreeAngle);
+    // With 0 and 20 degrees 2 and 3 models change, without self-intersections before and after.
+    // With 5 times the median angle around a vertex, where that is more, the models' RMS is 2 %
+    // higher.
+    return length * std::max(0.0, angle - kPi / 18.0);
   }
 
 private:
-  /// Cost of an edge of an open triangle.
+  /// Cost of an edge of an open triangle: too low makes holes, too high folds ears. With the full
+  /// price between two open triangles, open clouds of several views keep 37 self-intersections
+  /// instead of 0.
   double openEdge(Index v, Index w, const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                   bool are_both_open) const {
-    namespace tuned = optimization_constants;
     if (openings->isRim(v, w))
       return 0.0;
-    const double price = (tuned::kRimPrice + tuned::kRimPriceOfMu * mu) * (p - q).norm();
-    return are_both_open ? tuned::kOpen * price : price;
+    const double price = (0.8 + 2.0 * mu) * (p - q).norm();
+    return are_both_open ? 0.5 * price : price;
   }
 };
 

@@ -9,16 +9,8 @@ Workbench::Workbench(const Positions& points, const Triangles& triangles, const 
     : report(reportOf(execution, "optimization")),
       openings(options.openings != nullptr ? std::optional(*options.openings) : std::nullopt),
       mesh(points, triangles, graph, execution.threads, openings ? &*openings : nullptr, report),
-      flips(mesh), ruins(mesh, flips, options.seed), local(mesh) {
+      flips(mesh), ruins(mesh, flips, options.seed), local(mesh), time_left_(execution.time_limit) {
   renewWork();
-  if (execution.time_limit)
-    deadline_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                   std::chrono::duration<double>(*execution.time_limit));
-}
-
-OptimizationPhase& Workbench::begin(const char* name) {
-  log.phases.push_back({name});
-  return log.phases.back();
 }
 
 void Workbench::reportItem(std::size_t item, std::size_t items, std::size_t between_reports) const {
@@ -27,7 +19,7 @@ void Workbench::reportItem(std::size_t item, std::size_t items, std::size_t betw
 }
 
 bool Workbench::isOutOfTime() {
-  log.is_out_of_time = log.is_out_of_time || (deadline_ && Clock::now() >= *deadline_);
+  log.is_out_of_time = log.is_out_of_time || time_left_() == 0.0;
   return log.is_out_of_time;
 }
 
@@ -37,17 +29,16 @@ bool Workbench::mayRepair() {
 
 void Workbench::renewWork() {
   namespace tuned = optimization_constants;
-  max_work_ = work() + tuned::kMaxWork + tuned::kMaxWorkOfPoint * columnCount(mesh.points());
+  max_work_ = work() + tuned::kMaxWorkOfPoint * (1000 + columnCount(mesh.points()));
 }
 
-void Workbench::tryPart(const std::vector<Index>& seeds, std::size_t size,
-                        const RuinAndRecreate::Accept& accept, OptimizationPhase& phase) {
+bool Workbench::tryPart(const std::vector<Index>& seeds, std::size_t size,
+                        const RuinAndRecreate::Accept& accept) {
   if (!mayRepair())
-    return;
+    return false;
   const std::vector<Index> part = ruins.spread(seeds, size);
-  recreated_ += part.size();
-  ++phase.tried;
-  phase.moves += ruins.recreate(part, accept) ? 1 : 0;
+  log.recreated += part.size();
+  return ruins.recreate(part, accept);
 }
 
 }  // namespace spherical_param::internal

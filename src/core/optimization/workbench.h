@@ -8,14 +8,14 @@
 #include "progress.h"
 #include "ruin_and_recreate.h"
 #include "spherical_param/execution.h"
+#include "time_left.h"
 
-#include <chrono>
 #include <cstddef>
 #include <optional>
 
 namespace spherical_param::internal {
 
-/// What the phases of an optimisation share: the mesh, its moves, the limits, the report.
+/// What the phases of an optimisation share: the mesh, its moves, the limits.
 class Workbench {
 public:
   Workbench(const Positions& points, const Triangles& triangles, const Graph& graph,
@@ -31,8 +31,6 @@ public:
   LocalUntangling local;
   OptimizationReport log;
 
-  /// Adds a phase to the log.
-  OptimizationPhase& begin(const char* name);
   /// Reports the fraction of a phase's items that are done.
   void reportItem(std::size_t item, std::size_t items, std::size_t between_reports) const;
   /// Notes in the log that the time is over.
@@ -41,18 +39,16 @@ public:
   bool mayRepair();
   /// Allows as much work again as at the beginning.
   void renewWork();
-  /// Ruins and recreates a part around some vertices, if work is left.
-  void tryPart(const std::vector<Index>& seeds, std::size_t size,
-               const RuinAndRecreate::Accept& accept, OptimizationPhase& phase);
+  /// Ruins and recreates a part around some vertices, if work is left. Returns whether it was
+  /// committed.
+  bool tryPart(const std::vector<Index>& seeds, std::size_t size,
+               const RuinAndRecreate::Accept& accept);
 
 private:
-  using Clock = std::chrono::steady_clock;
+  std::size_t work() const { return log.recreated + local.work(); }
 
-  std::size_t work() const { return recreated_ + local.work(); }
-
-  std::size_t recreated_ = 0;  ///< vertices taken out by tryPart()
+  TimeLeft time_left_;
   std::size_t max_work_ = 0;
-  std::optional<Clock::time_point> deadline_;
 };
 
 }  // namespace spherical_param::internal

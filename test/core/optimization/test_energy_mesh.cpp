@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "optimization_cases.h"
+#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
@@ -83,6 +84,17 @@ TEST(EnergyMesh, WhatIsRolledBackLeavesEverythingBitByBit) {
   mesh.rollBack();
   EXPECT_EQ(mesh.mesh().triangles(), triangles);
   EXPECT_EQ(gains(), before);
+}
+
+TEST(EnergyMesh, IntersectionsAreThoseOfItsTriangles) {
+  for (const Case& of : roughCases()) {
+    EnergyMesh mesh = meshOf(of);
+    EXPECT_EQ(internal::findIntersections(mesh), findSelfIntersections(of.points, of.triangles));
+    // Other positions of the same points.
+    const Positions moved = withNoise(of.points, 0.05, 8);
+    mesh.setPoints(moved);
+    EXPECT_EQ(internal::findIntersections(mesh), findSelfIntersections(moved, of.triangles));
+  }
 }
 
 TEST(EnergyMesh, BoundsOfGainsAndCostsChangeNoneBeyondThem) {

@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -25,10 +24,6 @@ MeshOptimization optimize(const Case& of, const OptimizationOptions& options = {
 void expectGuarantees(const Case& of, const MeshOptimization& result) {
   EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(of.points.cols())));
   EXPECT_EQ(result.self_intersections, findSelfIntersections(of.points, result.triangles));
-  for (const OptimizationPhase& phase : result.report.phases)
-    if (phase.name != "flips" && phase.name != "polish") {
-      EXPECT_LE(phase.moves, phase.tried) << phase.name;
-    }
 }
 
 // --- Meshes that are known -----------------------------------------------------------------------
@@ -75,7 +70,7 @@ TEST(MeshOptimization, ARadialStartOfABentTubeGetsTheTubesMesh) {
   const Case of = radialStart(withNoise(tube.points, 0.01, 4));
   const MeshOptimization result = optimize(of);
   expectGuarantees(of, result);
-  ASSERT_EQ(result.report.noise_steps, 0);
+  ASSERT_FALSE(result.report.is_noisy);
   const double least = energyOf(of.points, tube.triangles);
   EXPECT_GT(energyOf(of.points, of.triangles), 4.0 * least);
   EXPECT_LT(energyOf(of.points, result.triangles), 1.1 * least);
@@ -109,21 +104,6 @@ TEST(MeshOptimization, AnyCloudStaysASphereOverAllPoints) {
   }
 }
 
-TEST(MeshOptimization, ThePhasesComeInTheirOrder) {
-  const Case of = scrambledEllipsoid(600, 0.25 * sphereSpacing(600), 2000, 1);
-  const MeshOptimization result = optimize(of);
-  expectGuarantees(of, result);
-  std::vector<std::string> names;
-  for (const OptimizationPhase& phase : result.report.phases)
-    if (std::find(names.begin(), names.end(), phase.name) == names.end())
-      names.push_back(phase.name);
-  ASSERT_GE(names.size(), 4U);
-  EXPECT_EQ(std::vector<std::string>(names.begin(), names.begin() + 3),
-            (std::vector<std::string>{"flips", "relocate", "unfold"}));
-  EXPECT_NE(std::find(names.begin(), names.end(), "polish"), names.end());
-  EXPECT_GT(result.report.phases[0].moves, 0U);
-}
-
 TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   const Case noisy = noisySphere(200, 0.5, 26);
   for (const auto& [of, is_noisy] :
@@ -131,7 +111,7 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
         std::pair(noisy, true)}) {
     const MeshOptimization result = optimize(of);
     expectGuarantees(of, result);
-    EXPECT_EQ(result.report.noise_steps > 0, is_noisy);
+    EXPECT_EQ(result.report.is_noisy, is_noisy);
   }
   // Without the finish, intersections are those on the smoothed points.
   OptimizationOptions unfinished;
@@ -146,13 +126,9 @@ TEST(MeshOptimization, RepairsEndAfterWorkProportionalToThePoints) {
   for (const Index n : {500, 1500}) {
     const Case of = tangle(n);
     const MeshOptimization result = optimize(of);
-    std::size_t parts = 0;
-    for (const OptimizationPhase& phase : result.report.phases)
-      if (phase.name == "unfold" || phase.name == "untangle")
-        parts += phase.tried;
-    EXPECT_GT(parts, 100U);
-    // Parts of at least 4 vertices; twice, as on noise.
-    EXPECT_LE(4 * parts, 2 * (10000 + 10 * static_cast<std::size_t>(n)));
+    EXPECT_GT(result.report.recreated, 400U);
+    // Twice, as on noise; a part of at most 96 vertices may begin below the limit.
+    EXPECT_LE(result.report.recreated, 2 * (10000 + 10 * static_cast<std::size_t>(n) + 96));
   }
 }
 

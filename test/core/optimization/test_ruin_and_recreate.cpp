@@ -36,7 +36,7 @@ TEST(RuinAndRecreate, MovesThatGainAreKeptAndOthersLeaveTheMesh) {
       };
       const auto n = static_cast<Index>(of.points.cols());
       for (Index v = 0; v < n; v += 3)
-        relocated += is_kept([&] { return ruins.relocate(v); });
+        relocated += is_kept([&] { return ruins.recreate({v}, internal::isGain); });
       for (Index v = 0; v < n; v += 7)
         recreated +=
             is_kept([&] { return ruins.recreate(ruins.spread({v}, 12), internal::isGain); });
