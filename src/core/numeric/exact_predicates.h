@@ -7,14 +7,13 @@
 #include <cmath>
 #include <limits>
 
-// Filtered evaluation with an exact fallback in floating-point expansions, after J. R. Shewchuk:
-// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", Discrete &
-// Computational Geometry 18, 1997. Valid for round-to-nearest and without contraction of a * b + c.
+// Exact in integers, behind the filters of J. R. Shewchuk: "Adaptive Precision Floating-Point
+// Arithmetic and Fast Robust Geometric Predicates", Discrete & Computational Geometry 18, 1997.
+// Valid for round-to-nearest and without contraction of a * b + c.
 
 namespace spherical_param::internal {
 
-/// The predicates without the filter: in expansions, or in integers where their products would
-/// leave the range of double. \see orientation2d, orientation3d, inCircle
+/// The predicates without the filter, in integers. \see orientation2d, orientation3d, inCircle
 int exactOrientation2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                        const Eigen::Vector2d& c);
 int exactOrientation3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
@@ -23,7 +22,7 @@ int exactInCircle(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eige
                   const Eigen::Vector2d& d);
 
 /// The sign of the volume that a closed mesh encloses, exact: 1 if its triangles face outward.
-/// Plain arithmetic decides nearly always, else integers at some 20 us for each triangle.
+/// Plain arithmetic decides nearly always, else integers.
 ///
 /// \param points    3 x n, finite.
 /// \param triangles 3 x m, closed.

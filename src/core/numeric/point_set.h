@@ -22,8 +22,7 @@ struct DistinctPoints {
 /// \param points 3 x n, finite, of any magnitude.
 /// \return true if they do, and for fewer than four points.
 /// \throw InvalidInput if a coordinate of four points and more is not finite.
-/// Cost: O(n); a hundred times as much where coordinates other than 0 are below 1e-80 or above 1e80
-/// and all points lie in one plane, or nearly all.
+/// Cost: O(n); some microseconds for each point of an oblique plane.
 bool areCoplanar(const Positions& points);
 
 /// @}
