@@ -23,7 +23,6 @@ public:
   const Graph& graph(std::size_t l) const {
     return l == 0 ? graph_ : hierarchy_.levels[l - 1].graph;
   }
-  const GraphHierarchy& hierarchy() const { return hierarchy_; }
   int threads() const { return threads_; }
 
   /// The mean direction, over the area of the surface.

@@ -56,8 +56,7 @@ public:
   Ascent(const EmbeddingLevels& levels, const EmbeddingAttempt& attempt,
          const EmbeddingOptions& options, const Execution& execution)
       : levels_(levels), attempt_(attempt), options_(options),
-        report_(reportOf(execution, "embedding")),
-        recorder_(levels.graph(0).size(), levels.hierarchy(), options) {
+        report_(reportOf(execution, "embedding")), recorder_(levels.graph(0).size(), options) {
     for (std::size_t l = 0; l <= levels.coarsest(); ++l)
       result_.report.levels.push_back(untried(l));
   }
@@ -185,7 +184,13 @@ private:
 
   void record(std::size_t l, EmbeddingStep step, int iteration, std::optional<double> residual,
               const Positions& u) {
-    recorder_({l, levels_.graph(l).size(), step, iteration, residual, [&u] { return u; }});
+    const auto carried = [&] {
+      Positions finest = u;
+      for (std::size_t k = l; k-- > 0;)
+        finest = levels_.interpolated(k, finest);
+      return finest;
+    };
+    recorder_({l, levels_.graph(l).size(), step, iteration, residual, carried});
   }
 
   void finish(Positions& u) {

@@ -1,7 +1,7 @@
 #include "embedding_history.h"
 
 #include "embeddings.h"
-#include "spherical_param/sphere_triangulation.h"
+#include "ordered_points.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,6 @@ namespace {
 using internal::buildGraphHierarchy;
 using internal::EmbeddingRecorder;
 using internal::GraphHierarchy;
-using test::graphOfMesh;
-using test::spiralSphere;
 
 /// Settings that record a history of bounded size.
 test::Setting limits(Index vertices, int frames) {
@@ -70,38 +68,10 @@ TEST(EmbeddingHistory, KeepsAtMostTheLimitAndAlwaysBothEnds) {
   }
 }
 
-TEST(EmbeddingRecorder, CarriesCoarseStatesAsTheSolverDoes) {
-  const Graph graph = test::dentedCloud(6000).graph;
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
-  ASSERT_GE(hierarchy.levels.size(), 2U);
-  for (const Index vertices : {300, 6000}) {
-    EmbeddingRecorder recorder(graph.size(), hierarchy, limits(vertices, 10));
-    const Positions coarse =
-        test::randomSphere(static_cast<Index>(hierarchy.levels.back().graph.size()), 3);
-    recorder({hierarchy.levels.size(), 0, EmbeddingStep::Start, 0, std::nullopt,
-              [&] { return coarse; }});
-    Positions expected = coarse;
-    for (std::size_t l = hierarchy.levels.size(); l-- > 0;) {
-      Positions finer = expected * hierarchy.levels[l].prolongation.transpose();
-      finer.colwise().normalize();
-      expected = finer;
-    }
-    const EmbeddingHistory history = recorder.take();
-    ASSERT_EQ(history.frames.size(), 1U);
-    for (std::size_t i = 0; i < history.vertices.size(); ++i)
-      EXPECT_LT(
-          (history.frames[0].sphere.col(static_cast<Index>(i)) - expected.col(history.vertices[i]))
-              .norm(),
-          1e-9);
-  }
-}
-
 TEST(EmbeddingRecorder, SpreadsItsNodesOverTheGraph) {
-  const Positions sphere = spiralSphere(6000);
-  const Graph graph = graphOfMesh(sphere, triangulateSphere(sphere));
-  const GraphHierarchy hierarchy = buildGraphHierarchy(graph, 1, 200);
+  const Positions sphere = internal::orderPoints(test::randomSphere(6000, 3), 1).points;
   for (const Index vertices : {400, 900, 1500}) {
-    EmbeddingRecorder recorder(graph.size(), hierarchy, limits(vertices, 10));
+    EmbeddingRecorder recorder(6000, limits(vertices, 10));
     const EmbeddingHistory history = recorder.take();
     // No place of the sphere is further from the next node than some of their even distances.
     const double even = std::sqrt(4.0 * test::kPi / static_cast<double>(history.vertices.size()));
