@@ -241,13 +241,9 @@ void colorVertices(const Triangles& triangles, const CornerTable& corners, Index
       taken_by.push_back(-1);
   }
 
-  const Partition by_color(color, taken_by.size());
-  rows.vertices.reserve(color.size());
-  for (Index c = 0; c < indexCount(taken_by); ++c) {
-    rows.colors.push_back(rows.vertices.size());
-    by_color.forEach(c, [&](Index v) { rows.vertices.push_back(v); });
-  }
-  rows.colors.push_back(rows.vertices.size());
+  NeighborRows by_color = nodesOfParts(color, taken_by.size());
+  rows.vertices = std::move(by_color.neighbors);
+  rows.colors = std::move(by_color.offsets);
 }
 
 }  // namespace

@@ -151,73 +151,66 @@ Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int th
   return cells;
 }
 
-/// Rows of entries that were found block by block.
-struct EntryBlock {
-  std::vector<std::size_t> ends;  ///< of the rows, from the first entry of the block
-  std::vector<Index> columns;
-  std::vector<double> values;
-};
-
-/// The number of entries of the blocks before each one, and of all.
-std::vector<std::size_t> firstEntries(const std::vector<EntryBlock>& blocks) {
-  std::vector<std::size_t> first{0};
-  for (const EntryBlock& block : blocks)
-    first.push_back(first.back() + block.columns.size());
-  return first;
+/// A graph, or a matrix whose entries are its lengths, of rows that are found by several threads.
+///
+/// \param find (begin, end, rows) appends the rows of [begin, end), which are a block.
+template <typename Find>
+Graph rowsOfBlocks(std::size_t count, int threads, const FractionReport& report, const Find& find) {
+  std::vector<Graph> blocks((count + kBlockSize - 1) / kBlockSize);
+  forEachBlock(count, threads, report, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    find(static_cast<Index>(begin), static_cast<Index>(end), blocks[b]);
+  });
+  Graph all;
+  all.offsets.reserve(count + 1);
+  std::size_t entries = 0;
+  for (const Graph& block : blocks) {
+    for (const Index row : block.nodes())
+      all.offsets.push_back(entries + block.end(row));
+    entries += block.neighbors.size();
+  }
+  all.neighbors.reserve(entries);
+  all.lengths.reserve(entries);
+  for (const Graph& block : blocks) {
+    all.neighbors.insert(all.neighbors.end(), block.neighbors.begin(), block.neighbors.end());
+    all.lengths.insert(all.lengths.end(), block.lengths.begin(), block.lengths.end());
+  }
+  return all;
 }
 
 /// The graph of the aggregates that touch.
 Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
                   const FractionReport& report) {
-  const Partition partition(cells.of_node, count);
+  const NeighborRows nodes = nodesOfParts(cells.of_node, count);
   reportFraction(report, 0.0);
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  struct Scratch {
-    Indexed<double> shortest;
-    std::vector<Index> touched;
-  };
-  std::vector<Scratch> scratch(static_cast<std::size_t>(threads));
-  std::vector<EntryBlock> blocks((count + kBlockSize - 1) / kBlockSize);
-  forEachItem(count, threads, report, [&](std::size_t thread, std::size_t c) {
-    auto& [shortest, touched] = scratch[thread];
+  std::vector<Indexed<double>> memory(static_cast<std::size_t>(threads));
+  return rowsOfBlocks(count, threads, report, [&](Index begin, Index end, Graph& rows) {
+    Indexed<double>& shortest = memory[threadNumber()];
     shortest.resize(count, infinity);
-    touched.clear();
-    const auto own = static_cast<Index>(c);
-    partition.forEach(own, [&, &shortest = shortest, &touched = touched](Index i) {
-      for (const std::size_t e : graph.entries(i)) {
-        const Index j = graph.neighbors[e];
-        const Index other = cells.of_node[j];
-        if (other == own)
-          continue;
-        if (shortest[other] == infinity)
-          touched.push_back(other);
-        // The sum of the distances first: the same bits from both sides of the edge. It stays a
-        // length where it is beyond the range of double.
-        const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
-        shortest[other] = std::min({shortest[other], length, std::numeric_limits<double>::max()});
+    std::vector<Index> touched;
+    for (const Index own : NumberRange(begin, end)) {
+      touched.clear();
+      for (const Index i : nodes.row(own))
+        for (const std::size_t e : graph.entries(i)) {
+          const Index j = graph.neighbors[e];
+          const Index other = cells.of_node[j];
+          if (other == own)
+            continue;
+          if (shortest[other] == infinity)
+            touched.push_back(other);
+          // The sum of the distances first: the same bits from both sides of the edge. It stays a
+          // length where it is beyond the range of double.
+          const double length = (cells.distances[i] + cells.distances[j]) + graph.lengths[e];
+          shortest[other] = std::min({shortest[other], length, std::numeric_limits<double>::max()});
+        }
+      std::sort(touched.begin(), touched.end());
+      for (const Index other : touched) {
+        rows.neighbors.push_back(other);
+        rows.lengths.push_back(std::exchange(shortest[other], infinity));
       }
-    });
-    std::sort(touched.begin(), touched.end());
-    EntryBlock& block = blocks[c / kBlockSize];
-    for (const Index other : touched) {
-      block.columns.push_back(other);
-      block.values.push_back(std::exchange(shortest[other], infinity));
+      rows.endRow();
     }
-    block.ends.push_back(block.columns.size());
   });
-  const std::vector<std::size_t> first = firstEntries(blocks);
-  Graph coarse;
-  coarse.offsets.reserve(count + 1);
-  coarse.neighbors.reserve(first.back());
-  coarse.lengths.reserve(first.back());
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    for (const std::size_t end : blocks[b].ends)
-      coarse.offsets.push_back(first[b] + end);
-    coarse.neighbors.insert(coarse.neighbors.end(), blocks[b].columns.begin(),
-                            blocks[b].columns.end());
-    coarse.lengths.insert(coarse.lengths.end(), blocks[b].values.begin(), blocks[b].values.end());
-  }
-  return coarse;
 }
 
 /// Adds an entry to a row that is sorted by seed; of two with the same seed the shorter path stays.
@@ -236,16 +229,9 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
                                                                   std::size_t count, int threads,
                                                                   const FractionReport& report) {
   const std::size_t n = graph.size();
-  std::vector<EntryBlock> blocks((n + kBlockSize - 1) / kBlockSize);
-  forEachBlock(n, threads, report, [&](std::size_t b, std::size_t begin, std::size_t end) {
-    EntryBlock& block = blocks[b];
-    // About three entries a row.
-    constexpr std::size_t expected = 4 * kBlockSize;
-    block.columns.reserve(expected);
-    block.values.reserve(expected);
-    block.ends.reserve(end - begin);
+  const Graph weights = rowsOfBlocks(n, threads, report, [&](Index begin, Index end, Graph& rows) {
     std::vector<std::pair<Index, double>> row;  // seed, length of the shortest path
-    for (const Index i : NumberRange(static_cast<Index>(begin), static_cast<Index>(end))) {
+    for (const Index i : NumberRange(begin, end)) {
       row.clear();
       row.emplace_back(cells.of_node[i], cells.distances[i]);
       const double own = cells.distances[i];
@@ -260,23 +246,19 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
         sum += weight;
       }
       for (const auto& [seed, weight] : row) {
-        block.columns.push_back(seed);
-        block.values.push_back(weight / sum);
+        rows.neighbors.push_back(seed);
+        rows.lengths.push_back(weight / sum);
       }
-      block.ends.push_back(block.columns.size());
+      rows.endRow();
     }
   });
-  const std::vector<std::size_t> first = firstEntries(blocks);
   Eigen::SparseMatrix<double, Eigen::RowMajor, Index> result(static_cast<Eigen::Index>(n),
                                                              static_cast<Eigen::Index>(count));
-  result.resizeNonZeros(static_cast<Eigen::Index>(first.back()));
-  forEachBlock(n, threads, [&](std::size_t b, std::size_t begin, std::size_t) {
-    const EntryBlock& block = blocks[b];
-    for (std::size_t r = 0; r < block.ends.size(); ++r)
-      result.outerIndexPtr()[begin + r + 1] = static_cast<Index>(first[b] + block.ends[r]);
-    std::copy(block.columns.begin(), block.columns.end(), result.innerIndexPtr() + first[b]);
-    std::copy(block.values.begin(), block.values.end(), result.valuePtr() + first[b]);
-  });
+  result.resizeNonZeros(static_cast<Eigen::Index>(weights.neighbors.size()));
+  std::transform(weights.offsets.begin(), weights.offsets.end(), result.outerIndexPtr(),
+                 [](std::size_t offset) { return static_cast<Index>(offset); });
+  std::copy(weights.neighbors.begin(), weights.neighbors.end(), result.innerIndexPtr());
+  std::copy(weights.lengths.begin(), weights.lengths.end(), result.valuePtr());
   return result;
 }
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
-#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -19,42 +18,20 @@ Bridge bridgeOf(const Positions& points, const ComponentTree::Pair& pair) {
 
 /// Appends up to `count` bridges, the shortest first, between ends that are not taken yet.
 ///
-/// \param for_each_end calls a function for each node that a bridge may begin at.
+/// \param from         nodes that a bridge may begin at.
 /// \param find_closest (i, taken, pair) lowers the pair to node i and the closest other end.
-template <typename ForEachEnd, typename FindClosest>
-void appendClosest(const Positions& points, std::vector<Index> taken, int count,
-                   const ForEachEnd& for_each_end, const FindClosest& find_closest,
-                   std::vector<Bridge>& bridges) {
+template <typename Nodes, typename FindClosest>
+void appendClosest(const Positions& points, const Nodes& from, std::vector<Index> taken, int count,
+                   const FindClosest& find_closest, std::vector<Bridge>& bridges) {
   for (int k = 0; k < count; ++k) {
     ComponentTree::Pair closest;
-    for_each_end([&](Index i) {
+    for (const Index i : from)
       if (std::find(taken.begin(), taken.end(), i) == taken.end())
         find_closest(i, taken, closest);
-    });
     if (closest.from < 0)
       break;
     bridges.push_back(bridgeOf(points, closest));
     taken.insert(taken.end(), {closest.from, closest.to});
-  }
-}
-
-/// Appends up to `count` bridges for each joint; tree and partition know the components.
-void appendFurther(const Positions& points, const ComponentTree& tree, const Indexed<Index>& part,
-                   const Partition& partition, const std::vector<Bridge>& joints, int count,
-                   std::vector<Bridge>& bridges) {
-  for (const Bridge& joint : joints) {
-    // The joints are a tree of the components: from the smaller ends no point asks too often.
-    Index smaller = part[joint.from];
-    Index other = part[joint.to];
-    if (partition.count(other) < partition.count(smaller))
-      std::swap(smaller, other);
-    appendClosest(
-        points, {joint.from, joint.to}, count,
-        [&](const auto& visit) { partition.forEach(smaller, visit); },
-        [&](Index i, const std::vector<Index>& taken, ComponentTree::Pair& closest) {
-          tree.nearestIn(other, i, taken, closest);
-        },
-        bridges);
   }
 }
 
@@ -160,11 +137,11 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
   // A set is represented by its lowest node: 0 if there is only one.
   while (*std::max_element(part.begin(), part.end()) > 0) {
     ComponentTree tree(points);
-    const Partition partition(part, part.size());
+    tree.setComponents(part);
+    const NeighborRows nodes = nodesOfParts(part, part.size());
     const Indexed<std::size_t> sizes = setSizes(part);
     const auto largest =
         static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-    tree.setComponents(part);
 
     Indexed<ComponentTree::Pair> shortest(part.size());
     for (const Index i : indicesOf(part))
@@ -179,7 +156,18 @@ std::vector<Bridge> shortestBridges(const Positions& points, UnionFind& parts,
         joints.push_back(bridgeOf(points, pair));
     }
     bridges.insert(bridges.end(), joints.begin(), joints.end());
-    appendFurther(points, tree, part, partition, joints, bridges_per_joint - 1, bridges);
+    for (const Bridge& joint : joints) {
+      // The joints are a tree of the components: from the smaller ends no point asks too often.
+      const auto [smaller, other] =
+          std::minmax({part[joint.from], part[joint.to]},
+                      [&](Index a, Index b) { return sizes[a] < sizes[b]; });
+      appendClosest(
+          points, nodes.row(smaller), {joint.from, joint.to}, bridges_per_joint - 1,
+          [&, to = other](Index i, const std::vector<Index>& taken, ComponentTree::Pair& closest) {
+            tree.nearestIn(to, i, taken, closest);
+          },
+          bridges);
+    }
     part = representatives(parts, part.size());
   }
   return bridges;
@@ -198,21 +186,15 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
   ComponentTree tree(points);
   tree.setComponents(part);
   for (const Index top : search.parts) {
-    const Index begin = search.rank[top];
-    const Index end = begin + search.size[top];
+    const auto begin = search.order.begin() + search.rank[top];
+    const auto end = begin + search.size[top];
     // From the smaller side: the search may have begun in the part that dangles.
-    const bool from_inside = end - begin <= n / 2;
+    const bool from_inside = search.size[top] <= n / 2;
+    std::vector<Index> from(from_inside ? begin : search.order.begin(), from_inside ? end : begin);
+    if (!from_inside)
+      from.insert(from.end(), end, search.order.end());
     appendClosest(
-        points, {search.parent[top]}, count,
-        [&](const auto& visit) {
-          const auto order = search.order.begin();
-          if (from_inside) {
-            std::for_each(order + begin, order + end, visit);
-          } else {
-            std::for_each(order, order + begin, visit);
-            std::for_each(order + end, search.order.end(), visit);
-          }
-        },
+        points, from, {search.parent[top]}, count,
         [&](Index i, const std::vector<Index>& taken, ComponentTree::Pair& closest) {
           if (from_inside)
             tree.nearestOther(i, taken, closest);
@@ -241,20 +223,20 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
   auto next = added.begin();
   for (const Index i : graph.nodes()) {
     const auto add = [&](Index neighbor, double length) {
+      if (result.neighbors.size() > result.offsets.back() && result.neighbors.back() == neighbor)
+        return;
       result.neighbors.push_back(neighbor);
       result.lengths.push_back(length);
-      while (next != added.end() && next->from == i && next->to <= neighbor)
-        ++next;
     };
-    const auto add_before = [&](Index end) {
-      while (next != added.end() && next->from == i && next->to < end)
+    const auto add_below = [&](Index end) {
+      for (; next != added.end() && next->from == i && next->to < end; ++next)
         add(next->to, next->length);
     };
     for (const std::size_t e : graph.entries(i)) {
-      add_before(graph.neighbors[e]);
+      add_below(graph.neighbors[e]);
       add(graph.neighbors[e], graph.lengths[e]);
     }
-    add_before(static_cast<Index>(graph.size()));
+    add_below(std::numeric_limits<Index>::max());
     result.endRow();
   }
   return result;
