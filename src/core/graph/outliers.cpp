@@ -145,14 +145,11 @@ DeviatingPoints deviatingPoints(const Positions& points, const NeighborLists& li
     reportFraction(report, 0.0);
     scoring.compute(is_outlier);
     const auto mean_over_rest = [&](const auto& value) {
-      const auto term = [&](std::size_t begin, std::size_t end) {
-        double sum = 0.0;
-        for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i)
-          if (is_outlier[i] == 0)
-            sum += value(std::min(scoring.scores[i], 1.0));
-        return sum;
-      };
-      return sumOfBlocks(is_outlier.size(), threads, 0.0, term) / static_cast<double>(left);
+      const double sum = accumulate(is_outlier.size(), threads, 0.0, [&](Index i, double& total) {
+        if (is_outlier[i] == 0)
+          total += value(std::min(scoring.scores[i], 1.0));
+      });
+      return sum / static_cast<double>(left);
     };
     const double mean = mean_over_rest([](double score) { return score; });
     const double deviation =
