@@ -1,5 +1,6 @@
 #include "result_units.h"
 
+#include "power_of_two.h"
 #include "spherical_param/result_fields.h"
 
 #include <algorithm>
@@ -16,19 +17,17 @@ namespace {
 struct Scaling {
   int exponent;
 
-  double scaled(const ResultField& field, double x) const {
-    return std::ldexp(x, field.power * exponent);
-  }
-
   template <typename Value>
   void operator()(const ResultField&, Value&) const {}
 
-  void operator()(const ResultField& field, double& value) const { value = scaled(field, value); }
+  void operator()(const ResultField& field, double& value) const {
+    value = std::ldexp(value, field.power * exponent);
+  }
 
   template <int Rows, int Cols>
   void operator()(const ResultField& field, Eigen::Matrix<double, Rows, Cols>& values) const {
     if (field.power != 0)
-      values = values.unaryExpr([&](double x) { return scaled(field, x); }).eval();
+      values = timesPowerOfTwo(values, field.power * exponent);
   }
 };
 

@@ -3,6 +3,7 @@
 #include "median.h"
 #include "neighbor_search.h"
 #include "ordered_points.h"
+#include "power_of_two.h"
 #include "progress.h"
 #include "quadric_fit.h"
 #include "rows.h"
@@ -295,8 +296,8 @@ Consolidation toInput(const Positions& input, const OrderedPoints& nodes,
     const Index point = consolidated.point_of_node[node_of_input[i]];
     if (number[point] < 0) {
       number[point] = count++;
-      result.points.col(number[point]) = consolidated.points.col(point).unaryExpr(
-          [&](double x) { return std::ldexp(x, nodes.exponent); });
+      result.points.col(number[point]) =
+          timesPowerOfTwo(consolidated.points.col(point), nodes.exponent);
     }
     result.point_of_input.push_back(number[point]);
     moved[i] = (result.points.col(number[point]) - input.col(i)).norm();

@@ -92,7 +92,6 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   int largest = 0;
   std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
   result.exponent = std::max(exponentOfExtent(low, high), largest - 1000);
-  const PowerOfTwo scaled(-result.exponent);
   std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
   result.distinct = numberVertices(mergeDuplicates(points, places, result.input_of_node));
   places = {};
@@ -102,7 +101,7 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   forEachIndex(count, threads, {}, [&](Index node) {
     const Index input = result.input_of_node[node];
     result.vertex_of_node[node] = result.distinct.vertex_of_input[input];
-    result.points.col(node) = scaled(points.col(input));
+    result.points.col(node) = timesPowerOfTwo(points.col(input), -result.exponent);
   });
   return result;
 }

@@ -150,9 +150,8 @@ void collectCandidates(const Positions& points, Index i, const Row<Index>& list,
   constexpr double safe = 1e-100;
   if (extent > 0.0 && (extent < safe || extent > 1.0 / safe)) {
     // By a power of two, which is exact.
-    const PowerOfTwo scaled(-std::ilogb(extent));
     for (Candidate& candidate : candidates) {
-      candidate.offset = scaled(candidate.offset);
+      candidate.offset = timesPowerOfTwo(candidate.offset, -std::ilogb(extent));
       candidate.squared_distance = candidate.offset.squaredNorm();
     }
   }

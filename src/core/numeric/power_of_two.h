@@ -7,23 +7,11 @@
 
 namespace spherical_param::internal {
 
-/// Multiplies by 2^exponent; exact unless the result is denormal.
-class PowerOfTwo {
-public:
-  explicit PowerOfTwo(int exponent) : exponent_(exponent), factor_(std::ldexp(1.0, exponent)) {}
-
-  double operator()(double x) const {
-    // Beyond, the factor itself is not a normal number.
-    return std::abs(exponent_) < 1000 ? x * factor_ : std::ldexp(x, exponent_);
-  }
-  Eigen::Vector3d operator()(const Eigen::Vector3d& x) const {
-    return {(*this)(x[0]), (*this)(x[1]), (*this)(x[2])};
-  }
-
-private:
-  int exponent_;
-  double factor_;
-};
+/// x * 2^exponent, of each coefficient; exact unless the result is denormal.
+template <typename Derived>
+typename Derived::PlainObject timesPowerOfTwo(const Eigen::MatrixBase<Derived>& x, int exponent) {
+  return x.unaryExpr([exponent](double number) { return std::ldexp(number, exponent); });
+}
 
 /// A power of two that brings coordinates of at most this size to 1/2 ... 1: the exact predicates
 /// multiply three differences.
@@ -37,12 +25,7 @@ inline double scaleToUnit(double most) {
 /// axis; 0 without any.
 inline int exponentOfExtent(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   int exponent = 0;
-  const double extent = (high - low).maxCoeff();
-  if (std::isfinite(extent)) {
-    std::frexp(extent, &exponent);
-    return extent > 0.0 ? exponent - 1 : 0;
-  }
-  // The difference of two huge coordinates; that of their halves is finite.
+  // Halves: the difference of two huge coordinates may be beyond the range of double.
   std::frexp((high / 2.0 - low / 2.0).maxCoeff(), &exponent);
   return exponent;
 }

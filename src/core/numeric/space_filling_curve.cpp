@@ -1,6 +1,7 @@
 #include "space_filling_curve.h"
 
 #include "bit_mixing.h"
+#include "power_of_two.h"
 #include "radix_sort.h"
 
 #include <algorithm>
@@ -78,14 +79,14 @@ void refineCrowds(const Positions& points, Place* begin, Place* end) {
 
 MortonCurve::MortonCurve(const Eigen::Vector3d& low, const Eigen::Vector3d& high)
     : half_((high - low).allFinite() ? 1.0 : 0.5), low_(half_ * low),
-      scaled_(-exponentOfExtent(low, high)) {
-  const double extent = scaled_(half_ * high - low_).maxCoeff();
+      exponent_(-exponentOfExtent(low, high)) {
+  const double extent = timesPowerOfTwo(half_ * high - low_, exponent_).maxCoeff();
   constexpr double cells = 2097151.0;  // 2^21 - 1
   scale_ = extent > 0.0 ? cells / extent : 0.0;
 }
 
 std::uint64_t MortonCurve::key(const Eigen::Vector3d& point) const {
-  const Eigen::Vector3d cell = scaled_(half_ * point - low_) * scale_;
+  const Eigen::Vector3d cell = timesPowerOfTwo(half_ * point - low_, exponent_) * scale_;
   return spread(static_cast<std::uint64_t>(cell.x())) |
          spread(static_cast<std::uint64_t>(cell.y())) << 1U |
          spread(static_cast<std::uint64_t>(cell.z())) << 2U;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "power_of_two.h"
 #include "spherical_param/types.h"
 
 #include <cstdint>
@@ -20,7 +19,7 @@ public:
 private:
   double half_;  ///< 1/2 if the extent is beyond the range of double, else 1
   Eigen::Vector3d low_;
-  PowerOfTwo scaled_;  ///< brings the cube to an extent of about 1
+  int exponent_;  ///< of a power of two that brings the cube to an extent of about 1
   double scale_;
 };
 
