@@ -14,18 +14,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Above this fraction of edges beyond the graph's 2-ring a mesh without optimisation is folded.
-/// Unfolded embeddings of closed surfaces have 0.0005 and less, folded limbs 0.003 and more, the
-/// filled opening of a bowl of some thousand points 0.002. Measured on local Delaunay
-/// neighbourhoods.
-constexpr double kMaxEdgesOutside = 0.001;
-/// Parts of at least this fraction of the largest count as objects of their own.
-constexpr double kMinFractionOfLargest = 0.25;
-/// From this certainty on, an opening is a possible one: 5.4 spacings wide. Of 140 clouds of whole
-/// objects (with noise, at random, thinned) 3 have such an opening; of 28 with holes or of several
-/// views 22 do. With 0.5 these are 1 and 20, with 0.3 6 and 24.
-constexpr double kMinCertainty = 0.4;
-
 /// A number as people write it: 49,996.
 std::string grouped(std::size_t number) {
   std::string text = std::to_string(number);
@@ -55,16 +43,23 @@ bool isRaw(const Options& options) {
 }
 
 bool isFolded(const Options& options, const Surface& result) {
+  // Above this fraction of edges beyond the graph's 2-ring a mesh without optimisation is folded.
+  // Unfolded embeddings of closed surfaces have 0.0005 and less, folded limbs 0.003 and more, the
+  // filled opening of a bowl of some thousand points 0.002. Measured on local Delaunay
+  // neighbourhoods.
+  constexpr double max_edges_outside = 0.001;
   return result.isFolded() ||
-         (isRaw(options) && result.diagnosis.edges_outside_graph > kMaxEdgesOutside);
+         (isRaw(options) && result.diagnosis.edges_outside_graph > max_edges_outside);
 }
 
 Finding partsOf(const std::vector<PartBridge>& bridges) {
   const PartBridge& bridge = bridges.front();
+  // Parts of at least this fraction of the largest count as objects of their own.
+  constexpr double min_fraction_of_largest = 0.25;
   // Many parts are a scene, and the largest part is mostly the object.
   const bool are_alike =
       bridges.size() == 1 && static_cast<double>(bridge.points) >=
-                                 kMinFractionOfLargest * static_cast<double>(bridge.other_points);
+                                 min_fraction_of_largest * static_cast<double>(bridge.other_points);
   return {counted(bridges.size() + 1, "separate part") + " (" +
               (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) + " and " +
               counted(bridge.other_points, "point") + ")",
@@ -90,8 +85,12 @@ std::optional<Finding> filledOf(const Surface& result, const Options& options) {
   const std::size_t certain = result.filledOpenings();
   std::size_t count = 0;
   std::size_t points = 0;
+  // From this certainty on, an opening is a possible one: 5.4 spacings wide. Of 140 clouds of whole
+  // objects (with noise, at random, thinned) 3 have such an opening; of 28 with holes or of several
+  // views 22 do. With 0.5 these are 1 and 20, with 0.3 6 and 24.
+  constexpr double min_certainty = 0.4;
   const auto is_possible = [](const Opening& opening) {
-    return opening.certainty >= kMinCertainty && !opening.is_flat;
+    return opening.certainty >= min_certainty && !opening.is_flat;
   };
   for (const Opening& opening : result.openings)
     if (opening.is_filled && (certain > 0 ? opening.isCertain() : is_possible(opening))) {

@@ -29,31 +29,16 @@ namespace {
 
 /// Neighbourhoods that are tried: they reach to this neighbour.
 constexpr std::array<std::size_t, 3> kScales{10, 20, 40};
-/// Which neighbourhood is best is decided by the errors at this number of nearest points together.
-/// With one decision for all points, normals on the scans are 2 % worse.
-constexpr std::size_t kJury = 48;
-/// The radii of neighbourhoods are averaged over this number of nearest points, twice: the surface
-/// is as smooth as they are. Without, normals on the scans are 5 % worse.
-constexpr std::size_t kAveraged = 20;
 /// Standard deviation of the weights [radius of the neighbourhood], in trials without the point
 /// itself, and for the fit with it, which needs fewer others. With 0.4 normals with noise are 12 %
 /// worse; with 0.5 better by 7 %, but those of three scans are worse than Poisson's.
 constexpr double kTrialWidth = 0.5;
 constexpr double kWidth = 0.45;
-/// Beyond this number of standard deviations weights are 0.
-constexpr double kReach = 3.0;
 /// Above this median roundness of neighbourhoods, 0 for a plane, noise hides the surface from them.
 /// Scans have 0.17 to 0.30, points with noise up to 0.38, dense ones 0.42 to 0.62, and 0.22 to 0.38
 /// after one round of merging. Without a bound, normals of dense clouds are off by 14 to 42 degrees
 /// instead of 5 to 8; with 0.3, the RMS distance of one scan is twice as large.
 constexpr double kMinThickRoundness = 0.4;
-/// Neighbourhoods on thin limbs of few points are round as well, but do not become flatter, however
-/// many points are merged. Where they are still round when fewer than this number are left, nothing
-/// is merged: 3,400 points of an animal on thin legs became 22 otherwise.
-constexpr Index kMinClusters = 200;
-/// Points of a cluster at most, and the nearest neighbours that they come from.
-constexpr int kClusterSize = 4;
-constexpr std::size_t kClusterNeighbors = 6;
 /// Fewer points have no noise to speak of.
 constexpr std::size_t kMinPoints = 20;
 /// A quadric of least squares through neighbours, with Gaussian weights.
@@ -64,13 +49,15 @@ public:
   /// \param width    standard deviation of the weights.
   void compute(const Positions& points, const Row<Index>& neighbors, const Eigen::Vector3d& point,
                Index left_out, double width) {
+    // Beyond this number of standard deviations weights are 0.
+    constexpr double reach = 3.0;
     width_ = width;
     weights_.clear();
     offsets_.clear();
     for (const Index j : neighbors) {
       const Eigen::Vector3d offset = (points.col(j) - point) / width;
       const double squared = offset.squaredNorm();
-      if (j == left_out || !(squared < kReach * kReach))
+      if (j == left_out || !(squared < reach * reach))
         continue;
       weights_.push_back(std::exp(-0.5 * squared));
       offsets_.push_back(offset);
@@ -116,6 +103,9 @@ public:
   ///
   /// \return the number of clusters.
   Index clusters(Indexed<Index>& cluster) const {
+    // Points of a cluster at most, and the nearest neighbours that they come from.
+    constexpr int cluster_size = 4;
+    constexpr std::size_t cluster_neighbors = 6;
     cluster.assign(lists_.size(), -1);
     Index count = 0;
     for (const Index i : indicesOf(cluster)) {
@@ -124,8 +114,8 @@ public:
       int taken = 0;
       // The point is the first of its own neighbours, or one at the same place.
       cluster[i] = count;
-      for (const Index j : listOf(lists_, i).first(kClusterNeighbors + 1))
-        if (cluster[j] < 0 && ++taken < kClusterSize)
+      for (const Index j : listOf(lists_, i).first(cluster_neighbors + 1))
+        if (cluster[j] < 0 && ++taken < cluster_size)
           cluster[j] = count;
       ++count;
     }
@@ -183,17 +173,23 @@ private:
   Indexed<double> chooseRadii() const {
     Indexed<double> radii(lists_.size());
     forEachIndex(radii.size(), threads_, {}, [&](Index i) {
+      // Which neighbourhood is best is decided by the errors at this number of nearest points
+      // together. With one decision for all points, normals on the scans are 2 % worse.
+      constexpr std::size_t jury = 48;
       ScaleValues sums{};
-      for (const Index j : listOf(lists_, i).first(kJury))
+      for (const Index j : listOf(lists_, i).first(jury))
         for (std::size_t s = 0; s < kScales.size(); ++s)
           sums[s] += errors_[j][s];
       radii[i] =
           *(scale_radii_[i].begin() + (std::min_element(sums.begin(), sums.end()) - sums.begin()));
     });
+    // The radii of neighbourhoods are averaged over this number of nearest points, twice: the
+    // surface is as smooth as they are. Without, normals on the scans are 5 % worse.
+    constexpr std::size_t averaged = 20;
     Indexed<double> means(radii.size());
     for (int round = 0; round < 2; ++round) {
       forEachIndex(radii.size(), threads_, {}, [&](Index i) {
-        const Row<Index> nearest = listOf(lists_, i).first(kAveraged);
+        const Row<Index> nearest = listOf(lists_, i).first(averaged);
         double sum = 0.0;
         for (const Index j : nearest)
           sum += radii[j];
@@ -269,8 +265,12 @@ ConsolidatedNodes consolidated(const Positions& nodes, const Execution& executio
   std::optional<NoisyCloud> clustered;
   NoisyCloud* cloud = &given;
   while (cloud->isThick()) {
+    // Neighbourhoods on thin limbs of few points are round as well, but do not become flatter,
+    // however many points are merged. Where they are still round when fewer than this number are
+    // left, nothing is merged: 3,400 points of an animal on thin legs became 22 otherwise.
+    constexpr Index min_clusters = 200;
     const Index count = cloud->clusters(part);
-    if (count < kMinClusters) {
+    if (count < min_clusters) {
       result = ConsolidatedNodes(nodes);
       cloud = &given;
       break;

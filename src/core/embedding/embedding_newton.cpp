@@ -8,24 +8,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// No cloud needs as many: they end systems that never converge.
-constexpr int kMaxLinearIterations = 200;
-constexpr int kMaxHalvings = 40;
-/// A longer step could jump over the barrier to the collapsed state, whose energy is 0 [rad].
-/// Without a bound, 9 of the 52 meshes of multilevel_embedding.cpp intersect themselves instead
-/// of 8.
-constexpr double kMaxStep = 0.3;
-/// Conjugate gradients measure their progress by energy, to which small parts of the embedding add
-/// nothing. Where the relative residual lags behind the absolute one by this factor, each step is
-/// refined by this number of V-cycles, which treat all scales alike. With any lag, 10 of the 52
-/// meshes intersect themselves; without refinement, self-intersections of two spheres grow by a
-/// fifth.
-constexpr double kMaxLag = 4.0;
-constexpr int kRefinements = 4;
-/// The residual must fall by this factor where rounding hides the change of the energy. With 1, the
-/// self-intersections of two spheres grow by a seventh.
-constexpr double kMaxResidualRatio = 0.9;
-
 double dot(const Positions& x, const Positions& y) {
   return x.cwiseProduct(y).sum();
 }
@@ -52,9 +34,17 @@ struct Iterate {
 /// \return nothing if rounding leaves no such step.
 std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& current,
                                   const Positions& step, double expected) {
+  constexpr int max_halvings = 40;
+  // A longer step could jump over the barrier to the collapsed state, whose energy is 0 [rad].
+  // Without a bound, 9 of the 52 meshes of multilevel_embedding.cpp intersect themselves instead
+  // of 8.
+  constexpr double max_step = 0.3;
+  // The residual must fall by this factor where rounding hides the change of the energy. With 1,
+  // the self-intersections of two spheres grow by a seventh.
+  constexpr double max_residual_ratio = 0.9;
   const double rounding = 1e-14 * std::abs(current.value) + 1e-300;
-  double fraction = std::min(1.0, kMaxStep / step.colwise().norm().maxCoeff());
-  for (int halving = 0; halving < kMaxHalvings; ++halving, fraction /= 2.0) {
+  double fraction = std::min(1.0, max_step / step.colwise().norm().maxCoeff());
+  for (int halving = 0; halving < max_halvings; ++halving, fraction /= 2.0) {
     Iterate trial;
     trial.directions = (current.directions + fraction * step).colwise().normalized();
     trial.value = energy.value(trial.directions);
@@ -65,8 +55,8 @@ std::optional<Iterate> searchLine(const EmbeddingEnergy& energy, const Iterate& 
     if (!is_rounding && !(change <= 1e-4 * fraction * expected))
       continue;
     trial.residual = energy.gradient(trial.directions, trial.gradient);
-    if (is_rounding && !(trial.residual.absolute < kMaxResidualRatio * current.residual.absolute ||
-                         trial.residual.relative < kMaxResidualRatio * current.residual.relative))
+    if (is_rounding && !(trial.residual.absolute < max_residual_ratio * current.residual.absolute ||
+                         trial.residual.relative < max_residual_ratio * current.residual.relative))
       continue;
     return trial;
   }
@@ -92,13 +82,15 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
     project(u, x);
     return x;
   };
+  // No cloud needs as many: they end systems that never converge.
+  constexpr int max_linear_iterations = 200;
   Positions x = Positions::Zero(3, u.cols());
   Positions residual = -iterate.gradient;
   Positions direction = precondition(residual);
   Positions product;
   double square = dot(residual, direction);
   const double goal = tolerance.reduction * tolerance.reduction * square;
-  for (int i = 0; i < kMaxLinearIterations && square > goal; ++i) {
+  for (int i = 0; i < max_linear_iterations && square > goal; ++i) {
     energy.multiplyHessian(u, direction, product);
     const double curvature = dot(direction, product);
     if (!(curvature > 0.0)) {
@@ -125,6 +117,12 @@ Positions conjugateGradients(const EmbeddingEnergy& energy, const Iterate& itera
 
 NewtonReport minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& preconditioner,
                               const NewtonOptions& options, Positions& directions) {
+  // Conjugate gradients measure their progress by energy, to which small parts of the embedding add
+  // nothing. Where the relative residual lags behind the absolute one by this factor, each step is
+  // refined by four V-cycles, which treat all scales alike. With any lag, 10 of the 52
+  // meshes intersect themselves; without refinement, self-intersections of two spheres grow by a
+  // fifth.
+  constexpr double max_lag = 4.0;
   NewtonReport report;
   Iterate current;
   current.residual = energy.gradient(directions, current.gradient);
@@ -154,8 +152,8 @@ NewtonReport minimizeByNewton(const EmbeddingEnergy& energy, LaplacianCycle& pre
     const double ratio = next->residual.absolute / residual.absolute;
     reduction = std::clamp(0.9 * ratio * ratio, 1e-4, 0.1);
     if (next->residual.relative > options.relative_tolerance &&
-        next->residual.relative > kMaxLag * ratio * residual.relative)
-      refinements = kRefinements;
+        next->residual.relative > max_lag * ratio * residual.relative)
+      refinements = 4;
     current = std::move(*next);
     directions = current.directions;  // for the observer of the progress
     ++report.iterations;

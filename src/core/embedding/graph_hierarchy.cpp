@@ -17,10 +17,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// A level that keeps more than this fraction of the nodes is left out, and is the last: levels of
-/// a hub with n neighbours could be as many as these. No cloud has any: 0.6 and 1 change nothing.
-constexpr double kMaxKeptFraction = 0.9;
-
 /// Numbers of the nodes that look random, but come from the lengths of their edges alone: moving,
 /// turning, scaling or renumbering the points changes them only where rounding decides.
 Indexed<double> scrambledKeys(const Graph& graph, std::uint32_t seed, int threads) {
@@ -278,6 +274,9 @@ HierarchyLevel coarsened(const Graph& graph, std::uint32_t seed, int requested_t
 
 GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index coarsest_size,
                                    const Execution& execution) {
+  // A level that keeps more than this fraction of the nodes is left out, and is the last: levels of
+  // a hub with n neighbours could be as many as these. No cloud has any: 0.6 and 1 change nothing.
+  constexpr double max_kept_fraction = 0.9;
   GraphHierarchy hierarchy;
   const Graph* finest = &graph;
   const FractionReport report = reportOf(execution, "embedding");
@@ -285,7 +284,7 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
     HierarchyLevel level = coarsened(*finest, seed, execution.threads, report);
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
-                                      kMaxKeptFraction * static_cast<double>(finest->size()))
+                                      max_kept_fraction * static_cast<double>(finest->size()))
       break;
     hierarchy.levels.push_back(std::move(level));
     finest = &hierarchy.levels.back().graph;

@@ -8,15 +8,6 @@
 #include <utility>
 
 namespace spherical_param::internal {
-namespace {
-
-/// Linear systems of at most this number of nodes are solved directly. With none, 127 meshes have
-/// 279 self-intersections instead of 48, in the same time; with all, a tolerance takes 1.5 times as
-/// long.
-constexpr std::size_t kMaxDirectSize = 10000;
-
-}  // namespace
-
 EmbeddingLevels::EmbeddingLevels(const Graph& graph, const GraphHierarchy& hierarchy, int threads)
     : graph_(graph), hierarchy_(hierarchy), threads_(threads),
       masses_(1, meanSquares(graph, [&graph](Index, std::size_t e) {
@@ -78,7 +69,11 @@ std::vector<double> EmbeddingLevels::solve(std::size_t l, const Solution& soluti
       return isCollapsed(centroid(l, directions));
     };
   // Small systems are solved directly: no slower, and exact at all scales.
-  const bool is_direct = graph(l).size() <= kMaxDirectSize;
+  // Linear systems of at most this number of nodes are solved directly. With none, 127 meshes have
+  // 279 self-intersections instead of 48, in the same time; with all, a tolerance takes 1.5 times
+  // as long.
+  constexpr std::size_t max_direct_size = 10000;
+  const bool is_direct = graph(l).size() <= max_direct_size;
   LaplacianCycle preconditioner(hierarchy_, is_direct ? coarsest() : l);
   NewtonReport newton = minimizeByNewton(energy, preconditioner, options, u);
   report.newton_iterations += newton.iterations;

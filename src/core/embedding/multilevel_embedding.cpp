@@ -34,11 +34,6 @@ constexpr double kStartTolerance = 3e-3;
 constexpr double kLevelTolerance = 1e-3;
 constexpr double kGraphTolerance = 1e-2;
 constexpr double kFreedTolerance = 3e-5;
-/// Smoothing sweeps on a planar start, whose edges are far from their lengths. With 0, 9 of the 52
-/// intersect themselves.
-constexpr int kStartSweeps = 3;
-/// Largest level on which an attempt starts; the bound limits the time.
-constexpr std::size_t kMaxStartSize = 100000;
 /// The sphere drifts off a wide gap without folding what is left, and a barrier that only stops
 /// this drift leaves at most this relative residual without it: 0.003 to 0.056 on most bodies that
 /// are cut, thinned or have holes. Where the sphere has slipped off a limb, the barrier holds the
@@ -46,9 +41,6 @@ constexpr std::size_t kMaxStartSize = 100000;
 /// shapes have 6,904,781 self-intersections after the first flips instead of 206,919. With 0, the
 /// springer takes 210 ms instead of 60, half of an armadillo 4.7 s instead of 0.25.
 constexpr double kMaxPull = 0.06;
-/// An attempt with a barrier tries this many times as many starts. With 1, an elephant from eight
-/// depth images folds with one seed of nine.
-constexpr int kBarrierRounds = 4;
 
 /// One attempt at an embedding.
 class Ascent {
@@ -140,9 +132,12 @@ private:
   /// with that after them, a cut penguin has 42 intersections instead of 12 (mean of five seeds).
   void solveStart(const std::function<void(int, double)>& progress, Positions& u,
                   LevelReport& work) const {
+    // Smoothing sweeps on a planar start, whose edges are far from their lengths. With 0, 9 of the
+    // 52 intersect themselves.
+    constexpr int start_sweeps = 3;
     const Positions planar = u;
-    levels_.smooth(attempt_.level, kStartSweeps, {}, u);
-    work.sweeps = kStartSweeps;
+    levels_.smooth(attempt_.level, start_sweeps, {}, u);
+    work.sweeps = start_sweeps;
     levels_.solve(
         attempt_.level,
         {kStartTolerance, std::nullopt, hasBarrier(attempt_.level) ? &planar : nullptr, progress},
@@ -222,12 +217,17 @@ private:
 }  // namespace
 
 std::vector<EmbeddingAttempt> attemptsOf(const EmbeddingLevels& levels, int starts) {
+  // Largest level on which an attempt starts; the bound limits the time.
+  constexpr std::size_t max_start_size = 100000;
+  // An attempt with a barrier tries this many times as many starts. With 1, an elephant from eight
+  // depth images folds with one seed of nine.
+  constexpr int barrier_rounds = 4;
   const std::size_t coarsest = levels.coarsest();
   const auto few = static_cast<std::size_t>(starts);
   std::vector<EmbeddingAttempt> attempts = {
       {coarsest, EmbeddingBarrier::None, few, few},
-      {coarsest, EmbeddingBarrier::CoarseLevels, kBarrierRounds * few, few}};
-  for (std::size_t l = coarsest; l-- > 0 && levels.graph(l).size() <= kMaxStartSize;)
+      {coarsest, EmbeddingBarrier::CoarseLevels, barrier_rounds * few, few}};
+  for (std::size_t l = coarsest; l-- > 0 && levels.graph(l).size() <= max_start_size;)
     attempts.push_back({l, EmbeddingBarrier::None, few, 1});
   attempts.push_back({coarsest, EmbeddingBarrier::Everywhere, few, few});
   return attempts;

@@ -19,14 +19,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Nodes far from each other by which central nodes are found. With 1 the 25 awkward clouds of
-/// local_delaunay_graph.cpp have 1,377,940 self-intersections instead of 61,815, with 4, 58,590.
-constexpr int kLandmarks = 12;
-/// Logarithm of the factor by which conductances fall with each edge of distance. With 0 these
-/// clouds have 77,309.
-constexpr double kDrift = 0.5;
-/// Largest argument of exp(), with room for products.
-constexpr double kMaxExponent = 300.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Lengths of the shortest paths from a node (E. W. Dijkstra, 1959).
@@ -141,7 +133,9 @@ Eigen::MatrixX2d drawInPlane(const Graph& graph, const std::array<Index, 3>& out
     return plane;
   const Indexed<int> hops = hopsFrom(graph, outer);
   const int max_hops = *std::max_element(hops.begin(), hops.end());
-  const double drift = std::min(kDrift, kMaxExponent / std::max(max_hops, 1));
+  // Logarithm of the factor by which conductances fall with each edge of distance: with 0, the
+  // clouds of centralNodes() have 77,309. The largest argument of exp() leaves room for products.
+  const double drift = std::min(0.5, 300.0 / std::max(max_hops, 1));
   Indexed<double> roots(graph.size(), 0.0);
   for (const Index i : graph.nodes()) {
     for (const std::size_t e : graph.entries(i))
@@ -196,6 +190,9 @@ Positions projectOnSphere(Eigen::MatrixX2d plane) {
 }  // namespace
 
 std::vector<Index> centralNodes(const Graph& graph) {
+  // Nodes far from each other by which central nodes are found. With 1 the 25 awkward clouds of
+  // local_delaunay_graph.cpp have 1,377,940 self-intersections instead of 61,815, with 4, 58,590.
+  constexpr int landmarks = 12;
   // The node of the longest edges, whatever the numbering. It only serves to find one that is far.
   Indexed<double> reach(graph.size(), 0.0);
   for (const Index i : graph.nodes())
@@ -208,7 +205,7 @@ std::vector<Index> centralNodes(const Graph& graph) {
   Index landmark = farthest(pathLengths(graph, farthest(reach)));
   Indexed<double> eccentricity(graph.size(), 0.0);
   Indexed<double> nearest(graph.size(), kInfinity);
-  for (int count = 0; count < kLandmarks; ++count) {
+  for (int count = 0; count < landmarks; ++count) {
     const Indexed<double> distances = pathLengths(graph, landmark);
     for (const Index i : graph.nodes()) {
       eccentricity[i] = std::max(eccentricity[i], distances[i]);

@@ -15,14 +15,6 @@ namespace {
 // The experiments are on 13 models and 13 shapes of up to 60,000 points, on 25 awkward clouds (few
 // points, lines of a scanner, tubes, parts, volumes) and on 35 open, partial and raw scans.
 
-/// Bridges of each pair of components that are joined: one alone lets a part dangle, and collapse
-/// in the embedding. With 1 or 2, two spheres have 962 or 780 self-intersections instead of 0.
-constexpr int kBridgesPerJoint = 3;
-/// Degree below which a point is repaired. Below 4 would be too generous: it brings back edges that
-/// one star alone saw, across gaps; a model then has 1,203 self-intersections instead of 0. With 0,
-/// a pair of elephants has 2,093,249 instead of 77,968.
-constexpr std::size_t kMinDegree = 3;
-
 Bridge edgeBetween(const Positions& points, Index i, Index j) {
   return {std::min(i, j), std::max(i, j), edgeLength(points, i, j)};
 }
@@ -42,17 +34,21 @@ void joinWithoutPlane(const Positions& points, const Stars& stars, Graph& graph)
 
 /// Gives points of low degree their whole star and their nearest points.
 void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
+  // Degree below which a point is repaired. Below 4 would be too generous: it brings back edges
+  // that one star alone saw, across gaps; a model then has 1,203 self-intersections instead of 0.
+  // With 0, a pair of elephants has 2,093,249 instead of 77,968.
+  constexpr std::size_t min_degree = 3;
   std::vector<Bridge> edges;
   std::optional<ComponentTree> tree;
   for (const Index i : graph.nodes()) {
-    if (graph.row(i).size() >= kMinDegree)
+    if (graph.row(i).size() >= min_degree)
       continue;
     for (const Index j : stars.of(i))
       edges.push_back(edgeBetween(points, i, j));
     if (!tree)
       tree.emplace(points);
     std::vector<Index> nearest;
-    while (nearest.size() < kMinDegree) {
+    while (nearest.size() < min_degree) {
       ComponentTree::Pair pair;
       tree->nearestOther(i, nearest, pair);
       if (pair.from < 0)
@@ -69,13 +65,16 @@ void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
 /// Of parts in a chain only the ends: needles have such chains, and gained nothing from more
 /// rounds.
 void connect(const Positions& points, const FractionReport& report, NeighborGraph& result) {
+  // Bridges of each pair of components that are joined: one alone lets a part dangle, and collapse
+  // in the embedding. With 1 or 2, two spheres have 962 or 780 self-intersections instead of 0.
+  constexpr int bridges_per_joint = 3;
   reportFraction(report, 0.0);
   UnionFind parts = connectedComponents(result.graph);
-  result.bridges = shortestBridges(points, parts, kBridgesPerJoint);
+  result.bridges = shortestBridges(points, parts, bridges_per_joint);
   if (!result.bridges.empty())
     result.graph = withEdges(result.graph, result.bridges);
   const std::vector<Bridge> bridges =
-      articulationBridges(points, result.graph, kBridgesPerJoint - 1);
+      articulationBridges(points, result.graph, bridges_per_joint - 1);
   if (bridges.empty())
     return;
   result.graph = withEdges(result.graph, bridges);

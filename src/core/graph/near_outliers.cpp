@@ -13,12 +13,6 @@ namespace {
 // The experiments are on 14 models, each as it is, as a random quarter, with noise of a quarter of
 // an edge and sampled at random, and on the models with 1 % of points anywhere in their box.
 
-/// Points nearer to the surface than this are never outliers [spacing].
-constexpr double kMinDistance = 0.25;
-/// Outliers are off by more than this number of standard deviations of their neighbours. With 10
-/// none of the 56 clouds loses a point, and 108 of 196 stray points near the surface are found;
-/// with 6, 14 clouds lose 22 points, and 135 are found.
-constexpr double kMinDeviations = 10.0;
 /// Distance of the origin from the quadric of least squares through its neighbours; 0 if they do
 /// not show an outlier.
 double distanceOff(const std::vector<Eigen::Vector3d>& neighbors, QuadricFit& quadric) {
@@ -30,7 +24,13 @@ double distanceOff(const std::vector<Eigen::Vector3d>& neighbors, QuadricFit& qu
   // The fit itself is less certain where it is not held by neighbours.
   const double distance = std::abs(quadric.height()) / std::sqrt(1.0 + quadric.leverage() / n);
   const double deviation = quadric.residual() * std::sqrt(n / (n - QuadricFit::kCoefficients));
-  return distance > kMinDistance && distance > kMinDeviations * deviation ? distance : 0.0;
+  // Points nearer to the surface than this are never outliers [spacing].
+  constexpr double min_distance = 0.25;
+  // Outliers are off by more than this number of standard deviations of their neighbours. With 10
+  // none of the 56 clouds loses a point, and 108 of 196 stray points near the surface are found;
+  // with 6, 14 clouds lose 22 points, and 135 are found.
+  constexpr double min_deviations = 10.0;
+  return distance > min_distance && distance > min_deviations * deviation ? distance : 0.0;
 }
 
 /// The kFittedNeighbors first others of the list of a point; empty if it has fewer.

@@ -33,9 +33,6 @@ void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
                          " of " + std::to_string(n) + " points; indices must be in [0, n)");
 }
 
-/// Points that a caller's search is asked for at once: between two questions progress is reported.
-constexpr std::size_t kQuestion = 4096;
-
 /// The caller's search, in the numbers of nodes.
 NeighborSearch searchOfCaller(const OrderedPoints& nodes, const std::vector<Index>& inputs,
                               const NeighborSearchFactory& search_of, const Execution& execution) {
@@ -53,11 +50,14 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const std::vector<Inde
     node_of_input[input_of_node[node]] = node;
   return [search = search_of(points), input_of_node, node_of_input,
           report = reportOf(execution, "neighbors")](const std::vector<Index>& queries, int count) {
+    // Points that a caller's search is asked for at once: between two questions progress is
+    // reported.
+    constexpr std::size_t question = 4096;
     NeighborLists lists;
-    for (std::size_t begin = 0; begin < queries.size(); begin += kQuestion) {
+    for (std::size_t begin = 0; begin < queries.size(); begin += question) {
       reportFraction(report, static_cast<double>(begin) / static_cast<double>(queries.size()));
       std::vector<Index> asked;
-      for (std::size_t q = begin; q < std::min(begin + kQuestion, queries.size()); ++q)
+      for (std::size_t q = begin; q < std::min(begin + question, queries.size()); ++q)
         asked.push_back(input_of_node[queries[q]]);
       const NeighborLists found = search(asked, count);
       checkLists(found, asked.size(), node_of_input.size());

@@ -28,27 +28,10 @@ constexpr double kMaxLength = 1.5;
 constexpr std::size_t kMinSteps = 7;
 constexpr double kMinWidth = 3.0;
 constexpr double kMinCorner = 0.65 * kPi;
-/// A face less round than this, 1 for a disc, is a slit, and must be wider [spacing]. Left open, a
-/// seam of a closed model, 82 edges long and 3.6 spacings wide, makes the RMS of its open clouds 4
-/// to 30 times as large; a true slit of 14 clouds that is filled 1.5 times. With 5 spacings another
-/// two sheets join.
-constexpr double kMinRoundness = 0.2;
-constexpr double kMinSlitWidth = 4.0;
 /// Edges between sheets are steeper than this [sine], and join normals of a smaller cosine. Normals
 /// of opposite sheets are as far apart, and to different sides.
 constexpr double kMaxSheetSlope = 0.6;
 constexpr double kMinSheetCosine = 0.5;
-/// Neighbours on one sheet for sure have normals of a larger cosine, but for the sign, and an edge
-/// that is half as steep as between sheets.
-constexpr double kMinOneSheetCosine = 0.9;
-/// The least number of such neighbours across which a surface has one side only.
-constexpr std::size_t kMinTwisted = 10;
-/// How far the moments of directions are taken about their mean, not about 0.
-constexpr double kCentered = 0.5;
-/// A narrower flat patch is a line [spacing].
-constexpr double kMinPatchWidth = 0.1;
-/// Loops nearer to a plane are flat [spacing].
-constexpr double kMaxFlat = 0.01;
 
 /// The short edges of the graph that do not cross each other; those of each node in the order
 /// around its normal.
@@ -88,8 +71,11 @@ public:
 
   /// Edges between neighbours on one sheet that have normals to opposite sides.
   std::size_t countTwisted() const {
+    // Neighbours on one sheet for sure have normals of a larger cosine, but for the sign, and an
+    // edge that is half as steep as between sheets.
+    constexpr double min_one_sheet_cosine = 0.9;
     return countEdges(edges_, [&](Index v, Index w) {
-      return cosine(v, w) < -kMinOneSheetCosine && slope(v, w) < kMaxSheetSlope / 2.0;
+      return cosine(v, w) < -min_one_sheet_cosine && slope(v, w) < kMaxSheetSlope / 2.0;
     });
   }
 
@@ -215,9 +201,11 @@ private:
           if (x != v)
             add(x);
       }
+      // How far the moments of directions are taken about their mean, not about 0.
+      constexpr double centered = 0.5;
       // On a sharp edge the moments alone would decide for one of its two planes.
       if (count > 0.0)
-        moments -= kCentered / count * sum * sum.transpose();
+        moments -= centered / count * sum * sum.transpose();
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
       solver.computeDirect(moments);
       normals_.col(v) = solver.eigenvectors().col(0);
@@ -320,7 +308,9 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
   opening.width =
       std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
-  opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < kMaxFlat * opening.spacing;
+  // Loops nearer to a plane are flat [spacing].
+  constexpr double max_flat = 0.01;
+  opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < max_flat * opening.spacing;
   opening.certainty =
       std::clamp((opening.width / opening.spacing - kMinWidth) / (2.0 * kMinWidth), 0.0, 1.0);
   return opening;
@@ -355,10 +345,12 @@ std::vector<std::array<Index, 2>> falseEdges(const Graph& graph, const Rotation&
 /// on a line.
 std::optional<Opening> outsideOf(const Positions& points, const Indexed<double>& spacing,
                                  const Rotation& rotation) {
+  // A narrower flat patch is a line [spacing].
+  constexpr double min_patch_width = 0.1;
   std::optional<Opening> outside;
   for (std::vector<Index>& loop : rotation.faces(3, 0.0)) {
     Opening face = measured(points, spacing, std::move(loop));
-    if (face.width >= kMinPatchWidth * face.spacing && (!outside || face.area > outside->area))
+    if (face.width >= min_patch_width * face.spacing && (!outside || face.area > outside->area))
       outside = std::move(face);
   }
   return outside;
@@ -368,11 +360,17 @@ std::optional<Opening> outsideOf(const Positions& points, const Indexed<double>&
 Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                     const Rotation& rotation) {
   Openings result;
+  // A face less round than this, 1 for a disc, is a slit, and must be wider [spacing]. Left open, a
+  // seam of a closed model, 82 edges long and 3.6 spacings wide, makes the RMS of its open clouds 4
+  // to 30 times as large; a true slit of 14 clouds that is filled 1.5 times. With 5 spacings
+  // another two sheets join.
+  constexpr double min_roundness = 0.2;
+  constexpr double min_slit_width = 4.0;
   result.spacing = spacing;
   for (std::vector<Index>& loop : rotation.faces(kMinSteps, kMinCorner)) {
     Opening opening = measured(points, spacing, std::move(loop));
     const double roundness = kPi * opening.width / opening.boundary_length;
-    if (opening.width >= (roundness < kMinRoundness ? kMinSlitWidth : kMinWidth) * opening.spacing)
+    if (opening.width >= (roundness < min_roundness ? min_slit_width : kMinWidth) * opening.spacing)
       result.openings.push_back(std::move(opening));
   }
   if (result.openings.empty() && areCoplanar(points)) {
@@ -380,7 +378,9 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
     if (outside)
       result.openings.push_back(std::move(*outside));
   }
-  result.is_one_sided = !result.openings.empty() && rotation.countTwisted() >= kMinTwisted;
+  // Neighbours on one sheet with opposite normals, from which on a surface has one side only.
+  constexpr std::size_t min_twisted = 10;
+  result.is_one_sided = !result.openings.empty() && rotation.countTwisted() >= min_twisted;
   result.false_edges = falseEdges(graph, rotation, result);
   std::stable_sort(
       result.openings.begin(), result.openings.end(),

@@ -19,10 +19,6 @@ namespace {
 constexpr int kNeighbors = 16;
 /// Fewer span no plane.
 constexpr int kMinNeighbors = 3;
-/// Neighbours with mean distances longer than this number of times their median may be outliers.
-constexpr double kMaxDistanceRatio = 2.0;
-/// Neighbours whose spread across is less than this fraction of that along are on a line.
-constexpr double kMinSpreadRatio = 1e-6;
 
 /// A neighbour of a point; ordered by how crowded it is there, then by how near it is.
 struct Neighbor {
@@ -49,7 +45,9 @@ double distanceFromPlane(const Positions& points, const Eigen::Vector3d& point,
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
   const Eigen::Vector3d& spread = axes.eigenvalues();  // ascending, squared
-  if (spread[1] <= kMinSpreadRatio * kMinSpreadRatio * spread[2]) {
+  // Neighbours whose spread across is less than this fraction of that along are on a line.
+  constexpr double min_spread_ratio = 1e-6;
+  if (spread[1] <= min_spread_ratio * min_spread_ratio * spread[2]) {
     const Eigen::Vector3d along = axes.eigenvectors().col(2);
     return spread[2] > 0.0 ? (centroid - centroid.dot(along) * along).norm() : centroid.norm();
   }
@@ -121,7 +119,9 @@ private:
     const double scale = around[around.size() / 2].mean_distance;
     if (!(scale > 0.0))
       return 0.0;  // neighbours in one place have no scale
-    while (around.back().mean_distance > kMaxDistanceRatio * scale)
+    // Neighbours with mean distances longer than this number of times their median may be outliers.
+    constexpr double max_distance_ratio = 2.0;
+    while (around.back().mean_distance > max_distance_ratio * scale)
       around.pop_back();
     return distanceFromPlane(points_, points_.col(i), around) / scale;
   }

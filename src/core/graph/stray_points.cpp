@@ -16,9 +16,6 @@ namespace {
 
 /// A piece of fewer points is a stray cluster. The base of one model is a piece of 55.
 constexpr std::size_t kMinSurface = 32;
-/// A piece that is coarser than the surface beside it by this factor, and holds no sheet, is a net
-/// of stray points. Walls in a depth image have 0.5 to 0.9, nets 14 to 20.
-constexpr double kMaxCoarseness = 5.0;
 
 /// Whether an edge has triangles on both sides: its ends have two neighbours in common.
 bool isInSheet(const Graph& graph, Index i, Index j) {
@@ -47,12 +44,15 @@ void markSheets(const Graph& agreed, const Indexed<Index>& piece, const Indexed<
 /// Marks the other large pieces that are no coarser than the surface beside them.
 void markFinePieces(const SurfaceDistance& distance, const Indexed<Index>& piece,
                     const Indexed<std::size_t>& sizes, Indexed<char>& is_surface) {
+  // A piece that is coarser than the surface beside it by this factor, and holds no sheet, is a net
+  // of stray points. Walls in a depth image have 0.5 to 0.9, nets 14 to 20.
+  constexpr double max_coarseness = 5.0;
   Indexed<std::vector<double>> coarseness(piece.size());
   for (const Index i : indicesOf(piece))
     if (is_surface[piece[i]] == 0 && sizes[piece[i]] >= kMinSurface)
       coarseness[piece[i]].push_back(distance.coarseness(i));
   for (const Index k : indicesOf(piece))
-    if (!coarseness[k].empty() && medianOf(coarseness[k]) <= kMaxCoarseness)
+    if (!coarseness[k].empty() && medianOf(coarseness[k]) <= max_coarseness)
       is_surface[k] = 1;
 }
 

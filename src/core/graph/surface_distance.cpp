@@ -13,23 +13,18 @@
 namespace spherical_param::internal {
 namespace {
 
-/// A point may be noise if it is within a spacing, and this number of times the roughness, of the
-/// surface. The noisy models lose no point; of 3,181 stray points that are farther than a spacing
-/// 58 are missed, with 8 93, and 171 with 2.5 spacings whatever the roughness.
-constexpr double kMaxRoughnesses = 6.0;
-/// Points of a surface that show its roughness.
-constexpr std::size_t kPatch = 12;
-
 /// Mean length of the edges at a node that has some.
 double spacingAt(const Graph& graph, Index i) {
   const Row<double> lengths = graph.lengthsOf(i);
   return std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size());
 }
 
-/// Root mean square distance of a node and those around it, kPatch at least, from their plane.
+/// Root mean square distance of a node and those around it from their plane.
 double roughnessAt(const Positions& points, const Graph& graph, Index i) {
+  // Minimum number of points of a surface that show its roughness.
+  constexpr std::size_t min_patch = 12;
   std::vector<Index> patch{i};
-  for (std::size_t done = 0; done < patch.size() && patch.size() < kPatch;)
+  for (std::size_t done = 0; done < patch.size() && patch.size() < min_patch;)
     for (const std::size_t ring_end = patch.size(); done < ring_end; ++done)
       for (const Index j : graph.row(patch[done]))
         if (std::find(patch.begin(), patch.end(), j) == patch.end())
@@ -58,7 +53,11 @@ double SurfaceDistance::beyondNoise(Index i) const {
   const Index j = nearest(i);
   const double distance = edgeLength(points_, i, j);
   const double spacing = spacingAt(agreed_, j);
-  const double noise = spacing + kMaxRoughnesses * roughnessAt(points_, agreed_, j);
+  // A point may be noise if it is within a spacing, and this number of times the roughness, of the
+  // surface. The noisy models lose no point; of 3,181 stray points that are farther than a spacing
+  // 58 are missed, with 8 93, and 171 with 2.5 spacings whatever the roughness.
+  constexpr double max_roughnesses = 6.0;
+  const double noise = spacing + max_roughnesses * roughnessAt(points_, agreed_, j);
   return distance > noise ? distance / spacing : 0.0;
 }
 

@@ -21,21 +21,10 @@ namespace {
 /// instead of 596 then.
 constexpr double kTie = 1e-9;
 
-/// Largest ratio of the smallest to the middle variance of a neighbourhood with a tangent plane:
-/// above, all directions are alike. Stars are better than what takes their place for as long as
-/// there is any plane at all. With 0.5 a model has 6 self-intersections, without a bound 2.
-constexpr double kMaxPlaneRoundness = 0.9;
-/// Least ratio of the middle to the largest variance: below, the neighbourhood is a line. Without,
-/// a sphere scanned in lines has 27 self-intersections instead of 3.
-constexpr double kMinWidthRatio = 0.01;
-
 /// Nearest neighbours that span the tangent plane; more where these are on a line. With 6 the
 /// awkward clouds have 111,926 self-intersections instead of 61,815, with 12 a model has 799
 /// instead of 0.
 constexpr Index kTangentNeighbors = 10;
-/// Candidates steeper than this to the tangent plane are on another sheet [sine of the angle]. With
-/// 1 a model has 2 self-intersections, with 0.7 two have 2 and 412.
-constexpr double kMaxCandidateSlope = 0.85;
 /// Nearest neighbours used of a list, and searched for, at most. With 12 or 24 a sphere scanned in
 /// lines has some 20,000 self-intersections instead of 3; with 64, 0, but the search takes longer.
 constexpr Index kMaxCandidates = 32;
@@ -182,8 +171,15 @@ bool findTangentPlane(const std::vector<Candidate>& candidates, std::size_t coun
   solver.computeDirect(covariance);
   axes = solver.eigenvectors();
   const Eigen::Vector3d& variances = solver.eigenvalues();
-  is_line = !(variances[1] > kMinWidthRatio * variances[2]);
-  return !is_line && variances[0] <= kMaxPlaneRoundness * variances[1];
+  // Largest ratio of the smallest to the middle variance of a neighbourhood with a tangent plane:
+  // above, all directions are alike. Stars are better than what takes their place for as long as
+  // there is any plane at all. With 0.5 a model has 6 self-intersections, without a bound 2.
+  constexpr double max_plane_roundness = 0.9;
+  // Least ratio of the middle to the largest variance: below, the neighbourhood is a line. Without,
+  // a sphere scanned in lines has 27 self-intersections instead of 3.
+  constexpr double min_width_ratio = 0.01;
+  is_line = !(variances[1] > min_width_ratio * variances[2]);
+  return !is_line && variances[0] <= max_plane_roundness * variances[1];
 }
 
 /// Writes the neighbours in the graph of Gabriel and Sokal (1969): no point is in the ball whose
@@ -207,8 +203,11 @@ bool findVoronoiNeighbors(const std::vector<Candidate>& candidates, const Eigen:
   const double squared_reach = candidates.back().squared_distance;
   // A cell that is larger ends there: sites beyond would be neighbours across a gap.
   cell.reset(std::sqrt(squared_reach));
+  // Candidates steeper than this to the tangent plane are on another sheet [sine of the angle].
+  // With 1 a model has 2 self-intersections, with 0.7 two have 2 and 412.
+  constexpr double max_candidate_slope = 0.85;
   // In terms of the cosine.
-  const double least_fraction = 1.0 - kMaxCandidateSlope * kMaxCandidateSlope;
+  const double least_fraction = 1.0 - max_candidate_slope * max_candidate_slope;
   for (const Candidate& candidate : candidates) {
     if (candidate.squared_distance > 4.0 * cell.squaredRadius())
       break;

@@ -24,8 +24,6 @@ namespace {
 
 /// Maximum number of threads: more would exhaust the system.
 constexpr int kMaxThreads = 1024;
-/// Maximum number of threads a processor. More gain nothing, and each takes address space.
-constexpr int kMaxThreadsOfProcessor = 4;
 
 thread_local std::size_t thread_number = 0;
 thread_local bool does_task_of_team = false;
@@ -170,8 +168,10 @@ int threadCount(int requested, std::size_t items, std::size_t threshold) {
   checkThreads(requested);
   if (items < threshold)
     return 1;
+  // Maximum number of threads a processor. More gain nothing, and each takes address space.
+  constexpr int max_threads_of_processor = 4;
   const int processors = processorCount();
-  return std::min({requested > 0 ? requested : processors, kMaxThreadsOfProcessor * processors,
+  return std::min({requested > 0 ? requested : processors, max_threads_of_processor * processors,
                    static_cast<int>(std::min<std::size_t>(items / kBlockSize, kMaxThreads))});
 }
 
