@@ -22,14 +22,14 @@ struct OptionRow {
   std::string name;                  ///< the same in tools, Python and ROS
   std::string field;                 ///< of Options, such as "graph.k"
   std::string help;                  ///< one line
-  bool expert;                       ///< most users do not need it
-  bool optional;                     ///< may be unset
+  bool expert = false;               ///< most users do not need it
+  bool optional = false;             ///< may be unset
   std::vector<std::string> choices;  ///< names of values; empty for plain numbers
-  bool is_number;                    ///< takes numbers, perhaps besides choices
-  bool is_integer;                   ///< of numbers
-  double min;                        ///< of numbers
-  double max;                        ///< of numbers
-  bool min_excluded;                 ///< of numbers: `min` itself is out of range
+  bool is_number = false;            ///< takes numbers, perhaps besides choices
+  bool is_integer = false;           ///< of numbers
+  double min = 0.0;                  ///< of numbers
+  double max = 0.0;                  ///< of numbers
+  bool min_excluded = false;         ///< of numbers: `min` itself is out of range
   /// The option has an effect only if each of these options has one of the listed values.
   std::vector<std::pair<std::string, std::vector<std::string>>> used_with;
 

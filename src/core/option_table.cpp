@@ -15,10 +15,6 @@ namespace spherical_param {
 namespace {
 
 constexpr double kMaxInt = std::numeric_limits<int>::max();
-/// Far above any sensible value.
-constexpr double kMaxArea = 1e15;
-constexpr double kMaxSeconds = 1e9;
-constexpr double kMaxSeed = std::numeric_limits<std::uint32_t>::max();
 
 template <typename T>
 struct IsOptional : std::false_type {};
@@ -51,6 +47,25 @@ void assign(Value& field, const OptionValue& value) {
   }
 }
 
+/// A member of Options, or of one of its members, as a reference.
+template <typename Member>
+auto memberOf(Member member) {
+  return [member](Options& options) -> decltype(auto) { return (options.*member); };
+}
+template <typename Group, typename Member>
+auto memberOf(Group group, Member member) {
+  return [group, member](Options& options) -> decltype(auto) { return (options.*group.*member); };
+}
+
+OptionRow rowOf(const char* name, const char* path, const char* help, Audience audience) {
+  OptionRow row;
+  row.name = name;
+  row.field = path;
+  row.help = help;
+  row.expert = audience == Expert;
+  return row;
+}
+
 /// The row of a number.
 ///
 /// \param field of Options, as a reference.
@@ -58,20 +73,11 @@ template <typename Field>
 OptionRow number(const char* name, const char* path, const char* help, Audience audience,
                  double min, double max, Field field) {
   using Value = std::decay_t<decltype(field(std::declval<Options&>()))>;
-  OptionRow row{name,
-                path,
-                help,
-                audience == Expert,
-                IsOptional<Value>::value,
-                {},
-                true,
-                true,
-                min,
-                max,
-                false,
-                {},
-                {},
-                {}};
+  OptionRow row = rowOf(name, path, help, audience);
+  row.optional = IsOptional<Value>::value;
+  row.is_number = true;
+  row.min = min;
+  row.max = max;
   row.is_integer = !std::is_same_v<Value, double> && !std::is_same_v<Value, std::optional<double>>;
   row.get = [field](const Options& options) {
     Options copy = options;
@@ -85,8 +91,7 @@ OptionRow number(const char* name, const char* path, const char* help, Audience 
 template <typename Enum, typename Field>
 OptionRow choice(const char* name, const char* path, const char* help, Audience audience,
                  const std::vector<std::pair<const char*, Enum>>& names, Field field) {
-  OptionRow row{name, path, help, audience == Expert, false, {}, false, false, 0.0, 0.0, false,
-                {},   {},   {}};
+  OptionRow row = rowOf(name, path, help, audience);
   for (const auto& entry : names)
     row.choices.emplace_back(entry.first);
   row.get = [field, names](const Options& options) -> OptionValue {
@@ -125,7 +130,7 @@ OptionRow outlierRow() {
       "outliers", "outliers",
       "outliers to leave out: stray points (auto), or points off the surface by this number of "
       "standard deviations",
-      Everybody, 0, 1000, [](Options & o) -> auto& { return o.outlier_sigma; });
+      Everybody, 0, 1000, memberOf(&Options::outlier_sigma));
   row.choices = {"none", "auto"};
   row.get = [](const Options& options) -> OptionValue {
     switch (options.outliers) {
@@ -157,17 +162,16 @@ std::vector<OptionRow> pointRows() {
           "parts of the cloud to mesh: all as one surface, the largest alone, or each by itself",
           Everybody,
           {{"all", PartsMode::All}, {"largest", PartsMode::Largest}, {"each", PartsMode::Each}},
-          [](Options & o) -> auto& { return o.parts; }),
+          memberOf(&Options::parts)),
       usedWith({{"parts", {"largest", "each"}}},
-               number(
-                   "min_points", "min_points",
-                   "minimum number of points of a part; smaller parts are left out", Expert, 4,
-                   kMaxInt, [](Options & o) -> auto& { return o.min_points; })),
+               number("min_points", "min_points",
+                      "minimum number of points of a part; smaller parts are left out", Expert, 4,
+                      kMaxInt, memberOf(&Options::min_points))),
       choice<ConsolidationMode>(
           "consolidation", "consolidation",
           "auto: move noisy points to the sampled surface and merge them within their noise",
           Everybody, {{"none", ConsolidationMode::None}, {"auto", ConsolidationMode::Auto}},
-          [](Options & o) -> auto& { return o.consolidation; }),
+          memberOf(&Options::consolidation)),
   };
 }
 
@@ -176,47 +180,39 @@ std::vector<OptionRow> methodRows() {
     return usedWith({{"method", {"paper"}}}, std::move(row));
   };
   return {
-      choice<Method>(
-          "method", "method", "how the cloud is meshed; paper: as published in 2004", Expert,
-          {{"default", Method::Default}, {"paper", Method::Paper}},
-          [](Options & o) -> auto& { return o.method; }),
-      of_paper(number(
-          "k", "paper.k", "nearest neighbours of each point", Expert, 3, kMaxInt,
-          [](Options & o) -> auto& { return o.paper.k; })),
-      of_paper(choice<EdgeWeights>(
-          "weights", "paper.weights", "weights of the Laplacian", Expert,
-          {{"adaptive", EdgeWeights::Adaptive},
-           {"inverse", EdgeWeights::InverseLength},
-           {"uniform", EdgeWeights::Uniform}},
-          [](Options & o) -> auto& { return o.paper.weights; })),
-      of_paper(aboveMin(number(
-          "damping", "paper.damping", "damping of the iteration", Expert, 0, 1,
-          [](Options & o) -> auto& { return o.paper.damping; }))),
-      of_paper(number(
-          "max_iterations", "paper.max_iterations", "maximum number of iterations", Expert, 0,
-          kMaxInt, [](Options & o) -> auto& { return o.paper.max_iterations; })),
+      choice<Method>("method", "method", "how the cloud is meshed; paper: as published in 2004",
+                     Expert, {{"default", Method::Default}, {"paper", Method::Paper}},
+                     memberOf(&Options::method)),
+      of_paper(number("k", "paper.k", "nearest neighbours of each point", Expert, 3, kMaxInt,
+                      memberOf(&Options::paper, &PaperOptions::k))),
+      of_paper(choice<EdgeWeights>("weights", "paper.weights", "weights of the Laplacian", Expert,
+                                   {{"adaptive", EdgeWeights::Adaptive},
+                                    {"inverse", EdgeWeights::InverseLength},
+                                    {"uniform", EdgeWeights::Uniform}},
+                                   memberOf(&Options::paper, &PaperOptions::weights))),
+      of_paper(aboveMin(number("damping", "paper.damping", "damping of the iteration", Expert, 0, 1,
+                               memberOf(&Options::paper, &PaperOptions::damping)))),
+      of_paper(number("max_iterations", "paper.max_iterations", "maximum number of iterations",
+                      Expert, 0, kMaxInt,
+                      memberOf(&Options::paper, &PaperOptions::max_iterations))),
   };
 }
 
 std::vector<OptionRow> embeddingRows() {
   return {
-      number(
-          "tolerance", "embedding.tolerance",
-          "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert, 0,
-          1, [](Options & o) -> auto& { return o.embedding.tolerance; }),
-      byDefault(number(
-          "starts", "embedding.starts", "number of starts on the coarsest level", Expert, 1, 100,
-          [](Options & o) -> auto& { return o.embedding.starts; })),
-      number(
-          "history_vertices", "embedding.history_vertices",
-          "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
-          [](Options & o) -> auto& { return o.embedding.history_vertices; }),
-      number(
-          "history_frames", "embedding.history_frames", "maximum number of states of these paths",
-          Expert, 2, 10000, [](Options & o) -> auto& { return o.embedding.history_frames; }),
-      number(
-          "smoothing", "smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000,
-          [](Options & o) -> auto& { return o.smoothing; }),
+      number("tolerance", "embedding.tolerance",
+             "mean tangential Laplacian at convergence; unset: 1e-8 for paper, else none", Expert,
+             0, 1, memberOf(&Options::embedding, &EmbeddingOptions::tolerance)),
+      byDefault(number("starts", "embedding.starts", "number of starts on the coarsest level",
+                       Expert, 1, 100, memberOf(&Options::embedding, &EmbeddingOptions::starts))),
+      number("history_vertices", "embedding.history_vertices",
+             "maximum number of vertices whose path to the sphere is recorded", Expert, 0, 1 << 24,
+             memberOf(&Options::embedding, &EmbeddingOptions::history_vertices)),
+      number("history_frames", "embedding.history_frames",
+             "maximum number of states of these paths", Expert, 2, 10000,
+             memberOf(&Options::embedding, &EmbeddingOptions::history_frames)),
+      number("smoothing", "smoothing", "steps of smoothing; 0: none", Everybody, 0, 10000,
+             memberOf(&Options::smoothing)),
   };
 }
 
@@ -228,28 +224,25 @@ std::vector<OptionRow> surfaceRows() {
           {{"closed", SurfaceMode::Closed},
            {"open", SurfaceMode::Open},
            {"auto", SurfaceMode::Auto}},
-          [](Options & o) -> auto& { return o.surface; })),
-      byDefault(number(
-          "fill_holes", "fill_holes", "openings of up to this number of edges are filled", Expert,
-          0, kMaxInt, [](Options & o) -> auto& { return o.fill_holes; })),
-      byDefault(number(
-          "fill_holes_area", "fill_holes_area", "openings of up to this area are filled", Expert, 0,
-          kMaxArea, [](Options & o) -> auto& { return o.fill_holes_area; })),
+          memberOf(&Options::surface))),
+      byDefault(number("fill_holes", "fill_holes",
+                       "openings of up to this number of edges are filled", Expert, 0, kMaxInt,
+                       memberOf(&Options::fill_holes))),
+      byDefault(number("fill_holes_area", "fill_holes_area",
+                       "openings of up to this area are filled", Expert, 0, 1e15,
+                       memberOf(&Options::fill_holes_area))),
   };
 }
 
 std::vector<OptionRow> runRows() {
   return {
-      number(
-          "seed", "seed", "seed of all random choices", Expert, 0, kMaxSeed,
-          [](Options & o) -> auto& { return o.seed; }),
-      byDefault(number(
-          "time_limit", "time_limit",
-          "seconds until the work ends with the best mesh so far; unset: no limit", Everybody, 0,
-          kMaxSeconds, [](Options & o) -> auto& { return o.time_limit; })),
-      number(
-          "threads", "threads", "threads; 0: one for each processor", Expert, 0, 1024,
-          [](Options & o) -> auto& { return o.threads; }),
+      number("seed", "seed", "seed of all random choices", Expert, 0,
+             std::numeric_limits<std::uint32_t>::max(), memberOf(&Options::seed)),
+      byDefault(number("time_limit", "time_limit",
+                       "seconds until the work ends with the best mesh so far; unset: no limit",
+                       Everybody, 0, 1e9, memberOf(&Options::time_limit))),
+      number("threads", "threads", "threads; 0: one for each processor", Expert, 0, 1024,
+             memberOf(&Options::threads)),
   };
 }
 
