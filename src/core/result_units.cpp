@@ -31,17 +31,21 @@ struct Scaling {
   }
 };
 
+/// Gives indices other numbers: number i is the i-th of `numbers`.
+void renumber(const std::vector<Index>& numbers, std::vector<Index>& indices) {
+  for (Index& index : indices)
+    index = numbers[static_cast<std::size_t>(index)];
+}
+
 /// Gives indices and arrays that were computed on nodes the numbers of the vertices.
 struct Renumbering {
-  const std::vector<Index>& vertex_of_node;
-
-  Index vertexOf(Index node) const { return vertex_of_node[static_cast<std::size_t>(node)]; }
+  const Indexed<Index>& vertex_of_node;
 
   template <typename Value>
   void operator()(const ResultField&, Value&) const {}
 
   void operator()(const ResultField&, Triangles& triangles) const {
-    triangles = triangles.unaryExpr([this](Index node) { return vertexOf(node); }).eval();
+    triangles = triangles.unaryExpr([this](Index node) { return vertex_of_node[node]; }).eval();
   }
 
   void operator()(const ResultField& field, Positions& columns) const {
@@ -49,16 +53,16 @@ struct Renumbering {
       return;
     Positions of_vertices(3, columns.cols());
     for (Eigen::Index node = 0; node < columns.cols(); ++node)
-      of_vertices.col(vertexOf(static_cast<Index>(node))) = columns.col(node);
+      of_vertices.col(vertex_of_node[node]) = columns.col(node);
     columns = std::move(of_vertices);
   }
 
   void operator()(const ResultField& field, std::vector<double>& values) const {
     if (field.kind != FieldKind::PerVertex)
       return;
-    std::vector<double> of_vertices(values.size());
+    Indexed<double> of_vertices(values.size());
     for (std::size_t node = 0; node < values.size(); ++node)
-      of_vertices[static_cast<std::size_t>(vertex_of_node[node])] = values[node];
+      of_vertices[vertex_of_node[node]] = values[node];
     values = std::move(of_vertices);
   }
 
@@ -67,8 +71,7 @@ struct Renumbering {
     const bool is_set = field.kind == FieldKind::Vertices;
     if (!is_loop && !is_set && field.kind != FieldKind::VertexList)
       return;
-    for (Index& node : nodes)
-      node = vertexOf(node);
+    renumber(vertex_of_node, nodes);
     if (is_loop)
       std::rotate(nodes.begin(), std::min_element(nodes.begin(), nodes.end()), nodes.end());
     else if (is_set)
@@ -93,37 +96,30 @@ void toInput(OrderedPoints& nodes, Surface& result) {
   renumbering({"outliers", "", 0, FieldKind::Vertices}, result.outliers);
   result.vertex_of_input = std::move(nodes.distinct.vertex_of_input);
   result.input_of_vertex = std::move(nodes.distinct.input_of_vertex);
-  for (Index& vertex : result.outliers)
-    vertex = result.input_of_vertex[static_cast<std::size_t>(vertex)];
+  renumber(result.input_of_vertex, result.outliers);
 }
 
 void toInput(Consolidation& consolidation, Surface& result) {
-  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
   // Those that came to one place are one vertex.
   result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);
   result.consolidation = consolidation.report;
   result.consolidation.merged += result.vertex_of_input.size() - result.input_of_vertex.size();
-  std::vector<Index> vertex_of_input = std::move(consolidation.point_of_input);
-  std::vector<Index> first_of_point(result.vertex_of_input.size(), -1);
-  for (std::size_t i = 0; i < vertex_of_input.size(); ++i) {
-    Index& first = first_of_point[at(vertex_of_input[i])];
-    if (first < 0)
-      first = static_cast<Index>(i);
-    vertex_of_input[i] = result.vertex_of_input[at(vertex_of_input[i])];
+  Indexed<Index> first_of_point(result.vertex_of_input.size(), -1);
+  Index input = 0;
+  for (const Index point : consolidation.point_of_input) {
+    if (first_of_point[point] < 0)
+      first_of_point[point] = input;
+    ++input;
   }
-  const auto to_first = [&](Index& point) { point = first_of_point[at(point)]; };
-  std::for_each(result.input_of_vertex.begin(), result.input_of_vertex.end(), to_first);
-  std::for_each(result.outliers.begin(), result.outliers.end(), to_first);
-  result.vertex_of_input = std::move(vertex_of_input);
+  renumber(first_of_point, result.input_of_vertex);
+  renumber(first_of_point, result.outliers);
+  renumber(result.vertex_of_input, consolidation.point_of_input);
+  result.vertex_of_input = std::move(consolidation.point_of_input);
 }
 
 void toCloud(const std::vector<Index>& inputs, Surface& surface) {
-  const auto renumber = [&](std::vector<Index>& points) {
-    for (Index& point : points)
-      point = inputs[static_cast<std::size_t>(point)];
-  };
-  renumber(surface.input_of_vertex);
-  renumber(surface.outliers);
+  renumber(inputs, surface.input_of_vertex);
+  renumber(inputs, surface.outliers);
   surface.inputs = inputs;
 }
 
