@@ -2,40 +2,23 @@
 
 #include "power_of_two.h"
 #include "radix_sort.h"
-#include "rows.h"
 #include "space_filling_curve.h"
 #include "spherical_param/errors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <tuple>
 
 namespace spherical_param::internal {
 namespace {
 
-struct Place {
-  std::uint64_t key;  ///< on the curve
-  Index index;        ///< of the input point
-};
-
-/// All points along the curve; those in one cell of it by their indices.
-std::vector<Place> sortedPlaces(const Positions& points, const MortonCurve& curve, int threads) {
-  Indexed<Place> places(static_cast<std::size_t>(points.cols()));
-  forEachIndex(places.size(), threads, {}, [&](Index i) {
-    places[i] = {curve.key(points.col(i)), i};
-  });
-  radixSort(places);
-  return places;
-}
-
 /// Fills input_of_node, and finds for each input point the first one at its position. Equal points
 /// lie in one cell of the curve.
 ///
 /// \param places all points; those of each cell are put into another order.
-Indexed<Index> mergeDuplicates(const Positions& points, std::vector<Place>& places,
+Indexed<Index> mergeDuplicates(const Positions& points, Indexed<Place>& places,
                                Indexed<Index>& input_of_node) {
   const auto coordinates = [&](Index i) {
     return std::tuple(points(0, i), points(1, i), points(2, i));
@@ -92,7 +75,9 @@ OrderedPoints orderPoints(const Positions& points, int threads) {
   int largest = 0;
   std::frexp(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), &largest);
   result.exponent = std::max(exponentOfExtent(low, high), largest - 1000);
-  std::vector<Place> places = sortedPlaces(points, MortonCurve(low, high), threads);
+  const MortonCurve curve(low, high);
+  Indexed<Place> places =
+      sortedPlaces(n, threads, [&](Index i) { return curve.key(points.col(i)); });
   result.distinct = numberVertices(mergeDuplicates(points, places, result.input_of_node));
   places = {};
   const std::size_t count = result.input_of_node.size();

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "rows.h"
+
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -33,6 +36,23 @@ void radixSort(std::vector<Item>& items) {
       sorted[begin[item.key >> shift & mask]++] = item;
     items.swap(sorted);
   }
+}
+
+/// A thing of many, and its place in an order.
+struct Place {
+  std::uint64_t key;
+  Index index;
+};
+
+/// The places of the things 0 ... count - 1 in the order of their keys; ties by index.
+///
+/// \param key_of returns the key of a thing.
+template <typename KeyOf>
+Indexed<Place> sortedPlaces(std::size_t count, int threads, const KeyOf& key_of) {
+  Indexed<Place> places(count);
+  forEachIndex(count, threads, {}, [&](Index i) { places[i] = {key_of(i), i}; });
+  radixSort(places);
+  return places;
 }
 
 }  // namespace spherical_param::internal

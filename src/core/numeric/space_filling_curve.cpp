@@ -21,26 +21,7 @@ std::uint64_t spread(std::uint64_t x) {
   return x;
 }
 
-/// A point's place on a curve.
-struct Place {
-  std::uint64_t key;
-  Index index;
-};
-
-/// All points in the order of their keys; ties by index.
-///
-/// \param key_of returns the key of a point.
-template <typename KeyOf>
-std::vector<Place> placesBy(const Positions& points, const KeyOf& key_of) {
-  std::vector<Place> places;
-  places.reserve(static_cast<std::size_t>(points.cols()));
-  for (Index i = 0; i < points.cols(); ++i)
-    places.push_back({key_of(i), i});
-  radixSort(places);
-  return places;
-}
-
-std::vector<Index> indicesOf(const std::vector<Place>& places) {
+std::vector<Index> orderOf(const Indexed<Place>& places) {
   std::vector<Index> order(places.size());
   std::transform(places.begin(), places.end(), order.begin(),
                  [](const Place& place) { return place.index; });
@@ -96,7 +77,8 @@ std::vector<Index> mortonOrder(const Positions& points) {
   if (points.cols() == 0)
     return {};
   const MortonCurve curve(points.rowwise().minCoeff(), points.rowwise().maxCoeff());
-  return indicesOf(placesBy(points, [&](Index i) { return curve.key(points.col(i)); }));
+  return orderOf(
+      sortedPlaces(columnCount(points), 1, [&](Index i) { return curve.key(points.col(i)); }));
 }
 
 std::vector<Index> insertionOrder(const Positions& directions) {
@@ -107,7 +89,7 @@ std::vector<Index> insertionOrder(const Positions& directions) {
   unsigned last_round = 0;
   for (Eigen::Index size = directions.cols(); size > 128; size >>= growth_bits)
     ++last_round;
-  std::vector<Place> places = placesBy(directions, [&](Index i) {
+  Indexed<Place> places = sortedPlaces(columnCount(directions), 1, [&](Index i) {
     std::uint64_t round = last_round;
     std::uint64_t bits = splitmix64(static_cast<std::uint64_t>(i) * 0x9e3779b97f4a7c15ULL);
     for (; round > 0 && bits % (1U << growth_bits) == 0; bits >>= growth_bits)
@@ -115,7 +97,7 @@ std::vector<Index> insertionOrder(const Positions& directions) {
     return round << 60U | curve.key(directions.col(i)) >> 3U;
   });
   refineCrowds(directions, places.data(), places.data() + places.size());
-  return indicesOf(places);
+  return orderOf(places);
 }
 
 }  // namespace spherical_param::internal
