@@ -42,41 +42,34 @@ std::vector<Index> othersOf(const NeighborLists& lists, Index i) {
   return others.size() == kFittedNeighbors ? others : std::vector<Index>();
 }
 
-/// Working memory.
-struct FitMemory {
-  QuadricFit quadric;
-  std::vector<Eigen::Vector3d> offsets;
-  std::vector<double> values;
-};
-
 }  // namespace
 
 Indexed<double> nearOutliers(const Positions& points, const NeighborLists& lists, int threads) {
   threads = threadCount(threads, lists.size());
   Indexed<double> spacing(lists.size(), 0.0);
-  forEachIndex<FitMemory>(lists.size(), threads, {}, [&](FitMemory& memory, Index i) {
-    memory.values.clear();
+  forEachIndex(lists.size(), threads, {}, [&](Index i) {
+    std::vector<double> lengths;
     for (const Index j : othersOf(lists, i))
-      memory.values.push_back((points.col(j) - points.col(i)).norm());
-    if (memory.values.empty())
+      lengths.push_back((points.col(j) - points.col(i)).norm());
+    if (lengths.empty())
       return;
-    const auto fourth = memory.values.begin() + 3;  // the median of six
-    std::nth_element(memory.values.begin(), fourth, memory.values.end());
+    const auto fourth = lengths.begin() + 3;  // the median of six
+    std::nth_element(lengths.begin(), fourth, lengths.end());
     spacing[i] = *fourth;
   });
   Indexed<double> distances(lists.size(), 0.0);
-  forEachIndex<FitMemory>(lists.size(), threads, {}, [&](FitMemory& memory, Index i) {
+  forEachIndex<QuadricFit>(lists.size(), threads, {}, [&](QuadricFit& quadric, Index i) {
     const std::vector<Index> others = othersOf(lists, i);
-    memory.values.clear();
+    std::vector<double> spacings;
     for (const Index j : others)
-      memory.values.push_back(spacing[j]);
-    const double unit = others.empty() ? 0.0 : medianOf(memory.values);
+      spacings.push_back(spacing[j]);
+    const double unit = others.empty() ? 0.0 : medianOf(spacings);
     if (!(unit > 0.0))
       return;
-    memory.offsets.clear();
+    std::vector<Eigen::Vector3d> offsets;
     for (const Index j : others)
-      memory.offsets.emplace_back((points.col(j) - points.col(i)) / unit);
-    distances[i] = distanceOff(memory.offsets, memory.quadric);
+      offsets.emplace_back((points.col(j) - points.col(i)) / unit);
+    distances[i] = distanceOff(offsets, quadric);
   });
   return distances;
 }
