@@ -15,6 +15,7 @@
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "stage_clock.h"
+#include "stray_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,11 +73,13 @@ NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& opti
   if (options.method == Method::Paper)
     return internal::paper::nearestNeighborGraph(neighborhoods.points(),
                                                  neighborhoods.neighbors().lists, options.paper.k);
+  NeighborGraph graph = internal::buildLocalDelaunayGraph(
+      neighborhoods.points(), neighborhoods.stars(), neighborhoods.agreed(), execution);
   // Outliers that are left out are not looked for again.
-  const auto strays = options.outliers == OutlierMode::None ? internal::StraySearch::Yes
-                                                            : internal::StraySearch::No;
-  return internal::buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(),
-                                           neighborhoods.agreed(), strays, execution);
+  if (options.outliers == OutlierMode::None)
+    graph.stray_points = internal::strayPoints(neighborhoods.points(), neighborhoods.agreed(),
+                                               neighborhoods.stars());
+  return graph;
 }
 
 /// The published method: embed the graph by the iteration, and take the hull.

@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "local_delaunay_graph.h"
+#include "stray_points.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -20,9 +21,11 @@ inline internal::Stars starsOf(const Positions& points, const NeighborLists& lis
 inline NeighborGraph graphOf(const Positions& points, const NeighborLists& lists,
                              const NeighborSearch& search = {}, const Execution& execution = {}) {
   const internal::Stars stars = starsOf(points, lists, search, execution);
-  return internal::buildLocalDelaunayGraph(points, stars,
-                                           internal::agreedGraph(points, stars, execution),
-                                           internal::StraySearch::Yes, execution);
+  const Graph agreed = internal::agreedGraph(points, stars, execution);
+  NeighborGraph result = internal::buildLocalDelaunayGraph(points, stars, agreed, execution);
+  if (points.cols() > 0)
+    result.stray_points = internal::strayPoints(points, agreed, stars);
+  return result;
 }
 
 /// Row i of a graph.

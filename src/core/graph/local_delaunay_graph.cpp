@@ -3,7 +3,6 @@
 #include "component_tree.h"
 #include "graph_building.h"
 #include "progress.h"
-#include "stray_points.h"
 
 #include <algorithm>
 #include <optional>
@@ -110,13 +109,10 @@ Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& 
 }
 
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
-                                      const Graph& agreed, StraySearch strays,
-                                      const Execution& execution) {
+                                      const Graph& agreed, const Execution& execution) {
   NeighborGraph result;
   if (stars.size() == 0)
     return result;
-  if (strays == StraySearch::Yes)
-    result.stray_points = strayPoints(points, agreed, stars);
   result.graph = agreed;
   joinWithoutPlane(points, stars, result.graph);
   repairWeak(points, stars, result.graph);

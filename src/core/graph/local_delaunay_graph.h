@@ -9,9 +9,6 @@ namespace spherical_param::internal {
 /// bridges. Its components are surfaces, or stray points.
 Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& execution);
 
-/// Whether to look for stray points.
-enum class StraySearch { No, Yes };
-
 /// The tangent Delaunay graph (Method::Default), connected.
 ///
 /// The nearest neighbours of a point are laid into its tangent plane at their true distances; its
@@ -29,9 +26,8 @@ enum class StraySearch { No, Yes };
 /// \param points 3 x n, finite, distinct.
 /// \param stars  of these points.
 /// \param agreed \see agreedGraph
-/// \param strays whether to fill NeighborGraph::stray_points.
+/// \return the graph, without stray points.
 NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
-                                      const Graph& agreed, StraySearch strays,
-                                      const Execution& execution);
+                                      const Graph& agreed, const Execution& execution);
 
 }  // namespace spherical_param::internal
