@@ -2,11 +2,14 @@
 
 #include "open_mesh.h"
 #include "optimization_constants.h"
-#include "phases.h"
+#include "polish.h"
+#include "relocation.h"
 #include "sampling_analysis.h"
 #include "smoothing.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
+#include "unfolding.h"
+#include "untangling.h"
 #include "workbench.h"
 
 #include <algorithm>

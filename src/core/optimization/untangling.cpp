@@ -1,0 +1,101 @@
+#include "untangling.h"
+
+#include "optimization_constants.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace spherical_param::internal {
+namespace {
+
+namespace tuned = optimization_constants;
+using Pairs = std::vector<std::array<Index, 2>>;
+
+std::vector<Index> verticesOf(const SphereMesh& mesh, const std::array<Index, 2>& pair) {
+  std::vector<Index> vertices;
+  for (const Index t : pair)
+    vertices.insert(vertices.end(), mesh.vertices(t).begin(), mesh.vertices(t).end());
+  return vertices;
+}
+
+/// Ruins and recreates a part, and flips apart what intersects then: commits that if fewer
+/// triangles around it intersect, or as many at an energy that was lower before the flips. Returns
+/// whether it did.
+bool tryByNumber(Workbench& bench, const std::vector<Index>& seeds, std::size_t size) {
+  if (!bench.mayRepair())
+    return false;
+  bench.local.watch(bench.ruins.spread(seeds, 2 * size + tuned::kWatchedVertices));
+  return bench.tryPart(seeds, size, [&](double change) {
+    const int more = bench.local.flipChangedApart();
+    return more < 0 || (more == 0 && isGain(change));
+  });
+}
+
+/// Calls work(vertices, is_there) for all intersecting pairs, where is_there() returns whether the
+/// triangles have not changed since. It returns whether it has changed the mesh. Updates the pairs;
+/// returns whether the mesh has changed.
+template <typename Work>
+bool forEachPair(Workbench& bench, Pairs& pairs, const Work& work) {
+  const SphereMesh& mesh = bench.mesh.mesh();
+  std::vector<std::vector<Index>> vertices;
+  for (const auto& pair : pairs)
+    vertices.push_back(verticesOf(mesh, pair));
+  bool has_changed = false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    bench.reportItem(i, pairs.size(), 1);
+    const auto is_there = [&] { return verticesOf(mesh, pairs[i]) == vertices[i]; };
+    has_changed = work(vertices[i], is_there) || has_changed;
+  }
+  if (has_changed)
+    pairs = findIntersections(bench.mesh, bench.report);
+  return has_changed;
+}
+
+/// Flips near intersecting triangles, and rebuilds small parts there: flips alone may leave the
+/// surface crumpled. Without those parts, a cube of 8 points keeps a corner cut off.
+void flipApart(Workbench& bench, Pairs& pairs) {
+  forEachPair(bench, pairs, [&](const auto& seeds, const auto& is_there) {
+    if (!bench.mayRepair() || !is_there())
+      return false;
+    bench.local.watch(bench.ruins.spread(seeds, tuned::kFlipRegion));
+    if (bench.local.flipApart() == 0)
+      return false;
+    for (std::size_t size = tuned::kMinUntangled; size <= 4 * tuned::kMinUntangled; size *= 2)
+      tryByNumber(bench, seeds, size);
+    return true;
+  });
+}
+
+/// A round with parts up to a size. Returns whether one of them was committed.
+bool rebuild(Workbench& bench, bool is_by_number, std::size_t largest, Pairs& pairs) {
+  return forEachPair(bench, pairs, [&](const auto& seeds, const auto& is_there) {
+    bool has_changed = false;
+    // A pair that has changed waits for the next round.
+    for (std::size_t size = tuned::kMinUntangled; size <= largest && is_there(); size *= 2)
+      if (is_by_number ? tryByNumber(bench, seeds, size) : bench.tryPart(seeds, size, isGain))
+        has_changed = true;
+    return has_changed;
+  });
+}
+
+}  // namespace
+
+Pairs untangle(Workbench& bench, Pairs pairs, int rounds_by_energy) {
+  const auto is_due = [&] { return !pairs.empty() && bench.mayRepair(); };
+  for (int round = 0; round < rounds_by_energy && is_due(); ++round)
+    if (!rebuild(bench, false, 8 * tuned::kMinUntangled, pairs))
+      break;
+  // Rounds in a row without a gain. Small parts gain more in the same time: large ones once nothing
+  // else helps.
+  for (int idle = 0; idle < tuned::kMaxIdleRounds && is_due();) {
+    if (idle == 0)
+      flipApart(bench, pairs);
+    if (!is_due())
+      break;
+    const std::size_t largest = tuned::kMinUntangled << std::min(idle + 2, 4);
+    idle = rebuild(bench, true, largest, pairs) ? 0 : idle + 1;
+  }
+  return pairs;
+}
+
+}  // namespace spherical_param::internal
