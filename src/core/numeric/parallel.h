@@ -130,7 +130,11 @@ std::vector<T> collectBlocks(std::size_t count, int threads, const FractionRepor
         collect(static_cast<Index>(begin), static_cast<Index>(end), parts[block]);
       },
       items_per_report);
+  std::size_t found = 0;
+  for (const std::vector<T>& part : parts)
+    found += part.size();
   std::vector<T> all;
+  all.reserve(found);
   for (const std::vector<T>& part : parts)
     all.insert(all.end(), part.begin(), part.end());
   return all;
