@@ -68,17 +68,21 @@ bool mayBeOpen(const Options& options) {
                      "surface = open");
 }
 
-NeighborGraph buildGraph(const Neighborhoods& neighborhoods, const Options& options,
-                         const Execution& execution) {
+/// The graph of a part; takes its agreed graph.
+NeighborGraph takeGraph(Neighborhoods& neighborhoods, const Options& options,
+                        const Execution& execution) {
   if (options.method == Method::Paper)
     return internal::paper::nearestNeighborGraph(neighborhoods.points(),
                                                  neighborhoods.neighbors().lists, options.paper.k);
-  NeighborGraph graph = internal::buildLocalDelaunayGraph(
-      neighborhoods.points(), neighborhoods.stars(), neighborhoods.agreed(), execution);
   // Outliers that are left out are not looked for again.
+  std::vector<StrayPoint> stray;
   if (options.outliers == OutlierMode::None)
-    graph.stray_points = internal::strayPoints(neighborhoods.points(), neighborhoods.agreed(),
-                                               neighborhoods.stars());
+    stray = internal::strayPoints(neighborhoods.points(), neighborhoods.agreed(),
+                                  neighborhoods.stars());
+  NeighborGraph graph =
+      internal::buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(),
+                                        std::move(neighborhoods.agreed()), execution);
+  graph.stray_points = std::move(stray);
   return graph;
 }
 
@@ -187,7 +191,7 @@ Surface meshAsIs(Selection& selection, std::size_t part, Neighborhoods& neighbor
   const bool is_flat = areCoplanar(selection.pointsOf(part));
   if (is_flat && !mayBeOpen(options))
     refuseFlat(options);
-  NeighborGraph graph = buildGraph(neighborhoods, options, clock.execution());
+  NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());
   neighborhoods.release();
   return meshNodes(neighborhoods.nodes(), std::move(graph), is_flat, options, clock);
 }

@@ -1,6 +1,6 @@
 #include "graph_hierarchy.h"
 
-#include "parallel.h"
+#include "graph_building.h"
 #include "partition.h"
 #include "progress.h"
 
@@ -147,32 +147,6 @@ Aggregates geodesicCells(const Graph& graph, const Indexed<Index>& seeds, int th
   return cells;
 }
 
-/// A graph, or a matrix whose entries are its lengths, of rows that are found by several threads.
-///
-/// \param find (begin, end, rows) appends the rows of [begin, end), which are a block.
-template <typename Find>
-Graph rowsOfBlocks(std::size_t count, int threads, const FractionReport& report, const Find& find) {
-  std::vector<Graph> blocks((count + kBlockSize - 1) / kBlockSize);
-  forEachBlock(count, threads, report, [&](std::size_t b, std::size_t begin, std::size_t end) {
-    find(static_cast<Index>(begin), static_cast<Index>(end), blocks[b]);
-  });
-  Graph all;
-  all.offsets.reserve(count + 1);
-  std::size_t entries = 0;
-  for (const Graph& block : blocks) {
-    for (const Index row : block.nodes())
-      all.offsets.push_back(entries + block.end(row));
-    entries += block.neighbors.size();
-  }
-  all.neighbors.reserve(entries);
-  all.lengths.reserve(entries);
-  for (const Graph& block : blocks) {
-    all.neighbors.insert(all.neighbors.end(), block.neighbors.begin(), block.neighbors.end());
-    all.lengths.insert(all.lengths.end(), block.lengths.begin(), block.lengths.end());
-  }
-  return all;
-}
-
 /// The graph of the aggregates that touch.
 Graph coarseGraph(const Graph& graph, const Aggregates& cells, std::size_t count, int threads,
                   const FractionReport& report) {
@@ -258,16 +232,14 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index> interpolation(const Graph& g
   return result;
 }
 
-HierarchyLevel coarsened(const Graph& graph, std::uint32_t seed, int requested_threads,
-                         const FractionReport& report) {
+void coarsen(const Graph& graph, std::uint32_t seed, int requested_threads,
+             const FractionReport& report, HierarchyLevel& level) {
   const int threads = threadCount(requested_threads, graph.size());
-  HierarchyLevel level;
   level.seeds = independentSet(graph, seed, threads, report);
   Aggregates cells = geodesicCells(graph, level.seeds, threads, report);
   level.graph = coarseGraph(graph, cells, level.seeds.size(), threads, report);
-  level.prolongation = interpolation(graph, cells, level.seeds.size(), threads, report);
+  interpolation(graph, cells, level.seeds.size(), threads, report).swap(level.prolongation);
   level.aggregate_of = std::move(cells.of_node);
-  return level;
 }
 
 }  // namespace
@@ -281,13 +253,15 @@ GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index
   const Graph* finest = &graph;
   const FractionReport report = reportOf(execution, "embedding");
   while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
-    HierarchyLevel level = coarsened(*finest, seed, execution.threads, report);
+    HierarchyLevel& level = hierarchy.levels.emplace_back();
+    coarsen(*finest, seed, execution.threads, report, level);
     // Fewer than 4 nodes cannot be spread over a sphere.
     if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
-                                      max_kept_fraction * static_cast<double>(finest->size()))
+                                      max_kept_fraction * static_cast<double>(finest->size())) {
+      hierarchy.levels.pop_back();
       break;
-    hierarchy.levels.push_back(std::move(level));
-    finest = &hierarchy.levels.back().graph;
+    }
+    finest = &level.graph;
   }
   return hierarchy;
 }

@@ -8,7 +8,7 @@
 #include <Eigen/SparseCore>
 
 #include <cstdint>
-#include <vector>
+#include <deque>
 
 namespace spherical_param::internal {
 
@@ -28,7 +28,9 @@ struct HierarchyLevel {
 
 /// Coarser and coarser versions of a graph.
 struct GraphHierarchy {
-  std::vector<HierarchyLevel> levels;  ///< finest first, without the graph itself
+  /// Finest first, without the graph itself. They stay where they are made: to move a sparse matrix
+  /// of Eigen is to copy it.
+  std::deque<HierarchyLevel> levels;
 };
 
 /// Coarsens a graph by geometric clustering. Seeds are a maximal independent set in a pseudo-random

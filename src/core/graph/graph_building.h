@@ -2,6 +2,7 @@
 
 #include "graph.h"
 #include "indexed.h"
+#include "parallel.h"
 #include "union_find.h"
 
 #include <cstddef>
@@ -9,6 +10,32 @@
 
 /// Common functions of both neighbour graphs.
 namespace spherical_param::internal {
+
+/// A graph, or a matrix whose entries are its lengths, of rows that are found by several threads.
+///
+/// \param find (begin, end, rows) appends the rows of [begin, end), which are a block.
+template <typename Find>
+Graph rowsOfBlocks(std::size_t count, int threads, const FractionReport& report, const Find& find) {
+  std::vector<Graph> blocks((count + kBlockSize - 1) / kBlockSize);
+  forEachBlock(count, threads, report, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    find(static_cast<Index>(begin), static_cast<Index>(end), blocks[b]);
+  });
+  Graph all;
+  all.offsets.reserve(count + 1);
+  std::size_t entries = 0;
+  for (const Graph& block : blocks) {
+    for (const Index row : block.nodes())
+      all.offsets.push_back(entries + block.end(row));
+    entries += block.neighbors.size();
+  }
+  all.neighbors.reserve(entries);
+  all.lengths.reserve(entries);
+  for (const Graph& block : blocks) {
+    all.neighbors.insert(all.neighbors.end(), block.neighbors.begin(), block.neighbors.end());
+    all.lengths.insert(all.lengths.end(), block.lengths.begin(), block.lengths.end());
+  }
+  return all;
+}
 
 /// Length of an edge; positive for distinct points even where the squares underflow.
 double edgeLength(const Positions& points, Index i, Index j);

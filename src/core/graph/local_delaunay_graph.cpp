@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -83,37 +84,25 @@ void connect(const Positions& points, const FractionReport& report, NeighborGrap
 }  // namespace
 
 Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& execution) {
-  const std::size_t n = stars.size();
-  const int threads = threadCount(execution.threads, n);
-  const FractionReport report = reportOf(execution, "graph");
-  std::vector<char> agreed(stars.nodes.size(), 0);  // not bool: written by several threads
-  forEachIndex(n, threads, report, [&](Index i) {
-    for (const std::size_t e : stars.entries(i))
-      agreed[e] = stars.of(stars.nodes[e]).contains(i) ? 1 : 0;
-  });
-  Graph graph;
-  graph.offsets.reserve(n + 1);
-  graph.neighbors.reserve(static_cast<std::size_t>(std::count(agreed.begin(), agreed.end(), 1)));
-  for (const Index i : indicesOf(stars.kind)) {
-    for (const std::size_t e : stars.entries(i))
-      if (agreed[e] != 0)
-        graph.neighbors.push_back(stars.nodes[e]);
-    graph.endRow();
-  }
-  graph.lengths.resize(graph.neighbors.size());
-  forEachIndex(n, threads, report, [&](Index i) {
-    for (const std::size_t e : graph.entries(i))
-      graph.lengths[e] = edgeLength(points, i, graph.neighbors[e]);
-  });
-  return graph;
+  return rowsOfBlocks(stars.size(), threadCount(execution.threads, stars.size()),
+                      reportOf(execution, "graph"), [&](Index begin, Index end, Graph& rows) {
+                        for (const Index i : NumberRange(begin, end)) {
+                          for (const Index j : stars.of(i))
+                            if (stars.of(j).contains(i)) {
+                              rows.neighbors.push_back(j);
+                              rows.lengths.push_back(edgeLength(points, i, j));
+                            }
+                          rows.endRow();
+                        }
+                      });
 }
 
-NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
-                                      const Graph& agreed, const Execution& execution) {
+NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars, Graph agreed,
+                                      const Execution& execution) {
   NeighborGraph result;
   if (stars.size() == 0)
     return result;
-  result.graph = agreed;
+  result.graph = std::move(agreed);
   joinWithoutPlane(points, stars, result.graph);
   repairWeak(points, stars, result.graph);
   connect(points, reportOf(execution, "graph"), result);

@@ -27,7 +27,7 @@ Graph agreedGraph(const Positions& points, const Stars& stars, const Execution& 
 /// \param stars  of these points.
 /// \param agreed \see agreedGraph
 /// \return the graph, without stray points.
-NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars,
-                                      const Graph& agreed, const Execution& execution);
+NeighborGraph buildLocalDelaunayGraph(const Positions& points, const Stars& stars, Graph agreed,
+                                      const Execution& execution);
 
 }  // namespace spherical_param::internal

@@ -39,6 +39,7 @@ public:
   const Neighbors& neighbors() const { return neighbors_; }
   const Stars& stars() const { return stars_; }
   const Graph& agreed() const { return agreed_; }  ///< \see agreedGraph
+  Graph& agreed() { return agreed_; }
 
   /// The inputs of marked nodes. \param marked one entry for each node.
   std::vector<Index> inputsOf(const Indexed<char>& marked) const;
