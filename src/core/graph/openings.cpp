@@ -46,7 +46,8 @@ public:
     orientNormals();
     const std::vector<char> crosses = longerOfCrossing();
     keepEdges([&](Index v, std::size_t e) {
-      return crosses[e] == 0 && !leavesSheet(v, edges_.neighbors[e]);
+      const Index w = edges_.neighbors[e];
+      return crosses[v < w ? e : entryOf(w, v)] == 0 && !leavesSheet(v, w);
     });
     sortAround();
   }
@@ -108,14 +109,14 @@ private:
   /// Leaves out the edges that do not meet a condition.
   template <typename Condition>
   void keepEdges(const Condition& meets) {
-    NeighborRows kept;
-    for (const Index v : edges_.nodes()) {
-      for (const std::size_t e : edges_.entries(v))
-        if (meets(v, e))
-          kept.neighbors.push_back(edges_.neighbors[e]);
-      kept.endRow();
-    }
-    edges_ = std::move(kept);
+    edges_ = rowsOfBlocks(edges_.size(), threads_, {}, [&](Index begin, Index end, Graph& rows) {
+      for (const Index v : NumberRange(begin, end)) {
+        for (const std::size_t e : edges_.entries(v))
+          if (meets(v, e))
+            rows.neighbors.push_back(edges_.neighbors[e]);
+        rows.endRow();
+      }
+    });
   }
 
   /// Number of edges that meet a condition.
@@ -141,22 +142,24 @@ private:
 
   bool areJoined(Index v, Index w) const { return edges_.row(v).contains(w); }
 
-  /// For each edge, 1 if it crosses a shorter one: the diagonals of four points that are all
-  /// neighbours. Of two as long as each other, the one of the higher node counts as longer.
+  /// For each edge, at its lower node, 1 if it crosses a shorter one: the diagonals of four points
+  /// that are all neighbours. Of two as long as each other, the one of the higher node counts as
+  /// longer.
   std::vector<char> longerOfCrossing() const {
     std::vector<char> crosses(edges_.neighbors.size(), 0);
     forEachIndex<std::vector<Index>>(
         edges_.size(), threads_, {}, [&](std::vector<Index>& common, Index v) {
           for (const std::size_t e : edges_.entries(v)) {
             const Index w = edges_.neighbors[e];
-            common.clear();  // ascending: in an order that is the same from both ends
+            if (w < v)
+              continue;
+            common.clear();
             for (const Index a : edges_.row(v))
               if (a != w && areJoined(a, w))
                 common.push_back(a);
             for (const Index a : common)
               for (const Index b : common)
-                if (a < b && areJoined(a, b) && isLonger(v, w, a, b) &&
-                    doCross(std::min(v, w), std::max(v, w), a, b))
+                if (a < b && areJoined(a, b) && isLonger(v, w, a, b) && doCross(v, w, a, b))
                   crosses[e] = 1;
           }
         });
