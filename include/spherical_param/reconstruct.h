@@ -37,7 +37,7 @@ namespace spherical_param {
 ///
 /// Not guaranteed: a mesh free of self-intersections or near the sampled surface; `verdict`,
 /// `findings` and `diagnosis` say how far to trust it.
-/// Cost: O(n log n), typically; Method::Paper adds iterations * O(n k). Memory: below 2 KB a point.
+/// Cost: O(n log n), typically; Method::Paper adds iterations * O(n k). Memory: below 1 KB a point.
 Result reconstruct(const Positions& points, const Options& options = {},
                    const NeighborSearchFactory& search_of = {});
 

@@ -278,14 +278,13 @@ TEST_F(ReconstructionTool, ReportedMemoryIsThatOfTheToolAlone) {
   EXPECT_LT(reportOf({"in.ply", "out.ply"})["peak_memory_bytes"], 60 << 20);
 }
 
-// doc/method.md says less on large clouds, where what the process takes without any is nothing.
-TEST_F(ReconstructionTool, TakesLessThanTwoKilobytesAPoint) {
+TEST_F(ReconstructionTool, TakesLessThanOneKilobyteAPoint) {
   const auto peak = [&](int n) {
     write("many.xyz", linesOf(ellipsoid(n)));
     return reportOf({"many.xyz", "out.ply"})["peak_memory_bytes"].get<double>();
   };
   constexpr int many = 30000;
-  EXPECT_LT((peak(many) - peak(200)) / many, 2048.0);
+  EXPECT_LT((peak(many) - peak(200)) / many, 1024.0);
 }
 #endif
 
