@@ -48,8 +48,8 @@ public:
     }
   }
 
-  Integer& operator+=(const Integer& other) { return add(other, 1); }
-  Integer& operator-=(const Integer& other) { return add(other, -1); }
+  Integer operator+(const Integer& other) const { return plus(1, other); }
+  Integer operator-(const Integer& other) const { return plus(-1, other); }
   Integer operator*(const Integer& other) const {
     // Sums stay below 2^63: the shorter factor has fewer than 2^9 digits.
     Integer result;
@@ -66,12 +66,13 @@ public:
 private:
   static constexpr int kBits = 27;
 
-  Integer& add(const Integer& other, std::int64_t factor) {
-    digits_.resize(std::max(digits_.size(), other.digits_.size()), 0);
+  Integer plus(std::int64_t factor, const Integer& other) const {
+    Integer sum = *this;
+    sum.digits_.resize(std::max(digits_.size(), other.digits_.size()), 0);
     for (Index i = 0; i < other.digits_.count(); ++i)
-      digits_[i] += factor * other.digits_[i];
-    carry();
-    return *this;
+      sum.digits_[i] += factor * other.digits_[i];
+    sum.carry();
+    return sum;
   }
 
   void carry() {
@@ -90,15 +91,6 @@ private:
 
   Indexed<std::int64_t> digits_;  ///< in (-2^27, 2^27), the last is not 0
 };
-
-Integer operator+(Integer a, const Integer& b) {
-  a += b;
-  return a;
-}
-Integer operator-(Integer a, const Integer& b) {
-  a -= b;
-  return a;
-}
 
 using Vector2 = std::array<Integer, 2>;
 using Vector3 = std::array<Integer, 3>;
@@ -146,10 +138,7 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
     lost += std::abs(sum) >= std::abs(term) ? (sum - next) + term : (term - next) + sum;
     sum = next;
     largest = std::max(largest, a.cwiseAbs().maxCoeff());
-    magnitude +=
-        a.cwiseAbs().dot(Eigen::Vector3d(std::abs(b.y() * c.z()) + std::abs(b.z() * c.y()),
-                                         std::abs(b.z() * c.x()) + std::abs(b.x() * c.z()),
-                                         std::abs(b.x() * c.y()) + std::abs(b.y() * c.x())));
+    magnitude += a.lpNorm<1>() * b.lpNorm<1>() * c.lpNorm<1>();
   }
   sum += lost;
   // A term has some 8 roundings, what was lost one for each of them, and the magnitude has as many;
@@ -163,7 +152,7 @@ int volumeSign(const Positions& points, const Triangles& triangles) {
   const int unit = commonUnit(points);
   const auto wide = [&](Eigen::Index t, int k) { return difference(corner(t, k), origin, unit); };
   for (Eigen::Index t = 0; t < count; ++t)
-    exact += determinant(wide(t, 0), wide(t, 1), wide(t, 2));
+    exact = exact + determinant(wide(t, 0), wide(t, 1), wide(t, 2));
   return exact.sign();
 }
 

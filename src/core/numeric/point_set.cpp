@@ -3,8 +3,6 @@
 #include "exact_predicates.h"
 #include "spherical_param/errors.h"
 
-#include <Eigen/Geometry>
-
 namespace spherical_param {
 namespace {
 
@@ -27,30 +25,16 @@ bool areCoplanar(const Positions& points) {
     return true;
   if (!points.allFinite())
     throw InvalidInput("areCoplanar: a coordinate is not finite; remove such points first");
-  // A far-apart triangle makes the plain evaluation of the predicate decide nearly always.
+  // The first points that span a line and a plane, if any do.
   const Eigen::Vector3d a = points.col(0);
-  Eigen::Index second = 0;
-  (points.colwise() - a).cwiseAbs().colwise().maxCoeff().maxCoeff(&second);
-  const Eigen::Vector3d b = points.col(second);
-  Eigen::Index third = 0;
-  double largest = -1.0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double area = (b - a).cross(points.col(i) - a).cwiseAbs().maxCoeff();
-    if (area > largest) {
-      largest = area;
-      third = i;
-    }
-  }
-  if (areCollinear(a, b, points.col(third))) {
-    // Rounding may have hidden a point beside the line.
-    third = 0;
-    while (third < n && areCollinear(a, b, points.col(third)))
-      ++third;
-    if (third == n)
-      return true;
-  }
-  const Eigen::Vector3d c = points.col(third);
-  for (Eigen::Index i = 0; i < n; ++i)
+  Eigen::Index i = 1;
+  while (i < n && points.col(i) == a)
+    ++i;
+  const Eigen::Vector3d b = points.col(i % n);
+  while (i < n && areCollinear(a, b, points.col(i)))
+    ++i;
+  const Eigen::Vector3d c = points.col(i % n);
+  for (; i < n; ++i)
     if (internal::orientation3d(a, b, c, points.col(i)) != 0)
       return false;
   return true;
