@@ -1,11 +1,10 @@
 #pragma once
 
-#include "spherical_param/types.h"
+#include "indexed.h"
 
 #include <cstddef>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 
@@ -18,9 +17,9 @@ public:
   }
 
   Index find(Index i) {
-    while (parent(i) != i) {
-      parent(i) = parent(parent(i));
-      i = parent(i);
+    while (parent_[i] != i) {
+      parent_[i] = parent_[parent_[i]];
+      i = parent_[i];
     }
     return i;
   }
@@ -33,14 +32,12 @@ public:
       return false;
     if (j < i)
       std::swap(i, j);
-    parent(j) = i;
+    parent_[j] = i;
     return true;
   }
 
 private:
-  Index& parent(Index i) { return parent_[static_cast<std::size_t>(i)]; }
-
-  std::vector<Index> parent_;
+  Indexed<Index> parent_;
 };
 
 }  // namespace spherical_param::internal
