@@ -278,8 +278,7 @@ Vector3d project(Vector3d p, const Distance& distance) {
 /// Calls work(i) for each i in [0, count), on several threads.
 template <typename Work>
 void forEach(std::size_t count, const Work& work) {
-  internal::forEachItem(count, internal::threadCount(0, count, internal::kParallelThreshold),
-                        [&](std::size_t, std::size_t i) { work(i); });
+  internal::forEachItem(count, internal::threadCount(0, count), {}, work);
 }
 
 /// Uniform in [0, 1). The distributions of the standard library differ between implementations.

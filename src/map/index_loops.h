@@ -1,7 +1,6 @@
 #pragma once
 
-#include "indexed.h"
-#include "parallel.h"
+#include "rows.h"
 
 #include <cstddef>
 #include <vector>
@@ -25,8 +24,7 @@ auto& entry(List& list, Eigen::Index i) {
 /// \param cost of an item, in passes over a neighbourhood.
 template <typename Work>
 void forEachIndex(std::size_t count, int threads, const Work& work, std::size_t cost = 1) {
-  forEachItem(count, threadCount(threads, count * cost),
-              [&](std::size_t, std::size_t i) { work(static_cast<Index>(i)); });
+  forEachIndex(count, threadCount(threads, count * cost), {}, work);
 }
 
 /// The sum of term(i) over i in [0, count); the same bits for any number of threads.

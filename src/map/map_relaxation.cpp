@@ -2,7 +2,6 @@
 
 #include "corner_table.h"
 #include "index_loops.h"
-#include "partition.h"
 #include "tangent_basis.h"
 #include "triangle_geometry.h"
 

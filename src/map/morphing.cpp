@@ -4,7 +4,6 @@
 #include "corner_table.h"
 #include "index_loops.h"
 #include "input_checks.h"
-#include "option_checks.h"
 #include "progress.h"
 #include "rotation_search.h"
 #include "space_filling_curve.h"

@@ -5,7 +5,6 @@
 #include "corner_table.h"
 #include "index_loops.h"
 #include "input_checks.h"
-#include "option_checks.h"
 #include "sample_elimination.h"
 #include "sphere_mesh.h"
 #include "spherical_param/errors.h"

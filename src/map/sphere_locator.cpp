@@ -61,8 +61,8 @@ SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles
     forEachTask(std::size_t{1} << level, threads,
                 [&](std::size_t i) { split((std::size_t{1} << level) + i, level, centers); });
   for (unsigned level = levels_ + 1; level-- > 0;)
-    forEachItem(std::size_t{1} << level, threads,
-                [&](std::size_t, std::size_t i) { makeBox((std::size_t{1} << level) + i); });
+    forEachItem(std::size_t{1} << level, threads, {},
+                [&](std::size_t i) { makeBox((std::size_t{1} << level) + i); });
 }
 
 std::size_t SphereLocator::begin(std::size_t leaf) const {

@@ -4,7 +4,6 @@
 #include "corner_table.h"
 #include "index_loops.h"
 #include "input_checks.h"
-#include "option_checks.h"
 #include "pi.h"
 #include "sphere_locator.h"
 #include "spherical_param/errors.h"

@@ -5,7 +5,6 @@
 
 #include "index_loops.h"
 #include "input_checks.h"
-#include "option_checks.h"
 #include "pi.h"
 #include "sphere_cutting.h"
 #include "triangle_geometry.h"

@@ -6,7 +6,6 @@
 #include "exact_predicates.h"
 #include "index_loops.h"
 #include "input_checks.h"
-#include "option_checks.h"
 
 #include <algorithm>
 #include <array>

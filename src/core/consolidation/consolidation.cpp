@@ -1,6 +1,5 @@
 #include "consolidation.h"
 
-#include "median.h"
 #include "neighbor_search.h"
 #include "ordered_points.h"
 #include "power_of_two.h"

@@ -1,7 +1,6 @@
 #include "graph_hierarchy.h"
 
 #include "graph_building.h"
-#include "partition.h"
 #include "progress.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "planar_start.h"
 
 #include "indexed.h"
-#include "median.h"
 #include "pi.h"
 
 #include <Eigen/Core>

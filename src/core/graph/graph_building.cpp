@@ -1,8 +1,6 @@
 #include "graph_building.h"
 
 #include "component_tree.h"
-#include "median.h"
-#include "partition.h"
 
 #include <algorithm>
 #include <cmath>

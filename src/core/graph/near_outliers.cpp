@@ -1,6 +1,5 @@
 #include "near_outliers.h"
 
-#include "median.h"
 #include "quadric_fit.h"
 #include "rows.h"
 

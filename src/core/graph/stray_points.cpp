@@ -1,7 +1,6 @@
 #include "stray_points.h"
 
 #include "graph_building.h"
-#include "median.h"
 #include "surface_distance.h"
 
 #include <algorithm>

@@ -24,9 +24,8 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
   const CornerTable corners(triangles, vertex_count, threads);
   std::vector<Indexed<Index>> ending_of(static_cast<std::size_t>(threads),
                                         Indexed<Index>(vertex_count));
-  forEachItem(vertex_count, threads, [&](std::size_t thread, std::size_t i) {
-    const auto v = static_cast<Index>(i);
-    Indexed<Index>& ending_at = ending_of[thread];
+  forEachIndex(vertex_count, threads, {}, [&](Index v) {
+    Indexed<Index>& ending_at = ending_of[threadNumber()];
     corners.forEachCorner(
         v, [&](Index t, Index k) { ending_at[triangles(previousCorner(k), t)] = t; });
     corners.forEachCorner(v, [&](Index t, Index k) {

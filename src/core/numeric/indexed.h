@@ -41,6 +41,15 @@ void sortUnique(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+/// The median; the upper one of two. Changes the order of the values.
+///
+/// \param values not empty.
+inline double medianOf(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// A set of vertices or triangles that is cleared in constant time.
 class IndexSet {
 public:

@@ -70,21 +70,15 @@ void forEachBlock(std::size_t count, int threads, const FractionReport& report, 
   }
 }
 
-/// Calls work(thread, i) for each i in [0, count), where thread < threads.
+/// Calls work(i) for each i in [0, count), on several threads.
 ///
 /// \param report receives the fraction done, as in forEachBlock().
 template <typename Work>
 void forEachItem(std::size_t count, int threads, const FractionReport& report, const Work& work) {
   forEachBlock(count, threads, report, [&](std::size_t, std::size_t begin, std::size_t end) {
-    const std::size_t thread = threadNumber();
     for (std::size_t i = begin; i < end; ++i)
-      work(thread, i);
+      work(i);
   });
-}
-
-template <typename Work>
-void forEachItem(std::size_t count, int threads, const Work& work) {
-  forEachItem(count, threads, {}, work);
 }
 
 /// The sum of term(begin, end) over the blocks of [0, count), in their order.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -71,18 +72,28 @@ struct NeighborRows {
   void endRow() { offsets.push_back(neighbors.size()); }
 };
 
+/// The nodes of each part of a partition, ascending: row p has those of part p.
+///
+/// \param part the part of each node, in [0, count).
+inline NeighborRows nodesOfParts(const std::vector<Index>& part, std::size_t count) {
+  NeighborRows rows;
+  Indexed<std::size_t> next(count + 1, 0);
+  for (const Index p : part)
+    ++next[p + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  rows.offsets.assign(next.begin(), next.end());
+  rows.neighbors.resize(part.size());
+  Index node = 0;
+  for (const Index p : part)
+    rows.neighbors[next[p]++] = node++;
+  return rows;
+}
+
 /// List i of some neighbour lists.
 inline Row<Index> listOf(const NeighborLists& lists, Index i) {
   const auto place = static_cast<std::size_t>(i);
   return {lists.indices.data() + lists.offsets[place],
           lists.indices.data() + lists.offsets[place + 1]};
-}
-
-/// Appends a list.
-template <typename List>
-void append(const List& list, NeighborLists& lists) {
-  lists.indices.insert(lists.indices.end(), list.begin(), list.end());
-  lists.offsets.push_back(lists.indices.size());
 }
 
 /// The indices of an array.
@@ -105,8 +116,7 @@ void forEachIndex(std::size_t count, int threads, const FractionReport& report, 
 /// Calls work(i) for each i in [0, count), on several threads.
 template <typename Work>
 void forEachIndex(std::size_t count, int threads, const FractionReport& report, const Work& work) {
-  forEachItem(count, threads, report,
-              [&](std::size_t, std::size_t i) { work(static_cast<Index>(i)); });
+  forEachItem(count, threads, report, [&](std::size_t i) { work(static_cast<Index>(i)); });
 }
 
 }  // namespace spherical_param::internal

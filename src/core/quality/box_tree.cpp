@@ -11,8 +11,8 @@ void BoxTree::build(std::vector<BoxGroup> groups, int threads) {
   while (levels_.back().size() > 1) {
     const std::vector<BoxGroup>& below = levels_.back();
     std::vector<BoxGroup> level((below.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-    forEachItem(below.size(), below.size() >= kParallelThreshold ? threads : 1,
-                [&](std::size_t, std::size_t i) {
+    forEachItem(below.size(), below.size() >= kParallelThreshold ? threads : 1, {},
+                [&](std::size_t i) {
                   level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
                 });
     levels_.push_back(std::move(level));

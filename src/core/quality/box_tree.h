@@ -69,7 +69,7 @@ public:
   BoxTree(std::size_t count, int threads, const FractionReport& report, const BoxOf& box_of) {
     std::vector<BoxGroup> groups((count + BoxGroup::kSize - 1) / BoxGroup::kSize);
     static_assert(kBlockSize % BoxGroup::kSize == 0, "a group is in one block");
-    forEachItem(count, threads, report, [&](std::size_t, std::size_t i) {
+    forEachItem(count, threads, report, [&](std::size_t i) {
       groups[i / BoxGroup::kSize].set(i % BoxGroup::kSize, box_of(static_cast<Index>(i)));
     });
     build(std::move(groups), threads);

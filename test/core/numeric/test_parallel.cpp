@@ -70,16 +70,15 @@ TEST(Parallel, AnExceptionOfAReportEndsTheWork) {
     if (fraction > 0.3)
       throw std::runtime_error("enough");
   };
-  EXPECT_THROW(
-      forEachItem(5 * kReportedItems, 3, report, [&](std::size_t, std::size_t) { ++done; }),
-      std::runtime_error);
+  EXPECT_THROW(forEachItem(5 * kReportedItems, 3, report, [&](std::size_t) { ++done; }),
+               std::runtime_error);
   EXPECT_EQ(done, 2 * kReportedItems);
 }
 
 TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
   for (const int threads : {1, 3}) {
-    EXPECT_THROW(forEachItem(100 * kBlockSize, threads,
-                             [](std::size_t, std::size_t i) {
+    EXPECT_THROW(forEachItem(100 * kBlockSize, threads, {},
+                             [](std::size_t i) {
                                if (i == 7 * kBlockSize || i == 70 * kBlockSize)
                                  throw std::bad_alloc();
                              }),
@@ -92,7 +91,7 @@ TEST(Parallel, ExceptionsOfTheWorkArePassedOn) {
                  std::runtime_error);
     // And the next one works.
     std::atomic<std::size_t> done{0};
-    forEachItem(3 * kBlockSize, threads, [&](std::size_t, std::size_t) { ++done; });
+    forEachItem(3 * kBlockSize, threads, {}, [&](std::size_t) { ++done; });
     EXPECT_EQ(done, 3 * kBlockSize);
   }
 }
@@ -138,8 +137,8 @@ TEST(Parallel, ALoopInATaskOfAnotherHasOneThread) {
     const std::thread::id thread = std::this_thread::get_id();
     const std::size_t number = threadNumber();
     EXPECT_LT(number, 3U);
-    forEachItem(3 * kBlockSize, 2, [&](std::size_t inner, std::size_t) {
-      EXPECT_EQ(inner, 0U);
+    forEachItem(3 * kBlockSize, 2, {}, [&](std::size_t) {
+      EXPECT_EQ(threadNumber(), 0U);
       EXPECT_EQ(std::this_thread::get_id(), thread);
       ++done;
     });
