@@ -16,8 +16,8 @@ namespace {
 
 /// A graph's power, with one number for both entries of an edge.
 struct PowerGraph : NeighborRows {
-  std::vector<std::uint32_t> edges;  ///< the number of each entry's edge
-  std::uint32_t count = 0;           ///< of edges
+  std::vector<std::uint32_t> edges;        ///< the number of each entry's edge
+  std::vector<std::array<Index, 2>> ends;  ///< of each edge
 };
 
 /// None if a node has more than 64 neighbours on average, or an edge is stored at one end only. At
@@ -53,8 +53,8 @@ std::optional<PowerGraph> powerOf(const Graph& graph, int reach) {
       // Not so in a graph with edges of one direction.
       if (next[w] == power.end(w) || power.neighbors[next[w]] != v)
         return std::nullopt;
-      power.edges[e] = power.count;
-      power.edges[next[w]++] = power.count++;
+      power.edges[e] = power.edges[next[w]++] = static_cast<std::uint32_t>(power.ends.size());
+      power.ends.push_back({v, w});
     }
   return power;
 }
@@ -66,19 +66,18 @@ std::optional<PowerGraph> powerOf(const Graph& graph, int reach) {
 class Cocycles {
 public:
   explicit Cocycles(const PowerGraph& power)
-      : power_(power), known_(power.count, 0), value_(power.count, 0),
+      : power_(power), known_(power.ends.size(), 0), value_(power.ends.size(), 0),
         edge_to_(power.size(), kNone) {}
 
   /// \return none if there are more symbols than are kept.
   std::optional<int> count() {
     spanForest();
     std::uint32_t first_unknown = 0;
-    const std::vector<Edge> ends = endsOfEdges();
     for (;;) {
-      propagate(ends);
-      while (first_unknown < power_.count && known_[first_unknown] != 0)
+      propagate();
+      while (first_unknown < known_.size() && known_[first_unknown] != 0)
         ++first_unknown;
-      if (first_unknown == power_.count)
+      if (first_unknown == known_.size())
         return symbols_ - relations_;
       if (symbols_ == kMaxSymbols)
         return std::nullopt;
@@ -87,7 +86,6 @@ public:
   }
 
 private:
-  using Edge = std::array<Index, 2>;
   static constexpr int kMaxSymbols = 64;
   static constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -113,21 +111,12 @@ private:
     }
   }
 
-  std::vector<Edge> endsOfEdges() const {
-    std::vector<Edge> ends(power_.count);
-    for (const Index v : power_.nodes())
-      for (const std::size_t e : power_.entries(v))
-        if (power_.neighbors[e] > v)
-          ends[power_.edges[e]] = {v, power_.neighbors[e]};
-    return ends;
-  }
-
   /// Draws all conclusions from what is known.
-  void propagate(const std::vector<Edge>& ends) {
+  void propagate() {
     while (!pending_.empty()) {
       const std::uint32_t edge = pending_.back();
       pending_.pop_back();
-      const auto [a, b] = ends[edge];
+      const auto [a, b] = power_.ends[edge];
       if (marked_ != b)
         mark(a);
       const Index other = marked_ == a ? b : a;

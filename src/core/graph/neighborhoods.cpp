@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 
 namespace spherical_param::internal {
 namespace {
@@ -34,13 +33,12 @@ void checkLists(const NeighborLists& lists, std::size_t count, std::size_t n) {
 }
 
 /// The caller's search, in the numbers of nodes.
-NeighborSearch searchOfCaller(const OrderedPoints& nodes, const std::vector<Index>& inputs,
+NeighborSearch searchOfCaller(const OrderedPoints& nodes, const Indexed<Index>& inputs,
                               const NeighborSearchFactory& search_of, const Execution& execution) {
-  const Indexed<Index> all(inputs.begin(), inputs.end());
   const auto in_cloud = [&](const std::vector<Index>& positions) {
     Indexed<Index> result(positions.size());
     std::transform(positions.begin(), positions.end(), result.begin(),
-                   [&](Index position) { return all[position]; });
+                   [&](Index position) { return inputs[position]; });
     return result;
   };
   const Indexed<Index> points = in_cloud(nodes.distinct.input_of_vertex);  // ascending
@@ -84,10 +82,11 @@ int neighborsToSearch(const Options& options) {
 
 }  // namespace
 
-Neighborhoods::Neighborhoods(const Positions& cloud, std::vector<Index> inputs,
+Neighborhoods::Neighborhoods(const Positions& cloud, const std::vector<Index>& inputs,
                              const Options& options, const NeighborSearchFactory& search_of,
                              const Execution& execution)
-    : inputs_(std::move(inputs)), nodes_(orderInputs(cloud, inputs_, execution.threads)) {
+    : inputs_(inputs.begin(), inputs.end()),
+      nodes_(orderInputs(cloud, inputs_, execution.threads)) {
   neighbors_.search = search_of ? searchOfCaller(nodes_, inputs_, search_of, execution)
                                 : makeNeighborSearch(nodes_.points, execution);
   neighbors_.lists =
@@ -109,23 +108,19 @@ void Neighborhoods::release() {
 
 std::vector<Index> Neighborhoods::inputsOf(const Indexed<char>& marked) const {
   std::vector<Index> result;
-  auto input = inputs_.begin();
-  for (const Index node : nodesOfInput(nodes_)) {
-    if (marked[node] != 0)
-      result.push_back(*input);
-    ++input;
-  }
+  const Indexed<Index> nodes = nodesOfInput(nodes_);
+  for (const Index i : indicesOf(nodes))
+    if (marked[nodes[i]] != 0)
+      result.push_back(inputs_[i]);
   return result;
 }
 
 std::vector<std::vector<Index>> Neighborhoods::groupInputs(const Indexed<Index>& group) const {
   Indexed<std::vector<Index>> groups(group.size());
-  auto input = inputs_.begin();
-  for (const Index node : nodesOfInput(nodes_)) {
-    if (group[node] >= 0)
-      groups[group[node]].push_back(*input);
-    ++input;
-  }
+  const Indexed<Index> nodes = nodesOfInput(nodes_);
+  for (const Index i : indicesOf(nodes))
+    if (const Index to = group[nodes[i]]; to >= 0)
+      groups[to].push_back(inputs_[i]);
   groups.erase(std::remove_if(groups.begin(), groups.end(),
                               [](const std::vector<Index>& inputs) { return inputs.empty(); }),
                groups.end());

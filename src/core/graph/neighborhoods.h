@@ -24,7 +24,7 @@ public:
   /// \param search_of makes the search; empty: a k-d tree is built.
   /// \throw InvalidInput for too many points, too large coordinates, or fewer than four distinct
   ///        points.
-  Neighborhoods(const Positions& cloud, std::vector<Index> inputs, const Options& options,
+  Neighborhoods(const Positions& cloud, const std::vector<Index>& inputs, const Options& options,
                 const NeighborSearchFactory& search_of, const Execution& execution);
 
   /// Finds the stars of all nodes and their agreed graph, if that is not done.
@@ -33,9 +33,8 @@ public:
   void release();
 
   const Positions& points() const { return nodes_.points; }  ///< 3 x v, of the nodes
-  /// The nodes; their input points are positions in inputs().
+  /// The nodes; their input points are positions in the inputs.
   OrderedPoints& nodes() { return nodes_; }
-  const std::vector<Index>& inputs() const { return inputs_; }
   const Neighbors& neighbors() const { return neighbors_; }
   const Stars& stars() const { return stars_; }
   const Graph& agreed() const { return agreed_; }  ///< \see agreedGraph
@@ -48,7 +47,7 @@ public:
   std::vector<std::vector<Index>> groupInputs(const Indexed<Index>& group) const;
 
 private:
-  std::vector<Index> inputs_;
+  Indexed<Index> inputs_;
   OrderedPoints nodes_;
   Neighbors neighbors_;
   Stars stars_;
