@@ -1,6 +1,5 @@
 #include "tangent_stars.h"
 
-#include "power_of_two.h"
 #include "progress.h"
 
 #include <Eigen/Eigenvalues>
@@ -124,25 +123,15 @@ private:
   double squared_radius_ = 0.0;
 };
 
-/// The nearest candidates of a list, sorted; in units of their own if squares would underflow.
+/// The nearest candidates of a list, sorted.
 void collectCandidates(const Positions& points, Index i, const Row<Index>& list,
                        std::vector<Candidate>& candidates) {
   candidates.clear();
-  double extent = 0.0;
   for (const Index j : list) {
     if (j == i)
       continue;
     const Eigen::Vector3d offset = points.col(j) - points.col(i);
-    extent = std::max(extent, offset.cwiseAbs().maxCoeff());
     candidates.push_back({offset.squaredNorm(), j, offset});
-  }
-  constexpr double safe = 1e-100;
-  if (extent > 0.0 && (extent < safe || extent > 1.0 / safe)) {
-    // By a power of two, which is exact.
-    for (Candidate& candidate : candidates) {
-      candidate.offset = timesPowerOfTwo(candidate.offset, -std::ilogb(extent));
-      candidate.squared_distance = candidate.offset.squaredNorm();
-    }
   }
   if (!std::is_sorted(candidates.begin(), candidates.end()))
     std::sort(candidates.begin(), candidates.end());
@@ -263,15 +252,13 @@ struct Scratch {
 
 /// Finds the stars of some nodes from lists in their order. Lists that are no longer than the one
 /// before change nothing.
-void findStarsOf(const std::vector<Index>& nodes, const Positions& points,
-                 const NeighborLists& lists, int threads, const FractionReport& report,
-                 Stars& stars) {
-  const Indexed<Index> node_of_list(nodes.begin(), nodes.end());
+void findStarsOf(const Indexed<Index>& nodes, const Positions& points, const NeighborLists& lists,
+                 int threads, const FractionReport& report, Stars& stars) {
   const std::size_t base = stars.nodes.size();
   stars.nodes.resize(base + lists.indices.size());
   reportFraction(report, 0.0);
   forEachIndex<Scratch>(lists.size(), threads, report, [&](Scratch& scratch, Index list) {
-    const Index i = node_of_list[list];
+    const Index i = nodes[list];
     std::vector<Candidate>& candidates = scratch.candidates;
     collectCandidates(points, i, listOf(lists, list), candidates);
     if (static_cast<Index>(candidates.size()) <= stars.kind[i].candidates)
@@ -291,7 +278,7 @@ void searchForMore(const Positions& points, const NeighborSearch& search, int th
     count = std::max(count, kind.candidates);
   while (count < most) {
     count = std::min(2 * count, most);
-    std::vector<Index> open;
+    Indexed<Index> open;
     for (const Index i : indicesOf(stars.kind))
       if (stars.kind[i].wants_more)
         open.push_back(i);
@@ -319,7 +306,7 @@ Stars findStars(const Positions& points, const Neighbors& neighbors, const Execu
     return stars;
   const int threads = threadCount(execution.threads, stars.size());
   const FractionReport report = reportOf(execution, "graph");
-  std::vector<Index> all(stars.size());
+  Indexed<Index> all(stars.size());
   std::iota(all.begin(), all.end(), Index{0});
   findStarsOf(all, points, neighbors.lists, threads, report, stars);
   if (neighbors.search)
