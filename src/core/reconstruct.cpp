@@ -1,5 +1,6 @@
 #include "spherical_param/reconstruct.h"
 
+#include "cloud_surfaces.h"
 #include "consolidation.h"
 #include "embedding_history.h"
 #include "exact_predicates.h"
@@ -15,7 +16,6 @@
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "stage_clock.h"
-#include "stray_points.h"
 
 #include <algorithm>
 #include <cmath>

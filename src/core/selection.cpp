@@ -1,8 +1,7 @@
 #include "selection.h"
 
+#include "cloud_surfaces.h"
 #include "outliers.h"
-#include "parts.h"
-#include "stray_points.h"
 
 #include <algorithm>
 #include <iterator>

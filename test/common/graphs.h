@@ -1,8 +1,8 @@
 #pragma once
 
+#include "cloud_surfaces.h"
 #include "helpers.h"
 #include "local_delaunay_graph.h"
-#include "stray_points.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -15,10 +15,6 @@ namespace {
 // The experiments are on 13 models and 13 shapes of up to 60,000 points, on 25 awkward clouds (few
 // points, lines of a scanner, tubes, parts, volumes) and on 35 open, partial and raw scans.
 
-Bridge edgeBetween(const Positions& points, Index i, Index j) {
-  return {std::min(i, j), std::max(i, j), edgeLength(points, i, j)};
-}
-
 /// Joins points without a tangent plane that only one of them finds near: their neighbourhood is
 /// the same from both ends, but for the ends of the lists.
 void joinWithoutPlane(const Positions& points, const Stars& stars, Graph& graph) {
@@ -27,7 +23,7 @@ void joinWithoutPlane(const Positions& points, const Stars& stars, Graph& graph)
     if (!stars.kind[i].tangent_plane)
       for (const Index j : stars.of(i))
         if (!stars.kind[j].tangent_plane && !stars.of(j).contains(i))
-          edges.push_back(edgeBetween(points, i, j));
+          edges.push_back({i, j, edgeLength(points, i, j)});
   if (!edges.empty())
     graph = withEdges(graph, edges);
 }
@@ -44,7 +40,7 @@ void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
     if (graph.row(i).size() >= min_degree)
       continue;
     for (const Index j : stars.of(i))
-      edges.push_back(edgeBetween(points, i, j));
+      edges.push_back({i, j, edgeLength(points, i, j)});
     if (!tree)
       tree.emplace(points);
     std::vector<Index> nearest;
@@ -54,7 +50,7 @@ void repairWeak(const Positions& points, const Stars& stars, Graph& graph) {
       if (pair.from < 0)
         break;  // there are no others
       nearest.push_back(pair.from == i ? pair.to : pair.from);
-      edges.push_back(edgeBetween(points, i, nearest.back()));
+      edges.push_back({i, nearest.back(), edgeLength(points, i, nearest.back())});
     }
   }
   if (!edges.empty())

@@ -1,7 +1,7 @@
 #include "neighbor_search.h"
 
-#include "parallel.h"
 #include "progress.h"
+#include "rows.h"
 #include "spherical_param/errors.h"
 
 #include <flann/algorithms/kdtree_single_index.h>
@@ -112,6 +112,19 @@ NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count) 
   std::vector<Index> all(n);
   std::iota(all.begin(), all.end(), Index{0});
   return search(all, count);
+}
+
+std::vector<Index> nearestOthers(const Positions& points, const NeighborLists& lists, Index i,
+                                 std::size_t count) {
+  std::vector<std::pair<double, Index>> others;
+  for (const Index j : internal::listOf(lists, i))
+    if (j != i)
+      others.emplace_back((points.col(j) - points.col(i)).squaredNorm(), j);
+  internal::sortUnique(others);
+  std::vector<Index> nearest(std::min(others.size(), count));
+  std::transform(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(nearest.size()),
+                 nearest.begin(), [](const auto& other) { return other.second; });
+  return nearest;
 }
 
 NeighborLists findNearestNeighbors(const Positions& points, int count, const Execution& execution) {

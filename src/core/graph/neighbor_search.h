@@ -4,6 +4,7 @@
 #include "spherical_param/types.h"
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace spherical_param {
@@ -24,6 +25,12 @@ NeighborSearch makeNeighborSearch(const Positions& points, const Execution& exec
 
 /// The answer of a search among n points for the `count` nearest neighbours of each.
 NeighborLists searchAll(const NeighborSearch& search, std::size_t n, int count);
+
+/// The nearest others of point i in its list, at most `count`: nearest first, ties by index.
+///
+/// \param lists in any order, perhaps with repetitions and the point itself.
+std::vector<Index> nearestOthers(const Positions& points, const NeighborLists& lists, Index i,
+                                 std::size_t count = std::numeric_limits<std::size_t>::max());
 
 /// Neighbour lists of all nodes, and a search for longer lists.
 struct Neighbors {

@@ -11,9 +11,9 @@ namespace spherical_param::internal {
 
 /// Marks the outliers of a cloud.
 ///
-/// OutlierMode::Auto: stray points, \see strayPoints, and isolated points near a surface, \see
-/// nearOutliers. Points within one spacing of a surface (perhaps noise) or of the rim of an opening
-/// (perhaps the surface continued) are kept.
+/// OutlierMode::Auto: stray points, \see strayPoints, and isolated points near a surface. Points
+/// within one spacing of a surface (perhaps noise) or of the rim of an opening (perhaps the surface
+/// continued) are kept.
 ///
 /// OutlierMode::Deviation: points too far from the average of their neighbours (Zwicker and Gotsman
 /// 2004, section 4.2), \see deviatingPoints, and stray points beyond the same threshold.

@@ -3,35 +3,18 @@
 #include "collapse.h"
 #include "embedding_starts.h"
 #include "graph_building.h"
+#include "neighbor_search.h"
 #include "progress.h"
 #include "qhull.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "tangential_laplacian.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::internal::paper {
 namespace {
-
-/// The k nearest neighbours of a point in a list.
-std::vector<Index> nearestOf(const Positions& points, const NeighborLists& lists, std::size_t i,
-                             int k) {
-  const auto point = static_cast<Index>(i);
-  std::vector<std::pair<double, Index>> candidates;
-  for (std::size_t e = lists.offsets[i]; e < lists.offsets[i + 1]; ++e)
-    if (const Index j = lists.indices[e]; j != point)
-      candidates.emplace_back((points.col(j) - points.col(point)).squaredNorm(), j);
-  std::sort(candidates.begin(), candidates.end());
-  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-  candidates.resize(std::min(candidates.size(), static_cast<std::size_t>(k)));
-  std::vector<Index> nearest(candidates.size());
-  std::transform(candidates.begin(), candidates.end(), nearest.begin(),
-                 [](const auto& candidate) { return candidate.second; });
-  return nearest;
-}
 
 /// Centres the points so that their sum is zero, and projects them on the sphere.
 void center(Positions& u) {
@@ -46,11 +29,9 @@ void center(Positions& u) {
 NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists& lists, int k) {
   // Two points are joined if one of them is among the k nearest of the other.
   std::vector<Bridge> edges;
-  for (std::size_t i = 0; i < lists.size(); ++i)
-    for (const Index j : nearestOf(points, lists, i, k)) {
-      const auto [from, to] = std::minmax({static_cast<Index>(i), j});
-      edges.push_back({from, to, edgeLength(points, from, to)});
-    }
+  for (const Index i : indicesOf(lists))
+    for (const Index j : nearestOthers(points, lists, i, static_cast<std::size_t>(k)))
+      edges.push_back({i, j, edgeLength(points, i, j)});
   Graph no_edges;
   no_edges.offsets.assign(lists.size() + 1, 0);
   NeighborGraph result;

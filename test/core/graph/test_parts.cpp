@@ -1,4 +1,4 @@
-#include "parts.h"
+#include "cloud_surfaces.h"
 
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"

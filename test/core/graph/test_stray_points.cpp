@@ -1,7 +1,7 @@
 #include "../reconstructions.h"
+#include "cloud_surfaces.h"
 #include "graph_helpers.h"
 #include "graphs.h"
-#include "stray_points.h"
 
 namespace spherical_param {
 namespace {

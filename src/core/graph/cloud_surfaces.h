@@ -1,0 +1,46 @@
+#pragma once
+
+#include "graph.h"
+#include "indexed.h"
+#include "tangent_stars.h"
+
+#include <cstddef>
+#include <vector>
+
+// The surfaces of a cloud are the connected components of its agreed graph (see agreedGraph()).
+// Points of other components are beside a surface if they are in a star of one of its points, or
+// within the mean distance of neighbours there and 6 times the roughness, the RMS distance of some
+// 12 points there from their plane.
+
+namespace spherical_param::internal {
+
+/// Splits a cloud into its surfaces.
+///
+/// Components of fewer than `min_points` nodes are not parts. Their nodes join the nearest part if
+/// they are beside it.
+///
+/// No guarantees: surfaces that touch are one part, and sparse stray points may form a part.
+///
+/// \param points 3 x n, the nodes.
+/// \param stars  of the nodes.
+/// \return n entries: a node that represents the part of each node; -1: no part.
+Indexed<Index> partsOf(const Positions& points, const Graph& agreed, const Stars& stars,
+                       std::size_t min_points);
+
+/// Finds stray points: isolated points, small clusters, nets, and points between sheets.
+///
+/// All components are surfaces, except
+///
+///   - clusters: components of fewer than 32 points,
+///   - nets: components without a sheet of 32 points (joined by edges with triangles on both sides)
+///     whose median distance of neighbours is above 5 times that of the surface beside.
+///
+/// Their points are stray if they are not beside a surface.
+///
+/// \param points 3 x n, n >= 1.
+/// \param stars  of the points.
+/// \return ascending by point.
+std::vector<StrayPoint> strayPoints(const Positions& points, const Graph& agreed,
+                                    const Stars& stars);
+
+}  // namespace spherical_param::internal
