@@ -99,9 +99,9 @@ double edgeLength(const Positions& points, Index i, Index j) {
   return std::max(length, std::numeric_limits<double>::min());
 }
 
-double nodeSpacing(const Graph& graph, Index node, std::vector<double>& lengths) {
+double nodeSpacing(const Graph& graph, Index node) {
   const Row<double> row = graph.lengthsOf(node);
-  lengths.assign(row.begin(), row.end());
+  std::vector<double> lengths(row.begin(), row.end());
   return lengths.empty() ? 0.0 : medianOf(lengths);
 }
 

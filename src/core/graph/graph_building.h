@@ -42,9 +42,7 @@ double edgeLength(const Positions& points, Index i, Index j);
 
 /// Point spacing at a node: the median length of its edges, robust against long edges across an
 /// opening; 0 without edges.
-///
-/// \param lengths working memory.
-double nodeSpacing(const Graph& graph, Index node, std::vector<double>& lengths);
+double nodeSpacing(const Graph& graph, Index node);
 
 /// The connected components of a graph.
 UnionFind connectedComponents(const Graph& graph);

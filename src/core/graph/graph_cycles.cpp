@@ -43,6 +43,7 @@ std::optional<PowerGraph> powerOf(const Graph& graph, int reach) {
       return std::nullopt;
   }
   power.edges.resize(power.neighbors.size());
+  power.ends.reserve(power.neighbors.size() / 2);
   // Each row meets its lower neighbours in their order: the next free entry of theirs is its own.
   Indexed<std::size_t> next(power.offsets.begin(), power.offsets.end() - 1);
   for (const Index v : power.nodes())

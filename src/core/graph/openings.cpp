@@ -403,10 +403,8 @@ bool hasNoCyclesLeft(const Positions& points, const Graph& graph, const Openings
 Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution) {
   const int threads = internal::threadCount(execution.threads, graph.size());
   internal::Indexed<double> spacing(graph.size());
-  internal::forEachIndex<std::vector<double>>(
-      graph.size(), threads, {}, [&](std::vector<double>& lengths, Index v) {
-        spacing[v] = internal::nodeSpacing(graph, v, lengths);
-      });
+  internal::forEachIndex(graph.size(), threads, {},
+                         [&](Index v) { spacing[v] = internal::nodeSpacing(graph, v); });
   const internal::FractionReport report = internal::reportOf(execution, "openings");
   internal::reportFraction(report, 0.1);
   internal::Rotation rotation(points, graph, spacing, threads);

@@ -291,15 +291,6 @@ void searchForMore(const Positions& points, const NeighborSearch& search, int th
 
 }  // namespace
 
-Indexed<char> Stars::inStarsOf(const Indexed<char>& given) const {
-  Indexed<char> result(size(), 0);
-  for (const Index i : indicesOf(given))
-    if (given[i] != 0)
-      for (const Index j : of(i))
-        result[j] = 1;
-  return result;
-}
-
 Stars findStars(const Positions& points, const Neighbors& neighbors, const Execution& execution) {
   Stars stars(static_cast<std::size_t>(points.cols()));
   if (stars.size() == 0)

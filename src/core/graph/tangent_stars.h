@@ -37,8 +37,6 @@ struct Stars {
   Row<Index> of(Index i) const {
     return {nodes.data() + begin[i], nodes.data() + begin[i] + count[i]};
   }
-  /// Marks nodes in the star of a given node (n entries each).
-  Indexed<char> inStarsOf(const Indexed<char>& given) const;
 };
 
 /// Finds the stars of all nodes. A star is certified if no point beyond the list can change it: the

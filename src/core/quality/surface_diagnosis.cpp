@@ -99,10 +99,7 @@ public:
   }
 
   /// Distance of the points around v in the graph.
-  double spacing(Index v) const {
-    std::vector<double> lengths;
-    return internal::nodeSpacing(graph_, v, lengths);
-  }
+  double spacing(Index v) const { return internal::nodeSpacing(graph_, v); }
 
   Differences differences() const {
     return internal::accumulate(graph_.size(), threads_, Differences{},
