@@ -73,13 +73,6 @@ NeighborSearch searchOfCaller(const OrderedPoints& nodes, const Indexed<Index>& 
   };
 }
 
-/// Number of nearest neighbours of each point to search for. The tangent Delaunay graph searches
-/// for up to 32 where these do not certify its cells.
-int neighborsToSearch(const Options& options) {
-  constexpr int of_delaunay_graph = 12;
-  return options.method == Method::Paper ? options.paper.k : of_delaunay_graph;
-}
-
 }  // namespace
 
 Neighborhoods::Neighborhoods(const Positions& cloud, const std::vector<Index>& inputs,
@@ -89,8 +82,9 @@ Neighborhoods::Neighborhoods(const Positions& cloud, const std::vector<Index>& i
       nodes_(orderInputs(cloud, inputs_, execution.threads)) {
   neighbors_.search = search_of ? searchOfCaller(nodes_, inputs_, search_of, execution)
                                 : makeNeighborSearch(nodes_.points, execution);
-  neighbors_.lists =
-      searchAll(neighbors_.search, nodes_.input_of_node.size(), neighborsToSearch(options));
+  // The tangent Delaunay graph searches for up to 32 where 12 do not certify its cells.
+  neighbors_.lists = searchAll(neighbors_.search, nodes_.input_of_node.size(),
+                               options.method == Method::Paper ? options.paper.k : 12);
 }
 
 void Neighborhoods::findStars(const Execution& execution) {
