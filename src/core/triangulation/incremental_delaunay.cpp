@@ -1,9 +1,11 @@
 #include "incremental_delaunay.h"
 
+#include "corner_table.h"
 #include "exact_predicates.h"
 #include "indexed.h"
 #include "parallel.h"
 #include "space_filling_curve.h"
+#include "sphere_mesh.h"
 #include "tangent_basis.h"
 
 #include <Eigen/Geometry>
@@ -12,8 +14,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -55,63 +55,19 @@ private:
   TangentBasis axes_;  ///< y, x
 };
 
-/// Corner k of triangle t is written 4 t + k. It stands for the side opposite to it as well.
-using Corner = std::uint32_t;
-
-Corner cornerOf(Index triangle, unsigned k) {
-  return static_cast<Corner>(triangle) << 2U | k;
-}
-Index triangleOf(Corner corner) {
-  return static_cast<Index>(corner >> 2U);
-}
-unsigned next(unsigned k) {
-  return k == 2 ? 0 : k + 1;
-}
-unsigned previous(unsigned k) {
-  return k == 0 ? 2 : k - 1;
-}
-
-struct Triangle {
-  std::array<Index, 3> vertices;  ///< counter-clockwise
-  std::array<Corner, 3> across;   ///< opposite to corner k: the corner beyond that side
-};
-
 /// The vertex at infinity.
 constexpr Index kPole = 0;
 
-/// Triangulation of the plane and the point at infinity: a closed genus-0 mesh, changed only by
-/// moves that keep it one.
+/// Triangulation of the plane and the point at infinity.
 class Triangulation {
 public:
   /// \param places of all vertices in the plane; that of the pole is not used.
-  explicit Triangulation(const std::vector<Eigen::Vector2d>& places)
-      : places_(places.data()), triangles_(new Triangle[2 * places.size() - 4]) {}
+  /// \param start  closed, oriented, genus 0; triangle 0 without the pole, unless nothing is
+  ///               inserted.
+  Triangulation(const Indexed<Eigen::Vector2d>& places, const Triangles& start)
+      : places_(places), mesh_(start, places.size()) {}
 
-  Index size() const { return size_; }
-  const Triangle& triangle(Index t) const { return triangles_.get()[t]; }
-
-  /// Starts with a closed, oriented genus-0 mesh.
-  void begin(const std::vector<std::array<Index, 3>>& triangles) {
-    struct Side {
-      std::array<Index, 2> ends;  ///< in ascending order
-      Corner corner;
-      bool operator<(const Side& other) const { return ends < other.ends; }
-    };
-    std::vector<Side> sides;
-    size_ = 0;
-    for (const auto& vertices : triangles) {
-      for (unsigned k = 0; k < 3; ++k) {
-        const auto ends = std::minmax(vertices[next(k)], vertices[previous(k)]);
-        sides.push_back({{ends.first, ends.second}, cornerOf(size_, k)});
-      }
-      at(size_++).vertices = vertices;
-    }
-    std::sort(sides.begin(), sides.end());
-    for (std::size_t i = 0; i + 1 < sides.size(); i += 2) {
-      across(sides[i].corner) = sides[i + 1].corner;
-      across(sides[i + 1].corner) = sides[i].corner;
-    }
-  }
+  Triangles triangles() const { return mesh_.triangles(); }
 
   /// Inserts a vertex at its place in the plane, and makes the triangulation Delaunay again.
   /// Returns the vertex that is at the same place already, if there is one, else p itself.
@@ -119,44 +75,36 @@ public:
     const Location location = locate(p);
     if (location.coincident != kPole)
       return location.coincident;
-    const std::array<Index, 3> parts = split(location.triangle, p);
+    const std::array<Index, 3> parts = mesh_.split(location.triangle, p);
     last_ = parts[0];
-    if (location.side < 3) {
-      // The part at that side is flat. No other can become flat: see inConflict().
-      flip(parts[location.side]);
-    }
+    // The part at a side is flat. No other can become flat: see inConflict().
+    if (location.side >= 0)
+      mesh_.flip(parts[static_cast<std::size_t>(location.side)], 0);
     legalize(parts[0]);
     return p;
   }
 
-  /// Puts a vertex beside another one that has the given corner: it takes over half of the
-  /// triangles around it. Returns a triangle that has both.
-  Index divide(Corner corner, Index p) {
-    unsigned degree = 0;
-    Corner around = corner;
-    do {
-      around = across(cornerOf(triangleOf(around), next(around & 3U)));
-      around = cornerOf(triangleOf(around), next(around & 3U));
-      ++degree;
-    } while (around != corner);
-    const Index t = split(triangleOf(corner), p)[previous(corner & 3U)];
+  /// Puts a vertex beside another one: it takes over half of the triangles around it.
+  void putBeside(Index v, Index p) {
+    const Index degree = mesh_.degree(v);
+    const Index t = mesh_.triangleAt(v);
+    const auto corner = static_cast<std::size_t>(mesh_.cornerOf(t, v));
+    const Index part = mesh_.split(t, p)[(corner + 2) % 3];
     // Each flip gives one more of the neighbours from the old vertex to the new one, which has
     // three of them to begin with: they are never joined before.
-    for (unsigned i = 0; i < (degree - 2) / 2; ++i)
-      flip(t);
-    return t;
+    for (Index i = 0; i < (degree - 2) / 2; ++i)
+      mesh_.flip(part, 0);
   }
 
 private:
   struct Location {
     Index triangle = 0;
-    unsigned side = 3;         ///< corner opposite to the side that it is on; 3: within
+    int side = -1;             ///< corner opposite to the side that it is on; -1: within
     Index coincident = kPole;  ///< vertex at the same place; kPole: none
   };
 
-  Triangle& at(Index t) { return triangles_.get()[t]; }
-  Corner& across(Corner corner) { return at(triangleOf(corner)).across[corner & 3U]; }
   const Eigen::Vector2d& place(Index v) const { return places_[v]; }
+  const Eigen::Vector2d& place(Index t, int corner) const { return place(mesh_.vertex(t, corner)); }
 
   /// Finds the triangle that holds a place, the closed one in the plane or one with the pole, by a
   /// walk from where the last vertex went in, across any side that has the place strictly beyond
@@ -167,80 +115,37 @@ private:
   Location locate(Index p) const {
     const Eigen::Vector2d target = place(p);
     Location location;
-    location.triangle = last_;
-    unsigned entry = 3;
-    for (unsigned k = 0; k < 3; ++k)
-      if (triangle(last_).vertices[k] == kPole)
-        location.triangle = triangleOf(triangle(last_).across[k]);
-    for (;;) {
-      const Triangle& here = triangle(location.triangle);
-      location.side = 3;
-      if (entry < 3 && here.vertices[entry] == kPole)
-        return location;
-      Corner beyond = 0;
-      bool is_beyond = false;
-      for (unsigned k = 0; k < 3 && !is_beyond; ++k) {
+    Index t = last_;
+    for (int k = 0; k < 3; ++k)
+      if (mesh_.vertex(last_, k) == kPole)
+        t = mesh_.neighbor(last_, k);
+    int beyond = -1;  // the corner opposite to a side that has the place beyond it
+    int entry = -1;
+    do {
+      if (entry >= 0 && mesh_.vertex(t, entry) == kPole)
+        return {t};
+      location = {t};
+      beyond = -1;
+      for (int k = 0; k < 3 && beyond < 0; ++k) {
         if (k == entry)
           continue;
         const int orientation =
-            orientation2d(place(here.vertices[next(k)]), place(here.vertices[previous(k)]), target);
-        if (orientation < 0) {
-          beyond = here.across[k];
-          is_beyond = true;
-        } else if (orientation == 0) {
+            orientation2d(place(t, nextCorner(k)), place(t, previousCorner(k)), target);
+        if (orientation < 0)
+          beyond = k;
+        else if (orientation == 0)
           location.side = k;
-        }
       }
-      if (!is_beyond)
-        break;
-      location.triangle = triangleOf(beyond);
-      entry = beyond & 3U;
-    }
-    if (location.side < 3) {
-      const Triangle& here = triangle(location.triangle);
-      for (const Index v :
-           {here.vertices[next(location.side)], here.vertices[previous(location.side)]})
-        if (place(v) == target)
-          location.coincident = v;
-    }
+      if (beyond >= 0) {
+        entry = mesh_.oppositeCorner(t, beyond);
+        t = mesh_.neighbor(t, beyond);
+      }
+    } while (beyond >= 0);
+    if (location.side >= 0)
+      for (const int k : {nextCorner(location.side), previousCorner(location.side)})
+        if (place(t, k) == target)
+          location.coincident = mesh_.vertex(t, k);
     return location;
-  }
-
-  /// Splits a triangle in three by a new vertex, which becomes corner 0 of each. Part k has the
-  /// side opposite to corner k; part 0 is the triangle itself.
-  std::array<Index, 3> split(Index t, Index p) {
-    const Triangle old = triangle(t);
-    const std::array<Index, 3> parts{t, size_, size_ + 1};
-    size_ += 2;
-    for (unsigned k = 0; k < 3; ++k) {
-      const unsigned k1 = next(k);
-      const unsigned k2 = previous(k);
-      at(parts[k]) = {{p, old.vertices[k1], old.vertices[k2]},
-                      {old.across[k], cornerOf(parts[k1], 2), cornerOf(parts[k2], 1)}};
-      across(old.across[k]) = cornerOf(parts[k], 0);
-    }
-    return parts;
-  }
-
-  /// Replaces the side opposite to corner 0 by the other diagonal of the two triangles. With (p, a,
-  /// b) and d beyond, the triangle becomes (p, a, d) and the other one (p, d, b).
-  void flip(Index t) {
-    Triangle& near = at(t);
-    const Index u = triangleOf(near.across[0]);
-    const unsigned k = near.across[0] & 3U;
-    Triangle& far = at(u);
-    const Index d = far.vertices[k];
-    const Corner beyond_ad = far.across[next(k)];
-    const Corner beyond_db = far.across[previous(k)];
-    const Corner beyond_bp = near.across[1];
-    far.vertices = {near.vertices[0], d, near.vertices[2]};
-    far.across = {beyond_db, beyond_bp, cornerOf(t, 1)};
-    near.vertices[2] = d;
-    near.across[0] = beyond_ad;
-    near.across[1] = cornerOf(u, 2);
-    across(beyond_ad) = cornerOf(t, 0);
-    across(beyond_db) = cornerOf(u, 0);
-    across(beyond_bp) = cornerOf(u, 1);
   }
 
   /// Whether p, a, b (counter-clockwise) are in conflict with d beyond the side from a to b: p lies
@@ -256,43 +161,40 @@ private:
     return inCircle(place(d), place(b), place(a), place(p)) > 0;
   }
 
-  /// Flips the sides opposite to a new vertex until none is in conflict, going round it once,
-  /// counter-clockwise from one of its triangles.
+  /// Flips the sides opposite to a new vertex, corner 0 of its triangles, until none is in
+  /// conflict, going round it once, counter-clockwise from one of them.
   void legalize(Index first) {
     Index t = first;
     do {
       for (;;) {
-        const Triangle& here = triangle(t);
-        const Corner beyond = here.across[0];
-        const Index d = triangle(triangleOf(beyond)).vertices[beyond & 3U];
-        if (!inConflict(here.vertices[0], here.vertices[1], here.vertices[2], d))
+        const auto [a, b, p, d] = mesh_.diamond(t, 0);
+        if (!inConflict(p, a, b, d))
           break;
-        flip(t);
+        mesh_.flip(t, 0);
       }
-      t = triangleOf(triangle(t).across[1]);
+      t = mesh_.neighbor(t, 1);
     } while (t != first);
   }
 
-  const Eigen::Vector2d* places_;
-  std::unique_ptr<Triangle[]> triangles_;  ///< not a vector, which would write it all first
-  Index size_ = 0;
+  const Indexed<Eigen::Vector2d>& places_;
+  SphereMesh mesh_;
   Index last_ = 0;  ///< where the next walk starts
 };
 
 /// Vertices of one circle, in order, as a closed mesh: both sides of the polygon in zigzag, one
 /// of them a vertex further, so that no two diagonals are the same. At least 4 vertices.
-std::vector<std::array<Index, 3>> twoSidedPolygon(const std::vector<Index>& ring) {
-  std::vector<std::array<Index, 3>> triangles;
+Triangles twoSidedPolygon(const std::vector<Index>& ring) {
+  Triangles triangles(3, 2 * static_cast<Eigen::Index>(ring.size()) - 4);
+  Eigen::Index count = 0;
   for (const std::size_t shift : {0U, 1U}) {
     const auto vertex = [&](std::size_t i) { return ring[(i + shift) % ring.size()]; };
     std::size_t low = 0;
     std::size_t high = ring.size() - 1;
     for (bool from_low = true; high - low >= 2; from_low = !from_low) {
       const std::size_t tip = from_low ? low + 1 : high - 1;
-      triangles.push_back({vertex(low), vertex(tip), vertex(high)});
+      triangles.col(count++) << vertex(shift == 0 ? low : tip), vertex(shift == 0 ? tip : low),
+          vertex(high);
       (from_low ? low : high) = tip;
-      if (shift == 1)
-        std::swap(triangles.back()[0], triangles.back()[1]);
     }
   }
   return triangles;
@@ -303,15 +205,8 @@ using Coincidence = std::array<Index, 2>;
 
 /// Puts the vertices that coincide with others beside them, so that those at one place share its
 /// triangles evenly.
-void putBeside(Indexed<Coincidence> coincidences, Index vertex_count,
-               Triangulation& triangulation) {
-  if (coincidences.empty())
-    return;
+void putBeside(Indexed<Coincidence> coincidences, Triangulation& triangulation) {
   std::sort(coincidences.begin(), coincidences.end());
-  Indexed<Index> triangle_at(static_cast<std::size_t>(vertex_count), -1);
-  for (Index t = 0; t < triangulation.size(); ++t)
-    for (const Index v : triangulation.triangle(t).vertices)
-      triangle_at[v] = t;
   std::vector<Index> crowd;  // the vertices at one place
   std::size_t turn = 0;
   for (const auto& [anchor, p] : coincidences) {
@@ -322,17 +217,7 @@ void putBeside(Indexed<Coincidence> coincidences, Index vertex_count,
     const Index v = crowd[turn++];
     crowd.push_back(v);
     crowd.push_back(p);
-    const Index t = triangle_at[v];
-    const auto& vertices = triangulation.triangle(t).vertices;
-    const auto k = std::find(vertices.begin(), vertices.end(), v) - vertices.begin();
-    const Index first = triangulation.divide(cornerOf(t, static_cast<unsigned>(k)), p);
-    // Every triangle that has changed is now around p.
-    Index around = first;
-    do {
-      for (const Index w : triangulation.triangle(around).vertices)
-        triangle_at[w] = around;
-      around = triangleOf(triangulation.triangle(around).across[1]);
-    } while (around != first);
+    triangulation.putBeside(v, p);
   }
 }
 
@@ -429,24 +314,17 @@ std::vector<Index> ringThroughPole(const Vertices& vertices, Indexed<Coincidence
 SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report) {
   Vertices vertices = projectInOrder(directions, report);
   reportFraction(report, 0.0);
-  const Index n = vertices.input.count();
   Indexed<Coincidence> coincidences;
-  for (Index p = vertices.in_plane; p < n; ++p)
+  for (Index p = vertices.in_plane; p < vertices.input.count(); ++p)
     coincidences.push_back({kPole, p});
 
-  Triangulation triangulation(vertices.places);
+  Triangles start(3, 4);
+  start << 1, kPole, kPole, kPole,  //
+      2, 3, 1, 2,                   //
+      3, 2, 3, 1;
   SphereDelaunay result;
-  if (beginWithTriangle(vertices)) {
-    triangulation.begin({{1, 2, 3}, {kPole, 3, 2}, {kPole, 1, 3}, {kPole, 2, 1}});
-    for (Index p = 4; p < vertices.in_plane; ++p) {
-      if (static_cast<std::size_t>(p) % kReportedItems == 0)
-        reportFraction(report, static_cast<double>(p) / vertices.in_plane);
-      const Index v = triangulation.insert(p);
-      if (v != p)
-        coincidences.push_back({v, p});
-    }
-    result.coincident = coincidences.count();
-  } else {
+  const bool is_flat = !beginWithTriangle(vertices);
+  if (is_flat) {
     std::vector<Index> ring = ringThroughPole(vertices, coincidences);
     result.coincident = coincidences.count();
     // A mesh has at least four vertices: at three places or fewer, some begin beside their anchor.
@@ -454,16 +332,22 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionRe
       const auto anchor = std::find(ring.begin(), ring.end(), coincidences.back()[0]);
       ring.insert(anchor + 1, coincidences.back()[1]);
     }
-    triangulation.begin(twoSidedPolygon(ring));
+    start = twoSidedPolygon(ring);
   }
+  Triangulation triangulation(vertices.places, start);
+  for (Index p = 4; p < vertices.in_plane && !is_flat; ++p) {
+    if (static_cast<std::size_t>(p) % kReportedItems == 0)
+      reportFraction(report, static_cast<double>(p) / vertices.in_plane);
+    const Index v = triangulation.insert(p);
+    if (v != p)
+      coincidences.push_back({v, p});
+  }
+  if (!is_flat)
+    result.coincident = coincidences.count();
   reportFraction(report, 0.0);
-  putBeside(std::move(coincidences), n, triangulation);
-
-  result.triangles.resize(3, triangulation.size());
-  for (Index t = 0; t < triangulation.size(); ++t) {
-    const auto& [a, b, c] = triangulation.triangle(t).vertices;
-    result.triangles.col(t) << vertices.input[a], vertices.input[b], vertices.input[c];
-  }
+  putBeside(std::move(coincidences), triangulation);
+  result.triangles =
+      triangulation.triangles().unaryExpr([&](Index v) { return vertices.input[v]; });
   return result;
 }
 
