@@ -1,6 +1,7 @@
 #include "spherical_param/mesh_topology.h"
 
 #include "spherical_param/errors.h"
+#include "spherical_param/mesh_measures.h"
 
 #include "corner_table.h"
 #include "rows.h"
@@ -9,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,62 +93,50 @@ void examineSides(const Triangles& triangles, const CornerTable& corners, Index 
     findings.nonmanifold_vertices.push_back(v);
 }
 
-/// Recognises vertices whose triangles are one closed fan, as nearly all are: those of a manifold.
-class Fan {
-public:
-  explicit Fan(std::size_t vertex_count) : ending_at_(vertex_count, 0) {}
-
-  /// Counts the edges of such a vertex to higher ones. False: it is none, nothing was done.
-  bool examine(const Triangles& triangles, const CornerTable& corners, Index v,
-               Findings& findings) {
-    next_.clear();
-    previous_.clear();
-    std::size_t edges = 0;
-    bool is_sound = true;
-    corners.forEachCorner(v, [&](Index t, Index k) {
-      const Index a = triangles(internal::nextCorner(k), t);
-      const Index b = triangles(internal::previousCorner(k), t);
-      is_sound = is_sound && a != b && a != v && b != v;
-      edges += v < a ? 1 : 0;
-      ending_at_[b] = next_.count();
-      next_.push_back(a);
-      previous_.push_back(b);
-    });
-    if (!is_sound || !isCycle())
-      return false;
-    findings.edges += edges;
-    return true;
-  }
-
-private:
-  /// Whether the first triangle is reached again only after all others.
-  bool isCycle() const {
-    Index triangle = 0;
-    for (Index steps = 1; steps <= next_.count(); ++steps) {
-      const Index vertex = next_[triangle];
-      triangle = ending_at_[vertex];
-      if (triangle >= next_.count() || previous_[triangle] != vertex)
-        return false;  // of an earlier fan
-      if (triangle == 0)
-        return steps == next_.count();
-    }
+/// Whether the triangles around a vertex are one closed fan, as nearly all are: those of a
+/// manifold. False, too, if there are more than a quick look is worth.
+bool isClosedFan(const Triangles& triangles, const CornerTable& corners, Index v) {
+  constexpr std::size_t most = 32;
+  const std::size_t count = corners.countAt(v);
+  if (count > most)
     return false;
+  std::array<std::array<Index, 2>, most> sides;  // opposite to v
+  const auto end = sides.begin() + static_cast<std::ptrdiff_t>(count);
+  auto side = sides.begin();
+  bool is_sound = true;
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    is_sound = is_sound && !isDegenerate(triangles.col(t));
+    *side++ = {triangles(internal::nextCorner(k), t), triangles(internal::previousCorner(k), t)};
+  });
+  // Each side is continued by one that was not reached before, and the last one by the first.
+  for (side = sides.begin(); is_sound && side != end; ++side) {
+    const auto next =
+        std::find_if(sides.begin(), end, [&](const auto& other) { return other[0] == (*side)[1]; });
+    if (side + 1 == end)
+      is_sound = next == sides.begin();
+    else if (next == end || next <= side)
+      is_sound = false;
+    else
+      std::swap(*(side + 1), *next);
   }
+  return is_sound;
+}
 
-  internal::Indexed<Index> ending_at_;  ///< for each vertex, the last triangle that ends there
-  internal::Indexed<Index> next_;       ///< the other corners of the triangles
-  internal::Indexed<Index> previous_;
-};
-
-void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v, Fan& fan,
+void examineVertex(const Triangles& triangles, const CornerTable& corners, Index v,
                    Findings& findings) {
   if (corners.countAt(v) == 0) {
     findings.unused_vertices.push_back(v);
     return;
   }
   ++findings.vertices;
-  if (!fan.examine(triangles, corners, v, findings))
+  if (!isClosedFan(triangles, corners, v)) {
     examineSides(triangles, corners, v, findings);
+    return;
+  }
+  // Each edge counts at the lower of its ends.
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    findings.edges += v < triangles(internal::nextCorner(k), t) ? 1 : 0;
+  });
 }
 
 }  // namespace
@@ -157,10 +147,9 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
   const int threads = internal::threadCount(requested_threads, vertex_count);
 
   const CornerTable corners(triangles, vertex_count, threads);
-  std::vector<Fan> fans(static_cast<std::size_t>(threads), Fan(vertex_count));
   Findings all =
       internal::accumulate(vertex_count, threads, Findings{}, [&](Index v, Findings& findings) {
-        examineVertex(triangles, corners, v, fans[internal::threadNumber()], findings);
+        examineVertex(triangles, corners, v, findings);
       });
   MeshTopology result;
   result.triangles = internal::columnCount(triangles);
@@ -191,27 +180,11 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
 }
 
 double signedVolume(const Positions& points, const Triangles& triangles) {
-  if (triangles.cols() == 0)
-    return 0.0;
-  internal::checkTriangles("signedVolume", triangles, points.cols());
-  // About a point of the mesh, so that a far origin costs no digits.
-  const Eigen::Vector3d origin = points.col(triangles(0, 0));
-  double sum = 0.0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    const Eigen::Vector3d a = points.col(triangles(0, t)) - origin;
-    const Eigen::Vector3d b = points.col(triangles(1, t)) - origin;
-    const Eigen::Vector3d c = points.col(triangles(2, t)) - origin;
-    sum += a.dot(b.cross(c));
-  }
-  return sum / 6.0;
+  return measureMesh(points, triangles).volume;
 }
 
 double surfaceArea(const Positions& points, const Triangles& triangles) {
-  internal::checkTriangles("surfaceArea", triangles, points.cols());
-  double sum = 0.0;
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    sum += internal::areaNormal(points, triangles, t).norm();
-  return sum / 2.0;
+  return measureMesh(points, triangles).area;
 }
 
 void flipOrientation(Triangles& triangles) {
