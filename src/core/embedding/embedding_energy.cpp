@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 namespace spherical_param::internal {
 
@@ -113,29 +113,22 @@ Eigen::SparseMatrix<double, Eigen::RowMajor, Index>
 EmbeddingEnergy::laplacian(const Positions& u) const {
   // Stretching an edge is twice as stiff as turning it.
   constexpr double stiffness = 1.5;
-  const auto n = static_cast<Index>(graph_.size());
-  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> matrix(n, n);
-  matrix.reserve(static_cast<Index>(graph_.neighbors.size()) + n);
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  entries.reserve(graph_.neighbors.size() + graph_.size());
   for (const Index i : graph_.nodes()) {
-    matrix.startVec(i);
-    double* diagonal = nullptr;
     double sum = 0.0;
-    const auto insert_diagonal = [&] { diagonal = &matrix.insertBack(i, i); };
     for (const std::size_t e : graph_.entries(i)) {
       const Index j = graph_.neighbors[e];
-      if (j > i && diagonal == nullptr)
-        insert_diagonal();
       const double squared = (u.col(i) - u.col(j)).squaredNorm();
       const double w = edgeWeight(EdgeWeights::Adaptive, graph_.lengths[e], std::sqrt(squared));
-      matrix.insertBack(i, j) = -stiffness * w;
+      entries.emplace_back(i, j, -stiffness * w);
       sum += w * (stiffness + squared / 2.0);
     }
-    if (diagonal == nullptr)
-      insert_diagonal();
     // A node whose neighbours are all at its own place has no stiffness: it stays.
-    *diagonal = sum > 0.0 ? sum : 1.0;
+    entries.emplace_back(i, i, sum > 0.0 ? sum : 1.0);
   }
-  matrix.finalize();
+  Eigen::SparseMatrix<double, Eigen::RowMajor, Index> matrix(u.cols(), u.cols());
+  matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
 
