@@ -245,18 +245,15 @@ void coarsen(const Graph& graph, std::uint32_t seed, int requested_threads,
 
 GraphHierarchy buildGraphHierarchy(const Graph& graph, std::uint32_t seed, Index coarsest_size,
                                    const Execution& execution) {
-  // A level that keeps more than this fraction of the nodes is left out, and is the last: levels of
-  // a hub with n neighbours could be as many as these. No cloud has any: 0.6 and 1 change nothing.
-  constexpr double max_kept_fraction = 0.9;
   GraphHierarchy hierarchy;
   const Graph* finest = &graph;
   const FractionReport report = reportOf(execution, "embedding");
   while (finest->size() > static_cast<std::size_t>(coarsest_size)) {
     HierarchyLevel& level = hierarchy.levels.emplace_back();
     coarsen(*finest, seed, execution.threads, report, level);
-    // Fewer than 4 nodes cannot be spread over a sphere.
-    if (level.graph.size() < 4 || static_cast<double>(level.graph.size()) >
-                                      max_kept_fraction * static_cast<double>(finest->size())) {
+    // Fewer than 4 nodes cannot be spread over a sphere. Levels that keep more than half could be
+    // as many as a hub has neighbours.
+    if (level.graph.size() < 4 || 2 * level.graph.size() > finest->size()) {
       hierarchy.levels.pop_back();
       break;
     }
