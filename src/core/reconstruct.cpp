@@ -94,12 +94,9 @@ MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const 
   mesh.graph = std::move(graph);
   clock.begin("embedding");
   internal::EmbeddingRecorder recorder(mesh.graph.graph.size(), options.embedding);
-  internal::EmbeddingObserver observer;
-  if (options.embedding.history_vertices > 0)
-    observer = std::ref(recorder);
   mesh.embedding = internal::paper::embed(mesh.graph.graph, points, options.paper,
                                           options.embedding.tolerance.value_or(typical_tolerance),
-                                          observer, clock.execution());
+                                          std::ref(recorder), clock.execution());
   mesh.embedding.history = recorder.take();
   clock.begin("triangulation");
   Triangles& triangles = mesh.optimization.triangles;
