@@ -6,70 +6,24 @@
 #include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace spherical_param::internal {
 
 namespace {
 
-using Pairs = std::vector<std::array<Index, 2>>;
-
-/// The pairs that intersect on a surface of which those among the closed mesh are known: only what
-/// was changed or closed when it was opened is tested.
-///
-/// \param pairs of the closed mesh, without triangles over openings: the optimisation may have
-/// taken
-///              more triangles for surface than `places`, never fewer.
-Pairs intersectionsOf(const Positions& points, const Triangles& closed, const OpenMesh& open,
-                      const Triangles& surface, const OpenPlaces& places, const Pairs& pairs,
-                      const Execution& execution) {
-  std::vector<Index> in_surface(open.is_open.size(), -1);  // those as they were
-  std::vector<Index> changed;
-  Index next = 0;
-  for (std::size_t i = 0; i < open.is_open.size(); ++i) {
-    if (open.is_open[i] != 0)
-      continue;
-    const auto corners = open.triangles.col(static_cast<Eigen::Index>(i));
-    if (corners == closed.col(static_cast<Eigen::Index>(i)) &&
-        !places.isOpen(corners[0], corners[1], corners[2]))
-      in_surface[i] = next;
-    else
-      changed.push_back(next);
-    ++next;
-  }
-  Pairs found = findSelfIntersectionsOf(points, surface, changed, execution);
-  for (const auto& [t, u] : pairs) {
-    const Index a = in_surface[static_cast<std::size_t>(t)];
-    const Index b = in_surface[static_cast<std::size_t>(u)];
-    if (a >= 0 && b >= 0)
-      found.push_back({a, b});
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
 /// Moves the triangles of a mesh that are not over openings to the result, with the pairs of them
 /// that intersect.
 void takeSurface(const Positions& points, const OpenSurface& openings, MeshedCloud& mesh,
                  const Execution& execution, Surface& result) {
-  if (!openings.isOpen()) {
+  if (openings.isOpen())
+    result.triangles = surfaceOf(openMesh(points, mesh.triangles(), *openings.places()));
+  else
     result.triangles = std::move(mesh.triangles());
-    result.self_intersections = mesh.isSmoothed()
-                                    ? findSelfIntersections(points, result.triangles, execution)
-                                    : std::move(mesh.optimization.self_intersections);
-    return;
-  }
-  const OpenMesh open = openMesh(points, mesh.triangles(), *openings.places());
-  result.triangles = surfaceOf(open);
-  result.self_intersections =
-      !mesh.isSmoothed()
-          ? intersectionsOf(points, mesh.triangles(), open, result.triangles, *openings.places(),
-                            mesh.optimization.self_intersections, execution)
-          : findSelfIntersections(points, result.triangles, execution);
+  result.self_intersections = openings.isOpen() || mesh.isSmoothed()
+                                  ? findSelfIntersections(points, result.triangles, execution)
+                                  : std::move(mesh.optimization.self_intersections);
 }
 
 /// Diagnoses the cloud by its mesh, its graph and their openings.
