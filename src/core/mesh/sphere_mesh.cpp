@@ -66,10 +66,10 @@ std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
   for (std::size_t k = 1; k < 3; ++k)
     replaceNeighbor(n[k], triangle, parts[k]);
   for (std::size_t k = 0; k < 3; ++k) {
-    setTriangleAt(v[k], parts[(k + 1) % 3]);
+    set(triangle_at_[v[k]], parts[(k + 1) % 3]);
     addDegree(v[k], 1);
   }
-  setTriangleAt(new_vertex, triangle);
+  set(triangle_at_[new_vertex], triangle);
   set(degree_[new_vertex], 3);
   return parts;
 }
@@ -94,10 +94,10 @@ Index SphereMesh::merge(Index v) {
   for (std::size_t k = 1; k < 3; ++k)
     replaceNeighbor(beyond[k], around[k], t);
   for (const Index w : ring) {
-    setTriangleAt(w, t);
+    set(triangle_at_[w], t);
     addDegree(w, -1);
   }
-  setTriangleAt(v, -1);
+  set(triangle_at_[v], -1);
   set(degree_[v], 0);
   freePlace(around[1]);
   freePlace(around[2]);
@@ -111,11 +111,16 @@ bool SphereMesh::areJoined(Index v, Index w) const {
 }
 
 bool SphereMesh::flip(Index triangle, int corner) {
+  const bool is_free = isFree(diamond(triangle, corner));
+  if (is_free)
+    flipFree(triangle, corner);
+  return is_free;
+}
+
+void SphereMesh::flipFree(Index triangle, int corner) {
   const Index other = neighbor(triangle, corner);
   const int other_corner = oppositeCorner(triangle, corner);
   const auto [a, b, c, d] = diamond(triangle, corner);
-  if (!isFree({a, b, c, d}))
-    return false;
   const Index beyond_bc = neighbor(triangle, (corner + 1) % 3);
   const Index beyond_ca = neighbor(triangle, (corner + 2) % 3);
   const Index beyond_ad = neighbor(other, (other_corner + 1) % 3);
@@ -125,15 +130,14 @@ bool SphereMesh::flip(Index triangle, int corner) {
   setTriangle(other, {c, d, b}, {beyond_db, beyond_bc, triangle});
   replaceNeighbor(beyond_ad, other, triangle);
   replaceNeighbor(beyond_bc, triangle, other);
-  setTriangleAt(a, triangle);
-  setTriangleAt(b, other);
-  setTriangleAt(c, triangle);
-  setTriangleAt(d, triangle);
+  set(triangle_at_[a], triangle);
+  set(triangle_at_[b], other);
+  set(triangle_at_[c], triangle);
+  set(triangle_at_[d], triangle);
   addDegree(a, -1);
   addDegree(b, -1);
   addDegree(c, 1);
   addDegree(d, 1);
-  return true;
 }
 
 void SphereMesh::rollBack(std::size_t first) {

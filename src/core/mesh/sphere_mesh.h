@@ -97,9 +97,10 @@ public:
   Index merge(Index vertex);
 
   /// Replaces the side opposite to `corner` by the other diagonal of its diamond, if that is free.
-  /// Returns whether it did. Corner 0 of both triangles is then the vertex
-  /// that was at `corner`.
+  /// Returns whether it did. Corner 0 of both triangles is then the vertex that was at `corner`.
   bool flip(Index triangle, int corner);
+  /// The same, where it is known to be free.
+  void flipFree(Index triangle, int corner);
 
   /// Begins or continues to record changes, until commit() or rollBack(). Splits need slots freed
   /// by merge(). Returns the number of changes so far.
@@ -129,7 +130,6 @@ private:
       set(neighbors_[t][k], neighbors[k]);
     }
   }
-  void setTriangleAt(Index v, Index t) { set(triangle_at_[v], t); }
   void addDegree(Index v, Index change) { set(degree_[v], degree(v) + change); }
   void replaceNeighbor(Index triangle, Index old_neighbor, Index new_neighbor) {
     auto& around = neighbors_[triangle];

@@ -79,7 +79,7 @@ public:
     last_ = parts[0];
     // The part at a side is flat. No other can become flat: see inConflict().
     if (location.side >= 0)
-      mesh_.flip(parts[static_cast<std::size_t>(location.side)], 0);
+      mesh_.flipFree(parts[static_cast<std::size_t>(location.side)], 0);
     legalize(parts[0]);
     return p;
   }
@@ -93,7 +93,7 @@ public:
     // Each flip gives one more of the neighbours from the old vertex to the new one, which has
     // three of them to begin with: they are never joined before.
     for (Index i = 0; i < (degree - 2) / 2; ++i)
-      mesh_.flip(part, 0);
+      mesh_.flipFree(part, 0);
   }
 
 private:
@@ -170,7 +170,7 @@ private:
         const auto [a, b, p, d] = mesh_.diamond(t, 0);
         if (!inConflict(p, a, b, d))
           break;
-        mesh_.flip(t, 0);
+        mesh_.flipFree(t, 0);
       }
       t = mesh_.neighbor(t, 1);
     } while (t != first);
