@@ -87,7 +87,15 @@ public:
   /// Puts a vertex beside another one: it takes over half of the triangles around it.
   void putBeside(Index v, Index p) {
     const Index degree = mesh_.degree(v);
-    const Index t = mesh_.triangleAt(v);
+    // The neighbours at both ends get a triangle more: the first one has the fewest of all.
+    Index t = mesh_.triangleAt(v);
+    const auto degree_of_end = [&](Index around) {
+      return mesh_.degree(mesh_.vertex(around, previousCorner(mesh_.cornerOf(around, v))));
+    };
+    mesh_.forEachAround(v, [&](Index around, int) {
+      if (degree_of_end(around) < degree_of_end(t))
+        t = around;
+    });
     const auto corner = static_cast<std::size_t>(mesh_.cornerOf(t, v));
     const Index part = mesh_.split(t, p)[(corner + 2) % 3];
     // Each flip gives one more of the neighbours from the old vertex to the new one, which has
