@@ -1,6 +1,6 @@
 #pragma once
 
-#include "embedding_starts.h"
+#include "embedding.h"
 #include "fuzz_input.h"
 #include "spherical_param/mesh_measures.h"
 #include "spherical_param/mesh_topology.h"

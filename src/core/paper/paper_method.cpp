@@ -1,7 +1,6 @@
 #include "paper_method.h"
 
 #include "collapse.h"
-#include "embedding_starts.h"
 #include "graph_building.h"
 #include "neighbor_search.h"
 #include "progress.h"

@@ -1,4 +1,3 @@
-#include "embedding_starts.h"
 #include "embeddings.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "embedding_starts.h"
+#include "embedding.h"
 #include "energy_mesh.h"
 #include "graph.h"
 #include "graphs.h"
