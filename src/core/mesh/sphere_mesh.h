@@ -33,10 +33,7 @@ public:
   Index neighbor(Index triangle, int corner) const {
     return neighbors_[triangle][static_cast<std::size_t>(corner)];
   }
-  int cornerOf(Index triangle, Index v) const {
-    const auto& corners = vertices_[triangle];
-    return corners[0] == v ? 0 : corners[1] == v ? 1 : 2;
-  }
+  int cornerOf(Index triangle, Index v) const { return placeOf(v, vertices_[triangle]); }
   /// The corner of neighbor(triangle, corner) that is opposite to the common side.
   int oppositeCorner(Index triangle, int corner) const {
     // The common side runs the other way round in the neighbour, from corner + 2 to corner + 1; the
@@ -118,6 +115,11 @@ public:
   Triangles triangles() const;
 
 private:
+  /// Where a triangle has one of its vertices or neighbours; without branches, which nothing
+  /// predicts.
+  static int placeOf(Index entry, const std::array<Index, 3>& entries) {
+    return (entries[1] == entry ? 1 : 0) + (entries[2] == entry ? 2 : 0);
+  }
   void set(Index& entry, Index value) {
     if (is_recording_)
       changes_.emplace_back(&entry, entry);
@@ -133,7 +135,7 @@ private:
   void addDegree(Index v, Index change) { set(degree_[v], degree(v) + change); }
   void replaceNeighbor(Index triangle, Index old_neighbor, Index new_neighbor) {
     auto& around = neighbors_[triangle];
-    set(*std::find(around.begin(), around.end(), old_neighbor), new_neighbor);
+    set(around[static_cast<std::size_t>(placeOf(old_neighbor, around))], new_neighbor);
   }
   /// A free slot for a triangle, the last freed one first.
   Index takePlace();
