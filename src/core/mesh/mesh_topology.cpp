@@ -110,13 +110,13 @@ bool isClosedFan(const Triangles& triangles, const CornerTable& corners, Index v
   });
   // Each side is continued by one that was not reached before, and the last one by the first.
   for (side = sides.begin(); is_sound && side != end; ++side) {
-    const auto next =
-        std::find_if(sides.begin(), end, [&](const auto& other) { return other[0] == (*side)[1]; });
-    if (side + 1 == end)
-      is_sound = next == sides.begin();
-    else if (next == end || next <= side)
-      is_sound = false;
-    else
+    auto next = end;  // the first one: not by a search, whose end nothing predicts
+    for (auto other = end; other != sides.begin();) {
+      --other;
+      next = (*other)[0] == (*side)[1] ? other : next;
+    }
+    is_sound = side + 1 == end ? next == sides.begin() : next > side && next != end;
+    if (is_sound && side + 1 != end)
       std::swap(*(side + 1), *next);
   }
   return is_sound;
