@@ -23,7 +23,6 @@ public:
   const Graph& graph(std::size_t l) const {
     return l == 0 ? graph_ : hierarchy_.levels[l - 1].graph;
   }
-  int threads() const { return threads_; }
 
   /// The mean direction, over the area of the surface.
   Eigen::Vector3d centroid(std::size_t l, const Positions& u) const;
