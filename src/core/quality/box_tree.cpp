@@ -4,30 +4,28 @@
 
 namespace spherical_param::internal {
 
-void BoxTree::build(std::vector<BoxGroup> groups, int threads) {
+void BoxTree::build(Groups groups, int threads) {
   if (groups.empty())
     return;
   levels_.push_back(std::move(groups));
   while (levels_.back().size() > 1) {
-    const std::vector<BoxGroup>& below = levels_.back();
-    std::vector<BoxGroup> level((below.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
-    forEachItem(below.size(), below.size() >= kParallelThreshold ? threads : 1, {},
-                [&](std::size_t i) {
-                  level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
-                });
+    const Groups& below = levels_.back();
+    Groups level((below.size() + BoxGroup::kSize - 1) / BoxGroup::kSize);
+    forEachIndex(below.size(), below.size() >= kParallelThreshold ? threads : 1, {}, [&](Index i) {
+      level[i / BoxGroup::kSize].set(i % BoxGroup::kSize, below[i].all());
+    });
     levels_.push_back(std::move(level));
   }
 }
 
-void BoxTree::set(Index place, const FloatBox& box) {
-  auto i = static_cast<std::size_t>(place);
+void BoxTree::set(Index i, const FloatBox& box) {
   if (levels_.empty())
     levels_.emplace_back();
   FloatBox changed = box;
   for (std::size_t level = 0;; ++level) {
-    std::vector<BoxGroup>& groups = levels_[level];
-    const std::size_t group = i / BoxGroup::kSize;
-    if (group == groups.size())
+    Groups& groups = levels_[level];
+    const Index group = i / BoxGroup::kSize;
+    if (group == groups.count())
       groups.emplace_back();
     groups[group].set(i % BoxGroup::kSize, changed);
     if (groups.size() == 1)

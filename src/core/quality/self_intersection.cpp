@@ -27,11 +27,13 @@ namespace {
 
 using Eigen::Vector3d;
 using internal::Box;
+using internal::BoxGroup;
 using internal::boxOf;
 using internal::BoxTree;
 using internal::Face;
 using internal::FloatBox;
 using internal::FractionReport;
+using internal::Indexed;
 using internal::Plane;
 using Pairs = std::vector<std::array<Index, 2>>;
 
@@ -50,13 +52,11 @@ struct Mesh {
 
 /// The box of some triangles, and the sum of their sizes.
 struct Extent {
-  Vector3d low = Vector3d::Constant(1.0);
-  Vector3d high = Vector3d::Constant(-1.0);
+  Box box;
   double size = 0.0;
 
   Extent& operator+=(const Extent& other) {
-    low = low.cwiseMin(other.low);
-    high = high.cwiseMax(other.high);
+    box.extend(other.box);
     size += other.size;
     return *this;
   }
@@ -66,118 +66,99 @@ struct Extent {
 class TriangleTree {
 public:
   /// \param subset triangles, ascending; at least one. The mesh must outlive this.
-  TriangleTree(const Mesh& mesh, const internal::Indexed<Index>& subset, int threads,
+  TriangleTree(const Mesh& mesh, const Indexed<Index>& subset, int threads,
                const FractionReport& report);
 
-  /// Appends the intersecting pairs of a triangle of the block from `begin` on and one of the same
-  /// or a later one.
-  void findPairsOfBlock(Index begin, Pairs& pairs) const;
+  /// Appends the intersecting pairs of the triangles in [begin, end) of the order, groups of the
+  /// tree, and later ones.
+  void findLaterPairs(Index begin, Index end, Pairs& pairs) const;
   /// Appends the intersecting pairs of a triangle and one in the tree, from the place `first` on.
   void findPairs(const Face& face, Index first, Pairs& pairs) const;
 
 private:
-  void sort(const internal::Indexed<Index>& subset, const Extent& extent, int threads);
-  FloatBox rounded(const Box& box) const {
-    return FloatBox(Box{box.lower - origin_, box.upper - origin_});
-  }
+  void sort(const Indexed<Index>& subset, const Box& box, int threads);
+  FloatBox rounded(const Box& box) const { return box.translated(-origin_).cast<float>(); }
   /// A box that contains the one that was rounded.
-  Box widened(const FloatBox& box) const {
-    const Vector3d low = box.lower.matrix().cast<double>();
-    const Vector3d high = box.upper.matrix().cast<double>();
+  Box widened(const FloatBox& rounded) const {
+    const Box box = rounded.cast<double>();
     // Half a unit in the last place of a float is 6e-8; those of doubles are of numbers up to 2.
-    const Vector3d margin = (1e-7 * low.cwiseAbs().cwiseMax(high.cwiseAbs())).array() + 1e-15;
-    return {low - margin + origin_, high + margin + origin_};
+    const Vector3d margin =
+        (1e-7 * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs())).array() + 1e-15;
+    return {box.min() - margin + origin_, box.max() + margin + origin_};
   }
-  static void append(const Face& a, const Face& b, Pairs& pairs) {
-    pairs.push_back({std::min(a.triangle, b.triangle), std::max(a.triangle, b.triangle)});
+  void appendIfIntersecting(const Face& a, const Plane& plane_of_a, Index t, Pairs& pairs) const {
+    const Face b = mesh_.face(t);
+    if (intersect(a, plane_of_a, b))
+      pairs.push_back({std::min(a.triangle, t), std::max(a.triangle, t)});
   }
 
   const Mesh& mesh_;
   Vector3d origin_;  ///< of the boxes in the tree: far from 0, floats are coarse
-  internal::Indexed<Index> order_;
-  Index large_ = 0;  ///< number of large triangles, the first ones
+  Indexed<Index> order_;
+  double large_;  ///< larger triangles are large: 8 times the mean size
   BoxTree tree_;
 };
 
-TriangleTree::TriangleTree(const Mesh& mesh, const internal::Indexed<Index>& subset, int threads,
+TriangleTree::TriangleTree(const Mesh& mesh, const Indexed<Index>& subset, int threads,
                            const FractionReport& report)
     : mesh_(mesh) {
   const Extent extent = internal::accumulate(
       subset.size(), threads, Extent{},
       [&](Index i, Extent& sum) {
         const Box box = mesh.box(subset[i]);
-        sum += Extent{box.lower, box.upper, box.size()};
+        sum += Extent{box, box.sizes().maxCoeff()};
       },
       report);
-  origin_ = extent.low;
-  sort(subset, extent, threads);
+  origin_ = extent.box.min();
+  large_ = 8.0 * extent.size / static_cast<double>(subset.size());
+  sort(subset, extent.box, threads);
   tree_ = BoxTree(order_.size(), threads, report,
                   [&](Index i) { return rounded(mesh.box(order_[i])); });
 }
 
 /// Orders the triangles by size, large ones first, then along a space-filling curve: among small
 /// ones, large ones would make large boxes of all above them.
-void TriangleTree::sort(const internal::Indexed<Index>& subset, const Extent& extent, int threads) {
-  struct Place {
-    std::uint64_t key;
-    Index triangle;
-  };
-  internal::Indexed<Place> places(subset.size());
-  const internal::MortonCurve curve(extent.low, extent.high);
-  // A class of sizes for each factor of 8, up to 8 times the mean in the last one.
-  constexpr double factor = 8.0;
-  constexpr std::uint64_t last_class = 7;
-  const double mean = extent.size / static_cast<double>(subset.size());
-  internal::forEachIndex(subset.size(), threads, {}, [&](Index i) {
+void TriangleTree::sort(const Indexed<Index>& subset, const Box& all, int threads) {
+  const internal::MortonCurve curve(all.min(), all.max());
+  // A class of sizes for each factor of 8; the last one is not large.
+  const auto key_of = [&](Index i) {
     const Box box = mesh_.box(subset[i]);
-    std::uint64_t size_class = last_class;
-    for (double size = box.size() / factor; size > mean && size_class > 0; size /= factor)
+    std::uint64_t size_class = 7;
+    for (double size = box.sizes().maxCoeff(); size > large_ && size_class > 0; size /= 8.0)
       --size_class;
-    const std::uint64_t cell = curve.key(0.5 * (box.lower + box.upper));
-    places[i] = {size_class << 61U | cell >> 2U, subset[i]};
-  });
-  internal::radixSort(places);
-  order_.reserve(places.size());
-  for (const auto& [key, triangle] : places) {
-    order_.push_back(triangle);
-    large_ += key >> 61U < last_class ? 1 : 0;
-  }
+    return size_class << 61U | curve.key(box.center()) >> 2U;
+  };
+  order_.reserve(subset.size());
+  for (const auto& [key, i] : internal::sortedPlaces(subset.size(), threads, key_of))
+    order_.push_back(subset[i]);
 }
 
-void TriangleTree::findPairsOfBlock(Index begin, Pairs& pairs) const {
-  // What every test of one of the block's triangles needs.
-  struct Own {
-    Face face;
-    Plane plane;
-  };
-  internal::Indexed<Own> own;
-  own.reserve(internal::kBlockSize);
-  for (Index i = begin; i < order_.count() && own.size() < internal::kBlockSize; ++i) {
-    const Face face = mesh_.face(order_[i]);
-    own.push_back({face, Plane(face)});
+void TriangleTree::findLaterPairs(Index begin, Index end, Pairs& pairs) const {
+  // What every test of one of a group's triangles needs.
+  Indexed<std::pair<Face, Plane>> own;
+  for (Index first = begin; first < end; first += BoxGroup::kSize) {
+    own.clear();
+    for (Index i = first; i < std::min(first + BoxGroup::kSize, end); ++i) {
+      const Face face = mesh_.face(order_[i]);
+      own.emplace_back(face, Plane(face));
+    }
+    if (own[0].first.size > large_)
+      for (const Index i : internal::indicesOf(own))
+        findPairs(own[i].first, first + i + 1, pairs);
+    else
+      tree_.forEachPair(first / BoxGroup::kSize, [&](Index i, Index j) {
+        const auto& [face, plane] = own[i - first];
+        appendIfIntersecting(face, plane, order_[j], pairs);
+      });
   }
-  if (begin < large_) {
-    for (Index i = 0; i < own.count(); ++i)
-      findPairs(own[i].face, begin + i + 1, pairs);
-    return;
-  }
-  tree_.forEachPair(begin, [&](Index i, Index j) {
-    const auto& [a, plane] = own[i - begin];
-    const Face b = j - begin < own.count() ? own[j - begin].face : mesh_.face(order_[j]);
-    if (intersect(a, plane, b))
-      append(a, b, pairs);
-  });
 }
 
 void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const {
   const Plane plane(face);
   // A large triangle is likely to pass by a small box.
   const auto passes = [&](const FloatBox& box) { return clears(plane, widened(box)); };
-  tree_.forEachOverlapping(rounded(boxOf(face.corners)), first, passes, [&](Index i) {
-    const Face other = mesh_.face(order_[i]);
-    if (intersect(face, plane, other))
-      append(face, other, pairs);
-  });
+  tree_.forEachOverlapping(rounded(boxOf(face.corners)), first, passes,
+                           [&](Index i) { appendIfIntersecting(face, plane, order_[i], pairs); });
 }
 
 // --- The functions of the header -----------------------------------------------------------------
@@ -200,8 +181,7 @@ double checkedScale(const Positions& points, const Triangles& triangles) {
 /// The intersecting pairs of a triangle of a subset and any other.
 ///
 /// \param subset ascending.
-Pairs pairsOf(const Mesh& mesh, const internal::Indexed<Index>& subset,
-              const Execution& execution) {
+Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& execution) {
   if (subset.empty())
     return {};
   const int threads = internal::threadCount(execution.threads, mesh.size());
@@ -212,8 +192,8 @@ Pairs pairsOf(const Mesh& mesh, const internal::Indexed<Index>& subset,
     return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
                                                          8 * internal::kBlockSize);
   };
-  Pairs pairs = collect(subset.size(), [&](Index begin, Index, Pairs& found) {
-    tree.findPairsOfBlock(begin, found);
+  Pairs pairs = collect(subset.size(), [&](Index begin, Index end, Pairs& found) {
+    tree.findLaterPairs(begin, end, found);
   });
   if (subset.size() < mesh.size()) {
     const Pairs others = collect(mesh.size(), [&](Index begin, Index end, Pairs& found) {
@@ -237,7 +217,7 @@ std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Execution& execution) {
   internal::checkThreads(execution.threads);
   const Mesh mesh{points, triangles, checkedScale(points, triangles)};
-  internal::Indexed<Index> all(mesh.size());
+  Indexed<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
   return pairsOf(mesh, all, execution);
 }
@@ -252,7 +232,7 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
       refuse("triangle " + std::to_string(t) + " is asked for, but there are " +
              std::to_string(mesh.size()));
-  internal::Indexed<Index> subset(of.begin(), of.end());
+  Indexed<Index> subset(of.begin(), of.end());
   internal::sortUnique(subset);
   return pairsOf(mesh, subset, execution);
 }

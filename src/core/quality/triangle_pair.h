@@ -24,12 +24,7 @@ struct Face {
   Index triangle;
 };
 
-struct Box {
-  Vector3d lower;
-  Vector3d upper;
-
-  double size() const { return (upper - lower).maxCoeff(); }
-};
+using Box = Eigen::AlignedBox3d;
 
 inline Box boxOf(const std::array<Vector3d, 3>& corners) {
   const auto& [a, b, c] = corners;
@@ -42,7 +37,7 @@ inline Face faceOf(const Positions& points, double scale, const std::array<Index
   const std::array<Vector3d, 3> corners{scale * points.col(vertices[0]),
                                         scale * points.col(vertices[1]),
                                         scale * points.col(vertices[2])};
-  return {corners, boxOf(corners).size(), vertices, triangle};
+  return {corners, boxOf(corners).sizes().maxCoeff(), vertices, triangle};
 }
 
 /// The definition of self_intersection.h, in exact arithmetic.
@@ -152,8 +147,8 @@ inline bool intersect(const Face& a, const Face& b) {
 
 /// Whether a box lies on one side of a plane.
 inline bool clears(const Plane& plane, const Box& box) {
-  const Vector3d center = 0.5 * (box.lower + box.upper) - plane.origin;
-  const Vector3d half = 0.5 * (box.upper - box.lower);
+  const Vector3d center = box.center() - plane.origin;
+  const Vector3d half = 0.5 * box.sizes();
   const double reach = plane.normal.cwiseAbs().dot(half);
   const double bound = plane.error * (largest(center) + largest(half));
   return std::abs(plane.normal.dot(center)) > reach + 2.0 * bound;

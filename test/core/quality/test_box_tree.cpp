@@ -18,10 +18,6 @@ using internal::BoxTree;
 using internal::FloatBox;
 using PlacePairs = std::set<std::pair<Index, Index>>;
 
-bool overlap(const FloatBox& a, const FloatBox& b) {
-  return (a.lower <= b.upper).all() && (b.lower <= a.upper).all();
-}
-
 BoxTree treeOf(const internal::Indexed<FloatBox>& boxes) {
   return {boxes.size(), 1, {}, [&](Index i) { return boxes[i]; }};
 }
@@ -32,10 +28,10 @@ internal::Indexed<FloatBox> randomBoxes(Index count, std::mt19937& random) {
   std::uniform_int_distribution<int> size(0, 6);
   internal::Indexed<FloatBox> boxes;
   for (Index i = 0; i < count; ++i) {
-    const Eigen::Array3f low =
-        Eigen::Array3i(coordinate(random), coordinate(random), 0).cast<float>();
+    const Eigen::Vector3f low =
+        Eigen::Vector3i(coordinate(random), coordinate(random), 0).cast<float>();
     const float extent = static_cast<float>(i % 50 == 49 ? 60 : size(random));
-    boxes.emplace_back(low, low + extent);
+    boxes.emplace_back(low, low + Eigen::Vector3f::Constant(extent));
     if (i % 20 == 19)
       boxes[i] = boxes[i / 2];
   }
@@ -51,7 +47,7 @@ void expectOverlaps(const BoxTree& tree, const internal::Indexed<FloatBox>& boxe
           [&](Index j) { found.push_back(j); });
       std::vector<Index> expected;
       for (Index j = first; j < boxes.count(); ++j)
-        if (overlap(boxes[i], boxes[j]))
+        if (boxes[i].intersects(boxes[j]))
           expected.push_back(j);
       ASSERT_EQ(found, expected) << i;
     }
@@ -65,16 +61,15 @@ TEST(BoxTree, FindsTheBoxesAndPairsThatOverlap) {
     const BoxTree tree = treeOf(boxes);
     expectOverlaps(tree, boxes);
     PlacePairs pairs;
-    constexpr auto block_size = static_cast<Index>(internal::kBlockSize);
-    for (Index begin = 0; begin < count; begin += block_size)
-      tree.forEachPair(begin, [&](Index i, Index j) {
-        EXPECT_EQ(i / block_size, begin / block_size);
+    for (Index group = 0; group * internal::BoxGroup::kSize < count; ++group)
+      tree.forEachPair(group, [&](Index i, Index j) {
+        EXPECT_EQ(i / internal::BoxGroup::kSize, group);
         EXPECT_TRUE(pairs.emplace(i, j).second);
       });
     PlacePairs expected;
     for (Index i = 0; i < count; ++i)
       for (Index j = i + 1; j < count; ++j)
-        if (overlap(boxes[i], boxes[j]))
+        if (boxes[i].intersects(boxes[j]))
           expected.emplace(i, j);
     EXPECT_EQ(pairs, expected);
   }
@@ -106,12 +101,12 @@ TEST(BoxTree, LooksAtFewBoxesBeyondThoseFound) {
   internal::Indexed<FloatBox> boxes;
   for (unsigned i = 0; i < 2 * side * side; ++i) {
     // Along a space-filling curve over a plane, each place twice.
-    Eigen::Array3f low = Eigen::Array3f::Zero();
+    Eigen::Vector3f low = Eigen::Vector3f::Zero();
     for (unsigned bit = 0; bit < 6; ++bit) {
       low.x() += static_cast<float>((i / 2 >> 2 * bit & 1U) << bit);
       low.y() += static_cast<float>((i / 2 >> (2 * bit + 1) & 1U) << bit);
     }
-    boxes.emplace_back(low, low + Eigen::Array3f(0.9F, 0.9F, 0.0F));
+    boxes.emplace_back(low, low + Eigen::Vector3f(0.9F, 0.9F, 0.0F));
   }
   const BoxTree tree = treeOf(boxes);
   std::size_t looks = 0;
@@ -131,8 +126,8 @@ TEST(BoxTree, LooksAtFewBoxesBeyondThoseFound) {
   EXPECT_LT(looks, 10 * boxes.size());
   // One as large as all, of which only a diagonal is of interest.
   looks = found = 0;
-  ask({Eigen::Array3f::Zero(), Eigen::Array3f::Constant(64.0F)}, [](const FloatBox& box) {
-    return box.upper.x() < box.lower.y() || box.upper.y() < box.lower.x();
+  ask({Eigen::Vector3f::Zero(), Eigen::Vector3f::Constant(64.0F)}, [](const FloatBox& box) {
+    return box.max().x() < box.min().y() || box.max().y() < box.min().x();
   });
   EXPECT_EQ(found, 2 * side);
   EXPECT_LT(looks, 12 * found);
