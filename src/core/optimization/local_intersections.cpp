@@ -1,6 +1,5 @@
 #include "local_intersections.h"
 
-#include <limits>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -10,62 +9,30 @@ void LocalIntersections::begin(std::size_t triangles, Indexed<Face> faces) {
     places_[face.triangle] = -1;
   places_.resize(triangles, -1);
   faces_ = std::move(faces);
-  counts_.assign(faces_.size(), std::nullopt);
-  has_counts_ = false;
   for (Index i = 0; i < faces_.count(); ++i)
     places_[faces_[i].triangle] = i;
-  boxes_ =
-      BoxTree(faces_.size(), 1, {}, [&](Index i) { return FloatBox(boxOf(faces_[i].corners)); });
+  boxes_ = BoxTree(faces_.size(), 1, {},
+                   [&](Index i) { return boxOf(faces_[i].corners).cast<float>(); });
 }
 
 void LocalIntersections::set(const Face& face) {
   Index& place = places_[face.triangle];
-  if (place >= 0) {
-    addToCounts(faces_[place], -1);
-  } else {
+  if (place < 0) {
     place = faces_.count();
-    faces_.push_back(face);
-    counts_.emplace_back();
+    faces_.emplace_back();
   }
   faces_[place] = face;
-  boxes_.set(place, FloatBox(boxOf(face.corners)));
-  counts_[place] = addToCounts(face, 1);
+  boxes_.set(place, boxOf(face.corners).cast<float>());
 }
 
 void LocalIntersections::remove(Index triangle) {
   Index& place = places_[triangle];
-  addToCounts(faces_[place], -1);
-  const Index last = faces_.count() - 1;
-  faces_[place] = faces_[last];
-  counts_[place] = counts_[last];
-  boxes_.set(place, boxes_.at(last));
-  places_[faces_[last].triangle] = place;
+  faces_[place] = faces_.back();
+  boxes_.set(place, boxes_.at(faces_.count() - 1));
+  places_[faces_.back().triangle] = place;
   place = -1;
   faces_.pop_back();
-  counts_.pop_back();
-  boxes_.set(last, FloatBox());
-}
-
-std::optional<int> LocalIntersections::addToCounts(const Face& face, int change) {
-  if (!has_counts_)
-    return std::nullopt;
-  int found = 0;
-  forEachIntersecting(face, face.triangle, [&](const Face& other) {
-    ++found;
-    std::optional<int>& count = counts_[places_[other.triangle]];
-    if (count)
-      *count += change;
-    return true;
-  });
-  return found;
-}
-
-int LocalIntersections::countOf(Index triangle) {
-  std::optional<int>& known = counts_[places_[triangle]];
-  if (!known)
-    known = count(face(triangle), triangle, std::numeric_limits<int>::max());
-  has_counts_ = true;
-  return *known;
+  boxes_.set(faces_.count(), FloatBox());
 }
 
 void LocalIntersections::appendIntersecting(const Face& face, std::vector<Index>& triangles) const {

@@ -6,7 +6,7 @@
 #include "triangle_pair.h"
 
 #include <cstddef>
-#include <optional>
+#include <limits>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -34,14 +34,11 @@ public:
         FloatBox(box), 0, [&](const FloatBox&) { return is_done; },
         [&](Index place) { is_done = !work(faces_[place]); });
   }
-  /// Number of others that intersect one of the triangles. From the first call on, it is kept up to
-  /// date.
-  int countOf(Index triangle);
   /// Appends the triangles that intersect a triangle, without itself.
   void appendIntersecting(const Face& face, std::vector<Index>& triangles) const;
   /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
   /// beyond `most`.
-  int count(const Face& face, Index without, int most) const;
+  int count(const Face& face, Index without, int most = std::numeric_limits<int>::max() - 1) const;
   bool intersects(const Face& face) const { return count(face, face.triangle, 0) > 0; }
 
 private:
@@ -56,13 +53,7 @@ private:
     });
   }
 
-  /// Adds `change` to the known counts of triangles that intersect `face`; returns their number, if
-  /// counts are kept.
-  std::optional<int> addToCounts(const Face& face, int change);
-
   Indexed<Face> faces_;
-  Indexed<std::optional<int>> counts_;  ///< of each of faces_, if known
-  bool has_counts_ = false;
   BoxTree boxes_;          ///< of each of faces_
   Indexed<Index> places_;  ///< of each triangle of the mesh in faces_, or -1
 };

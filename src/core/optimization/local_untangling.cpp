@@ -12,6 +12,7 @@ LocalUntangling::LocalUntangling(EnergyMesh& mesh)
     : mesh_(mesh), scale_(scaleToUnit(mesh.points().cwiseAbs().maxCoeff())) {}
 
 void LocalUntangling::watch(const std::vector<Index>& vertices) {
+  counts_.clear();
   local_.begin(mesh_.mesh().slotCount());
   for (const Index v : vertices)
     mesh_.mesh().forEachAround(v, [&](Index t, int) {
@@ -33,7 +34,7 @@ int LocalUntangling::flipChangedApart() {
   int difference = 0;
   for (const Index t : changed)
     if (local_.contains(t)) {
-      difference -= local_.count(local_.face(t), t, std::numeric_limits<int>::max());
+      difference -= local_.count(local_.face(t), t);
       local_.remove(t);
     }
   std::vector<Index> bad;
@@ -49,6 +50,7 @@ int LocalUntangling::flipChangedApart() {
     }
     local_.set(face_of_t);
   }
+  counts_.clear();
   sortUnique(bad);
   return difference - flipApart(std::move(bad));
 }
@@ -75,7 +77,7 @@ std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int co
   const Index o = mesh.neighbor(t, corner);
   if (!local_.contains(t) || !local_.contains(o))
     return std::nullopt;
-  int before = local_.countOf(t) + local_.countOf(o);
+  int before = countOf(t) + countOf(o);
   if (before + most < 0)
     return std::nullopt;
   before -= intersect(local_.face(t), local_.face(o)) ? 1 : 0;
@@ -95,6 +97,13 @@ std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int co
     return std::nullopt;
   return Repair{t, corner, most - left,
                 -mesh_.flipGain(t, corner, -std::numeric_limits<double>::infinity())};
+}
+
+int LocalUntangling::countOf(Index t) {
+  const auto [known, is_new] = counts_.try_emplace(t, 0);
+  if (is_new)
+    known->second = local_.count(local_.face(t), t);
+  return known->second;
 }
 
 void LocalUntangling::flip(const Repair& repair) {

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -61,16 +62,20 @@ private:
   /// The best one or two flips of an intersecting triangle; no flips if none helps.
   Repairs bestRepairs(Index t);
   std::vector<std::pair<Index, int>> sidesNear(Index t) const;
+  /// Number of others that intersect a watched triangle.
+  int countOf(Index t);
   void flip(const Repair& repair);
   void update(Index t, Index o) {
     local_.set(face(t));
     local_.set(face(o));
+    counts_.clear();
   }
 
   EnergyMesh& mesh_;
   double scale_;  ///< brings the coordinates to at most 1
   std::size_t work_ = 0;
   LocalIntersections local_;  ///< the watched triangles
+  std::unordered_map<Index, int> counts_;  ///< from countOf(), since the last change
 };
 
 }  // namespace spherical_param::internal
