@@ -15,20 +15,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Sums over points.
-struct Sums {
-  double agreement = 0.0;  ///< of spread and bending
-  double possible = 0.0;   ///< the most that it could be
-  double unevenness = 0.0;
-
-  Sums& operator+=(const Sums& other) {
-    agreement += other.agreement;
-    possible += other.possible;
-    unevenness += other.unevenness;
-    return *this;
-  }
-};
-
 /// The part of a symmetric matrix that has a direction, over its trace.
 Eigen::Vector2d deviator(const Eigen::Matrix2d& of) {
   const double trace = of.trace();
@@ -70,23 +56,26 @@ std::optional<Eigen::Matrix2d> bendingOf(const Positions& local) {
          principal.eigenvectors().transpose();
 }
 
-void addAlignmentAt(Index i, const Positions& points, const Graph& graph, std::vector<Index>& wide,
-                    Sums& sums) {
+/// How far spread and bending at point i agree, and the most that they could.
+///
+/// \param wide working memory.
+Eigen::Array2d agreementAt(Index i, const Positions& points, const Graph& graph,
+                           std::vector<Index>& wide) {
   collectWide(i, graph, wide);
   // With fewer points a quadric is not determined well enough. 5 changes one cloud of few points.
   if (wide.size() < 8)
-    return;
+    return {0.0, 0.0};
   const Positions offsets = points(Eigen::all, wide).colwise() - points.col(i);
   const Eigen::Matrix3d spread = offsets * offsets.transpose();
   const double scale = std::sqrt(spread.trace() / static_cast<double>(wide.size()));
   if (!(scale > 0.0))
-    return;
+    return {0.0, 0.0};
   // The direction of the least spread comes last: it is that of the height.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   const Eigen::Matrix3d frame = axes.eigenvectors().rowwise().reverse().transpose() / scale;
   const std::optional<Eigen::Matrix2d> bending = bendingOf(frame * offsets);
   if (!bending)
-    return;
+    return {0.0, 0.0};
   Eigen::Matrix2d spread_of_neighbors = Eigen::Matrix2d::Zero();
   for (const Index v : graph.row(i)) {
     const Eigen::Vector2d neighbor = frame.topRows<2>() * (points.col(v) - points.col(i));
@@ -94,20 +83,14 @@ void addAlignmentAt(Index i, const Positions& points, const Graph& graph, std::v
   }
   const Eigen::Vector2d of_bending = deviator(*bending);
   const Eigen::Vector2d of_spread = deviator(spread_of_neighbors);
-  sums.agreement -= of_bending.dot(of_spread);
-  sums.possible += of_bending.norm() * of_spread.norm();
+  return {-of_bending.dot(of_spread), of_bending.norm() * of_spread.norm()};
 }
 
 double unevennessAt(Index i, const Graph& graph) {
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const double length : graph.lengthsOf(i)) {
-    sum += length;
-    squares += length * length;
-  }
-  const auto count = static_cast<double>(graph.row(i).size());
-  const double mean = sum / count;
-  return mean > 0.0 ? std::sqrt(std::max(0.0, squares / count - mean * mean)) / mean : 0.0;
+  const Row<double> row = graph.lengthsOf(i);
+  const Eigen::Map<const Eigen::ArrayXd> lengths(row.begin(), row.end() - row.begin());
+  const double mean = lengths.mean();
+  return mean > 0.0 ? std::sqrt((lengths - mean).square().mean()) / mean : 0.0;
 }
 
 }  // namespace
@@ -118,22 +101,23 @@ Sampling analyzeSampling(const Positions& points, const Graph& graph, int thread
   const std::size_t step = std::max<std::size_t>(1, n / 2500);
   const std::size_t samples = n / step;
   // A sample is some eight times the work of other loops' items.
-  const Sums sums = sumOfBlocks(samples, threadCount(threads, 8 * samples), Sums{},
-                                [&](std::size_t begin, std::size_t end) {
-                                  Sums part;
-                                  std::vector<Index> wide;
-                                  for (std::size_t s = begin; s < end; ++s) {
-                                    const auto i = static_cast<Index>(s * step);
-                                    addAlignmentAt(i, points, graph, wide, part);
-                                    part.unevenness += unevennessAt(i, graph);
-                                  }
-                                  return part;
-                                });
+  const Eigen::Array3d sums =
+      sumOfBlocks(samples, threadCount(threads, 8 * samples),
+                  Eigen::Array3d(Eigen::Array3d::Zero()), [&](std::size_t begin, std::size_t end) {
+                    Eigen::Array3d part = Eigen::Array3d::Zero();
+                    std::vector<Index> wide;
+                    for (std::size_t s = begin; s < end; ++s) {
+                      const auto i = static_cast<Index>(s * step);
+                      part.head<2>() += agreementAt(i, points, graph, wide);
+                      part[2] += unevennessAt(i, graph);
+                    }
+                    return part;
+                  });
   Sampling result;
-  if (sums.possible > 0.0)
-    result.alignment = sums.agreement / sums.possible;
+  if (sums[1] > 0.0)
+    result.alignment = sums[0] / sums[1];
   if (samples > 0)
-    result.unevenness = sums.unevenness / static_cast<double>(samples);
+    result.unevenness = sums[2] / static_cast<double>(samples);
   return result;
 }
 
