@@ -70,7 +70,6 @@ public:
   std::size_t vertexCount() const { return graph_.size(); }
   std::size_t triangleCount() const { return internal::columnCount(triangles_); }
   Eigen::Vector3d point(Index v) const { return points_.col(v); }
-  double distance(Index a, Index b) const { return (points_.col(a) - points_.col(b)).norm(); }
 
   /// Calls visit(triangle, next, previous) for the triangles around v, with their other vertices in
   /// order.
@@ -91,11 +90,8 @@ public:
     return sum.normalized();
   }
 
-  Eigen::Vector3d mean(const std::vector<Index>& vertices) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Index v : vertices)
-      sum += point(v);
-    return sum / static_cast<double>(vertices.size());
+  Positions pointsOf(const std::vector<Index>& vertices) const {
+    return points_(Eigen::all, vertices);
   }
 
   /// Distance of the points around v in the graph.
@@ -107,22 +103,21 @@ public:
   }
 
 private:
-  /// Compares the edges from `a` to higher vertices.
+  /// Compares the edges from `a`, each of them once.
   void collectAt(Index a, Differences& found) const {
     std::vector<Index> ring;
+    forEachTriangle(a, [&](Index t, Index b, Index) {
+      ring.push_back(b);
+      if (isNearInGraph(a, b))
+        return;
+      found.triangles.push_back(t);
+      found.outside_graph += a < b ? 1 : 0;
+    });
     const auto is_around = [&](Index v) {
       return std::find(ring.begin(), ring.end(), v) != ring.end();
     };
-    std::size_t unknown = 0;  // edges of the mesh that were not met in the graph
-    forEachTriangle(a, [&](Index, Index next, Index) {
-      ring.push_back(next);
-      unknown += a < next ? 1 : 0;
-    });
     for (const Index b : graph_.row(a)) {
-      if (b < a)
-        continue;
-      bool is_near = is_around(b);
-      unknown -= is_near ? 1 : 0;
+      bool is_near = b < a || is_around(b);
       // Nearly all others are the other diagonal of two triangles.
       if (!is_near)
         forEachTriangle(b, [&](Index, Index next, Index) {
@@ -131,18 +126,6 @@ private:
       if (!is_near)
         found.apart.push_back({a, b});
     }
-    if (unknown == 0)
-      return;
-    forEachTriangle(a, [&](Index t, Index b, Index) {
-      if (b < a || isNearInGraph(a, b))
-        return;
-      ++found.outside_graph;
-      found.triangles.push_back(t);
-      forEachTriangle(a, [&](Index other, Index, Index previous) {
-        if (previous == b)
-          found.triangles.push_back(other);
-      });
-    });
   }
 
   /// Whether a and b are neighbours in the graph or have a common one.
@@ -163,14 +146,13 @@ private:
 
 // --- Handles -------------------------------------------------------------------------------------
 
-/// The vertices up to some edges away from one on the mesh; they are then in the set `seen`.
-std::vector<Index> discOn(const MeshAndGraph& surface, Index center, int steps,
-                          internal::IndexSet& seen) {
+/// The vertices up to 4 edges away from one on the mesh; they are then in the set `seen`.
+std::vector<Index> discOn(const MeshAndGraph& surface, Index center, internal::IndexSet& seen) {
   seen.clear();
   seen.insert(center);
   std::vector<Index> disc{center};
   std::size_t begin = 0;
-  for (int step = 0; step < steps; ++step)
+  for (int step = 0; step < 4; ++step)
     for (const std::size_t end = disc.size(); begin < end; ++begin)
       surface.forEachTriangle(disc[begin], [&](Index, Index next, Index) {
         if (seen.insert(next))
@@ -191,8 +173,8 @@ internal::Indexed<Edge> tornEdges(const MeshAndGraph& surface, const std::vector
   // Neighbours were torn apart that are more than 8 steps apart on the mesh: the discs of half as
   // many do not meet.
   const auto are_torn = [&](const Edge& edge) {
-    discOn(surface, edge[0], 4, seen);
-    const std::vector<Index> disc = discOn(surface, edge[1], 4, seen_from_other);
+    discOn(surface, edge[0], seen);
+    const std::vector<Index> disc = discOn(surface, edge[1], seen_from_other);
     return std::none_of(disc.begin(), disc.end(), [&](Index v) { return seen.contains(v); });
   };
   internal::Indexed<Edge> torn;
@@ -229,11 +211,9 @@ std::vector<Handle> handlesOf(const MeshAndGraph& surface, const internal::Index
     if (handle.edges < kMinTornEdges)
       continue;
     internal::sortUnique(handle.vertices);
-    handle.center = surface.mean(handle.vertices);
-    Eigen::AlignedBox3d box;
-    for (const Index v : handle.vertices)
-      box.extend(surface.point(v));
-    handle.size = box.diagonal().norm();
+    const Positions points = surface.pointsOf(handle.vertices);
+    handle.center = points.rowwise().mean();
+    handle.size = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
     result.push_back(std::move(handle));
   }
   std::stable_sort(result.begin(), result.end(),
@@ -302,42 +282,38 @@ std::vector<Edge> edgesOf(const std::vector<Bridge>& bridges) {
 
 /// Pairs of parts with a gap of at least 4 times the distance of the points there; all ends are
 /// listed.
+///
+/// \param edges of the bridges, ascending.
 std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& graph,
-                                    const std::vector<Edge>& bridges) {
+                                    const std::vector<Bridge>& bridges,
+                                    const std::vector<Edge>& edges) {
   if (bridges.empty())
     return {};
   // There are no bridges within a part.
   internal::UnionFind parts(graph.size());
   for (const Index a : graph.nodes())
     for (const Index b : graph.row(a))
-      if (a < b && !std::binary_search(bridges.begin(), bridges.end(), Edge{a, b}))
+      if (a < b && !std::binary_search(edges.begin(), edges.end(), Edge{a, b}))
         parts.unite(a, b);
   const internal::Indexed<Index> part = internal::representatives(parts, graph.size());
   const internal::Indexed<std::size_t> sizes = internal::setSizes(part);
-  std::map<Edge, std::vector<Edge>> joints;
-  for (const Edge& edge : bridges) {
-    const Edge pair = edgeOf(part[edge[0]], part[edge[1]]);
-    if (pair[0] != pair[1])
-      joints[pair].push_back(edge);
+  std::map<Edge, PartBridge> joints;
+  for (const auto& [from, to, length] : bridges) {
+    PartBridge& joint = joints[edgeOf(part[from], part[to])];
+    joint.gap = joint.vertices.empty() ? length : std::min(joint.gap, length);
+    joint.vertices.insert(joint.vertices.end(), {from, to});
   }
   std::vector<PartBridge> result;
-  for (const auto& [pair, edges] : joints) {
-    PartBridge joint;
-    joint.gap = std::numeric_limits<double>::infinity();
+  for (auto& [pair, joint] : joints) {
     std::vector<double> spacings;
-    for (const Edge& edge : edges) {
-      joint.gap = std::min(joint.gap, surface.distance(edge[0], edge[1]));
-      for (const Index v : edge) {
-        joint.vertices.push_back(v);
-        spacings.push_back(surface.spacing(v));
-      }
-    }
+    for (const Index v : joint.vertices)
+      spacings.push_back(surface.spacing(v));
     internal::sortUnique(joint.vertices);
     std::sort(spacings.begin(), spacings.end());
     joint.spacing = spacings[(spacings.size() - 1) / 2];
-    if (joint.gap < 4.0 * joint.spacing)
+    if (pair[0] == pair[1] || joint.gap < 4.0 * joint.spacing)
       continue;
-    joint.center = surface.mean(joint.vertices);
+    joint.center = surface.pointsOf(joint.vertices).rowwise().mean();
     joint.points = std::min(sizes[pair[0]], sizes[pair[1]]);
     joint.other_points = std::max(sizes[pair[0]], sizes[pair[1]]);
     result.push_back(std::move(joint));
@@ -351,29 +327,21 @@ std::vector<PartBridge> findBridges(const MeshAndGraph& surface, const Graph& gr
 
 /// The edges of a graph that are among the kThinnedDegree shortest of one of their ends, and the
 /// bridges.
-Graph thinned(const Graph& graph, const std::vector<Edge>& bridges) {
-  internal::Indexed<double> reach(graph.size(), std::numeric_limits<double>::infinity());
+Graph thinned(const Graph& graph, const std::vector<Bridge>& bridges) {
+  std::vector<Bridge> edges = bridges;
   for (const Index v : graph.nodes()) {
-    const auto row = graph.lengthsOf(v);
-    std::vector<double> lengths(row.begin(), row.end());
-    if (lengths.size() <= kThinnedDegree)
-      continue;
-    std::sort(lengths.begin(), lengths.end());
-    reach[v] = lengths[kThinnedDegree - 1];
+    std::vector<Bridge> row;
+    for (const std::size_t e : graph.entries(v))
+      row.push_back({v, graph.neighbors[e], graph.lengths[e]});
+    const auto end =
+        row.begin() + std::min<std::ptrdiff_t>(kThinnedDegree, row.end() - row.begin());
+    std::partial_sort(row.begin(), end, row.end(),
+                      [](const Bridge& a, const Bridge& b) { return a.length < b.length; });
+    edges.insert(edges.end(), row.begin(), end);
   }
-  Graph thin;
-  for (const Index v : graph.nodes()) {
-    for (const std::size_t e : graph.entries(v)) {
-      const Index w = graph.neighbors[e];
-      if (graph.lengths[e] > std::max(reach[v], reach[w]) &&
-          !std::binary_search(bridges.begin(), bridges.end(), edgeOf(v, w)))
-        continue;
-      thin.neighbors.push_back(w);
-      thin.lengths.push_back(graph.lengths[e]);
-    }
-    thin.endRow();
-  }
-  return thin;
+  Graph no_edges;
+  no_edges.offsets.assign(graph.size() + 1, 0);
+  return internal::withEdges(no_edges, edges);
 }
 
 /// The marks of all findings.
@@ -440,7 +408,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
                                  const DiagnosisOptions& options, int threads) {
   const std::vector<Edge> bridge_edges = edgesOf(bridges);
   const bool is_dense = 2 * graph.neighbors.size() > 3 * kThinnedDegree * graph.size();
-  const Graph thin = is_dense ? thinned(graph, bridge_edges) : Graph();
+  const Graph thin = is_dense ? thinned(graph, bridges) : Graph();
   const Graph& sparse = is_dense ? thin : graph;
   const MeshAndGraph surface(points, triangles, sparse,
                              internal::threadCount(threads, graph.size()));
@@ -448,7 +416,7 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   SurfaceDiagnosis result;
   result.edges_outside_graph = static_cast<double>(differences.outside_graph) /
                                (1.5 * static_cast<double>(triangles.cols()));
-  result.bridges = findBridges(surface, graph, bridge_edges);
+  result.bridges = findBridges(surface, graph, bridges, bridge_edges);
   // A mesh that was squeezed through a bridge tears neighbours apart without handles.
   if (result.bridges.empty())
     findHandles(surface, sparse, differences.apart, bridge_edges, openings, options.count_cycles,
