@@ -69,14 +69,15 @@ public:
   OpenMesh run() {
     for (const Index t : trianglesWithoutLoop(mesh_, openings_))
       is_open_[t] = 0;
-    gatherSurface();
-    std::vector<Index> due;
+    Indexed<Face> faces;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (!isOpen(t))
+        faces.push_back(face(t, mesh_.vertices(t)));
+    surface_.begin(is_open_.size(), std::move(faces));
     for (const Index v : verticesOfOpen())
       if (isBare(v))
         attach(v);
-    for (const Index v : verticesOfOpen())
-      if (isPinched(v))
-        due.push_back(v);
+    std::vector<Index> due = verticesOfOpen();
     while (!due.empty()) {
       const Index v = due.back();
       due.pop_back();
@@ -183,10 +184,10 @@ private:
                               length(v, mesh_.vertex(t, 2)),
                           t, -1});
     keepNearest(covers);
-    const auto cover = std::find_if(covers.begin(), covers.end(), [&](const Place& place) {
-      return crossingsAt(v, place, 0) == 0;
-    });
-    return cover == covers.end() ? std::nullopt : std::optional(cover->triangle);
+    for (const Place& place : covers)
+      if (crossingsAt(v, place, 0) == 0)
+        return place.triangle;
+    return std::nullopt;
   }
 
   /// Number of triangles of the surface that those of a vertex would intersect at a place; counting
@@ -267,14 +268,6 @@ private:
     return surface_.count(face(-1, corners), without, most);
   }
 
-  void gatherSurface() {
-    Indexed<Face> faces;
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (!isOpen(t))
-        faces.push_back(face(t, mesh_.vertices(t)));
-    surface_.begin(is_open_.size(), std::move(faces));
-  }
-
   Face face(Index t, const std::array<Index, 3>& corners) const {
     return faceOf(points_, scale_, corners, t);
   }
@@ -292,15 +285,14 @@ private:
 
   /// Flips the edges from a vertex into a run of it, as far as that goes: what is left of the run.
   Run trimmed(Index v, Run run) {
-    for (std::size_t i = 0; i + 1 < run.size();) {
+    for (auto t = run.begin(); t + 1 < run.end();)
       // The edge to the next triangle is opposite to the corner after v.
-      if (!mesh_.flip(run[i], (mesh_.cornerOf(run[i], v) + 1) % 3)) {
-        ++i;
-        continue;
+      if (!mesh_.flip(*t, (mesh_.cornerOf(*t, v) + 1) % 3)) {
+        ++t;
+      } else {
+        run.erase(t);  // has left the vertex
+        t = run.begin();
       }
-      run.erase(run.begin() + static_cast<std::ptrdiff_t>(i));  // has left the vertex
-      i = 0;
-    }
     return run;
   }
 
@@ -327,13 +319,11 @@ private:
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings) {
   const auto is_open = [&](Index t) { return isOver(openings, mesh.vertices(t)); };
   std::vector<Index> found;
-  Indexed<std::uint8_t> is_seen(mesh.slotCount(), 0);
-  std::vector<Index> piece;
+  IndexSet seen(mesh.slotCount());
   for (Index first = 0; first < mesh.size(); ++first) {
-    if (is_seen[first] != 0 || !is_open(first))
+    if (!is_open(first) || !seen.insert(first))
       continue;
-    piece.assign(1, first);
-    is_seen[first] = 1;
+    std::vector<Index> piece{first};
     bool has_loop = false;
     for (std::size_t head = 0; head < piece.size(); ++head)
       for (int k = 0; k < 3; ++k) {
@@ -341,10 +331,8 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
         const Index next = mesh.neighbor(t, k);
         has_loop =
             has_loop || openings.isRim(mesh.vertex(t, (k + 1) % 3), mesh.vertex(t, (k + 2) % 3));
-        if (is_seen[next] != 0 || !is_open(next))
-          continue;
-        is_seen[next] = 1;
-        piece.push_back(next);
+        if (is_open(next) && seen.insert(next))
+          piece.push_back(next);
       }
     if (!has_loop)
       found.insert(found.end(), piece.begin(), piece.end());
