@@ -146,16 +146,10 @@ std::array<Index, 3> EnergyMesh::split(Index t, Index v, double cost) {
 }
 
 bool EnergyMesh::merge(Index v) {
-  std::array<Index, 3> fan{};
-  std::size_t count = 0;
-  if (mesh_.degree(v) == 3)
-    mesh_.forEachAround(v, [&](Index t, int) { fan[count++] = t; });
+  mesh_.forEachAround(v, [&](Index t, int) { save(t); });
   const Index merged = mesh_.merge(v);
   if (merged < 0)
     return false;
-  for (const Index t : fan)
-    if (t != merged)
-      save(t);
   update(merged);
   change_ -= splitCost(merged, v, std::numeric_limits<double>::infinity());
   return true;

@@ -75,27 +75,22 @@ bool RuinAndRecreate::recreate(const std::vector<Index>& vertices, const Accept&
     Index vertex;
     std::vector<Index> neighbors;
   };
-  std::vector<Removed> removed;
-  for (const Index v : vertices) {
-    removed.push_back({v, {}});
-    mesh_.appendNeighbors(v, removed.back().neighbors);
-  }
-  mesh_.begin();
   std::vector<Removed> out;
-  for (Removed& vertex : removed)
-    if (remove(vertex.vertex))
-      out.push_back(std::move(vertex));
+  for (const Index v : vertices) {
+    out.push_back({v, {}});
+    mesh_.appendNeighbors(v, out.back().neighbors);
+  }
+  const auto erase_if = [&](const auto& is) {
+    out.erase(std::remove_if(out.begin(), out.end(), is), out.end());
+  };
+  mesh_.begin();
+  erase_if([&](const Removed& vertex) { return !remove(vertex.vertex); });
   for (std::size_t i = out.size(); i > 1; --i)
     std::swap(out[i - 1], out[random(i)]);
   // Vertices none of whose neighbours are back yet wait for them.
-  while (!out.empty()) {
-    std::vector<Removed> waiting;
-    for (Removed& vertex : out)
-      if (!insert(vertex.vertex, vertex.neighbors))
-        waiting.push_back(std::move(vertex));
-    if (waiting.size() == out.size())
-      break;
-    out = std::move(waiting);
+  for (std::size_t before = 0; before != out.size();) {
+    before = out.size();
+    erase_if([&](const Removed& vertex) { return insert(vertex.vertex, vertex.neighbors); });
   }
   const bool is_accepted = out.empty() && accept(mesh_.change());
   if (is_accepted)
