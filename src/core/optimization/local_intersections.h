@@ -25,15 +25,6 @@ public:
   bool contains(Index triangle) const { return places_[triangle] >= 0; }
   const std::vector<Face>& faces() const { return faces_; }
   const Face& face(Index triangle) const { return faces_[places_[triangle]]; }
-  /// Calls work(face) for each triangle whose box overlaps a box, and perhaps a few more, until it
-  /// returns false.
-  template <typename Work>
-  void forEachIn(const Box& box, const Work& work) const {
-    bool is_done = false;
-    boxes_.forEachOverlapping(
-        FloatBox(box), 0, [&](const FloatBox&) { return is_done; },
-        [&](Index place) { is_done = !work(faces_[place]); });
-  }
   /// Appends the triangles that intersect a triangle, without itself.
   void appendIntersecting(const Face& face, std::vector<Index>& triangles) const;
   /// Number of triangles that intersect a triangle, without itself and `without`; counting may stop
@@ -47,10 +38,14 @@ private:
   template <typename Work>
   void forEachIntersecting(const Face& face, Index without, const Work& work) const {
     const Plane plane(face);
-    forEachIn(boxOf(face.corners), [&](const Face& other) {
-      return other.triangle == face.triangle || other.triangle == without ||
-             !intersect(face, plane, other) || work(other);
-    });
+    bool is_done = false;
+    boxes_.forEachOverlapping(
+        boxOf(face.corners).cast<float>(), 0, [&](const FloatBox&) { return is_done; },
+        [&](Index place) {
+          const Face& other = faces_[place];
+          is_done = is_done || (other.triangle != face.triangle && other.triangle != without &&
+                                intersect(face, plane, other) && !work(other));
+        });
   }
 
   Indexed<Face> faces_;
