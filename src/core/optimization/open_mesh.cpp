@@ -33,23 +33,23 @@ void keepNearest(std::vector<Place>& places) {
   places.erase(end, places.end());
 }
 
-/// The first of the candidates that crosses nothing, or the one that crosses least.
+/// The first of the candidates that crosses nothing, or the one that crosses least; nullptr of
+/// none.
 ///
 /// \param crossings (candidate, most): the number; counting may stop beyond `most`.
 /// \param least what it crosses.
-template <typename Candidates, typename Crossings>
-typename Candidates::iterator leastCrossing(Candidates& candidates, const Crossings& crossings,
-                                            int& least) {
-  auto best = candidates.end();
+template <typename Candidate, typename Crossings>
+const Candidate* leastCrossing(const std::vector<Candidate>& candidates, const Crossings& crossings,
+                               int& least) {
+  const Candidate* best = nullptr;
   least = std::numeric_limits<int>::max();
-  for (auto candidate = candidates.begin(); candidate != candidates.end() && least > 0;
-       ++candidate) {
-    const int count = crossings(*candidate, least - 1);
-    if (count < least) {
-      best = candidate;
+  for (const Candidate& candidate : candidates)
+    if (const int count = crossings(candidate, least - 1); count < least) {
+      best = &candidate;
       least = count;
+      if (count == 0)
+        break;
     }
-  }
   return best;
 }
 
@@ -157,9 +157,9 @@ private:
                k});
     keepNearest(edges);
     int least = 0;
-    const auto edge = leastCrossing(
+    const Place* edge = leastCrossing(
         edges, [&](const Place& place, int most) { return crossingsAt(v, place, most); }, least);
-    if (edge == edges.end()) {
+    if (edge == nullptr) {
       close(smallestAt(v));
       return;
     }
@@ -202,7 +202,10 @@ private:
 
   /// Takes a vertex out of the mesh, if its triangles are open.
   bool takeOut(Index v) {
-    while (mesh_.degree(v) > 3 && flipFrom(v)) {
+    const auto flips_edge_away = [&](Index t, int corner) {
+      return mesh_.flip(t, (corner + 1) % 3);
+    };
+    while (mesh_.degree(v) > 3 && mesh_.anyAround(v, flips_edge_away)) {
     }
     return mesh_.degree(v) == 3 && mesh_.merge(v) >= 0;
   }
@@ -223,14 +226,6 @@ private:
     return at_edge();
   }
 
-  /// Flips an edge away from a vertex, if that is possible.
-  bool flipFrom(Index v) {
-    std::vector<std::pair<Index, int>> sides;
-    mesh_.forEachAround(v, [&](Index t, int corner) { sides.emplace_back(t, (corner + 1) % 3); });
-    return std::any_of(sides.begin(), sides.end(),
-                       [&](const auto& side) { return mesh_.flip(side.first, side.second); });
-  }
-
   Index smallestAt(Index v) const {
     const std::vector<Index> around = trianglesAround(v);
     return *std::min_element(around.begin(), around.end(),
@@ -244,7 +239,7 @@ private:
     std::stable_sort(gaps.begin(), gaps.end(),
                      [&](const Run& a, const Run& b) { return widthAt(v, a) < widthAt(v, b); });
     for (Run& gap : gaps)
-      gap = trimmed(v, std::move(gap));
+      trim(v, gap);
     int least = 0;
     const auto count_crossings = [&](const Run& run, int most) {
       int count = 0;
@@ -252,7 +247,7 @@ private:
         count += crossings(mesh_.vertices(t), t, most - count);
       return count;
     };
-    const auto gap = leastCrossing(gaps, count_crossings, least);
+    const Run* gap = leastCrossing(gaps, count_crossings, least);
     std::vector<Index> vertices;
     for (const Index t : *gap) {
       close(t);
@@ -283,8 +278,9 @@ private:
     return length(a, b) + length(b, c) + length(c, a);
   }
 
-  /// Flips the edges from a vertex into a run of it, as far as that goes: what is left of the run.
-  Run trimmed(Index v, Run run) {
+  /// Flips the edges from a vertex into a run of it, as far as that goes; leaves the rest of the
+  /// run.
+  void trim(Index v, Run& run) {
     for (auto t = run.begin(); t + 1 < run.end();)
       // The edge to the next triangle is opposite to the corner after v.
       if (!mesh_.flip(*t, (mesh_.cornerOf(*t, v) + 1) % 3)) {
@@ -293,7 +289,6 @@ private:
         run.erase(t);  // has left the vertex
         t = run.begin();
       }
-    return run;
   }
 
   void open(Index t) {
