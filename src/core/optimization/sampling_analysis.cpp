@@ -35,17 +35,13 @@ void collectWide(Index i, const Graph& graph, std::vector<Index>& wide) {
 /// height above the tangent plane. Empty if it is not determined.
 std::optional<Eigen::Matrix2d> bendingOf(const Positions& local) {
   // z = a x + b y + (c x^2 + 2 d x y + e y^2) / 2.
-  Eigen::Matrix<double, 5, 5> normal_matrix = Eigen::Matrix<double, 5, 5>::Zero();
-  Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
-  for (const auto& point : local.colwise()) {
-    const double x = point.x();
-    const double y = point.y();
-    Eigen::Matrix<double, 5, 1> terms;
-    terms << x, y, x * x / 2.0, x * y, y * y / 2.0;
-    normal_matrix += terms * terms.transpose();
-    right += point.z() * terms;
-  }
-  const Eigen::Matrix<double, 5, 1> quadric = normal_matrix.ldlt().solve(right);
+  const auto x = local.row(0).array();
+  const auto y = local.row(1).array();
+  Eigen::Matrix<double, 5, Eigen::Dynamic> terms(5, local.cols());
+  terms << local.topRows<2>(), (x.square() / 2.0).matrix(), (x * y).matrix(),
+      (y.square() / 2.0).matrix();
+  const Eigen::Matrix<double, 5, 1> quadric =
+      (terms * terms.transpose()).ldlt().solve(terms * local.row(2).transpose());
   if (!quadric.allFinite())
     return std::nullopt;
   Eigen::Matrix2d hessian;
