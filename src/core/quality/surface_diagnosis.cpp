@@ -11,10 +11,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -146,21 +144,6 @@ private:
 
 // --- Handles -------------------------------------------------------------------------------------
 
-/// The vertices up to 4 edges away from one on the mesh; they are then in the set `seen`.
-std::vector<Index> discOn(const MeshAndGraph& surface, Index center, internal::IndexSet& seen) {
-  seen.clear();
-  seen.insert(center);
-  std::vector<Index> disc{center};
-  std::size_t begin = 0;
-  for (int step = 0; step < 4; ++step)
-    for (const std::size_t end = disc.size(); begin < end; ++begin)
-      surface.forEachTriangle(disc[begin], [&](Index, Index next, Index) {
-        if (seen.insert(next))
-          disc.push_back(next);
-      });
-  return disc;
-}
-
 /// The edges of the graph along the surface whose ends are far apart on the mesh.
 ///
 /// \param apart those whose ends are more than two steps apart.
@@ -169,13 +152,19 @@ internal::Indexed<Edge> tornEdges(const MeshAndGraph& surface, const std::vector
   if (apart.empty())
     return {};
   internal::IndexSet seen(surface.vertexCount());
-  internal::IndexSet seen_from_other(surface.vertexCount());
-  // Neighbours were torn apart that are more than 8 steps apart on the mesh: the discs of half as
-  // many do not meet.
+  // Neighbours were torn apart that are more than 8 steps apart on the mesh.
   const auto are_torn = [&](const Edge& edge) {
-    discOn(surface, edge[0], seen);
-    const std::vector<Index> disc = discOn(surface, edge[1], seen_from_other);
-    return std::none_of(disc.begin(), disc.end(), [&](Index v) { return seen.contains(v); });
+    std::vector<Index> disc{edge[0]};
+    seen.clear();
+    seen.insert(edge[0]);
+    std::size_t begin = 0;
+    for (int step = 0; step < 8 && !seen.contains(edge[1]); ++step)
+      for (const std::size_t end = disc.size(); begin < end; ++begin)
+        surface.forEachTriangle(disc[begin], [&](Index, Index next, Index) {
+          if (seen.insert(next))
+            disc.push_back(next);
+        });
+    return !seen.contains(edge[1]);
   };
   internal::Indexed<Edge> torn;
   std::copy_if(apart.begin(), apart.end(), std::back_inserter(torn), [&](const Edge& edge) {
@@ -273,7 +262,6 @@ void findHandles(const MeshAndGraph& surface, const Graph& graph, const std::vec
 /// The edges of the graph that join its parts, ascending.
 std::vector<Edge> edgesOf(const std::vector<Bridge>& bridges) {
   std::vector<Edge> edges;
-  edges.reserve(bridges.size());
   for (const Bridge& bridge : bridges)
     edges.push_back(edgeOf(bridge.from, bridge.to));
   std::sort(edges.begin(), edges.end());
