@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -169,10 +168,9 @@ void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const 
 
 /// The scale of the tests, after checks. Throws InvalidInput.
 double checkedScale(const Positions& points, const Triangles& triangles) {
-  if (!points.allFinite())
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      if (!points.col(i).allFinite())
-        refuse("point " + std::to_string(i) + " is not finite; remove such points first");
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (!points.col(i).allFinite())
+      refuse("point " + std::to_string(i) + " is not finite; remove such points first");
   const double most = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
   internal::checkTriangles("findSelfIntersections", triangles, points.cols());
   return internal::scaleToUnit(most);
@@ -215,11 +213,9 @@ Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& e
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {
-  internal::checkThreads(execution.threads);
-  const Mesh mesh{points, triangles, checkedScale(points, triangles)};
-  Indexed<Index> all(mesh.size());
+  std::vector<Index> all(internal::columnCount(triangles));
   std::iota(all.begin(), all.end(), Index{0});
-  return pairsOf(mesh, all, execution);
+  return findSelfIntersectionsOf(points, triangles, all, execution);
 }
 
 std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
