@@ -107,21 +107,17 @@ std::vector<Index> RuinAndRecreate::spread(const std::vector<Index>& seeds, std:
     if (seen_vertices_.insert(v))
       front.push_back(v);
   };
-  for (const Index v : seeds)
-    add(v);
-  // The seeds come first, in their order.
-  std::vector<Index> region = std::move(front);
-  region.resize(std::min(region.size(), count));
-  front.clear();
   std::vector<Index> neighbors;
   const auto add_neighbors = [&](Index v) {
     neighbors.clear();
     mesh_.appendNeighbors(v, neighbors);
-    for (const Index w : neighbors)
-      add(w);
+    std::for_each(neighbors.begin(), neighbors.end(), add);
   };
-  for (const Index v : region)
-    add_neighbors(v);
+  // The seeds come first, in their order.
+  std::for_each(seeds.begin(), seeds.end(), add);
+  std::vector<Index> region = std::exchange(front, {});
+  region.resize(std::min(region.size(), count));
+  std::for_each(region.begin(), region.end(), add_neighbors);
   while (!front.empty() && region.size() < count) {
     const std::size_t pick = random(front.size());
     const Index v = front[pick];

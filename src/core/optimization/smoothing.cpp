@@ -20,9 +20,6 @@ public:
       : triangles_(triangles), threads_(internal::threadCount(requested_threads, n)),
         corners_(triangles, n, threads_) {}
 
-  internal::NumberRange<Index> vertices() const {
-    return {0, static_cast<Index>(corners_.vertexCount())};
-  }
   bool isUsed(Index v) const { return corners_.countAt(v) > 0; }
 
   /// Moves each point by a fraction of its Laplacian, all at once; `scratch` is overwritten.
@@ -179,22 +176,18 @@ Smoothing smoothSurface(const Positions& points, const Triangles& triangles,
     return result;
 
   Positions scratch(3, points.cols());
-  switch (options.method) {
-  case SmoothingMethod::Umbrella:
+  if (options.method == SmoothingMethod::Biharmonic)
+    filter.biharmonicFlow(smooth, options.steps);
+  else
     for (int s = 0; s < options.steps; ++s)
       filter.step(smooth, 1.0, scratch);
-    break;
-  case SmoothingMethod::Biharmonic:
-    filter.biharmonicFlow(smooth, options.steps);
-    break;
-  }
   if (options.restore_volume)
     filter.restoreVolume(smooth, result.report.volume_before);
   result.report.volume_after = filter.volume(smooth);
 
   double used = 0.0;
   double squared = 0.0;
-  for (const Index i : filter.vertices()) {
+  for (Index i = 0; i < points.cols(); ++i) {
     if (!filter.isUsed(i))
       continue;
     result.points.col(i) = smooth.col(i) + origin;

@@ -2,8 +2,6 @@
 
 #include "spherical_param/result.h"
 
-#include <cstddef>
-
 namespace spherical_param {
 
 /// \addtogroup smoothing
@@ -18,9 +16,8 @@ enum class SmoothingMethod {
   Umbrella,
   /// The biharmonic flow dx/dt = -L^2 x (the higher order of Desbrun et al. 1999, "Implicit fairing
   /// of irregular meshes using diffusion and curvature flow"), exact in time. Gain 2^-(k / c)^2;
-  /// the
-  /// frequency c of gain one half is that of as many steps of Umbrella with lambda = 1. Removes as
-  /// much noise, and hardly shrinks.
+  /// the frequency c of gain one half is that of as many steps of Umbrella with lambda = 1. Removes
+  /// as much noise, and hardly shrinks.
   Biharmonic,
 };
 
