@@ -74,7 +74,7 @@ private:
   EnergyMesh& mesh_;
   double scale_;  ///< brings the coordinates to at most 1
   std::size_t work_ = 0;
-  LocalIntersections local_;  ///< the watched triangles
+  LocalIntersections local_;               ///< the watched triangles
   std::unordered_map<Index, int> counts_;  ///< from countOf(), since the last change
 };
 
