@@ -79,9 +79,8 @@ NeighborGraph takeGraph(Neighborhoods& neighborhoods, const Options& options,
   if (options.outliers == OutlierMode::None)
     stray = internal::strayPoints(neighborhoods.points(), neighborhoods.agreed(),
                                   neighborhoods.stars());
-  NeighborGraph graph =
-      internal::buildLocalDelaunayGraph(neighborhoods.points(), neighborhoods.stars(),
-                                        std::move(neighborhoods.agreed()), execution);
+  NeighborGraph graph = internal::buildLocalDelaunayGraph(
+      neighborhoods.points(), neighborhoods.stars(), std::move(neighborhoods.agreed()), execution);
   graph.stray_points = std::move(stray);
   return graph;
 }
