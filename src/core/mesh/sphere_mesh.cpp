@@ -38,21 +38,21 @@ SphereMesh::SphereMesh(const Triangles& triangles, std::size_t vertex_count, int
 }
 
 Index SphereMesh::takePlace() {
-  set(triangle_count_, triangle_count_ + 1);
+  journal_.set(triangle_count_, triangle_count_ + 1);
   if (free_ < 0) {
     vertices_.push_back({-1, -1, -1});
     neighbors_.push_back({-1, -1, -1});
     return size() - 1;
   }
   const Index place = free_;
-  set(free_, vertex(place, 1));
+  journal_.set(free_, vertex(place, 1));
   return place;
 }
 
 void SphereMesh::freePlace(Index t) {
-  set(triangle_count_, triangle_count_ - 1);
+  journal_.set(triangle_count_, triangle_count_ - 1);
   setTriangle(t, {-1, free_, -1}, {-1, -1, -1});
-  set(free_, t);
+  journal_.set(free_, t);
 }
 
 std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
@@ -66,11 +66,11 @@ std::array<Index, 3> SphereMesh::split(Index triangle, Index new_vertex) {
   for (std::size_t k = 1; k < 3; ++k)
     replaceNeighbor(n[k], triangle, parts[k]);
   for (std::size_t k = 0; k < 3; ++k) {
-    set(triangle_at_[v[k]], parts[(k + 1) % 3]);
+    journal_.set(triangle_at_[v[k]], parts[(k + 1) % 3]);
     addDegree(v[k], 1);
   }
-  set(triangle_at_[new_vertex], triangle);
-  set(degree_[new_vertex], 3);
+  journal_.set(triangle_at_[new_vertex], triangle);
+  journal_.set(degree_[new_vertex], 3);
   return parts;
 }
 
@@ -94,11 +94,11 @@ Index SphereMesh::merge(Index v) {
   for (std::size_t k = 1; k < 3; ++k)
     replaceNeighbor(beyond[k], around[k], t);
   for (const Index w : ring) {
-    set(triangle_at_[w], t);
+    journal_.set(triangle_at_[w], t);
     addDegree(w, -1);
   }
-  set(triangle_at_[v], -1);
-  set(degree_[v], 0);
+  journal_.set(triangle_at_[v], -1);
+  journal_.set(degree_[v], 0);
   freePlace(around[1]);
   freePlace(around[2]);
   return t;
@@ -111,7 +111,7 @@ bool SphereMesh::areJoined(Index v, Index w) const {
 }
 
 bool SphereMesh::flip(Index triangle, int corner) {
-  const bool is_free = isFree(diamond(triangle, corner));
+  const bool is_free = isFree(*this, diamond(triangle, corner));
   if (is_free)
     flipFree(triangle, corner);
   return is_free;
@@ -130,21 +130,14 @@ void SphereMesh::flipFree(Index triangle, int corner) {
   setTriangle(other, {c, d, b}, {beyond_db, beyond_bc, triangle});
   replaceNeighbor(beyond_ad, other, triangle);
   replaceNeighbor(beyond_bc, triangle, other);
-  set(triangle_at_[a], triangle);
-  set(triangle_at_[b], other);
-  set(triangle_at_[c], triangle);
-  set(triangle_at_[d], triangle);
+  journal_.set(triangle_at_[a], triangle);
+  journal_.set(triangle_at_[b], other);
+  journal_.set(triangle_at_[c], triangle);
+  journal_.set(triangle_at_[d], triangle);
   addDegree(a, -1);
   addDegree(b, -1);
   addDegree(c, 1);
   addDegree(d, 1);
-}
-
-void SphereMesh::rollBack(std::size_t first) {
-  for (; changes_.size() > first; changes_.pop_back())
-    *changes_.back().first = changes_.back().second;
-  if (first == 0)
-    commit();
 }
 
 Triangles SphereMesh::triangles() const {

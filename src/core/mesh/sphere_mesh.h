@@ -11,6 +11,43 @@
 
 namespace spherical_param::internal {
 
+/// Where a triangle has one of its vertices or neighbours; without branches, which nothing
+/// predicts.
+inline int placeOf(Index entry, const std::array<Index, 3>& entries) {
+  return (entries[1] == entry ? 1 : 0) + (entries[2] == entry ? 2 : 0);
+}
+
+/// Changes of indices, which can be undone. The indices must stay where they are.
+class Journal {
+public:
+  /// Begins or continues to record changes, until commit() or rollBack(). Returns the number of
+  /// changes so far.
+  std::size_t record() {
+    is_recording_ = true;
+    return changes_.size();
+  }
+  void commit() {
+    is_recording_ = false;
+    changes_.clear();
+  }
+  /// Undoes the changes from a number on; 0 also ends the recording.
+  void rollBack(std::size_t first = 0) {
+    for (; changes_.size() > first; changes_.pop_back())
+      *changes_.back().first = changes_.back().second;
+    if (first == 0)
+      commit();
+  }
+  void set(Index& index, Index value) {
+    if (is_recording_)
+      changes_.emplace_back(&index, index);
+    index = value;
+  }
+
+private:
+  bool is_recording_ = false;
+  std::vector<std::pair<Index*, Index>> changes_;  ///< indices and their old values
+};
+
 /// A closed genus-0 triangle mesh with its adjacency. Three moves keep it so: split a triangle in
 /// three by a new vertex, merge the three triangles around a vertex, flip an edge whose opposite
 /// vertices are not joined. Moves can be rolled back exactly.
@@ -23,7 +60,6 @@ public:
   /// Number of slots for triangles, used or freed by merge().
   Index size() const { return vertices_.count(); }
   std::size_t slotCount() const { return vertices_.size(); }
-  bool isTriangle(Index t) const { return vertex(t, 0) >= 0; }
   /// The corners of a triangle, counter-clockwise.
   const std::array<Index, 3>& vertices(Index triangle) const { return vertices_[triangle]; }
   Index vertex(Index triangle, int corner) const {
@@ -82,8 +118,6 @@ public:
             vertex(triangle, corner),
             vertex(neighbor(triangle, corner), oppositeCorner(triangle, corner))};
   }
-  /// Whether the side may be replaced by the other diagonal: its ends are not joined already.
-  bool isFree(const Diamond& at) const { return at.c != at.d && !areJoined(at.c, at.d); }
 
   /// Splits a triangle in three by a vertex that is not in the mesh. The parts are the triangle
   /// itself and two new ones; the new vertex is corner 0 of each.
@@ -99,43 +133,23 @@ public:
   /// The same, where it is known to be free.
   void flipFree(Index triangle, int corner);
 
-  /// Begins or continues to record changes, until commit() or rollBack(). Splits need slots freed
-  /// by merge(). Returns the number of changes so far.
-  std::size_t record() {
-    is_recording_ = true;
-    return changes_.size();
-  }
-  void commit() {
-    is_recording_ = false;
-    changes_.clear();
-  }
-  /// Undoes the changes from a number on; 0 also ends the recording.
-  void rollBack(std::size_t first = 0);
+  /// Where moves are recorded. While they are, splits need slots freed by merge().
+  Journal& journal() { return journal_; }
 
   Triangles triangles() const;
 
 private:
-  /// Where a triangle has one of its vertices or neighbours; without branches, which nothing
-  /// predicts.
-  static int placeOf(Index entry, const std::array<Index, 3>& entries) {
-    return (entries[1] == entry ? 1 : 0) + (entries[2] == entry ? 2 : 0);
-  }
-  void set(Index& entry, Index value) {
-    if (is_recording_)
-      changes_.emplace_back(&entry, entry);
-    entry = value;
-  }
   void setTriangle(Index t, const std::array<Index, 3>& vertices,
                    const std::array<Index, 3>& neighbors) {
     for (std::size_t k = 0; k < 3; ++k) {
-      set(vertices_[t][k], vertices[k]);
-      set(neighbors_[t][k], neighbors[k]);
+      journal_.set(vertices_[t][k], vertices[k]);
+      journal_.set(neighbors_[t][k], neighbors[k]);
     }
   }
-  void addDegree(Index v, Index change) { set(degree_[v], degree(v) + change); }
+  void addDegree(Index v, Index change) { journal_.set(degree_[v], degree(v) + change); }
   void replaceNeighbor(Index triangle, Index old_neighbor, Index new_neighbor) {
     auto& around = neighbors_[triangle];
-    set(around[static_cast<std::size_t>(placeOf(old_neighbor, around))], new_neighbor);
+    journal_.set(around[static_cast<std::size_t>(placeOf(old_neighbor, around))], new_neighbor);
   }
   /// A free slot for a triangle, the last freed one first.
   Index takePlace();
@@ -147,8 +161,13 @@ private:
   Indexed<Index> degree_;
   Index free_ = -1;  ///< first free slot
   Index triangle_count_ = 0;
-  bool is_recording_ = false;
-  std::vector<std::pair<Index*, Index>> changes_;  ///< entries and their old values
+  Journal journal_;
 };
+
+/// Whether the side of a diamond may be replaced by the other diagonal: its ends are not joined
+/// already.
+inline bool isFree(const SphereMesh& mesh, const SphereMesh::Diamond& at) {
+  return at.c != at.d && !mesh.areJoined(at.c, at.d);
+}
 
 }  // namespace spherical_param::internal

@@ -32,13 +32,6 @@ RawFacet EnergyMesh::facetOf(Index a, Index b, Index c) const {
   return facet;
 }
 
-void EnergyMesh::appendNeighbors(Index v, std::vector<Index>& neighbors) const {
-  mesh_.forEachAround(
-      v, [&](Index t, int corner) { neighbors.push_back(mesh_.vertex(t, (corner + 1) % 3)); });
-  const Row<Index> row = graph_.row(v);
-  neighbors.insert(neighbors.end(), row.begin(), row.end());
-}
-
 void EnergyMesh::setEnergy(const SurfaceEnergy& energy) {
   energy_ = energy;
   energy_.openings = openings_;
@@ -82,8 +75,9 @@ double EnergyMesh::flipGain(Index t, int corner, double floor) const {
   const Facet& ca = facets_[mesh_.neighbor(t, (corner + 2) % 3)];
   const Facet& ad = facets_[mesh_.neighbor(o, (l + 1) % 3)];
   const Facet& db = facets_[mesh_.neighbor(o, (l + 2) % 3)];
-  const double before = cost(cab) + cost(dba) + edge(a, b, cab, dba) + edge(b, c, cab, bc) +
-                        edge(c, a, cab, ca) + edge(a, d, dba, ad) + edge(d, b, dba, db);
+  const double before = energy_.cost(cab.radius) + energy_.cost(dba.radius) + edge(a, b, cab, dba) +
+                        edge(b, c, cab, bc) + edge(c, a, cab, ca) + edge(a, d, dba, ad) +
+                        edge(d, b, dba, db);
   // No term is negative, and rounding is monotone: once some of them leave no more than the floor,
   // all of them leave no more either, to the last bit.
   const RawFacet raw_cad = facetOf(c, a, d);
@@ -120,7 +114,8 @@ double EnergyMesh::splitCost(Index t, Index v, double ceiling) const {
   const Facet& bc = facets_[mesh_.neighbor(t, 0)];
   const Facet& ca = facets_[mesh_.neighbor(t, 1)];
   const Facet& ab = facets_[mesh_.neighbor(t, 2)];
-  const double before = cost(abc) + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
+  const double before =
+      energy_.cost(abc.radius) + edge(b, c, abc, bc) + edge(c, a, abc, ca) + edge(a, b, abc, ab);
   // As in flipGain(): the rest only adds to it.
   const RawFacet raw_vbc = facetOf(v, b, c);
   const RawFacet raw_vca = facetOf(v, c, a);
@@ -158,26 +153,26 @@ bool EnergyMesh::merge(Index v) {
 void EnergyMesh::begin() {
   if (open_.empty())
     change_ = 0.0;
-  open_.push_back({mesh_.record(), old_facets_.size(), change_});
+  open_.push_back({mesh_.journal().record(), old_facets_.size(), change_});
 }
 
 void EnergyMesh::commit() {
   open_.pop_back();
   if (!open_.empty())
     return;
-  mesh_.commit();
+  mesh_.journal().commit();
   old_facets_.clear();
 }
 
 void EnergyMesh::rollBack() {
   const Before& before = open_.back();
-  mesh_.rollBack(before.moves);
+  mesh_.journal().rollBack(before.moves);
   for (; old_facets_.size() > before.facets; old_facets_.pop_back())
     facets_[old_facets_.back().first] = old_facets_.back().second;
   change_ = before.change;
   open_.pop_back();
   if (!open_.empty())
-    mesh_.record();
+    mesh_.journal().record();
 }
 
 std::vector<Index> EnergyMesh::changed() const {
@@ -186,6 +181,13 @@ std::vector<Index> EnergyMesh::changed() const {
     changed.push_back(old_facets_[i].first);
   sortUnique(changed);
   return changed;
+}
+
+void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbors) {
+  of.mesh().forEachAround(
+      v, [&](Index t, int corner) { neighbors.push_back(of.mesh().vertex(t, (corner + 1) % 3)); });
+  const Row<Index> row = of.graph().row(v);
+  neighbors.insert(neighbors.end(), row.begin(), row.end());
 }
 
 std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,

@@ -33,8 +33,6 @@ public:
   double unit() const { return unit_; }
   const Facet& facet(Index t) const { return facets_[t]; }
   RawFacet facetOf(Index a, Index b, Index c) const;
-  /// Appends the neighbours of a vertex in mesh and graph.
-  void appendNeighbors(Index v, std::vector<Index>& neighbors) const;
 
   void setEnergy(const SurfaceEnergy& energy);
   /// Other points, or other places of the openings.
@@ -64,7 +62,6 @@ public:
   std::vector<Index> changed() const;
 
 private:
-  double cost(const Facet& facet) const { return energy_.cost(facet.radius); }
   double edge(Index v, Index w, const Facet& f, const Facet& g) const {
     return energy_.edge(v, w, points_->col(v), points_->col(w), f, g);
   }
@@ -91,6 +88,9 @@ private:
   std::vector<Before> open_;
   std::vector<std::pair<Index, Facet>> old_facets_;
 };
+
+/// Appends the neighbours of a vertex in mesh and graph.
+void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbors);
 
 /// All pairs of triangles that intersect, by their slots in the mesh, none of which is free. Open
 /// triangles do not count.

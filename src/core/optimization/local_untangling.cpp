@@ -82,7 +82,7 @@ std::optional<LocalUntangling::Repair> LocalUntangling::repairOf(Index t, int co
     return std::nullopt;
   before -= intersect(local_.face(t), local_.face(o)) ? 1 : 0;
   const auto [a, b, c, d] = mesh.diamond(t, corner);
-  if (before + most < 0 || !mesh.isFree({a, b, c, d}) || mesh_.facetOf(c, a, d).isOpen() ||
+  if (before + most < 0 || !isFree(mesh, {a, b, c, d}) || mesh_.facetOf(c, a, d).isOpen() ||
       mesh_.facetOf(c, d, b).isOpen())
     return std::nullopt;
   const Face cad = face(t, {c, a, d});

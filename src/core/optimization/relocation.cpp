@@ -50,7 +50,7 @@ std::vector<Index> roughNear(const EnergyMesh& mesh, const std::vector<Index>& v
   for (const Index v : vertices) {
     near.push_back(v);
     mesh.mesh().forEachAround(v, [&](Index t, int corner) {
-      mesh.appendNeighbors(mesh.mesh().vertex(t, (corner + 1) % 3), near);
+      appendNeighbors(mesh, mesh.mesh().vertex(t, (corner + 1) % 3), near);
     });
   }
   sortUnique(near);

@@ -26,7 +26,7 @@ bool RuinAndRecreate::remove(Index v) {
     int corner = 0;
     mesh.forEachAround(v, [&](Index t, int corner_of_v) {
       const int k = (corner_of_v + 1) % 3;
-      if (!mesh.isFree(mesh.diamond(t, k)))
+      if (!isFree(mesh, mesh.diamond(t, k)))
         return;
       const double gain = mesh_.flipGain(t, k, best);
       if (gain > best) {
@@ -78,7 +78,7 @@ bool RuinAndRecreate::recreate(const std::vector<Index>& vertices, const Accept&
   std::vector<Removed> out;
   for (const Index v : vertices) {
     out.push_back({v, {}});
-    mesh_.appendNeighbors(v, out.back().neighbors);
+    appendNeighbors(mesh_, v, out.back().neighbors);
   }
   const auto erase_if = [&](const auto& is) {
     out.erase(std::remove_if(out.begin(), out.end(), is), out.end());
@@ -110,7 +110,7 @@ std::vector<Index> RuinAndRecreate::spread(const std::vector<Index>& seeds, std:
   std::vector<Index> neighbors;
   const auto add_neighbors = [&](Index v) {
     neighbors.clear();
-    mesh_.appendNeighbors(v, neighbors);
+    appendNeighbors(mesh_, v, neighbors);
     std::for_each(neighbors.begin(), neighbors.end(), add);
   };
   // The seeds come first, in their order.

@@ -80,7 +80,7 @@ TEST(RuinAndRecreate, SpreadsFromTheSeedsOverTheEdges) {
   for (std::size_t i = 2; i < part.size(); ++i) {
     EXPECT_EQ(std::count(part.begin(), part.end(), part[i]), 1);
     std::vector<Index> neighbors;
-    mesh.appendNeighbors(part[i], neighbors);
+    appendNeighbors(mesh, part[i], neighbors);
     EXPECT_TRUE(
         std::any_of(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(i), [&](Index v) {
           return std::find(neighbors.begin(), neighbors.end(), v) != neighbors.end();
