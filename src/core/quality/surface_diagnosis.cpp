@@ -262,6 +262,7 @@ void findHandles(const MeshAndGraph& surface, const Graph& graph, const std::vec
 /// The edges of the graph that join its parts, ascending.
 std::vector<Edge> edgesOf(const std::vector<Bridge>& bridges) {
   std::vector<Edge> edges;
+  edges.reserve(bridges.size());
   for (const Bridge& bridge : bridges)
     edges.push_back(edgeOf(bridge.from, bridge.to));
   std::sort(edges.begin(), edges.end());
