@@ -7,7 +7,6 @@
 #include "spherical_param/version.h"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -18,6 +17,10 @@
 #include <new>
 #include <system_error>
 #include <thread>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace spherical_param::tools {
 namespace {
