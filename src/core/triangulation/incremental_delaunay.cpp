@@ -343,15 +343,16 @@ SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionRe
     start = twoSidedPolygon(ring);
   }
   Triangulation triangulation(vertices.places, start);
-  for (Index p = 4; p < vertices.in_plane && !is_flat; ++p) {
-    if (static_cast<std::size_t>(p) % kReportedItems == 0)
-      reportFraction(report, static_cast<double>(p) / vertices.in_plane);
-    const Index v = triangulation.insert(p);
-    if (v != p)
-      coincidences.push_back({v, p});
-  }
-  if (!is_flat)
+  if (!is_flat) {
+    for (Index p = 4; p < vertices.in_plane; ++p) {
+      if (static_cast<std::size_t>(p) % kReportedItems == 0)
+        reportFraction(report, static_cast<double>(p) / vertices.in_plane);
+      const Index v = triangulation.insert(p);
+      if (v != p)
+        coincidences.push_back({v, p});
+    }
     result.coincident = coincidences.count();
+  }
   reportFraction(report, 0.0);
   putBeside(std::move(coincidences), triangulation);
   result.triangles =

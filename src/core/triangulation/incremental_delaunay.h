@@ -22,8 +22,8 @@ struct SphereDelaunay {
 /// of the points, except for four or more points on one circle. Points that coincide in the plane
 /// share the triangles of the first of them evenly.
 ///
-/// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= 2^29: sides of triangles are
-///                   numbered in 32 bits.
+/// \param directions 3 x n, unit vectors up to rounding, 4 <= n <= 2^29: some 2n triangles are
+///                   numbered in 31 bits.
 /// \param report     called with the fraction that is done.
 /// Cost: O(n log n) expected, about 100 bytes a point.
 SphereDelaunay incrementalDelaunay(const Positions& directions, const FractionReport& report = {});
