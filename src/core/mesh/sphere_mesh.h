@@ -14,7 +14,8 @@ namespace spherical_param::internal {
 /// Where a triangle has one of its vertices or neighbours; without branches, which nothing
 /// predicts.
 inline int placeOf(Index entry, const std::array<Index, 3>& entries) {
-  return (entries[1] == entry ? 1 : 0) + (entries[2] == entry ? 2 : 0);
+  const int is_last = entries[2] == entry ? 1 : 0;
+  return 2 * is_last + ((1 - is_last) & (entries[1] == entry ? 1 : 0));
 }
 
 /// Changes of indices, which can be undone. The indices must stay where they are.
