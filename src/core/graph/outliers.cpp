@@ -56,12 +56,14 @@ Indexed<char> nearOutliers(const Positions& points, const Execution& execution) 
   forEachIndex<QuadricFit>(lists.size(), threads, {}, [&](QuadricFit& quadric, Index i) {
     const std::vector<Index> others = nearestOthers(points, lists, i, kFittedNeighbors);
     std::vector<double> spacings;
+    spacings.reserve(others.size());
     for (const Index j : others)
       spacings.push_back(spacing[j]);
     const double unit = medianOf(spacings);
     if (!(unit > 0.0))
       return;
     std::vector<Eigen::Vector3d> offsets;
+    offsets.reserve(others.size());
     for (const Index j : others)
       offsets.emplace_back((points.col(j) - points.col(i)) / unit);
     marked[i] = isOff(offsets, quadric) ? 1 : 0;
