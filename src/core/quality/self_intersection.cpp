@@ -166,19 +166,20 @@ void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const 
   throw InvalidInput("findSelfIntersections: " + message);
 }
 
-/// The scale of the tests, after checks. Throws InvalidInput.
-double checkedScale(const Positions& points, const Triangles& triangles) {
+/// A mesh, after checks. Throws InvalidInput.
+Mesh checkedMesh(const Positions& points, const Triangles& triangles, const Execution& execution) {
+  internal::checkThreads(execution.threads);
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     if (!points.col(i).allFinite())
       refuse("point " + std::to_string(i) + " is not finite; remove such points first");
   const double most = points.cols() > 0 ? points.cwiseAbs().maxCoeff() : 0.0;
   internal::checkTriangles("findSelfIntersections", triangles, points.cols());
-  return internal::scaleToUnit(most);
+  return {points, triangles, internal::scaleToUnit(most)};
 }
 
 /// The intersecting pairs of a triangle of a subset and any other.
 ///
-/// \param subset ascending.
+/// \param subset ascending, each once.
 Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& execution) {
   if (subset.empty())
     return {};
@@ -213,17 +214,17 @@ Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& e
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {
-  std::vector<Index> all(internal::columnCount(triangles));
+  const Mesh mesh = checkedMesh(points, triangles, execution);
+  Indexed<Index> all(mesh.size());
   std::iota(all.begin(), all.end(), Index{0});
-  return findSelfIntersectionsOf(points, triangles, all, execution);
+  return pairsOf(mesh, all, execution);
 }
 
 std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
                                                           const Triangles& triangles,
                                                           const std::vector<Index>& of,
                                                           const Execution& execution) {
-  internal::checkThreads(execution.threads);
-  const Mesh mesh{points, triangles, checkedScale(points, triangles)};
+  const Mesh mesh = checkedMesh(points, triangles, execution);
   for (const Index t : of)
     if (t < 0 || static_cast<std::size_t>(t) >= mesh.size())
       refuse("triangle " + std::to_string(t) + " is asked for, but there are " +
