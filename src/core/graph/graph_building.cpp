@@ -240,4 +240,10 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
   return result;
 }
 
+Graph graphOfEdges(std::size_t nodes, const std::vector<Bridge>& edges) {
+  Graph no_edges;
+  no_edges.offsets.assign(nodes + 1, 0);
+  return withEdges(no_edges, edges);
+}
+
 }  // namespace spherical_param::internal

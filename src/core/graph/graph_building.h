@@ -73,5 +73,7 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
 /// The graph with further edges. Of those that repeat each other the shortest is added, and none
 /// that repeats one of the graph.
 Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges);
+/// The graph of some edges alone, as withEdges() adds them.
+Graph graphOfEdges(std::size_t nodes, const std::vector<Bridge>& edges);
 
 }  // namespace spherical_param::internal

@@ -31,10 +31,8 @@ NeighborGraph nearestNeighborGraph(const Positions& points, const NeighborLists&
   for (const Index i : indicesOf(lists))
     for (const Index j : nearestOthers(points, lists, i, static_cast<std::size_t>(k)))
       edges.push_back({i, j, edgeLength(points, i, j)});
-  Graph no_edges;
-  no_edges.offsets.assign(lists.size() + 1, 0);
   NeighborGraph result;
-  result.graph = withEdges(no_edges, edges);
+  result.graph = graphOfEdges(lists.size(), edges);
   UnionFind parts = connectedComponents(result.graph);
   result.bridges = shortestBridges(points, parts, 1);
   result.graph = withEdges(result.graph, result.bridges);

@@ -328,9 +328,7 @@ Graph thinned(const Graph& graph, const std::vector<Bridge>& bridges) {
                       [](const Bridge& a, const Bridge& b) { return a.length < b.length; });
     edges.insert(edges.end(), row.begin(), end);
   }
-  Graph no_edges;
-  no_edges.offsets.assign(graph.size() + 1, 0);
-  return internal::withEdges(no_edges, edges);
+  return internal::graphOfEdges(graph.size(), edges);
 }
 
 /// The marks of all findings.
