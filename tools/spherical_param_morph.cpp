@@ -26,6 +26,7 @@
 #include "spherical_param/version.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -307,11 +308,13 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const Eigen::Vector3d origin = points.col(triangles(0, 0));
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-      const double area = spherical_param::surfaceArea(points, triangles.col(t));
+      const Eigen::Vector3d a = points.col(triangles(0, t));
+      const Eigen::Vector3d b = points.col(triangles(1, t));
+      const Eigen::Vector3d c = points.col(triangles(2, t));
+      const double area = (b - a).cross(c - a).norm() / 2.0;
       areas[side] += area;
-      for (int corner = 0; corner < 3; ++corner) {
-        sum += area / 3.0 * (points.col(triangles(corner, t)) - origin);
-      }
+      for (const Eigen::Vector3d& corner : {a, b, c})
+        sum += area / 3.0 * (corner - origin);
     }
     centers[side] = areas[side] > 0.0 ? Eigen::Vector3d(origin + sum / areas[side]) : origin;
   }
