@@ -58,7 +58,8 @@ void fill(const Positions& points, const Opening& opening, std::vector<Eigen::Ve
   }
 }
 
-/// A graph without false edges, which are {lower, higher}, ascending.
+}  // namespace
+
 Graph withoutFalseEdges(const Graph& graph, const std::vector<std::array<Index, 2>>& false_edges) {
   Graph rest;
   for (const Index v : graph.nodes()) {
@@ -75,7 +76,19 @@ Graph withoutFalseEdges(const Graph& graph, const std::vector<std::array<Index, 
   return rest;
 }
 
-}  // namespace
+Graph withoutVirtualNodes(const FilledGraph& filled, std::size_t nodes) {
+  Graph rest;
+  for (Index v = 0; v < static_cast<Index>(nodes); ++v) {
+    for (const std::size_t e : filled.graph.entries(v)) {
+      if (filled.graph.neighbors[e] >= static_cast<Index>(nodes))
+        continue;
+      rest.neighbors.push_back(filled.graph.neighbors[e]);
+      rest.lengths.push_back(filled.graph.lengths[e]);
+    }
+    rest.endRow();
+  }
+  return rest;
+}
 
 FilledGraph fillOpenings(const Positions& points, const Graph& graph, const Openings& openings) {
   std::vector<Eigen::Vector3d> nodes;  // the virtual ones

@@ -2,6 +2,7 @@
 
 #include "graph.h"
 #include "indexed.h"
+#include "rotation_system.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/result.h"
 
@@ -20,7 +21,7 @@ struct Openings {
   /// Edges {lower, higher} of the graph that are not on the surface, ascending: across an opening,
   /// or from its loop to another sheet.
   std::vector<std::array<Index, 2>> false_edges;
-  /// The surface has openings and only one side, like a Moebius strip.
+  /// The surface has only one side, like a Moebius strip.
   bool is_one_sided = false;
 };
 
@@ -54,5 +55,17 @@ struct Openings {
 Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution = {});
 
 /// @}
+
+namespace internal {
+
+/// Sizes of what a loop encloses.
+Opening measured(const Positions& points, const Indexed<double>& spacing, std::vector<Index> loop);
+
+/// The same with the rotation system at hand, which afterwards has no edges between opposite sheets
+/// if there are openings.
+Openings findOpenings(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
+                      RotationSystem& rotation);
+
+}  // namespace internal
 
 }  // namespace spherical_param

@@ -3,6 +3,7 @@
 #include "openings.h"
 #include "spherical_param/types.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -20,5 +21,11 @@ struct FilledGraph {
 /// \param graph    n nodes.
 /// \param openings loops of nodes, false edges.
 FilledGraph fillOpenings(const Positions& points, const Graph& graph, const Openings& openings);
+
+/// The graph of the n nodes alone of a filled graph.
+Graph withoutVirtualNodes(const FilledGraph& filled, std::size_t nodes);
+
+/// A graph without false edges, which are {lower, higher}, ascending.
+Graph withoutFalseEdges(const Graph& graph, const std::vector<std::array<Index, 2>>& false_edges);
 
 }  // namespace spherical_param::internal

@@ -12,9 +12,9 @@ namespace spherical_param::internal {
 /// surface has two cycles for each handle; b wider openings add b - 1.
 ///
 /// \param reach at least 1.
-/// \return unset if there may be more than 64 cycles (some 32 handles), if the power has more than
-///         64 neighbours a node on average, unlike a surface, or if an edge is stored at one end
-///         only.
+/// \return unset if there are more than 64 cycles (some 32 handles), or if the power has more than
+/// 64
+///         neighbours a node on average, unlike a surface.
 /// Cost: O(n) for a surface, below 1.2 KB of memory a node.
 std::optional<int> countCycles(const Graph& graph, int reach);
 

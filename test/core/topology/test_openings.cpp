@@ -1,7 +1,7 @@
 #include "graphs.h"
 #include "openings.h"
 
-#include "graph_helpers.h"
+#include "core/graph/graph_helpers.h"
 #include "open_shapes.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "filled_graph.h"
 
+#include "core/graph/graph_helpers.h"
 #include "graph_cycles.h"
-#include "graph_helpers.h"
 #include "graphs.h"
 #include "open_shapes.h"
 
