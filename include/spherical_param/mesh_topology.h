@@ -21,8 +21,10 @@ struct MeshTopology {
   bool vertex_manifold = false;  ///< the triangles around each vertex are one fan
   bool oriented = false;         ///< the triangles of each edge traverse it in opposite directions
   std::size_t components = 0;    ///< connected components of triangles (over shared vertices)
+  std::size_t boundary_loops = 0;      ///< connected components of the edges with one triangle
   long long euler_characteristic = 0;  ///< V - E + F over the used vertices
-  /// Sum of the genera of the components; unset unless closed, manifold and oriented.
+  /// Sum of the genera g of the components: V - E + F = 2 components - 2 g - boundary_loops. Unset
+  /// unless manifold and oriented.
   std::optional<long long> genus;
   std::vector<Index> nonmanifold_vertices;  ///< their triangles are not one fan; ascending
   std::vector<Index> unused_vertices;       ///< they have no triangles; ascending
@@ -31,15 +33,15 @@ struct MeshTopology {
   bool manifold() const { return edge_manifold && vertex_manifold; }
   /// A closed, manifold, consistently oriented sphere in one piece over all vertices.
   /// \return whether it is one
-  bool isSphere() const {
-    return closed && manifold() && oriented && components == 1 && genus == 0 &&
-           unused_vertices.empty();
-  }
-  /// A manifold with boundary, consistently oriented, in one piece over all vertices.
+  bool isSphere() const { return isSurface() && closed && genus == 0; }
+  /// A sphere with openings: a manifold with boundary and without handles, consistently oriented,
+  /// in one piece over all vertices.
   /// \return whether it is one
-  bool isOpenSurface() const {
-    return triangles > 0 && !closed && manifold() && oriented && components == 1 &&
-           unused_vertices.empty();
+  bool isOpenSurface() const { return isSurface() && !closed && genus == 0; }
+  /// A manifold, closed or with boundary, consistently oriented, in one piece over all vertices.
+  /// \return whether it is one
+  bool isSurface() const {
+    return triangles > 0 && manifold() && oriented && components == 1 && unused_vertices.empty();
   }
 };
 

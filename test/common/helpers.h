@@ -163,10 +163,10 @@ inline NeighborSearchFactory bruteForceFactory(const Positions& points) {
   };
 }
 
-/// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold sphere in
+/// Whether the triangles are a closed, consistently oriented, edge- and vertex-manifold surface in
 /// one piece over exactly the vertices [0, n): every directed edge once and its reverse once, the
-/// link of every vertex one cycle, V - E + F = 2 with one piece.
-inline bool isSphereOverAll(const Triangles& triangles, Index n) {
+/// link of every vertex one cycle, V - E + F = 2 - 2 genus with one piece.
+inline bool isSurfaceOverAll(const Triangles& triangles, Index n, Index genus) {
   std::map<std::pair<Index, Index>, Index> third;  // of the triangle left of a directed edge
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -210,7 +210,13 @@ inline bool isSphereOverAll(const Triangles& triangles, Index n) {
   for (Index v = 0; v < n; ++v)
     if (root(v) != 0)
       return false;
-  return n - static_cast<Index>(third.size() / 2) + static_cast<Index>(triangles.cols()) == 2;
+  return n - static_cast<Index>(third.size() / 2) + static_cast<Index>(triangles.cols()) ==
+         2 - 2 * genus;
+}
+
+/// Whether they are a sphere.
+inline bool isSphereOverAll(const Triangles& triangles, Index n) {
+  return isSurfaceOverAll(triangles, n, 0);
 }
 
 /// The triangles as a sorted list, each begun at its lowest vertex: equal for equal meshes.

@@ -4,6 +4,7 @@
 #include "spherical_param/mesh_measures.h"
 
 #include "corner_table.h"
+#include "indexed.h"
 #include "rows.h"
 #include "union_find.h"
 
@@ -28,18 +29,19 @@ bool isDegenerate(const Eigen::Matrix<Index, 3, 1>& t) {
 struct Findings {
   std::size_t vertices = 0;
   std::size_t edges = 0;
-  std::size_t boundary_edges = 0;     ///< edges with one triangle
-  std::size_t nonmanifold_edges = 0;  ///< edges with more than two triangles
-  std::size_t misoriented_edges = 0;  ///< edges that both triangles traverse alike
+  std::size_t nonmanifold_edges = 0;                 ///< edges with more than two triangles
+  std::size_t misoriented_edges = 0;                 ///< edges that both triangles traverse alike
+  std::vector<std::array<Index, 2>> boundary_edges;  ///< edges with one triangle
   std::vector<Index> nonmanifold_vertices;
   std::vector<Index> unused_vertices;
 
   void operator+=(const Findings& more) {
     vertices += more.vertices;
     edges += more.edges;
-    boundary_edges += more.boundary_edges;
     nonmanifold_edges += more.nonmanifold_edges;
     misoriented_edges += more.misoriented_edges;
+    boundary_edges.insert(boundary_edges.end(), more.boundary_edges.begin(),
+                          more.boundary_edges.end());
     nonmanifold_vertices.insert(nonmanifold_vertices.end(), more.nonmanifold_vertices.begin(),
                                 more.nonmanifold_vertices.end());
     unused_vertices.insert(unused_vertices.end(), more.unused_vertices.begin(),
@@ -81,7 +83,7 @@ void examineSides(const Triangles& triangles, const CornerTable& corners, Index 
     if (v < other) {
       ++findings.edges;
       if (end - begin == 1)
-        ++findings.boundary_edges;
+        findings.boundary_edges.push_back({v, other});
       else if (end - begin > 2)
         ++findings.nonmanifold_edges;
       else if (sides[begin].outgoing == sides[begin + 1].outgoing)
@@ -139,6 +141,20 @@ void examineVertex(const Triangles& triangles, const CornerTable& corners, Index
   });
 }
 
+/// Number of connected components of some edges.
+std::size_t countComponents(const std::vector<std::array<Index, 2>>& edges, std::size_t vertices) {
+  if (edges.empty())
+    return 0;
+  internal::UnionFind sets(vertices);
+  internal::IndexSet ends(vertices);
+  std::size_t count = 0;
+  for (const auto& [v, w] : edges) {
+    count += (ends.insert(v) ? 1U : 0U) + (ends.insert(w) ? 1U : 0U);
+    count -= sets.unite(v, w) ? 1U : 0U;
+  }
+  return count;
+}
+
 }  // namespace
 
 MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
@@ -166,7 +182,7 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
   }
   result.components -= all.unused_vertices.size();
 
-  result.closed = triangles.cols() > 0 && all.boundary_edges == 0;
+  result.closed = triangles.cols() > 0 && all.boundary_edges.empty();
   result.edge_manifold = all.nonmanifold_edges == 0 && degenerate_triangles == 0;
   result.vertex_manifold = all.nonmanifold_vertices.empty();
   result.oriented = all.misoriented_edges == 0 && all.nonmanifold_edges == 0;
@@ -174,8 +190,11 @@ MeshTopology checkTopology(const Triangles& triangles, std::size_t vertex_count,
   result.unused_vertices = std::move(all.unused_vertices);
   result.euler_characteristic = static_cast<long long>(result.vertices) -
                                 static_cast<long long>(result.edges) + triangles.cols();
-  if (result.closed && result.manifold() && result.oriented)
-    result.genus = static_cast<long long>(result.components) - result.euler_characteristic / 2;
+  result.boundary_loops = countComponents(all.boundary_edges, vertex_count);
+  if (triangles.cols() > 0 && result.manifold() && result.oriented)
+    result.genus =
+        static_cast<long long>(result.components) -
+        (result.euler_characteristic + static_cast<long long>(result.boundary_loops)) / 2;
   return result;
 }
 

@@ -49,12 +49,12 @@ private:
   std::vector<std::pair<Index*, Index>> changes_;  ///< indices and their old values
 };
 
-/// A closed genus-0 triangle mesh with its adjacency. Three moves keep it so: split a triangle in
-/// three by a new vertex, merge the three triangles around a vertex, flip an edge whose opposite
-/// vertices are not joined. Moves can be rolled back exactly.
+/// A closed triangle mesh with its adjacency: a sphere, a surface with handles, or several. Three
+/// moves keep it so: split a triangle in three by a new vertex, merge the three triangles around a
+/// vertex, flip an edge whose opposite vertices are not joined. Moves can be rolled back exactly.
 class SphereMesh {
 public:
-  /// \param triangles closed, manifold, consistently oriented, genus 0, at least 4 vertices,
+  /// \param triangles closed, manifold, consistently oriented, at least 4 vertices a piece,
   ///                  indices in range; see MeshTopology::isSphere().
   SphereMesh(const Triangles& triangles, std::size_t vertex_count, int threads = 1);
 

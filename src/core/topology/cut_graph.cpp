@@ -1,0 +1,168 @@
+#include "cut_graph.h"
+
+#include "cycle_labels.h"
+#include "graph_building.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+enum class Side : std::uint8_t { None, On, Left, Right };
+
+/// What becomes of an edge.
+struct Fate {
+  bool is_dropped = false;
+  bool is_doubled = false;
+  std::array<bool, 2> is_right{};  ///< whether it goes to the right copy of its lower, higher end
+};
+
+class Cutter {
+public:
+  Cutter(const Positions& points, const Graph& graph, const RotationSystem& rotation)
+      : points_(points), lengths_(graph.lengths), graph_(graph), rotation_(rotation),
+        fates_(graph_.ends.size()), side_(graph.size(), Side::None), right_of_(graph.size(), -1) {
+    for (const Index v : graph.nodes())
+      cut_.node_of.push_back(v);
+  }
+
+  void cut(const CutLoop& loop) {
+    markSides(loop);
+    for (std::size_t i = 0; i < loop.nodes.size(); ++i)
+      divideAt(loop, i);
+    for (const Index v : touched_)
+      if (side_[v] == Side::Left)
+        for (const std::size_t e : graph_.entries(v))
+          if (side_[graph_.neighbors[e]] == Side::Right)
+            fates_[graph_.edges[e]].is_dropped = true;
+    for (const auto& [v, w] : loop.left_out)
+      fates_[graph_.edgeOf(v, w)].is_dropped = true;
+    for (const Index v : touched_)
+      side_[v] = Side::None;
+    touched_.clear();
+    std::vector<Index> right;
+    for (const Index v : loop.nodes) {
+      right.push_back(right_of_[v] = static_cast<Index>(cut_.node_of.size()));
+      cut_.node_of.push_back(v);
+    }
+    std::reverse(right.begin(), right.end());
+    cut_.rims.push_back(loop.nodes);
+    cut_.rims.push_back(std::move(right));
+  }
+
+  CutGraph take() {
+    std::vector<Bridge> edges;
+    for (const Index v : graph_.nodes())
+      for (const std::size_t e : graph_.entries(v)) {
+        const Index w = graph_.neighbors[e];
+        const Fate& fate = fates_[graph_.edges[e]];
+        if (w < v || fate.is_dropped)
+          continue;
+        if (fate.is_doubled) {
+          edges.push_back({v, w, lengths_[e]});
+          edges.push_back({right_of_[v], right_of_[w], lengths_[e]});
+        } else {
+          edges.push_back({fate.is_right[0] ? right_of_[v] : v, fate.is_right[1] ? right_of_[w] : w,
+                           lengths_[e]});
+        }
+      }
+    Graph none;
+    none.offsets.assign(cut_.node_of.size() + 1, 0);
+    cut_.graph = withEdges(none, edges);
+    cut_.points = points_(Eigen::all, cut_.node_of);
+    return std::move(cut_);
+  }
+
+private:
+  void mark(Index v, Side side) {
+    if (side_[v] != Side::None)
+      return;
+    side_[v] = side;
+    touched_.push_back(v);
+  }
+
+  /// Marks the nodes within two steps.
+  void markSides(const CutLoop& loop) {
+    for (const Index v : loop.nodes)
+      mark(v, Side::On);
+    const std::size_t n = loop.nodes.size();
+    for (std::size_t i = 0; i < n; ++i)
+      for (const Index w : rotation_.edges().row(loop.nodes[i]))
+        if (!isLeftOut(loop, loop.nodes[i], w))
+          mark(w, sideOf(loop, i, w));
+    for (std::size_t i = n, end = touched_.size(); i < end; ++i)
+      for (const Index w : rotation_.edges().row(touched_[i]))
+        if (!isLeftOut(loop, touched_[i], w))
+          mark(w, side_[touched_[i]]);
+  }
+
+  static bool isLeftOut(const CutLoop& loop, Index v, Index w) {
+    return std::find(loop.left_out.begin(), loop.left_out.end(),
+                     std::array<Index, 2>{std::min(v, w), std::max(v, w)}) != loop.left_out.end();
+  }
+
+  Side sideOf(const CutLoop& loop, std::size_t i, Index w) const {
+    const std::size_t n = loop.nodes.size();
+    return rotation_.isLeft(loop.nodes[(i + n - 1) % n], loop.nodes[i], loop.nodes[(i + 1) % n], w)
+               ? Side::Left
+               : Side::Right;
+  }
+
+  /// Gives the edges of a node of a loop to its copies.
+  void divideAt(const CutLoop& loop, std::size_t i) {
+    const Index v = loop.nodes[i];
+    const std::size_t n = loop.nodes.size();
+    for (const std::size_t e : graph_.entries(v)) {
+      const Index w = graph_.neighbors[e];
+      Fate& fate = fates_[graph_.edges[e]];
+      if (side_[w] != Side::On) {
+        const Side side = side_[w] == Side::None ? sideOf(loop, i, w) : side_[w];
+        fate.is_right[v < w ? 0 : 1] = side == Side::Right;
+      } else if (w == loop.nodes[(i + 1) % n] || w == loop.nodes[(i + n - 1) % n]) {
+        fate.is_doubled = true;
+      } else if (v < w) {
+        fate.is_right[0] = fate.is_right[1] = sideOf(loop, i, w) == Side::Right;
+      }
+    }
+  }
+
+  const Positions& points_;
+  const std::vector<double>& lengths_;
+  NumberedGraph graph_;
+  const RotationSystem& rotation_;
+  std::vector<Fate> fates_;  ///< of the edges
+  Indexed<Side> side_;
+  std::vector<Index> touched_;
+  Indexed<Index> right_of_;  ///< the right copy of a node; -1
+  CutGraph cut_;
+};
+
+}  // namespace
+
+CutGraph cutAlong(const Positions& points, const Graph& graph, const RotationSystem& rotation,
+                  const std::vector<CutLoop>& loops) {
+  Cutter cutter(points, graph, rotation);
+  for (const CutLoop& loop : loops)
+    cutter.cut(loop);
+  return cutter.take();
+}
+
+FilledCut fillCut(const CutGraph& cut, const Openings& openings) {
+  Openings rims;
+  rims.spacing.resize(cut.graph.size());
+  for (const Index v : cut.graph.nodes())
+    rims.spacing[v] = openings.spacing[cut.node_of[v]];
+  for (const std::vector<Index>& rim : cut.rims)
+    rims.openings.push_back(measured(cut.points, rims.spacing, rim));
+  FilledCut result;
+  result.filled = fillOpenings(cut.points, cut.graph, rims);
+  result.in_rims = static_cast<Index>(result.filled.graph.size());
+  Openings others;
+  others.openings = openings.openings;
+  result.filled = fillOpenings(result.filled.points, result.filled.graph, others);
+  return result;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,115 @@
+#include "glue.h"
+
+#include "graphs.h"
+#include "helpers.h"
+#include "sphere_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+constexpr Index kTubeRings = 8;
+constexpr Index kTubeAround = 7;
+constexpr Index kNodes = kTubeRings * kTubeAround;
+constexpr Index kLeft = kNodes + kTubeAround;  // the virtual node of the left rim
+constexpr Index kVertices = kNodes + kTubeAround + 2;
+
+/// A torus that is cut along its ring 0, whose right copies follow the nodes.
+CutGraph cutTorus() {
+  CutGraph cut;
+  cut.points = test::spiralSphere(kNodes + kTubeAround);
+  for (Index v = 0; v < kNodes; ++v)
+    cut.node_of.push_back(v);
+  for (Index k = 0; k < kTubeAround; ++k)
+    cut.node_of.push_back(k);
+  // The surface is on the left of the ring from ring 0 to ring 1, and of the right copies, from the
+  // last ring to them.
+  std::vector<Index> left = test::range(0, kTubeAround);
+  std::vector<Index> right = test::range(kNodes, kNodes + kTubeAround);
+  std::reverse(left.begin(), left.end());
+  cut.rims = {left, right};
+  return cut;
+}
+
+/// The tube of the cut torus, with a virtual node over each rim.
+Triangles cappedTube() {
+  const Triangles torus = test::torusTriangles(kTubeRings, kTubeAround);
+  Triangles tube(3, torus.cols() + 2 * kTubeAround);
+  for (Eigen::Index t = 0; t < torus.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      // The triangles of the last ring end at the right copies.
+      const Index v = torus(k, t);
+      tube(k, t) = t >= torus.cols() - 2 * kTubeAround && v < kTubeAround ? v + kNodes : v;
+    }
+  for (Index k = 0; k < kTubeAround; ++k) {
+    const Index next = (k + 1) % kTubeAround;
+    tube.col(torus.cols() + 2 * k) << k, next, kLeft;
+    tube.col(torus.cols() + 2 * k + 1) << kNodes + next, kNodes + k, kLeft + 1;
+  }
+  return tube;
+}
+
+CutGraph withGraph(CutGraph cut, const Triangles& tube) {
+  std::vector<std::pair<Index, Index>> edges;
+  for (const auto& t : tube.colwise())
+    for (Index k = 0; k < 3; ++k)
+      if (t[k] < kLeft && t[(k + 1) % 3] < kLeft)
+        edges.emplace_back(t[k], t[(k + 1) % 3]);
+  cut.graph = test::unitGraph(kLeft, edges);
+  return cut;
+}
+
+TEST(Glue, ACutTorusIsTheTorusAgain) {
+  const Triangles tube = cappedTube();
+  ASSERT_TRUE(test::isSphereOverAll(tube, kVertices));
+  const CutGraph cut = withGraph(cutTorus(), tube);
+  const auto torus = test::canonical(test::torusTriangles(kTubeRings, kTubeAround));
+  const std::optional<Triangles> glued = glue(kNodes, cut, tube, 1, kVertices);
+  ASSERT_TRUE(glued);
+  EXPECT_EQ(test::canonical(*glued), torus);
+  // Also a sphere that came out as a mirror image.
+  Triangles mirrored = tube;
+  mirrored.row(0).swap(mirrored.row(1));
+  const std::optional<Triangles> turned = glue(kNodes, cut, mirrored, 1, kVertices);
+  ASSERT_TRUE(turned);
+  EXPECT_EQ(test::canonical(*turned), torus);
+}
+
+TEST(Glue, LostRimsAreRecovered) {
+  const Triangles tube = cappedTube();
+  const CutGraph cut = withGraph(cutTorus(), tube);
+  std::mt19937 random(4);
+  int recovered = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    SphereMesh mesh(tube, kVertices);
+    for (int flips = 0; flips < 12; ++flips)
+      mesh.flip(static_cast<Index>(random() % static_cast<unsigned>(mesh.size())),
+                static_cast<int>(random() % 3));
+    const std::optional<Triangles> glued = glue(kNodes, cut, mesh.triangles(), 1, kVertices);
+    if (!glued)
+      continue;
+    ++recovered;
+    EXPECT_TRUE(test::isSurfaceOverAll(*glued, kNodes, 1));
+  }
+  EXPECT_GE(recovered, 45);
+}
+
+TEST(Glue, WhatIsNoTorusIsRefused) {
+  const Triangles tube = cappedTube();
+  const CutGraph cut = withGraph(cutTorus(), tube);
+  // With two spheres there would be no handle.
+  EXPECT_FALSE(glue(kNodes, cut, tube, 2, kVertices));
+  // Rims of three nodes leave double edges.
+  CutGraph small = cut;
+  EXPECT_FALSE(glue(kNodes + 1, small, tube, 1, kVertices));
+}
+
+}  // namespace
+}  // namespace spherical_param::internal

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "graphs.h"
+#include "handles.h"
+#include "helpers.h"
+#include "neighbor_search.h"
+#include "openings.h"
+#include "rotation_system.h"
+
+#include <optional>
+
+/// What is known of a cloud before it is meshed, for tests of cuts.
+namespace spherical_param::test {
+
+struct Topology {
+  explicit Topology(const Positions& cloud, const Execution& execution = {})
+      : points(cloud), graph(graphOf(points, findNearestNeighbors(points, 24),
+                                     makeNeighborSearch(points), execution)
+                                 .graph),
+        spacing(internal::nodeSpacings(graph, execution.threads)),
+        rotation(points, graph, spacing, execution.threads),
+        openings(internal::findOpenings(points, graph, spacing, rotation)),
+        handles(internal::findHandles(rotation, openings.openings, execution)) {}
+  Topology(const Topology&) = delete;
+  Topology& operator=(const Topology&) = delete;
+
+  Positions points;
+  Graph graph;
+  internal::Indexed<double> spacing;
+  internal::RotationSystem rotation;
+  Openings openings;
+  internal::Handles handles;
+};
+
+}  // namespace spherical_param::test
