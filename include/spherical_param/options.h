@@ -84,6 +84,12 @@ enum class SurfaceMode {
   Auto,    ///< certain openings stay open, others are filled
 };
 
+/// Whether the mesh has the handles of the sampled surface.
+enum class HandleMode {
+  None,  ///< no handles: the mesh is one sphere, or one with openings
+  Auto,  ///< those that are certain; long tubes are cut into several spheres while they are meshed
+};
+
 /// Parameters of reconstruct(). The defaults need no tuning. optionTable() lists the options of
 /// tools, Python and ROS with their ranges.
 struct Options : Execution {
@@ -113,6 +119,9 @@ struct Options : Execution {
   int fill_holes = 0;
   /// Openings of up to this area are filled in any case [squared unit of the input]; [0, 1e15].
   double fill_holes_area = 0.0;
+
+  /// Whether the mesh has the handles of the surface. Only Method::Default finds them.
+  HandleMode handles = HandleMode::Auto;
 
   std::uint32_t seed = 1;  ///< of all random choices
   /// Fill Surface::vertex_residuals and SurfaceDiagnosis::triangle_marks.

@@ -30,13 +30,14 @@ namespace spherical_param {
 ///        meshed is left out and reported in Result::failures; if all parts fail, the first error
 ///        is thrown.
 ///
-/// Guaranteed: each mesh is manifold, consistently oriented, of genus 0, in one piece, and closed
-/// unless openings stay open. Every distinct (or consolidated) point of its part is a vertex. The
-/// same input and options give the same result, bit by bit, for any number of threads, unless a
-/// time limit ends the work. Reentrant.
+/// Guaranteed: each mesh is manifold, consistently oriented, in one piece, and closed unless
+/// openings stay open. It has the handles that are listed; with HandleMode::None it is a sphere.
+/// Every distinct (or consolidated) point of its part is a vertex. The same input and options give
+/// the same result, bit by bit, for any number of threads, unless a time limit ends the work.
+/// Reentrant.
 ///
-/// Not guaranteed: a mesh free of self-intersections or near the sampled surface; `verdict`,
-/// `findings` and `diagnosis` say how far to trust it.
+/// Not guaranteed: a mesh free of self-intersections, near the sampled surface, or of its genus;
+/// `verdict`, `findings` and `diagnosis` say how far to trust it.
 /// Cost: O(n log n), typically; Method::Paper adds iterations * O(n k). Memory: below 1 KB a point.
 Result reconstruct(const Positions& points, const Options& options = {},
                    const NeighborSearchFactory& search_of = {});

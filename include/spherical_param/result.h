@@ -66,11 +66,24 @@ struct Opening {
   bool isCertain() const { return certainty >= 1.0 && !is_flat; }
 };
 
+/// A handle of the sampled surface: a loop along which it can be cut so that it stays in one piece.
+struct HandleLoop {
+  std::vector<Index> loop;                           ///< vertices around it, in order, each once
+  double length = 0.0;                               ///< of the loop [unit of the input]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the loop
+  /// Certainty in [0, 1]: 1 if all cycles of the neighbour graph are handles; else by the product
+  /// of the steps of the loop and of the shortest walk that crosses it once, from 0 at 140 to 1 at
+  /// 800.
+  double certainty = 0.0;
+  /// The mesh has no handle there: it is cut along the loop, or there is none.
+  bool is_cut = false;
+};
+
 /// Kind of the sampled surface, judged by mesh and neighbour graph.
 enum class SurfaceKind {
   ClosedGenus0,  ///< apparently a closed surface without handles, in one piece
   Open,          ///< the surface has openings, which the mesh fills or leaves open
-  Handles,       ///< the surface has handles, which the mesh cuts
+  Handles,       ///< the surface has handles, which the mesh has or cuts
   SeveralParts,  ///< several surfaces, which the mesh joins
   Unclear,       ///< too many edges of the mesh are not in the graph: noise or a folded mesh
 };
@@ -107,7 +120,7 @@ struct SurfaceDiagnosis {
   SurfaceKind kind = SurfaceKind::ClosedGenus0;  ///< the gravest finding
   std::vector<Handle> handles;                   ///< in descending number of edges
   std::vector<PartBridge> bridges;               ///< in descending number of points
-  bool is_one_sided = false;                     ///< detected only with openings; the mesh is torn
+  bool is_one_sided = false;  ///< like a Moebius strip or a Klein bottle; the mesh is torn
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph; [0, 1].
   double edges_outside_graph = 0.0;
   /// Number of handles by the cycles of the graph; unset if unknown, or if no torn neighbours call
@@ -216,17 +229,23 @@ struct SmoothingReport {
   std::size_t self_intersections = 0;  ///< pairs of triangles, on the smoothed points
 };
 
-/// A mesh through all points, its map to the sphere, and their quality. The mesh is closed and of
-/// genus 0, or such a mesh without the triangles over openings.
+/// A mesh through all points, its map to the sphere, and their quality. The mesh is a closed,
+/// oriented manifold with the handles that are listed and not cut, or such a mesh without the
+/// triangles over openings.
 struct Surface {
-  /// 3 x m, indices of vertices, counter-clockwise from outside; m = 2v - 4 of a closed mesh.
+  /// 3 x m, indices of vertices, counter-clockwise from outside; m = 2v - 4 + 4g of a closed mesh
+  /// of genus g.
   Triangles triangles;
   /// Boundary loops: vertices joined by edges, the last to the first, with the surface on the left.
   /// The longest loop comes first; each begins at its lowest vertex. Empty for a closed mesh.
   std::vector<std::vector<Index>> boundary;
   /// Openings found in the surface, open or filled.
   std::vector<Opening> openings;
-  Positions sphere;  ///< 3 x v, unit vectors: the embedding of each vertex
+  /// Handles found in the surface, those of the mesh first.
+  std::vector<HandleLoop> handles;
+  /// 3 x v, unit vectors: the embedding of each vertex; empty if the mesh has handles, or tubes so
+  /// long that one sphere would squeeze them beyond the range of double.
+  Positions sphere;
 
   std::vector<Index> inputs;           ///< n entries: the input points of the surface, ascending
   std::vector<Index> vertex_of_input;  ///< n entries: vertex of each entry of `inputs`
@@ -242,7 +261,7 @@ struct Surface {
   /// How the embedding unfolded to `sphere`; empty without EmbeddingOptions::history_vertices.
   EmbeddingHistory history;
   /// v entries: length of the tangential Laplacian of `sphere` [radius]; empty without
-  /// Options::details.
+  /// Options::details or `sphere`.
   std::vector<double> vertex_residuals;
 
   /// Input points that look like outliers, ascending, one for each vertex; the mesh contains them.
@@ -285,6 +304,11 @@ struct Surface {
         std::count_if(openings.begin(), openings.end(), [](const Opening& opening) {
           return opening.is_filled && opening.isCertain();
         }));
+  }
+  /// Number of handles of the mesh. \return g
+  std::size_t genus() const {
+    return static_cast<std::size_t>(std::count_if(
+        handles.begin(), handles.end(), [](const HandleLoop& handle) { return !handle.is_cut; }));
   }
   /// Whether the mesh is closed. \return true if it has no boundary
   bool isClosed() const { return boundary.empty(); }

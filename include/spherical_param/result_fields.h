@@ -97,9 +97,10 @@ void visitFields(const MeshTopology*, const Visit& visit) {
   visit({"oriented", "the triangles of each edge traverse it in opposite directions"},
         &Of::oriented);
   visit({"components", "connected components of triangles"}, &Of::components);
-  visit({"euler_characteristic", "V - E + F"}, &Of::euler_characteristic);
-  visit({"genus", "sum over the components; none unless closed, manifold and oriented"},
-        &Of::genus);
+  visit({"boundary_loops", "of edges with one triangle"}, &Of::boundary_loops);
+  visit({"euler_characteristic", "V - E + F = 2 components - 2 genus - boundary_loops"},
+        &Of::euler_characteristic);
+  visit({"genus", "sum over the components; none unless manifold and oriented"}, &Of::genus);
   visit({"nonmanifold_vertices", "their triangles are not one fan", 0, FieldKind::CppOnly},
         &Of::nonmanifold_vertices);
   visit({"unused_vertices", "they have no triangles", 0, FieldKind::CppOnly}, &Of::unused_vertices);
@@ -171,6 +172,22 @@ void visitFields(const Opening*, const Visit& visit) {
         &Of::triangles);
 }
 
+constexpr ResultField describe(const HandleLoop*) {
+  return {
+      "HandleLoop",
+      "A handle of the sampled surface: a loop along which it can be cut so that it stays in one "
+      "piece."};
+}
+template <typename Visit>
+void visitFields(const HandleLoop*, const Visit& visit) {
+  using Of = HandleLoop;
+  visit({"is_cut", "the mesh has no handle there"}, &Of::is_cut);
+  visit({"certainty", "from 0 to 1, by the sizes of the handle in points"}, &Of::certainty);
+  visit({"center", "mean of the loop", 1}, &Of::center);
+  visit({"length", "of the loop", 1}, &Of::length);
+  visit({"loop", "vertices around it, in order", 0, FieldKind::Loops}, &Of::loop);
+}
+
 constexpr ResultField describe(const Handle*) {
   return {"Handle",
           "Neighbours along the surface that are far apart on the mesh: probably a handle."};
@@ -208,7 +225,7 @@ void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   visit({"looks_closed_genus0", "nothing was found"}, &Of::looksClosedGenus0);
   visit({"genus", "handles by the cycles of the graph; none if not counted or unknown"},
         &Of::genus);
-  visit({"is_one_sided", "like a Moebius strip; detected only with openings"}, &Of::is_one_sided);
+  visit({"is_one_sided", "like a Moebius strip or a Klein bottle"}, &Of::is_one_sided);
   visit({"edges_outside_graph",
          "fraction of edges between points more than two steps apart in the graph"},
         &Of::edges_outside_graph);
@@ -329,6 +346,7 @@ void visitFields(const Surface*, const Visit& visit) {
          FieldKind::Inputs},
         &Of::outliers);
   visit({"openings", "of the surface, open or filled"}, &Of::openings);
+  visit({"handles", "of the surface, those of the mesh first"}, &Of::handles);
   visit({"boundary", "boundary loops, the surface on the left; empty for a closed mesh", 0,
          FieldKind::Loops},
         &Of::boundary);
@@ -340,7 +358,11 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"triangles", "vertices of each, counter-clockwise seen from outside", 0,
          FieldKind::PerTriangle},
         &Of::triangles);
-  visit({"sphere", "unit vectors: the embedding", 0, FieldKind::PerVertex}, &Of::sphere);
+  visit(
+      {"sphere",
+       "unit vectors: the embedding; none if the mesh has handles or tubes too long for one sphere",
+       0, FieldKind::PerVertex},
+      unlessEmpty(&Of::sphere));
   visit({"smoothed", "the points after smoothing", 1, FieldKind::PerVertex},
         unlessEmpty(&Of::smoothed));
   visit(

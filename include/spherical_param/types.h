@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-/// Core of the library: meshing of genus-0 point clouds by spherical parameterisation.
+/// Core of the library: meshing of point clouds by spherical parameterisation.
 /// Its headers need only Eigen and the standard library. It does no file I/O and prints nothing.
 namespace spherical_param {
 

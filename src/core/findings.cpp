@@ -32,10 +32,16 @@ std::string percent(double fraction) {
   return text.data();
 }
 
+/// Number of handles that the graph has and the mesh has not.
+std::size_t missingHandles(const Surface& result) {
+  const auto in_graph = static_cast<std::size_t>(result.diagnosis.genus.value_or(0));
+  return in_graph > result.genus() ? in_graph - result.genus() : 0;
+}
+
 /// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
   return result.is_noisy && result.moved().cols() == 0 && result.outliers.empty() &&
-         result.diagnosis.bridges.empty() && result.diagnosis.genus.value_or(0) == 0;
+         result.diagnosis.bridges.empty() && missingHandles(result) == 0;
 }
 
 bool isRaw(const Options& options) {
@@ -66,16 +72,38 @@ Finding partsOf(const std::vector<PartBridge>& bridges) {
           "parts", are_alike ? "each" : "largest", true};
 }
 
-/// The handles of the cloud, certain or possible.
-std::optional<Finding> handlesOf(const SurfaceDiagnosis& diagnosis) {
-  const auto handles = static_cast<std::size_t>(diagnosis.genus.value_or(0));
-  if (handles > 0)
-    return Finding{counted(handles, "handle") + ", cut: the mesh is a sphere", "", "", true};
-  if (!diagnosis.handles.empty())
-    return Finding{"a possible handle (cut) or fold in " +
-                       counted(diagnosis.handles.size(), "place"),
-                   "", "", true};
+/// Handles that the mesh lacks, certain or possible.
+std::optional<Finding> handlesOf(const Surface& result, const Options& options) {
+  const bool may_have = options.handles == HandleMode::None && !isRaw(options);
+  const auto finding = [&](const std::string& text) {
+    return Finding{text, may_have ? "handles" : "", may_have ? "auto" : "", true};
+  };
+  const std::size_t missing = missingHandles(result);
+  if (missing > 0 && result.genus() == 0)
+    return finding(counted(missing, "handle") + ", cut: the mesh is a sphere");
+  if (missing > 0)
+    return finding(counted(missing, "more handle") + ", cut");
+  if (!result.diagnosis.handles.empty())
+    return finding("a possible handle (cut) or fold in " +
+                   counted(result.diagnosis.handles.size(), "place"));
   return std::nullopt;
+}
+
+/// Handles that were found before the mesh, which then failed.
+std::optional<Finding> failedHandlesOf(const Surface& result) {
+  const auto first = std::find_if(result.handles.begin(), result.handles.end(),
+                                  [](const HandleLoop& handle) { return handle.is_cut; });
+  // A mesh without faults shows that there are none.
+  if (first == result.handles.end() || (result.intersecting_triangles == 0 && !result.isFolded() &&
+                                        result.diagnosis.handles.empty()))
+    return std::nullopt;
+  std::array<char, 128> center{};
+  std::snprintf(center.data(), center.size(), "(%.4g, %.4g, %.4g)", first->center[0],
+                first->center[1], first->center[2]);
+  const auto count = static_cast<std::size_t>(result.handles.end() - first);
+  return Finding{counted(count, "possible handle") +
+                     (count == 1 ? ", cut, around " : ", cut, one of them around ") + center.data(),
+                 "", "", false};
 }
 
 /// Certain openings that the mesh fills are a fault unless the options ask for it; without any,
@@ -143,8 +171,10 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
     findings.push_back(*filled);
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
-  if (const std::optional<Finding> handles = handlesOf(diagnosis))
+  if (const std::optional<Finding> handles = handlesOf(result, options))
     findings.push_back(*handles);
+  if (const std::optional<Finding> failed = failedHandlesOf(result))
+    findings.push_back(*failed);
   if (diagnosis.is_one_sided)
     findings.push_back(
         {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
@@ -178,8 +208,10 @@ std::string verdictOf(const Options& options, const Surface& result) {
            counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::string text = "A sound mesh";
+  if (result.genus() > 0)
+    text += " with " + counted(result.genus(), "handle");
   if (!result.boundary.empty())
-    text += " with " + counted(result.boundary.size(), "opening");
+    text += (result.genus() > 0 ? " and " : " with ") + counted(result.boundary.size(), "opening");
   std::vector<std::string> doubts;
   if (!diagnosis.bridges.empty())
     doubts.emplace_back("joins " + counted(diagnosis.bridges.size() + 1, "separate part"));
@@ -187,8 +219,8 @@ std::string verdictOf(const Options& options, const Surface& result) {
     doubts.emplace_back("fills " + counted(result.filledOpenings(), "opening"));
   if (diagnosis.is_one_sided)
     doubts.emplace_back("tears a surface with one side");
-  else if (diagnosis.genus.value_or(0) > 0)
-    doubts.emplace_back("cuts " + counted(static_cast<std::size_t>(*diagnosis.genus), "handle"));
+  else if (missingHandles(result) > 0)
+    doubts.emplace_back("cuts " + counted(missingHandles(result), "handle"));
   else if (!diagnosis.handles.empty())
     doubts.emplace_back("may cut a handle");
   if (isFolded(options, result))

@@ -32,6 +32,7 @@ SurfaceDiagnosis diagnose(const Positions& points, const Surface& result, const 
   DiagnosisOptions of_diagnosis;
   of_diagnosis.mark_triangles = options.details;
   of_diagnosis.count_cycles = !mesh.optimization.report.is_out_of_time;
+  of_diagnosis.genus = static_cast<int>(result.genus());
   return diagnoseSurface(points, result.triangles, mesh.graph.graph, mesh.graph.bridges,
                          result.openings, of_diagnosis, options.threads);
 }
@@ -46,6 +47,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   result.openings = openings.found(points, mesh.graph.graph, result.triangles);
   if (openings.isOpen())
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
+  result.handles = std::move(mesh.handles);
   result.diagnosis = diagnose(points, result, mesh, options);
   if (openings.isOneSided()) {
     result.diagnosis.is_one_sided = true;
@@ -59,15 +61,15 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   result.topology =
       checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
   reportFraction(report, 0.8);
-  if (options.details) {
+  if (options.details && mesh.embedding.directions.cols() > 0)
     result.vertex_residuals = tangentialLaplacianLengths(
         mesh.graph.graph, mesh.embedding.directions,
         options.method == Method::Paper ? options.paper.weights : EdgeWeights::Adaptive);
+  if (options.details)
     for (const auto& pair : result.self_intersections)
       for (const Index t : pair)
         result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
             triangle_mark::self_intersection;
-  }
   result.intersecting_triangles = mesh.isSmoothed() ? mesh.smoothed.intersecting_triangles
                                                     : countTriangles(result.self_intersections);
   result.smoothing = mesh.smoothed.report;

@@ -42,9 +42,8 @@ void dropVertices(Index count, EmbeddingHistory& history) {
 
 }  // namespace
 
-OpenSurface::OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
-                         const Options& options, const Execution& execution) {
-  Openings found = findOpenings(points, graph, execution);
+OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings found, bool is_flat,
+                         double unit, const Options& options) {
   Openings open;
   open.spacing = found.spacing;
   for (Opening& opening : found.openings) {

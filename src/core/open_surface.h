@@ -18,10 +18,11 @@ class OpenSurface {
 public:
   /// \param points nodes, must outlive this.
   /// \param graph   of the nodes.
+  /// \param found   in the graph.
   /// \param is_flat all points are in one plane: openings cannot be filled.
   /// \param unit    of the nodes' coordinates [unit of the input].
-  OpenSurface(const Positions& points, const Graph& graph, bool is_flat, double unit,
-              const Options& options, const Execution& execution);
+  OpenSurface(const Positions& points, const Graph& graph, Openings found, bool is_flat,
+              double unit, const Options& options);
 
   OpenSurface() = default;  // a closed surface
 
@@ -29,6 +30,8 @@ public:
   /// nullptr: the mesh is closed.
   const OpenPlaces* places() const { return places_ ? &*places_ : nullptr; }
   bool isOneSided() const { return embedded_.is_one_sided; }
+  /// The openings that virtual nodes fill while the surface is embedded.
+  const Openings& embeddedOpenings() const { return embedded_; }
   /// All openings, with the triangles over filled ones.
   ///
   /// \param points, graph as for the constructor.

@@ -231,6 +231,11 @@ std::vector<OptionRow> surfaceRows() {
       byDefault(number("fill_holes_area", "fill_holes_area",
                        "openings of up to this area are filled", Expert, 0, 1e15,
                        memberOf(&Options::fill_holes_area))),
+      byDefault(choice<HandleMode>(
+          "handles", "handles",
+          "handles of the surface that the mesh has: those that are certain (auto), or none",
+          Everybody, {{"none", HandleMode::None}, {"auto", HandleMode::Auto}},
+          memberOf(&Options::handles))),
   };
 }
 

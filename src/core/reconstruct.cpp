@@ -2,8 +2,8 @@
 
 #include "cloud_surfaces.h"
 #include "consolidation.h"
+#include "default_method.h"
 #include "embedding_history.h"
-#include "exact_predicates.h"
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
@@ -14,8 +14,8 @@
 #include "selection.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
-#include "spherical_param/sphere_triangulation.h"
 #include "stage_clock.h"
+#include "surface_topology.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,24 +34,17 @@ using internal::Neighborhoods;
 using internal::OpenSurface;
 using internal::Selection;
 using internal::StageClock;
+using internal::SurfaceTopology;
 
-/// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
-/// face outward on both. Exactly: the volume of a cloud that is nearly flat may be all rounding.
-void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding) {
-  if (internal::volumeSign(points, triangles) >= 0)
-    return;
-  flipOrientation(triangles);
-  embedding.directions = -embedding.directions;
-  for (HistoryFrame& frame : embedding.history.frames)
-    frame.sphere = -frame.sphere;
-}
-
-/// Whether the mesh is closed and of genus 0, or that with openings, over all vertices.
+/// Whether the mesh is a manifold with the boundary and the handles that are listed. Openings may
+/// divide it, and may take a handle.
 bool isAsPromised(const Surface& surface) {
   const MeshTopology& topology = surface.topology;
+  const auto genus = static_cast<long long>(surface.genus());
   return surface.isClosed()
-             ? topology.isSphere()
-             : topology.manifold() && topology.oriented && topology.unused_vertices.empty();
+             ? topology.closed && topology.isSurface() && topology.genus == genus
+             : topology.manifold() && topology.oriented && topology.unused_vertices.empty() &&
+                   topology.boundary_loops == surface.boundary.size() && topology.genus <= genus;
 }
 
 /// Whether the mesh may have openings.
@@ -100,34 +93,10 @@ MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const 
   clock.begin("triangulation");
   Triangles& triangles = mesh.optimization.triangles;
   triangles = internal::paper::convexHull(mesh.embedding.directions, clock.execution());
-  orientOutward(points, triangles, mesh.embedding);
+  internal::orientOutward(points, triangles, mesh.embedding);
   clock.begin("quality");
   mesh.optimization.self_intersections =
       findSelfIntersections(points, triangles, clock.execution());
-  return mesh;
-}
-
-/// Our method: embed the graph with room for its openings, triangulate the sphere, and optimise the
-/// mesh on the points.
-MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, const OpenSurface& openings,
-                          const Options& options, StageClock& clock) {
-  MeshedCloud mesh;
-  mesh.graph = std::move(graph);
-  clock.begin("embedding");
-  mesh.embedding = openings.embedded(points, mesh.graph.graph, options, clock.execution());
-  clock.begin("triangulation");
-  Triangles triangles = triangulateSphere(mesh.embedding.directions, clock.execution());
-  orientOutward(points, triangles, mesh.embedding);
-  Execution execution = clock.execution();
-  execution.time_limit = clock.remaining();
-  // The other half is for the smoothed points, which get an optimisation of their own.
-  const bool is_smoothed = options.smoothing > 0;
-  if (is_smoothed && execution.time_limit)
-    *execution.time_limit /= 2.0;
-  clock.begin("optimization");
-  mesh.optimization =
-      optimizeMesh(points, triangles, mesh.graph.graph,
-                   OptimizationOptions{openings.places(), !is_smoothed, options.seed}, execution);
   return mesh;
 }
 
@@ -144,12 +113,13 @@ void smooth(const Positions& points, const OpenSurface& openings, const Options&
   is_out_of_time = is_out_of_time || mesh.smoothed.is_out_of_time;
 }
 
-OpenSurface findOpenings(const Positions& points, const Graph& graph, int exponent, bool is_flat,
-                         const Options& options, StageClock& clock) {
+SurfaceTopology findTopology(const Positions& points, const Graph& graph, int exponent,
+                             bool is_flat, const Options& options, StageClock& clock) {
   if (!internal::seeksOpenings(options))
     return {};
   clock.begin("openings");
-  return {points, graph, is_flat, std::ldexp(1.0, exponent), options, clock.execution()};
+  return internal::findTopology(points, graph, is_flat, std::ldexp(1.0, exponent), options,
+                                clock.execution());
 }
 
 /// Meshes a graph of points, and judges the mesh.
@@ -157,15 +127,18 @@ OpenSurface findOpenings(const Positions& points, const Graph& graph, int expone
 /// \param is_flat all points are in one plane.
 Surface meshGraph(const Positions& points, NeighborGraph graph, int exponent, bool is_flat,
                   const Options& options, StageClock& clock) {
-  const OpenSurface openings = findOpenings(points, graph.graph, exponent, is_flat, options, clock);
+  const SurfaceTopology topology =
+      findTopology(points, graph.graph, exponent, is_flat, options, clock);
+  const OpenSurface& openings = topology.openings;
   if (is_flat && !openings.isOpen())
     refuseFlat(options);
-  MeshedCloud mesh = options.method == Method::Paper
-                         ? meshAsPublished(points, std::move(graph), options, clock)
-                         : meshByDefault(points, std::move(graph), openings, options, clock);
+  MeshedCloud mesh =
+      options.method == Method::Paper
+          ? meshAsPublished(points, std::move(graph), options, clock)
+          : internal::meshByDefault(points, std::move(graph), topology, options, clock);
   if (options.smoothing > 0)
     smooth(points, openings, options, clock, mesh);
-  orientOutward(points, mesh.triangles(), mesh.embedding);
+  internal::orientOutward(points, mesh.triangles(), mesh.embedding);
   clock.begin("quality");
   return internal::judge(points, std::move(mesh), openings, options, clock.execution());
 }
@@ -215,7 +188,7 @@ Surface meshPart(Selection& selection, std::size_t part, Neighborhoods* neighbor
                         : meshAsIs(selection, part, *neighborhoods, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError(
-        "reconstruct: the mesh is not a manifold of genus 0; please report this cloud "
+        "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
         "as a defect of the library");
   internal::toCloud(selection.parts()[part], surface);
   surface.findings = internal::findingsOf(options, surface);

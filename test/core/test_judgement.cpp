@@ -63,6 +63,7 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
   const Positions bowl = test::spiralSphere(1500).rightCols(1100);  // without its top
   const Positions parts = test::twoSpheres(200, 160, 6.0);
   for (Options options : test::bothMethods()) {
+    options.handles = HandleMode::None;
     options.paper.k = 10;
     const Surface of_torus = mesh(torus, options);
     EXPECT_GT(of_torus.diagnosis.edges_outside_graph, 0.01);

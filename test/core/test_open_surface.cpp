@@ -246,8 +246,10 @@ TEST(OpenSurface, WithAHandleOrOneSideIsSaidToBeNone) {
   const Positions holed = test::pointsWhere(torus, [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(3.5, 0.0, 0.0)).norm() > 0.7;
   });
+  Options options = leftOpen();
+  options.handles = HandleMode::None;
   for (const Positions& points : {holed, band}) {
-    const Surface result = test::surfaceOf(points, leftOpen());
+    const Surface result = test::surfaceOf(points, options);
     EXPECT_TRUE(result.topology.manifold());
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::ClosedGenus0);
     EXPECT_NE(result.diagnosis.kind, SurfaceKind::Open);

@@ -68,10 +68,10 @@ void expectAllFieldsAreVisitedOf() {
 
 TEST(ResultFields, EveryFieldOfEveryStructIsVisited) {
   static_assert(countFields<StageTime>() == 2);
-  expectAllFieldsAreVisitedOf<MeshTopology, MeshMeasures, StageTime, Finding, Opening, Handle,
-                              PartBridge, SurfaceDiagnosis, ConsolidationReport, LevelReport,
-                              EmbeddingReport, HistoryFrame, EmbeddingHistory, SmoothingReport,
-                              Surface, LeftOut, Result>();
+  expectAllFieldsAreVisitedOf<MeshTopology, MeshMeasures, StageTime, Finding, Opening, HandleLoop,
+                              Handle, PartBridge, SurfaceDiagnosis, ConsolidationReport,
+                              LevelReport, EmbeddingReport, HistoryFrame, EmbeddingHistory,
+                              SmoothingReport, Surface, LeftOut, Result>();
 }
 
 TEST(ResultFields, EveryEnumeratorHasAName) {
@@ -116,6 +116,8 @@ Surface onNodes() {
   r.boundary = {{0, 1, 2}, {0, 3, 2}};
   r.openings.resize(1);
   r.openings[0].loop = {0, 1, 3};
+  r.handles.resize(1);
+  r.handles[0].loop = {1, 3, 2};
   r.diagnosis.handles.resize(1);
   r.diagnosis.handles[0].vertices = {1, 3};
   r.diagnosis.bridges.resize(1);
@@ -143,9 +145,9 @@ TEST(ResultFields, EveryQuantityIsScaledByItsPowerOfTheUnit) {
     EXPECT_EQ(number, std::ldexp(1.0, 3 * power)) << name;
     ++quantities;
   });
-  // 21 of measures, 5 of smoothing, 12 of smoothed points, 7, 4 and 5 of opening, handle and
-  // bridge.
-  EXPECT_EQ(quantities, 54U);
+  // 21 of measures, 5 of smoothing, 12 of smoothed points, 7, 4, 4 and 5 of opening, loop of a
+  // handle, torn handle and bridge.
+  EXPECT_EQ(quantities, 58U);
 }
 
 TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
@@ -161,6 +163,7 @@ TEST(ResultFields, EveryIndexBecomesThatOfItsVertex) {
   EXPECT_EQ(result.outliers, (Indices{0, 2}));
   EXPECT_EQ(result.boundary, (std::vector<Indices>{{0, 3, 2}, {1, 3, 2}}));  // turned, not sorted
   EXPECT_EQ(result.openings[0].loop, (Indices{0, 1, 2}));
+  EXPECT_EQ(result.handles[0].loop, (Indices{0, 1, 3}));
   EXPECT_EQ(result.diagnosis.handles[0].vertices, (Indices{0, 1}));
   EXPECT_EQ(result.diagnosis.bridges[0].vertices, (Indices{1, 3}));
   EXPECT_EQ(result.vertex_of_input, (Indices{0, 1, 2, 3, 3}));

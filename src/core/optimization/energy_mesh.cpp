@@ -215,6 +215,25 @@ std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
   return pairs;
 }
 
+double meshEnergy(const Positions& points, const Triangles& triangles, const Graph& graph,
+                  const OpenPlaces* openings) {
+  const EnergyMesh of(points, triangles, graph, 1, openings);
+  SurfaceEnergy energy;
+  energy.openings = openings;
+  double sum = 0.0;
+  for (Index t = 0; t < of.mesh().size(); ++t) {
+    sum += energy.cost(of.facet(t).radius);
+    for (int k = 0; k < 3; ++k) {
+      const Index v = of.mesh().vertex(t, (k + 1) % 3);
+      const Index w = of.mesh().vertex(t, (k + 2) % 3);
+      if (v < w)
+        sum += energy.edge(v, w, points.col(v), points.col(w), of.facet(t),
+                           of.facet(of.mesh().neighbor(t, k)));
+    }
+  }
+  return sum / of.unit();
+}
+
 bool isGain(double change) {
   return change < -tuned::kMinGain;
 }

@@ -14,7 +14,7 @@
 
 namespace spherical_param::internal {
 
-/// A closed genus-0 mesh on fixed points, with the energy of its changes. Changes can be rolled
+/// A closed mesh on fixed points, with the energy of its changes. Changes can be rolled
 /// back bit by bit.
 class EnergyMesh {
 public:
@@ -96,6 +96,12 @@ void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbor
 /// triangles do not count.
 std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
                                                     const FractionReport& report = {});
+
+/// The energy of a closed mesh [mean length of the graph's edges].
+///
+/// \param openings of the surface; nullptr: it is closed.
+double meshEnergy(const Positions& points, const Triangles& triangles, const Graph& graph,
+                  const OpenPlaces* openings);
 
 /// Whether a change of the energy is a gain beyond rounding [EnergyMesh::unit()].
 bool isGain(double change);

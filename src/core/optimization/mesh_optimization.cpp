@@ -98,12 +98,21 @@ Pairs finishOn(const Positions& points, Workbench& bench) {
 
 }  // namespace
 
+Triangles flipMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
+                   const OptimizationOptions& options, const Execution& execution) {
+  Workbench bench(points, triangles, graph, options, execution);
+  const auto sampling = internal::analyzeSampling(points, graph, execution.threads);
+  internal::flipFor(bench, sampling, tuned::kMu);
+  return bench.mesh.mesh().triangles();
+}
+
 MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangles,
                               const Graph& graph, const OptimizationOptions& options,
                               const Execution& execution) {
-  if (!checkTopology(triangles, graph.size(), execution.threads).isSphere())
+  const MeshTopology topology = checkTopology(triangles, graph.size(), execution.threads);
+  if (!topology.closed || !topology.isSurface())
     throw InvalidInput("optimizeMesh: the triangles must be a closed, manifold, consistently "
-                       "oriented mesh of genus 0 over all points");
+                       "oriented mesh in one piece over all points");
   Workbench bench(points, triangles, graph, options, execution);
   const auto sampling = internal::analyzeSampling(points, graph, execution.threads);
   const auto flip = [&] {

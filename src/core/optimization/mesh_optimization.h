@@ -41,7 +41,7 @@ struct MeshOptimization {
   OptimizationReport report;
 };
 
-/// Changes the triangles of a closed genus-0 mesh on fixed points, for the least energy
+/// Changes the triangles of a closed mesh on fixed points, for the least energy
 ///
 ///   E = sum over edges of length * angle + mu * sum over triangles of min(R, 4 * longest side) (1)
 ///
@@ -65,10 +65,11 @@ struct MeshOptimization {
 /// degrees, and mu = 4: nearly the Delaunay triangulation on the surface, except for sharp edges.
 ///
 /// The mesh changes only by the moves of internal::SphereMesh, so it stays closed, manifold,
-/// oriented and of genus 0, whatever the arithmetic.
+/// oriented and of the same genus, whatever the arithmetic.
 ///
 /// \param points    3 x n, finite, distinct, of an extent about 1.
-/// \param triangles 3 x (2n - 4), over all points; closed, manifold, oriented, of genus 0.
+/// \param triangles 3 x (2n - 4 + 4 genus), over all points; closed, manifold, oriented, in one
+///                  piece.
 /// \param graph     n nodes, the neighbours of each point.
 /// \param options openings, seed
 /// \param execution threads, progress, time limit
@@ -81,6 +82,12 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
                               const Graph& graph, const OptimizationOptions& options = {},
                               const Execution& execution = {});
 
+/// The first step of optimizeMesh() alone: flips the edge that gains most, until none gains.
+///
+/// \param points, triangles, graph, options, execution as there.
+/// \return the mesh.
+Triangles flipMesh(const Positions& points, const Triangles& triangles, const Graph& graph,
+                   const OptimizationOptions& options, const Execution& execution);
 /// @}
 
 }  // namespace spherical_param

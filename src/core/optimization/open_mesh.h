@@ -26,7 +26,7 @@ struct OpenMesh {
 /// narrowest gaps without intersections are preferred.
 ///
 /// \param points    3 x n.
-/// \param triangles a closed manifold of genus 0 over the points.
+/// \param triangles a closed manifold over the points.
 /// \param openings  of the surface.
 OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings);
 

@@ -236,9 +236,11 @@ struct Cycles {
 /// Finds the handles of a surface in one part.
 ///
 /// \param apart edges of the graph whose ends are more than two steps apart on the mesh.
-void findHandles(const MeshAndGraph& surface, const Graph& graph, const std::vector<Edge>& apart,
-                 const std::vector<Edge>& bridges, const std::vector<Opening>& openings,
-                 bool count_cycles, SurfaceDiagnosis& result) {
+/// \param genus of the mesh.
+void findTornHandles(const MeshAndGraph& surface, const Graph& graph,
+                     const std::vector<Edge>& apart, const std::vector<Edge>& bridges,
+                     const std::vector<Opening>& openings, bool count_cycles, int genus,
+                     SurfaceDiagnosis& result) {
   // A mesh that is folded tears neighbours apart without handles as well.
   if (result.isFolded()) {
     const bool is_open = std::any_of(openings.begin(), openings.end(),
@@ -253,7 +255,7 @@ void findHandles(const MeshAndGraph& surface, const Graph& graph, const std::vec
   const Cycles cycles(graph);
   result.genus = cycles.genus(openings.size());
   // Without handles, neighbours are torn apart where the mesh is folded.
-  if (result.genus ? *result.genus == 0 : !cycles.mayBeHandles())
+  if (result.genus ? *result.genus <= genus : !cycles.mayBeHandles())
     result.handles.clear();
 }
 
@@ -357,14 +359,16 @@ std::vector<std::uint8_t> marksOf(const MeshAndGraph& surface, const SurfaceDiag
 }
 
 SurfaceKind kindOf(const SurfaceDiagnosis& diagnosis, const std::vector<Opening>& openings,
-                   bool count_cycles) {
+                   const DiagnosisOptions& options) {
   if (!diagnosis.bridges.empty())
     return SurfaceKind::SeveralParts;
   const bool is_torn = !diagnosis.handles.empty();
-  if (diagnosis.isFolded() ? diagnosis.genus.value_or(0) > 0 : is_torn && count_cycles)
+  if (diagnosis.isFolded() ? diagnosis.genus.value_or(0) > 0 : is_torn && options.count_cycles)
     return SurfaceKind::Handles;
   if (diagnosis.isFolded() || is_torn)
     return SurfaceKind::Unclear;
+  if (options.genus > 0)
+    return SurfaceKind::Handles;
   const bool is_open = std::any_of(openings.begin(), openings.end(), [](const Opening& opening) {
     return !opening.is_filled || opening.isCertain();
   });
@@ -406,11 +410,11 @@ SurfaceDiagnosis diagnoseSurface(const Positions& points, const Triangles& trian
   result.bridges = findBridges(surface, graph, bridges, bridge_edges);
   // A mesh that was squeezed through a bridge tears neighbours apart without handles.
   if (result.bridges.empty())
-    findHandles(surface, sparse, differences.apart, bridge_edges, openings, options.count_cycles,
-                result);
+    findTornHandles(surface, sparse, differences.apart, bridge_edges, openings,
+                    options.count_cycles, options.genus, result);
   if (options.mark_triangles)
     result.triangle_marks = marksOf(surface, result, openings, differences.triangles);
-  result.kind = kindOf(result, openings, options.count_cycles);
+  result.kind = kindOf(result, openings, options);
   for (Handle& handle : result.handles)
     shorten(handle.vertices, options.max_vertices);
   for (PartBridge& bridge : result.bridges)

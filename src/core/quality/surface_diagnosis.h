@@ -18,9 +18,11 @@ struct DiagnosisOptions {
   /// Count the graph's cycles to distinguish handles from folds. On a folded mesh this takes longer
   /// than all the rest; without it, such a mesh is SurfaceKind::Unclear.
   bool count_cycles = true;
+  int genus = 0;  ///< of the mesh, filled where it is open
 };
 
-/// Decides whether a cloud looks like a closed genus-0 surface; the mesh alone does not show it.
+/// Decides whether a cloud looks like a closed surface of the mesh's genus; the mesh alone does not
+/// show it.
 /// Openings come from the graph; cut handles separate neighbours on the mesh; without its bridges
 /// the graph falls into parts.
 ///

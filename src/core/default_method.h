@@ -1,0 +1,24 @@
+#pragma once
+
+#include "graph.h"
+#include "meshed_cloud.h"
+#include "spherical_param/options.h"
+#include "stage_clock.h"
+#include "surface_topology.h"
+
+namespace spherical_param::internal {
+
+/// Meshes a graph by Method::Default: embeds it with room for its openings, triangulates the
+/// sphere, or several spheres and glues them, and optimises the mesh on the points.
+///
+/// Handles that are not certain are kept if the mesh with them has clearly less energy than the one
+/// without them.
+MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph,
+                          const SurfaceTopology& topology, const Options& options,
+                          StageClock& clock);
+
+/// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
+/// face outward on both.
+void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding);
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "embedding.h"
+#include "graph.h"
+#include "mesh_optimization.h"
+#include "smoothed_mesh.h"
+#include "spherical_param/result.h"
+
+#include <vector>
+
+namespace spherical_param::internal {
+
+/// Results of the stages. Vertices are nodes, in the unit of the nodes.
+struct MeshedCloud {
+  NeighborGraph graph;
+  std::vector<HandleLoop> handles;  ///< that were found
+  Embedding embedding;              ///< without directions if the mesh has handles
+  MeshOptimization optimization;
+  SmoothedMesh smoothed;  ///< empty without smoothing
+
+  bool isSmoothed() const { return smoothed.points.cols() > 0; }
+  Triangles& triangles() { return isSmoothed() ? smoothed.triangles : optimization.triangles; }
+};
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,202 @@
+// Surfaces with handles, from the cloud to the mesh.
+
+#include "surface_topology.h"
+
+#include "glued_spheres.h"
+#include "handle_shapes.h"
+#include "open_shapes.h"
+#include "reconstructions.h"
+#include "spherical_param/errors.h"
+#include "topology/topologies.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// Whether the mesh stays in one piece when it is cut along a loop of its edges: by a walk over the
+/// triangles that does not cross them.
+bool staysWhole(const Triangles& triangles, const std::vector<Index>& loop) {
+  std::set<std::pair<Index, Index>> barrier;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Index v = loop[i];
+    const Index w = loop[(i + 1) % loop.size()];
+    barrier.insert({v, w});
+    barrier.insert({w, v});
+  }
+  std::map<std::pair<Index, Index>, Eigen::Index> left_of;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k)
+      left_of[{triangles(k, t), triangles((k + 1) % 3, t)}] = t;
+  for (const auto& edge : barrier)
+    if (left_of.count(edge) == 0)
+      return false;
+  std::set<Eigen::Index> seen{0};
+  std::vector<Eigen::Index> stack{0};
+  while (!stack.empty()) {
+    const Eigen::Index t = stack.back();
+    stack.pop_back();
+    for (int k = 0; k < 3; ++k) {
+      const std::pair<Index, Index> edge{triangles((k + 1) % 3, t), triangles(k, t)};
+      if (barrier.count(edge) == 0 && seen.insert(left_of.at(edge)).second)
+        stack.push_back(left_of.at(edge));
+    }
+  }
+  return static_cast<Eigen::Index>(seen.size()) == triangles.cols();
+}
+
+TEST(SurfaceTopology, GluedMeshesHaveTheirLoopsAndAreNotCutByThem) {
+  for (const Positions& points :
+       {test::torusCloud(40, 16, 1.0, 0.4), test::doubleTorus(0.12), test::plateWithHoles(0.12)}) {
+    const test::Topology of(points);
+    const std::vector<internal::CutLoop>& loops = of.handles.loops;
+    const auto mesh = internal::meshGluedSpheres(
+        of.graph.size(), internal::cutAlong(of.points, of.graph, of.rotation, loops), of.openings,
+        {}, {});
+    ASSERT_TRUE(mesh);
+    EXPECT_TRUE(test::isSurfaceOverAll(mesh->triangles, static_cast<Index>(of.graph.size()),
+                                       static_cast<Index>(loops.size())));
+    for (const internal::CutLoop& loop : loops)
+      EXPECT_TRUE(staysWhole(mesh->triangles, loop.nodes));
+  }
+}
+
+void expectSound(const Surface& result, Index genus) {
+  const auto n = static_cast<Index>(result.vertexCount());
+  EXPECT_TRUE(test::isSurfaceOverAll(result.triangles, n, genus));
+  EXPECT_EQ(result.genus(), static_cast<std::size_t>(genus));
+  EXPECT_EQ(result.topology.genus, genus);
+  EXPECT_TRUE(result.self_intersections.empty());
+  EXPECT_GT(result.measures.volume, 0.0);
+  EXPECT_EQ(result.diagnosis.kind, SurfaceKind::Handles);
+  EXPECT_EQ(result.sphere.cols(), 0);
+  EXPECT_TRUE(result.findings.empty());
+  EXPECT_EQ(result.verdict,
+            "A sound mesh with " + std::to_string(genus) + " handle" + (genus == 1 ? "." : "s."));
+}
+
+TEST(SurfaceTopology, HandlesAreMeshed) {
+  expectSound(test::surfaceOf(test::torusCloud(60, 24)), 1);
+  expectSound(test::surfaceOf(test::doubleTorus(0.1)), 2);
+  expectSound(test::surfaceOf(test::plateWithHoles(0.1)), 5);
+  expectSound(test::surfaceOf(test::trefoil(0.2)), 1);
+  expectSound(test::surfaceOf(test::latticeOfTubes(0.07)), 28);
+}
+
+TEST(SurfaceTopology, ThinTubesAndFatTori) {
+  // Of 4 to 9 points around the tube, and of the least sizes.
+  for (const int around : {4, 6, 9})
+    EXPECT_EQ(test::surfaceOf(test::torusCloud(40, around, 1.0, 0.0225 * around)).topology.genus, 1)
+        << around;
+  for (const int rings : {24, 32})
+    EXPECT_EQ(test::surfaceOf(test::torusCloud(rings, 12, 1.0, 0.5)).topology.genus, 1) << rings;
+}
+
+TEST(SurfaceTopology, LoopsHaveTheirPlaceAndSize) {
+  const Positions points = 10.0 * test::torusCloud(60, 24).array() + 3.0;
+  const Surface result = test::surfaceOf(points);
+  ASSERT_EQ(result.handles.size(), 1U);
+  const HandleLoop& handle = result.handles.front();
+  EXPECT_EQ(handle.loop.size(), 24U);
+  EXPECT_NEAR(handle.length, 2.0 * test::kPi * 4.0, 0.3);
+  EXPECT_NEAR((handle.center.array() - 3.0).matrix().norm(), 10.0, 0.1);
+  EXPECT_EQ(handle.certainty, 1.0);
+  EXPECT_FALSE(handle.is_cut);
+  EXPECT_EQ(*std::min_element(handle.loop.begin(), handle.loop.end()), handle.loop.front());
+}
+
+TEST(SurfaceTopology, NoneIsASphere) {
+  Options options = test::quick();
+  options.handles = HandleMode::None;
+  const Surface result = test::surfaceOf(test::torusCloud(60, 24), options);
+  EXPECT_TRUE(test::isSphereOverAll(result.triangles, 60 * 24));
+  EXPECT_TRUE(result.handles.empty());
+  EXPECT_EQ(result.sphere.cols(), 60 * 24);
+}
+
+TEST(SurfaceTopology, HandlesBesideOpenings) {
+  const Positions torus = test::torusCloud(80, 30, 2.5, 1.0);
+  for (const double beside : {3.5, 1.5}) {  // outside, and in the hole of the torus
+    const Positions holed = test::pointsWhere(torus, [&](const Eigen::Vector3d& p) {
+      return (p - Eigen::Vector3d(beside, 0.0, 0.0)).norm() > 0.7;
+    });
+    Options options;
+    options.surface = SurfaceMode::Open;
+    const Surface result = test::surfaceOf(holed, options);
+    EXPECT_EQ(result.boundary.size(), 1U);
+    EXPECT_EQ(result.topology.euler_characteristic, 2 - 2 * 1 - 1);
+    EXPECT_EQ(result.topology.genus, 1);
+    EXPECT_TRUE(result.topology.isSurface());
+    EXPECT_TRUE(result.self_intersections.empty());
+    EXPECT_EQ(result.verdict, "A sound mesh with 1 handle and 1 opening.");
+    expectSound(test::surfaceOf(torus), 1);
+  }
+}
+
+TEST(SurfaceTopology, LinkedRingsAreTwoParts) {
+  const Positions ring = test::torusCloud(80, 20, 1.0, 0.25);
+  Positions linked = ring;
+  linked.row(1).swap(linked.row(2));
+  linked.row(0).array() += 1.0;
+  Options options;
+  options.parts = PartsMode::Each;
+  const Result result = reconstruct(test::horizontally(ring, linked), options);
+  ASSERT_EQ(result.surfaces.size(), 2U);
+  for (const Surface& surface : result.surfaces)
+    expectSound(surface, 1);
+}
+
+TEST(SurfaceTopology, ToriThatTouchAndOneSidedSurfacesAreSaidToBeUnsound) {
+  Positions tori = test::horizontally(test::torusCloud(60, 24), test::torusCloud(60, 24));
+  tori.row(0).tail(60 * 24).array() += 2.82;
+  for (const Positions& points : {tori, test::kleinBottle(60, 30), test::moebiusBand(160, 12)}) {
+    const Surface result = test::surfaceOf(points, test::quick());
+    EXPECT_TRUE(test::isSurfaceOverAll(result.triangles, static_cast<Index>(points.cols()),
+                                       static_cast<Index>(result.genus())));
+    EXPECT_FALSE(result.findings.empty());
+  }
+  EXPECT_TRUE(test::surfaceOf(test::kleinBottle(60, 30), test::quick()).diagnosis.is_one_sided);
+}
+
+TEST(SurfaceTopology, MovedRotatedScaledAndPermutedCloudsHaveTheSameHandles) {
+  const Positions points = test::withNoise(test::plateWithHoles(0.1), 0.004, 5);
+  const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(1.0, 2.0, 3.0).normalized());
+  const std::vector<Index> order = test::shuffledRange(points.cols(), 3);
+  expectSound(test::surfaceOf(points), 5);
+  expectSound(test::surfaceOf(turn.toRotationMatrix() * points), 5);
+  expectSound(test::surfaceOf(1000.0 * points.array() - 77.0), 5);
+  expectSound(test::surfaceOf(points(Eigen::all, order)), 5);
+}
+
+TEST(SurfaceTopology, WorksWithTheOtherOptions) {
+  const Positions torus = test::torusCloud(60, 24);
+  Options smoothed;
+  smoothed.smoothing = 3;
+  smoothed.details = true;
+  smoothed.embedding.history_vertices = 100;
+  const Surface smooth = test::surfaceOf(torus, smoothed);
+  EXPECT_EQ(smooth.topology.genus, 1);
+  EXPECT_EQ(smooth.smoothed.cols(), torus.cols());
+  EXPECT_TRUE(smooth.vertex_residuals.empty());
+  EXPECT_TRUE(smooth.history.frames.empty());
+  Options consolidated;
+  consolidated.consolidation = ConsolidationMode::Auto;
+  consolidated.outliers = OutlierMode::Auto;
+  const Positions scattered =
+      test::horizontally(test::withNoise(torus, 0.01, 2), Eigen::Vector3d(0.0, 0.0, 3.0));
+  EXPECT_EQ(test::surfaceOf(scattered, consolidated).topology.genus, 1);
+  EXPECT_EQ(test::surfaceOf(torus, test::quick()).topology.genus, 1);
+  // The published method is a sphere.
+  EXPECT_EQ(test::surfaceOf(torus, test::quick(test::paper())).topology.genus, 0);
+}
+
+}  // namespace
+}  // namespace spherical_param
