@@ -220,6 +220,14 @@ std::vector<Shape> makeShapes() {
             {ball({0.12, 0.0, -0.40}, 0.05), 0.05, carved}},
            {{cone({0.22, 0.055, 0.23}, 0.035, {0.13, 0.09, 0.46}, 0.028), 0.03},    // ear
             {cone({0.10, 0.11, -0.24}, 0.06, {0.20, 0.12, -0.32}, 0.045), 0.04}});  // foot
+  const Distance chair =
+      body({{box(origin, {0.21, 0.21, 0.035}, 0.03)},                               // seat
+            {cone({-0.21, -0.17, 0.45}, 0.035, {-0.21, 0.17, 0.45}, 0.034), 0.02},  // back
+            {cone({-0.19, -0.17, 0.23}, 0.035, {-0.19, 0.17, 0.23}, 0.034), 0.02}},
+           {{cone({-0.17, 0.17, 0.0}, 0.036, {-0.21, 0.17, 0.45}, 0.035), 0.02},
+            {cone({-0.17, 0.17, 0.0}, 0.036, {-0.19, 0.17, -0.46}, 0.032), 0.02},  // legs
+            {cone({0.17, 0.17, 0.0}, 0.036, {0.19, 0.17, -0.46}, 0.032), 0.02},
+            {cone({-0.18, 0.17, -0.25}, 0.032, {0.18, 0.17, -0.25}, 0.031), 0.02}});
   const Part neck = {cone(-0.3 * x, 0.03, 0.3 * x, 0.03), 0.04};
   return {{"sphere", "a sphere", ball(origin, 0.5)},
           {"ellipsoid", "an ellipsoid with three axes", ellipsoid(origin, {0.5, 0.32, 0.22})},
@@ -240,6 +248,7 @@ std::vector<Shape> makeShapes() {
           {"double_torus", "two tori grown together (genus 2)",
            body({{arc(0.23 * x, x, y, 0.19, 0.08, 2.0 * quarter)},
                  {arc(-0.23 * x, x, y, 0.19, 0.08, 2.0 * quarter), 0.04}})},
+          {"chair", "a chair of tubes (genus 4)", chair},
           {"holed", "a rabbit with four openings (open)", rabbit,
            body({{ball({-0.10, 0.0, -0.35}, 0.13)},
                  {ball({-0.12, 0.0, 0.11}, 0.12)},

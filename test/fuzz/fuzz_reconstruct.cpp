@@ -135,7 +135,9 @@ void checkSurface(const Positions& points, const Options& options, const Surface
     if (!fault.empty())
       fuzz::finding(fault);
   } else {
-    require(result.topology.isSphere(), "the mesh of consolidated points is a sphere");
+    require(result.topology.closed && result.topology.isSurface() &&
+                result.topology.genus == static_cast<long long>(result.genus()),
+            "the mesh of consolidated points is closed, with the handles that are listed");
     require(result.consolidated.allFinite() &&
                 result.consolidated.cols() == static_cast<Eigen::Index>(result.vertexCount()),
             "the consolidated points are as many finite ones as there are vertices");
@@ -144,8 +146,9 @@ void checkSurface(const Positions& points, const Options& options, const Surface
       require(result.vertexOf(result.input_of_vertex[v]) == static_cast<Index>(v),
               "a vertex is that of its first point");
   }
-  require(!options.details || result.vertex_residuals.size() == result.vertexCount(),
-          "there is a residual for each vertex");
+  require(!options.details || result.sphere.cols() == 0 ||
+              result.vertex_residuals.size() == result.vertexCount(),
+          "there is a residual for each vertex on the sphere");
   require(options.embedding.history_vertices > 0 || result.history.frames.empty(),
           "there is no history without a request");
   for (const HistoryFrame& frame : result.history.frames)

@@ -139,14 +139,20 @@ inline std::string faultOf(const Positions& cloud, const spherical_param::Option
       return "the vertex of a point is not that of the first point at its place";
   }
   const auto count = static_cast<Eigen::Index>(v);
-  if (!spherical_param::test::isSphereOverAll(result.triangles, static_cast<Index>(v)))
-    return "the mesh is not a sphere over all points";
-  if (!result.topology.isSphere())
-    return "the result's own check says that the mesh is not a sphere";
+  const auto genus = static_cast<Index>(result.genus());
+  if (!spherical_param::test::isSurfaceOverAll(result.triangles, static_cast<Index>(v), genus))
+    return "the mesh is not a surface with its handles over all points";
+  if (!result.topology.isSurface() || !result.topology.closed || result.topology.genus != genus)
+    return "the result's own check says that the mesh is not such a surface";
+  if (genus > 0 && options.handles == spherical_param::HandleMode::None)
+    return "the mesh has handles that were to be cut";
   if (facesInward(cloud(Eigen::all, result.input_of_vertex), result.triangles))
     return "the triangles face inward";
-  if (result.sphere.cols() != count || !areUnitVectors(result.sphere))
-    return "the embedding is not of unit vectors";
+  const bool has_sphere = result.sphere.cols() > 0;
+  const bool is_one = options.handles == spherical_param::HandleMode::None;
+  if ((has_sphere ? genus > 0 || result.sphere.cols() != count : genus == 0 && is_one) ||
+      !areUnitVectors(result.sphere))
+    return "the embedding is not of unit vectors, or not of a sphere";
   if (!std::isfinite(result.measures.volume) || !std::isfinite(result.measures.area))
     return "the volume or the area is not finite";
   if (options.smoothing > 0 && (result.smoothed.cols() != count || !result.smoothed.allFinite()))
