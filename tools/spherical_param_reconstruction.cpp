@@ -55,7 +55,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
-         "Meshes the points of an object without holes through it into a closed surface,\n"
+         "Meshes the points of an object into a closed surface with the handles of the object,\n"
          "or a surface with the openings of the scan.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
@@ -349,6 +349,9 @@ void run(const std::vector<std::string>& words) {
   printParameters(settings, console);
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, console, cloud);
+  if (!settings.sphere.empty()) {
+    requireSpheres(settings.input, cloud);
+  }
   Files files;
   writeFiles(settings, cloud, console, files);
   publish(

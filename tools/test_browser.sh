@@ -9,8 +9,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tools/common/test_steps.sh
 . tools/common/test_steps.sh
 
-# A sound mesh of a file whose name tries to be HTML, a cloud with an opening and outliers, and what
-# a depth camera at the origin sees of a ball.
+# A sound mesh of a file whose name tries to be HTML, a cloud with an opening and outliers, what a
+# depth camera at the origin sees of a ball, and a mesh with handles.
 make_reports() {
   local bin="$PWD/build/release/bin" evil='a<img src=x onerror=document.title=1>.ply'
   (
@@ -24,7 +24,10 @@ make_reports() {
       "$bin/pcl_spherical_param_scan" sphere ball.xyz -points 3000 &&
       awk '{ z = $3 + 3; if ($1 * $1 + $2 * $2 + $3 * z < 0) print $1, $2, z }' ball.xyz \
         >seen.xyz &&
-      "$bin/pcl_spherical_param_reconstruction" seen.xyz mesh.ply -surface open -report camera.html
+      "$bin/pcl_spherical_param_reconstruction" seen.xyz mesh.ply -surface open \
+        -report camera.html &&
+      "$bin/pcl_spherical_param_scan" double_torus double.xyz -points 3000 &&
+      "$bin/pcl_spherical_param_reconstruction" double.xyz mesh.ply -report handles.html
   )
 }
 
@@ -35,7 +38,8 @@ trap 'rm -rf "$work"' EXIT
 if check "tools: build" build_release pcl_spherical_param_scan \
   pcl_spherical_param_reconstruction && check "reports" make_reports; then
   check "reports in Chromium" timeout 900 /usr/bin/python3 test/browser/test_report_page.py \
-    "$work/sound.html" "$work/open.html" "$work/camera.html" "$logs/browser" || true
+    "$work/sound.html" "$work/open.html" "$work/camera.html" "$work/handles.html" \
+    "$logs/browser" || true
 fi
 
 finish

@@ -52,6 +52,11 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
   if (points.cols() > most_vertices)
     throw InvalidInput(caller + std::to_string(points.cols()) +
                        " vertices are more than 2^28; simplify the mesh");
+  MeshTopology topology = checkTopology(triangles, internal::columnCount(points), threads);
+  if (topology.components == 1 && topology.genus.value_or(0) > 0)
+    throw InvalidInput(caller + "the mesh does not map to a sphere: its genus is " +
+                       std::to_string(*topology.genus) +
+                       "; cut its handles, by handles = none of reconstruct()");
   if (start.cols() != points.cols())
     throw InvalidInput(caller + "there are " + std::to_string(points.cols()) +
                        " vertices, but the start has " + std::to_string(start.cols()) +
@@ -60,7 +65,6 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
     throw InvalidInput(caller + "a coordinate of a vertex is not finite; remove such points first");
   // Also what was rounded to float passes.
   internal::checkUnitVectors("computeSphereMap", start, 1e-3);
-  MeshTopology topology = checkTopology(triangles, internal::columnCount(points), threads);
   if (topology.isSphere())
     return std::nullopt;
   if (topology.isOpenSurface()) {
@@ -79,8 +83,6 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
         "vertex " + std::to_string(topology.unused_vertices.front()) + " belongs to no triangle";
   else if (topology.components != 1)
     fault = "it has " + std::to_string(topology.components) + " pieces";
-  else if (topology.genus)
-    fault = "its genus is " + std::to_string(*topology.genus);
   throw InvalidInput(caller + "the mesh does not map to a sphere: " + fault +
                      "; give a manifold mesh of genus 0 in one piece, each vertex used");
 }

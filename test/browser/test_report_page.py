@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Reports of the tool in Chromium: test_report_page.py SOUND.html OPEN.html CAMERA.html FOLDER
+"""Reports of the tool in Chromium: test_report_page.py SOUND OPEN CAMERA HANDLES FOLDER
 
 SOUND is the report of a sound mesh whose input has a name that tries to be HTML, OPEN that of a
 cloud with an opening and outliers, CAMERA that of the open mesh of what a depth camera saw of a
-ball. FOLDER gets the pictures.
+ball, HANDLES that of a double torus. FOLDER gets the pictures.
 """
 import json
 import pathlib
@@ -16,7 +16,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-SOUND, OPEN, CAMERA, FOLDER = (pathlib.Path(name).resolve() for name in sys.argv[1:5])
+SOUND, OPEN, CAMERA, HANDLES, FOLDER = (pathlib.Path(name).resolve() for name in sys.argv[1:6])
 VIEWS = ("mesh", "cloud", "sphere")
 
 # Of each view a hash of its pixels, how many colours it has and the part that is not background.
@@ -314,6 +314,37 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(self.changed(before), ("mesh", "sphere"))
         self.element("wireframe").click()
         self.assertEqual(self.changed(before), ())
+
+    def test_a_mesh_with_handles_has_their_loops_and_no_sphere(self):
+        self.browser.get_log("browser")  # of other tests
+        self.open(HANDLES)
+        self.assertEqual(self.text("verdict-words"), "A sound mesh with 2 handles.")
+        for finding in ("Closed", "Genus 2", "One component", "No self-intersections"):
+            self.assertIn(f"✓ {finding}", self.text("findings"))
+        self.assertIn("Handles 2", self.text("numbers"))
+        for name in ("view-sphere", "unfolding", "residual-card"):
+            self.assertFalse(self.element(name).is_displayed(), name)
+        values = [option.get_attribute("value") for option in Select(self.element("color")).options]
+        self.assertEqual(values, ["suspicious", "plain"])
+        self.assertEqual(self.element("color").get_property("value"), "plain")
+        before = self.run_script(PICTURES, VIEWS[:2])
+        for view, picture in before.items():
+            self.assertGreater(picture["colors"], 100, view)
+            self.assertGreater(picture["covered"], 0.05, view)
+        self.save("handles")
+        button = self.browser.find_element(By.CSS_SELECTOR, "#flags .handles")
+        self.assertEqual(button.text, "Handle: 2 loops")
+        targets = []
+        for _ in range(2):
+            button.click()
+            targets.append(self.run_script("return report_views.target.toArray()"))
+            self.assertIn("Vertex at", self.text("readout"))
+        self.assertNotEqual(*targets)
+        self.save("handle")
+        self.element("reset").click()
+        self.assertEqual(self.run_script(PICTURES, VIEWS[:2]), before)
+        self.assertEqual([entry for entry in self.browser.get_log("browser")
+                          if entry["source"] != "rendering"], [])
 
     def test_suspicious_triangles_are_counted_and_looked_at(self):
         self.open(SOUND)

@@ -71,6 +71,18 @@ TEST(MapInput, MeshesAndMapsThatAreWrongAreRefused) {
     expectRefused(functions[i].first, [&] { functions[i].second(wrong); });
 }
 
+TEST(MapInput, MeshesWithHandlesAreRefusedByTheirGenusWhateverTheStart) {
+  const Positions points = randomSphere(12 * 8, 5);
+  const Triangles torus = torusTriangles(12, 8);
+  for (const Triangles& triangles : {torus, Triangles(torus.rightCols(torus.cols() - 1))})
+    for (const Positions& start : {Positions(3, 0), points}) {
+      const std::string refusal = refusalOf([&] { computeSphereMap(points, triangles, start); });
+      EXPECT_NE(refusal.find("its genus is 1; cut its handles, by handles = none"),
+                std::string::npos)
+          << refusal;
+    }
+}
+
 TEST(MapInput, SurfacesRefuseCapsAndPlacesThatDoNotFit) {
   const Mapped open = openBumpy(400);
   const Mapped closed = mapped(randomSphere(50, 3));

@@ -189,6 +189,24 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   expectRefused(texture_tool, {"in.ply", "out.glb", "-ascii"}, wrong_usage, "-ascii");
 }
 
+TEST_F(BadInput, MeshesWithHandlesHaveNoMapToOneSphere) {
+  expectSuccess(scan_tool, {"torus", "torus.xyz", "-points", "1500"});
+  write("both.xyz", tool_test::linesOf(tool_test::ellipsoid(2000, {1, 1, 1}, {9, 0, 0})) +
+                        content("torus.xyz"));
+  const std::string cause = "'torus.xyz' has no map to one sphere: its mesh has 1 handle";
+  expectAllRefused({{mesh_tool, {"torus.xyz", "out.ply", "-sphere", "s.ply"}, cause},
+                    {mesh_tool,
+                     {"both.xyz", "out%03d.ply", "-parts", "each", "-sphere", "s%03d.ply"},
+                     "part 2 of 'both.xyz' has no map to one sphere"},
+                    {remesh_tool, {"torus.xyz", "out.ply"}, cause},
+                    {texture_tool, {"torus.xyz", "out.glb"}, cause},
+                    {morph_tool, {"in.xyz", "torus.xyz", "out.ply"}, cause}},
+                   failed);
+  run(mesh_tool,
+      {"torus.xyz", "out.ply", "-sphere", "s.ply", "-handles", "none", "-time-limit", "0"});
+  EXPECT_TRUE(mesh("s.ply").isSphere());
+}
+
 TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
   write("empty.ply", "");
   write("three.xyz", "1 0 0\n0 1 0\n0 0 1\n1 0 0\nnan 1 1\n1e999 1 1\n");

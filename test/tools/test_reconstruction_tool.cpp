@@ -103,7 +103,7 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"number_integer",
        "/points /vertices /edges /duplicates /triangles /components /genus /embedding/iterations "
        "/peak_memory_bytes /self_intersections /intersecting_triangles "
-       "/embedding/levels/0/newton_iterations /embedding/start_level"},
+       "/embedding/levels/0/newton_iterations /embedding/start_level /boundary_loops"},
       {"number_float",
        "/embedding/residual /diagnosis/edges_outside_graph /stages/0/seconds "
        "/embedding/centroid_norm /measures/volume /measures/area /measures/mean_edge_length "
@@ -116,7 +116,7 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
       {"array",
        "/stages /findings /self_intersecting_pairs /embedding/residuals /embedding/levels "
        "/diagnosis/handles /diagnosis/bridges /outliers /openings /boundary /left_out/not_finite "
-       "/left_out/outliers /left_out/other_parts"},
+       "/left_out/outliers /left_out/other_parts /handles"},
       {"null", "/consolidation /smoothing"}};
   const std::map<std::string, bool (json::*)() const noexcept> is_of_type = {
       {"number_integer", &json::is_number_integer},

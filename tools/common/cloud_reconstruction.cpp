@@ -70,6 +70,21 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   cloud.stages.insert(cloud.stages.begin(), {"read", seconds});
 }
 
+void requireSpheres(const std::string& path, const CloudReconstruction& cloud) {
+  const std::vector<Surface>& surfaces = cloud.result.surfaces;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].sphere.cols() > 0) {
+      continue;
+    }
+    const std::string part = surfaces.size() > 1 ? "part " + std::to_string(i + 1) + " of " : "";
+    const std::string mesh = surfaces[i].genus() > 0
+                                 ? "its mesh has " + counted(surfaces[i].genus(), "handle")
+                                 : "its mesh was glued from several";
+    throw Failure(part + inQuotes(path) + " has no map to one sphere: " + mesh,
+                  "give -handles none, which cuts them");
+  }
+}
+
 std::string leftOut(const CloudReconstruction& cloud) {
   std::size_t duplicates = 0;
   std::size_t merged = 0;

@@ -181,15 +181,48 @@ void addScalar(const std::string& name, const std::vector<double>& values, Array
 
 void addMesh(const ReportMesh& mesh, Arrays& arrays) {
   arrays.addPoints("positions", mesh.positions, boxOf(mesh.positions));
-  arrays.addDirections("sphere", numbersOf(mesh.sphere));
   arrays.addTriangles("triangles", mesh.triangles);
+  arrays.add("suspicious", 1, mesh.marks);
+  if (mesh.sphere.cols() == 0) {
+    return;
+  }
+  arrays.addDirections("sphere", numbersOf(mesh.sphere));
   addArea(mesh.area_distortion, arrays);
   std::vector<double> angles = mesh.angle_distortion;
   std::transform(angles.begin(), angles.end(), angles.begin(),
                  [](double ratio) { return std::log10(ratio); });
   addScalar("angle", angles, arrays);
   addScalar("residual", mesh.residual, arrays);
-  arrays.add("suspicious", 1, mesh.marks);
+}
+
+/// Adds the loops of the handles, one after the other, and returns what each of them is.
+Json addHandles(const CloudReconstruction& cloud, const Surface& surface, const ReportMesh& mesh,
+                Arrays& arrays) {
+  Json handles = Json::array();
+  std::vector<Index> vertices;
+  for (const HandleLoop& handle : surface.handles) {
+    vertices.insert(vertices.end(), handle.loop.begin(), handle.loop.end());
+    handles.push_back({{"points", handle.loop.size()}, {"is_cut", handle.is_cut}});
+  }
+  if (!vertices.empty()) {
+    arrays.addPoints("handles", picked(vertexPositions(cloud, surface), vertices),
+                     boxOf(mesh.positions));
+  }
+  return handles;
+}
+
+/// The rotation that turns the sphere so that its points are about where those of the object are,
+/// by rows; null without a sphere.
+Json sphereTurn(const ReportMesh& mesh) {
+  if (mesh.sphere.cols() == 0) {
+    return nullptr;
+  }
+  const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false);
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    rows.push_back(turn(i / 3, i % 3));
+  }
+  return rows;
 }
 
 /// What the cloud has beside the mesh: colours, the points before smoothing, outliers.
@@ -244,7 +277,7 @@ Json addHistory(const CloudReconstruction& cloud, const Surface& result, Arrays&
   }
   std::vector<Index> ordered;
   std::vector<Index> vertices;
-  for (const Index i : orderOnSphere(picked(history.frames.back().sphere, places))) {
+  for (const Index i : orderAlongCurve(picked(history.frames.back().sphere, places))) {
     ordered.push_back(places[static_cast<std::size_t>(i)]);
     vertices.push_back(history.vertices[static_cast<std::size_t>(ordered.back())]);
   }
@@ -358,8 +391,6 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
   Arrays arrays;
   addMesh(mesh, arrays);
   addCloud(cloud, surface, mesh, arrays);
-  // The sphere is shown turned so that its points are about where those of the object are.
-  const Eigen::Matrix4d turn = Eigen::umeyama(mesh.sphere, mesh.positions, false);
   Json json;
   json["tool"] = {{"name", input.tool}, {"version", SPHERICAL_PARAM_VERSION}};
   json["command"] = input.command;
@@ -373,10 +404,8 @@ void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportIn
       surface.measures.mean_edge_length * std::sqrt(static_cast<double>(surface.vertexCount()) /
                                                     static_cast<double>(mesh.positions.cols()));
   json["outliers"] = cloud.result.left_out.outliers.size();
-  json["sphere_turn"] = Json::array();
-  for (Eigen::Index i = 0; i < 9; ++i) {
-    json["sphere_turn"].push_back(turn(i / 3, i % 3));
-  }
+  json["sphere_turn"] = sphereTurn(mesh);
+  json["handles"] = addHandles(cloud, surface, mesh, arrays);
   json["frames"] = addHistory(cloud, surface, arrays);
   json["arrays"] = arrays.about();
 

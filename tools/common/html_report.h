@@ -13,7 +13,8 @@
 
 namespace spherical_param::tools {
 
-/// Triangles of a mesh up to which a page shows all of it: it has about 12 bytes for each.
+/// Triangles of a mesh with a map to the sphere up to which a page shows all of it: it has about
+/// 12 bytes for each.
 inline constexpr std::size_t kMaxReportTriangles = 1000000;
 
 /// The line of -report.
@@ -49,7 +50,7 @@ struct HtmlReportInput {
 /// Writes a page that opens in a browser without other files or a network.
 ///
 /// \param page           the page without its data. \see reportPage()
-/// \param max_triangles of the shown mesh.
+/// \param max_triangles of the shown mesh, if it has a sphere.
 /// \throw Failure if it cannot be stored.
 void writeHtmlReport(OutputFile& file, std::string_view page, const HtmlReportInput& input,
                      std::size_t max_triangles = kMaxReportTriangles);

@@ -99,6 +99,7 @@ Json productOptionsToJson(const ProductSettings& settings) {
 void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
               MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
+  requireSpheres(path, mapped.cloud);
   mapped.points = vertexPositions(mapped.cloud, mapped.cloud.surface());
   mapped.colors = vertexColors(mapped.cloud);
   console.begin("map");

@@ -129,7 +129,8 @@ void reduce(std::size_t max_vertices, ReportMesh& mesh) {
       std::count(marks_around.begin(), marks_around.end(), std::uint8_t{0}));
   const std::size_t marked = mesh.vertices.size() - unmarked;
   const bool keeps_marked = 2 * marked <= max_vertices;
-  const std::size_t others = keeps_marked ? unmarked : mesh.vertices.size();
+  const std::size_t others =
+      std::max<std::size_t>(keeps_marked ? unmarked : mesh.vertices.size(), 1);
   const std::size_t room = keeps_marked ? max_vertices - marked : max_vertices;
   std::vector<Index> kept;
   std::size_t seen = 0;
@@ -195,15 +196,19 @@ Positions picked(const Positions& points, const std::vector<Index>& indices) {
   return points(Eigen::all, indices);
 }
 
-std::vector<Index> orderOnSphere(const Positions& sphere) {
+std::vector<Index> orderAlongCurve(const Positions& points) {
   // Morton order: the bits of the three coordinates in turn.
   constexpr int bits = 16;
+  const Eigen::Vector3d low = points.rowwise().minCoeff();
+  const Eigen::Vector3d high = points.rowwise().maxCoeff();
   std::vector<std::pair<std::uint64_t, Index>> keys;
-  keys.reserve(static_cast<std::size_t>(sphere.cols()));
-  for (Index v = 0; v < sphere.cols(); ++v) {
+  keys.reserve(static_cast<std::size_t>(points.cols()));
+  for (Index v = 0; v < points.cols(); ++v) {
     std::uint64_t key = 0;
     for (Index c = 0; c < 3; ++c) {
-      const double fraction = std::clamp((sphere(c, v) + 1.0) / 2.0, 0.0, 1.0);
+      const double fraction =
+          high[c] > low[c] ? std::clamp((points(c, v) - low[c]) / (high[c] - low[c]), 0.0, 1.0)
+                           : 0.0;
       const auto place = static_cast<std::uint64_t>(fraction * ((1 << bits) - 1));
       for (unsigned bit = 0; bit < bits; ++bit) {
         key |= (place >> bit & 1U) << (3 * bit + static_cast<unsigned>(c));
@@ -222,20 +227,24 @@ std::vector<Index> orderOnSphere(const Positions& sphere) {
 
 ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& result,
                       std::size_t max_triangles, int threads) {
+  const bool has_sphere = result.sphere.cols() > 0;
+  const Positions positions = vertexPositions(cloud, result);
   ReportMesh mesh;
-  mesh.vertices = orderOnSphere(result.sphere);
-  mesh.positions = picked(vertexPositions(cloud, result), mesh.vertices);
-  mesh.sphere = picked(result.sphere, mesh.vertices);
+  mesh.vertices = orderAlongCurve(has_sphere ? result.sphere : positions);
+  mesh.positions = picked(positions, mesh.vertices);
   std::vector<Index> place_of(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     place_of[at(mesh.vertices[i])] = static_cast<Index>(i);
   }
   mesh.triangles = result.triangles.unaryExpr([&place_of](Index v) { return place_of[at(v)]; });
-  mesh.residual = picked(residualExponents(result), mesh.vertices);
   mesh.marks = marksOf(result, threads);
-  measureDistortion(mesh);
-  if (static_cast<std::size_t>(mesh.triangles.cols()) > max_triangles) {
-    reduce(max_triangles / 2 + 2, mesh);
+  if (has_sphere) {
+    mesh.sphere = picked(result.sphere, mesh.vertices);
+    mesh.residual = picked(residualExponents(result), mesh.vertices);
+    measureDistortion(mesh);
+    if (static_cast<std::size_t>(mesh.triangles.cols()) > max_triangles) {
+      reduce(max_triangles / 2 + 2, mesh);
+    }
   }
   sortTriangles(mesh);
   return mesh;

@@ -13,10 +13,11 @@ namespace spherical_param::tools {
 struct ReportMesh {
   std::vector<Index> vertices;  ///< v vertices of the result
   Positions positions;          ///< 3 x v [unit of the input]
-  Positions sphere;             ///< 3 x v, unit vectors
+  Positions sphere;             ///< 3 x v, unit vectors; empty if the result has no sphere
   Triangles triangles;          ///< 3 x t
-  /// v entries each: log2 of the fraction of the sphere around a vertex over that of the surface;
-  /// sigma_1 / sigma_2 of the map, mean; log10 of the tangential Laplacian [radius], at least -17.
+  /// v entries each, none without a sphere: log2 of the fraction of the sphere around a vertex over
+  /// that of the surface; sigma_1 / sigma_2 of the map, mean; log10 of the tangential Laplacian
+  /// [radius], at least -17.
   std::vector<double> area_distortion;
   std::vector<double> angle_distortion;
   std::vector<double> residual;
@@ -27,12 +28,13 @@ struct ReportMesh {
 std::vector<double> picked(const std::vector<double>& values, const std::vector<Index>& indices);
 Positions picked(const Positions& points, const std::vector<Index>& indices);
 
-/// The indices of points on the unit sphere along a curve that fills it: neighbours on the sphere
-/// are near each other in this order.
-std::vector<Index> orderOnSphere(const Positions& sphere);
+/// The indices of points along a curve that fills their box: neighbours are near each other in this
+/// order.
+std::vector<Index> orderAlongCurve(const Positions& points);
 
 /// Shows a result that was made with Options::details by a limited number of triangles: of a larger
-/// mesh a part of the vertices, spread over the sphere and triangulated there.
+/// mesh a part of the vertices, spread over the sphere and triangulated there. A mesh without a
+/// sphere is shown as a whole.
 ReportMesh reportMesh(const CloudReconstruction& cloud, const Surface& surface,
                       std::size_t max_triangles, int threads);
 

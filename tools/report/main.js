@@ -1,10 +1,12 @@
 // Reads the data, and puts the page together: first words, which need no WebGL, then the views.
 
 const outlier_color = '#e14614';
+const handle_color = '#7346d2';
+const cut_handle_color = '#c85aa5';
 const flag_kinds = [
   { bit: 1, name: 'Self-intersection', color: '#d53c00' },
   { bit: 2, name: 'Filled hole', color: '#006ebe' },
-  { bit: 4, name: 'Cut handle', color: '#c85aa5' },
+  { bit: 4, name: 'Cut handle', color: cut_handle_color },
   { bit: 8, name: 'Bridge between parts', color: '#00966e' },
   { bit: 16, name: "Edge outside the graph's 2-ring", color: '#d79600', harmless: true },
 ];
@@ -49,7 +51,7 @@ function placeColors(rows, box) {
   return Uint8Array.from(rows, (x, i) => 255 * (0.6 + 0.36 * (x / box[i % 3])));
 }
 
-/** The ways to colour by, by key: {name, colors(), about, ends, text(share)}. */
+/** The ways to colour by, by key: {name, colors(), about, ends, text(share)}. Some need a sphere. */
 function makeModes(arrays, views) {
   const scalar = (array, colors, more) => ({
     colors: () => {
@@ -63,7 +65,7 @@ function makeModes(arrays, views) {
     array, ramp: colors, ...more,
   });
   const uniform = (level) => () => new Uint8Array(views.positions.length).fill(level);
-  return {
+  const of_sphere = arrays.sphere && {
     place: {
       name: 'position on the sphere', colors: () => placeColors(views.sphere, [1, 1, 1]),
       cells: true,
@@ -83,6 +85,9 @@ function makeModes(arrays, views) {
       name: 'residual', about: 'Distance of each point of the sphere from balance, in radii.',
       text: (x) => number(10 ** x, 2),
     }),
+  };
+  return {
+    ...of_sphere,
     suspicious: {
       name: 'suspicious triangles', colors: uniform(190),
       about: 'Triangles to look at, each kind in its colour. The buttons below lead to them.',
@@ -154,11 +159,26 @@ function showFlags(kinds, views, select) {
     }));
 }
 
+/** Buttons that lead to the handles, those of the mesh and those that are cut. */
+function showHandles(views) {
+  for (const [is_cut, name, color] of [
+    [false, 'Handle', handle_color], [true, 'Possible handle, cut', cut_handle_color]]) {
+    const handles = views.handles.filter((handle) => handle.is_cut === is_cut);
+    if (handles.length === 0) continue;
+    let next = 0;
+    byId('flags').append(make('button', { type: 'button', class: 'handles', onclick: () => {
+      views.lookAtHandle(handles[next % handles.length]);
+      ++next;
+    } }, make('span', { class: 'swatch', style: { background: color } }),
+    `${name}: ${counted(handles.length, 'loop')}`));
+  }
+}
+
 function describe(vertex, modes, views, arrays) {
   if (vertex === null) return 'No vertex is marked.';
   const place = arrays.positions.numbers().subarray(3 * vertex, 3 * vertex + 3);
   return [`Vertex at (${Array.from(place, (x) => number(x)).join(', ')})`,
-    ...['area', 'angle', 'residual'].map((key) => {
+    ...['area', 'angle', 'residual'].filter((key) => key in modes).map((key) => {
       const mode = modes[key];
       return `${mode.name} ${mode.text(mode.at(mode.array.values[vertex] / 255))}`;
     })].join(' · ');
@@ -217,7 +237,8 @@ function showViews(data, arrays, context) {
   const select = byId('color');
   select.replaceChildren(...Object.entries(modes).map(([key, mode]) =>
     make('option', { value: key }, mode.name)));
-  select.value = firstMode(kinds);
+  const first = firstMode(kinds);
+  select.value = first in modes ? first : 'plain';
   const unfolding = {
     colors: () => placeColors(views.positions, views.box),
     about: 'During the unfolding colours mean the position on the object. Parts of the sphere ' +
@@ -262,6 +283,7 @@ function showViews(data, arrays, context) {
     select.value = key;
     paint();
   });
+  showHandles(views);
   paint();
 }
 
@@ -293,6 +315,7 @@ async function main() {
   } else {
     showViews(data, await readArrays(data.arrays), context);
   }
+  byId('residual-card').hidden = byId('residual').childElementCount === 0;
   byId('loading').hidden = true;
   document.documentElement.dataset.report = context ? 'ready' : 'text';
 }

@@ -58,10 +58,12 @@ function showVerdict(data) {
     [crossing === 0, 'No self-intersections',
       `${number(crossing)} of ${counted(data.mesh.triangles, 'triangle')} intersect`],
   ];
-  if (report.closed) {
-    checks.unshift([true, 'Closed', ''], [report.genus === 0, 'Genus 0', ''],
+  const handles = (report.handles ?? []).filter((handle) => !handle.is_cut).length;
+  if (report.closed || handles > 0) {
+    checks.unshift([report.genus === handles, `Genus ${handles}`, `Genus ${report.genus}`],
       [report.components === 1, 'One component', counted(report.components, 'component')]);
   }
+  if (report.closed) checks.unshift([true, 'Closed', '']);
   const findings = report.findings ?? [];
   byId('verdict').dataset.kind = !checks.every(([good]) => good) ? 'bad'
     : findings.some((finding) => finding.is_fault) ? 'fair' : 'good';
@@ -101,6 +103,8 @@ function showTables(data) {
     ['Outliers in the mesh', report.outliers?.length || undefined],
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],
+    ['Openings left open', report.boundary?.length || undefined],
+    ['Handles', report.handles?.filter((handle) => !handle.is_cut).length || undefined],
     ['Edges outside the graph', report.diagnosis?.edges_outside_graph],
     ['Volume', report.measures?.volume],
     ['Area', report.measures?.area],

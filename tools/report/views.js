@@ -1,7 +1,6 @@
-// Three views of one object, drawn by one WebGL context into the parts of one canvas. They share a
-// camera, and each has three.js' controls of it. A frame is drawn only when something changed.
+// Views of one object, drawn by one WebGL context into the parts of one canvas. They share a camera,
+// and each has three.js' controls of it. A frame is drawn only when something changed.
 
-const view_names = ['mesh', 'cloud', 'sphere'];
 const field_of_view = 28; // degrees
 // A ball of radius 1 fits.
 const start_distance = 1.04 / Math.sin((field_of_view * Math.PI) / 360);
@@ -56,9 +55,11 @@ function surfaceMaterial(options, cells) {
         v_place = place;`)}`;
     shader.fragmentShader = `uniform float cells; varying vec3 v_place;
       ${shader.fragmentShader.replace('#include <color_fragment>', `$&
-        vec3 direction = normalize(v_place);
-        vec2 cell = floor(vec2(asin(direction.z), atan(direction.y, direction.x)) / radians(15.0));
-        diffuseColor.rgb *= 1.0 - 0.17 * cells * mod(cell.x + cell.y, 2.0);`)}`;
+        if (cells > 0.0) {
+          vec3 direction = normalize(v_place);
+          vec2 cell = floor(vec2(asin(direction.z), atan(direction.y, direction.x)) / radians(15.0));
+          diffuseColor.rgb *= 1.0 - 0.17 * mod(cell.x + cell.y, 2.0);
+        }`)}`;
   };
   return material;
 }
@@ -75,8 +76,11 @@ const colorsOf = (vertices) =>
   new THREE.BufferAttribute(new Uint8Array(3 * vertices), 3, true).setUsage(THREE.DynamicDrawUsage);
 
 class Views {
-  constructor(canvas, context, arrays, { sphere_turn, spacing, report }) {
+  constructor(canvas, context, arrays, { sphere_turn, spacing, report, handles }) {
     this.canvas = canvas;
+    // Meshes with handles have no sphere.
+    this.names = arrays.sphere ? ['mesh', 'cloud', 'sphere'] : ['mesh', 'cloud'];
+    byId('view-sphere').hidden = !arrays.sphere;
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.setPixelRatio(devicePixelRatio);
     this.renderer.setScissorTest(true);
@@ -85,16 +89,19 @@ class Views {
     this.frame_at = null; // frame of the unfolding; null: the result
     this.drawn = 0; // frames
     this.makeScene(arrays, spacing);
-    const [a, b, c, d, e, f, g, h, i] = sphere_turn;
-    this.align = new THREE.Quaternion().setFromRotationMatrix(
-      new THREE.Matrix4().set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1));
+    if (arrays.sphere) {
+      const [a, b, c, d, e, f, g, h, i] = sphere_turn;
+      this.align = new THREE.Quaternion().setFromRotationMatrix(
+        new THREE.Matrix4().set(a, b, c, 0, d, e, f, 0, g, h, i, 0, 0, 0, 0, 1));
+    }
     if (arrays.history_frames) this.makeHistory(arrays);
+    this.makeHandles(handles, arrays.handles);
     const { up, toward } = firstView(this.positions, this.triangles, arrays.suspicious.values,
       this.origin, report.closed);
     this.camera.up.copy(up);
     this.start = toward.multiplyScalar(start_distance);
     this.target = new THREE.Vector3();
-    this.controls = view_names.map((name) => this.makeControls(name));
+    this.controls = this.names.map((name) => this.makeControls(name));
     this.reset();
     new ResizeObserver(() => this.request()).observe(canvas);
   }
@@ -109,7 +116,7 @@ class Views {
     this.origin = new THREE.Vector3(...center).divideScalar(-radius); // of the input
     this.box = low.map((x, c) => (high[c] - x) / 2 / radius || 1);
     this.positions = this.normalized(arrays.positions);
-    this.sphere = arrays.sphere.numbers();
+    this.sphere = arrays.sphere?.numbers();
     this.triangles = arrays.triangles.values;
     this.color = colorsOf(this.positions.length / 3);
     this.cells = { value: 0 };
@@ -117,20 +124,20 @@ class Views {
     this.scene = new THREE.Scene();
     this.light = new THREE.DirectionalLight(0xffffff, 0.75);
     this.scene.add(new THREE.AmbientLight(0xffffff, 0.45), this.light, this.light.target);
-    this.groups = Object.fromEntries(view_names.map((name) => [name, new THREE.Group()]));
+    this.groups = Object.fromEntries(this.names.map((name) => [name, new THREE.Group()]));
     this.scene.add(...Object.values(this.groups));
 
     const index = new THREE.BufferAttribute(this.triangles, 1);
     const position = rowsOf(this.positions);
-    const place = rowsOf(this.sphere);
+    const place = this.sphere ? rowsOf(this.sphere) : position;
     const mesh = geometryOf({ position, place, color: this.color }, index);
     mesh.computeVertexNormals();
     this.normal = mesh.getAttribute('normal');
-    this.surfaces = {
-      mesh: this.addSurface('mesh', mesh),
-      sphere: this.addSurface('sphere',
-        geometryOf({ position: place, normal: place, place, color: this.color }, index)),
-    };
+    this.surfaces = { mesh: this.addSurface('mesh', mesh) };
+    if (this.sphere) {
+      this.surfaces.sphere = this.addSurface('sphere',
+        geometryOf({ position: place, normal: place, place, color: this.color }, index));
+    }
     let edges = 0;
     for (let t = 0; t < this.triangles.length; t += 3) {
       edges += this.vector(this.triangles[t]).distanceTo(this.vector(this.triangles[t + 1]));
@@ -147,7 +154,7 @@ class Views {
       this.addPoints('cloud', { position: points, normal: points },
         discMaterial({ pixels: [6, 6], color: outlier_color }));
     }
-    this.marks = Object.fromEntries(view_names.map((name) => [name,
+    this.marks = Object.fromEntries(this.names.map((name) => [name,
       this.addPoints(name, { position: rowsOf(new Float32Array(3)),
         normal: rowsOf(new Float32Array(3)) },
       discMaterial({ pixels: [13, 13], color: '#ffd600', on_top: true }))]));
@@ -243,9 +250,11 @@ class Views {
   lookAt(vertex) {
     const place = this.vector(vertex);
     const normal = this.vector(vertex, this.normal.array).normalize();
-    const direction = this.vector(vertex, this.sphere).normalize().applyQuaternion(this.align);
-    this.groups.sphere.quaternion.setFromUnitVectors(direction, normal).multiply(this.align);
-    this.groups.sphere.position.copy(place).sub(normal);
+    if (this.sphere) {
+      const direction = this.vector(vertex, this.sphere).normalize().applyQuaternion(this.align);
+      this.groups.sphere.quaternion.setFromUnitVectors(direction, normal).multiply(this.align);
+      this.groups.sphere.position.copy(place).sub(normal);
+    }
     this.target.copy(place);
     this.camera.position.copy(place).addScaledVector(normal,
       Math.min(Math.max(60 * this.edge, 0.1), start_distance));
@@ -254,8 +263,10 @@ class Views {
   }
 
   reset() {
-    this.groups.sphere.quaternion.copy(this.align);
-    this.groups.sphere.position.set(0, 0, 0);
+    if (this.sphere) {
+      this.groups.sphere.quaternion.copy(this.align);
+      this.groups.sphere.position.set(0, 0, 0);
+    }
     this.target.set(0, 0, 0);
     this.camera.position.copy(this.start);
     this.mark(null);
@@ -283,7 +294,8 @@ class Views {
       object.geometry.dispose();
       object.material.dispose();
     }
-    this.flags = groups.flatMap(({ color, triangles }, i) => ['mesh', 'sphere'].map((name) => {
+    const names = Object.keys(this.surfaces);
+    this.flags = groups.flatMap(({ color, triangles }, i) => names.map((name) => {
       const index = new Uint32Array(3 * triangles.length);
       triangles.forEach((t, k) => index.set(this.triangles.subarray(3 * t, 3 * t + 3), 3 * k));
       const { position, normal } = this.surfaces[name].children[0].geometry.attributes;
@@ -294,6 +306,35 @@ class Views {
       return this.add(name, object);
     }));
     this.setFrame(this.frame_at);
+  }
+
+  // --- the handles
+
+  /** Shows the loops of handles: [{points, is_cut}], with the rows of all of them. */
+  makeHandles(handles, array) {
+    const rows = array ? this.normalized(array) : [];
+    let first = 0;
+    this.handles = handles.map(({ points, is_cut }) => {
+      const loop = [];
+      for (let i = 0; i < points; ++i) loop.push(this.vector(first + i, rows));
+      first += points;
+      const radius = Math.min(Math.max(this.edge / 4, 0.003), 0.008);
+      this.add('mesh', new THREE.Mesh(
+        new THREE.TubeGeometry(new THREE.CatmullRomCurve3(loop, true), 4 * points, radius, 6, true),
+        new THREE.MeshPhongMaterial({ color: is_cut ? cut_handle_color : handle_color })));
+      return { is_cut, loop };
+    });
+  }
+
+  /** Brings a handle to the middle of the views. */
+  lookAtHandle({ loop }) {
+    let nearest = 0;
+    let least = Infinity;
+    for (let v = 0; v < this.positions.length / 3; ++v) {
+      const distance = this.vector(v).distanceToSquared(loop[0]);
+      if (distance < least) [nearest, least] = [v, distance];
+    }
+    this.lookAt(nearest);
   }
 
   // --- the unfolding
@@ -329,11 +370,13 @@ class Views {
       this.frame.needsUpdate = true;
     }
     if (this.unfolding) this.unfolding.visible = at !== null;
-    this.surfaces.sphere.visible = at === null;
-    for (const object of this.flags) {
-      if (object.parent === this.groups.sphere) object.visible = at === null;
+    if (this.sphere) {
+      this.surfaces.sphere.visible = at === null;
+      for (const object of this.flags) {
+        if (object.parent === this.groups.sphere) object.visible = at === null;
+      }
+      this.marks.sphere.visible = at === null && this.marked !== null;
     }
-    this.marks.sphere.visible = at === null && this.marked !== null;
     this.request();
   }
 
@@ -355,14 +398,14 @@ class Views {
       this.renderer.setSize(Math.floor(all.width), Math.floor(all.height), false);
     }
     this.light.position.set(-0.5, 0.7, 1).applyQuaternion(this.camera.quaternion);
-    for (const name of view_names) {
+    for (const name of this.names) {
       const rect = byId(`view-${name}`).getBoundingClientRect();
       const part = [rect.left - all.left, all.bottom - rect.bottom, rect.width, rect.height];
       this.renderer.setViewport(...part);
       this.renderer.setScissor(...part);
       this.camera.aspect = rect.width / rect.height;
       this.camera.updateProjectionMatrix();
-      for (const other of view_names) this.groups[other].visible = other === name;
+      for (const other of this.names) this.groups[other].visible = other === name;
       this.scene.traverse(({ material }) => {
         if (material?.uniforms?.scale) {
           material.uniforms.scale.value = (rect.height * devicePixelRatio) /

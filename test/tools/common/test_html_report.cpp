@@ -179,6 +179,29 @@ TEST(HtmlReport, HoldsTheMeshItsMarksAndDistortionUpToRounding) {
   EXPECT_NEAR((areas * angles).sum() / areas.sum(), core.angle.mean, 1e-9 * core.angle.mean);
 }
 
+TEST(HtmlReport, AMeshWithHandlesIsShownAsAWholeWithTheirLoopsAndWithoutASphere) {
+  const Shown shown = show(scanned("torus", 1500), twoThreads(), 0, 1000);
+  const Surface& result = shown.cloud->surface();
+  ASSERT_EQ(result.genus(), 1U);
+  const Page& page = shown.page;
+  EXPECT_EQ(page.triangles("triangles"), shown.mesh.triangles);
+  EXPECT_EQ(page.data["mesh"]["shown_triangles"], result.triangles.cols());
+  EXPECT_EQ(std::set<Index>(shown.mesh.vertices.begin(), shown.mesh.vertices.end()).size(),
+            result.vertexCount());
+  for (const char* absent :
+       {"sphere", "area", "angle", "residual", "history_positions", "history_frames"})
+    EXPECT_EQ(page.arrays.count(absent), 0U) << absent;
+  EXPECT_TRUE(page.data["sphere_turn"].is_null());
+  EXPECT_TRUE(page.data["frames"].empty());
+  ASSERT_EQ(page.data["handles"].size(), 1U);
+  const HandleLoop& handle = result.handles.front();
+  EXPECT_EQ(page.data["handles"][0]["points"], handle.loop.size());
+  EXPECT_EQ(page.data["handles"][0]["is_cut"], false);
+  const Positions loop = picked(vertexPositions(*shown.cloud, result), handle.loop);
+  ASSERT_EQ(page["handles"].cols(), loop.cols());
+  EXPECT_LT((page["handles"] - loop).cwiseAbs().maxCoeff(), 1e-4);  // the extent is about 1
+}
+
 TEST(HtmlReport, HistoryEndsAtTheSphereAndBeginsElsewhere) {
   for (const Method method : {Method::Default, Method::Paper}) {
     ReconstructionSettings settings = twoThreads();
