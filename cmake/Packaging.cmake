@@ -83,8 +83,8 @@ macro(debian_package name)
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
   endif()
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "meshing by spherical parameterisation - ${arg_ABOUT}
-The library meshes the point cloud of an object without holes through it into
-a closed triangle mesh of genus 0 through every point, by a map to the sphere
+The library meshes the point cloud of an object into a closed, manifold triangle
+mesh through every point, with the handles of the object, by maps to the sphere
 (M. Zwicker and C. Gotsman, 2004).")
 endmacro()
 

@@ -1,6 +1,7 @@
 // The parts of SphericalParamReconstruction that do not depend on the type of the points.
 
 #include <pcl/surface/impl/spherical_param_reconstruction.hpp>
+#include <pcl/surface/spherical_param_map.h>
 
 #include "spherical_param/errors.h"
 
@@ -35,6 +36,17 @@ void rejectIndex(std::size_t entry, pcl::index_t index, std::size_t points) {
   throw InvalidInput("entry " + std::to_string(entry) + " of the indices is " +
                      std::to_string(index) + ", but the cloud has " + std::to_string(points) +
                      " points; indices must be from 0 to the number of points less one");
+}
+
+void requireSphere(const spherical_param::Surface& surface) {
+  if (surface.sphere.cols() > 0)
+    return;
+  const std::size_t handles = surface.genus();
+  throw InvalidInput(
+      "the mesh has no map to one sphere: it " +
+      (handles > 0 ? "has " + std::to_string(handles) + (handles == 1 ? " handle" : " handles")
+                   : std::string("was glued from several")) +
+      "; call setHandles(HandleMode::None), which cuts them");
 }
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOfNothing(std::size_t points) {

@@ -58,6 +58,22 @@ typename pcl::PointCloud<PointT>::Ptr makeEllipsoid(int count,
   return cloud;
 }
 
+/// A torus around z, with twice as many rings as points in each.
+inline pcl::PointCloud<pcl::PointXYZ>::Ptr makeTorus(int around) {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  const double step = 2.0 * std::acos(-1.0) / around;
+  for (int ring = 0; ring < 2 * around; ++ring)
+    for (int k = 0; k < around; ++k) {
+      const double u = step * ring / 2.0;
+      const double v = step * (k + ring % 2 / 2.0);
+      const double radius = 1.0 + 0.4 * std::cos(v);
+      cloud->push_back(pcl::PointXYZ(static_cast<float>(radius * std::cos(u)),
+                                     static_cast<float>(radius * std::sin(u)),
+                                     static_cast<float>(0.4 * std::sin(v))));
+    }
+  return cloud;
+}
+
 inline spherical_param::Triangles trianglesOf(const Polygons& polygons) {
   spherical_param::Triangles triangles(3, static_cast<Eigen::Index>(polygons.size()));
   for (std::size_t t = 0; t < polygons.size(); ++t)

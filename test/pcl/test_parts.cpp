@@ -64,6 +64,22 @@ TEST(PartsOfCloud, AreEachMeshedAsIfTheyWereAlone) {
   }
 }
 
+TEST(PartsOfCloud, WithHandlesHaveNoPlaceOnTheSphere) {
+  const Cloud::Ptr cloud = makeTorus(24);
+  const std::size_t of_torus = cloud->size();
+  *cloud += *beside(makeEllipsoid(300));
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setParts(PartsMode::Each);
+  meshed(reconstruction);
+  ASSERT_EQ(reconstruction.getPartCount(), 2U);
+  const auto sphere = reconstruction.getSphereCoordinates();
+  ASSERT_EQ(sphere->size(), cloud->size());
+  EXPECT_FALSE(sphere->is_dense);
+  for (std::size_t i = 0; i < sphere->size(); ++i)
+    EXPECT_EQ((*sphere)[i].getVector3fMap().array().isNaN().all(), i < of_torus) << i;
+}
+
 TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
   const Cloud::Ptr cloud = makeEllipsoid(300);
   for (int i = 0; i < 100; ++i)

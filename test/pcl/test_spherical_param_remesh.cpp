@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace {
 
@@ -92,6 +93,25 @@ TEST_F(SphericalParamRemesh, MapIsOneToOneAndBelongsToTheVerticesSmoothedOrNot) 
   reconstruction.setSmoothing(3);
   ASSERT_TRUE(pcl::computeSphericalParamMap(reconstruction, points, map));
   EXPECT_EQ(points, reconstruction.getResult().surface().smoothed);
+}
+
+TEST_F(SphericalParamRemesh, MeshesWithHandlesAreRefusedAndCutOnesAreNot) {
+  reconstruction.setInputCloud(test::makeTorus(24));
+  Positions points;
+  SphereMap map;
+  pcl::console::setVerbosityLevel(pcl::console::L_ERROR);
+  ::testing::internal::CaptureStderr();
+  EXPECT_FALSE(pcl::computeSphericalParamMap(reconstruction, points, map));
+  const std::string message = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("it has 1 handle; call setHandles(HandleMode::None)"), std::string::npos)
+      << message;
+  EXPECT_EQ(points.cols() + map.sphere.cols(), 0);
+  EXPECT_EQ(reconstruction.getResult().surface().genus(), 1U);
+  EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
+  reconstruction.setHandles(spherical_param::HandleMode::None);
+  ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh));
+  EXPECT_TRUE(test::isSphere(mesh.polygons, mesh.cloud.width));
+  EXPECT_EQ(reconstruction.getSphereCoordinates()->size(), 1152U);
 }
 
 TEST_F(SphericalParamRemesh, SameForAnyNumberOfThreads) {

@@ -20,9 +20,17 @@ def bumpy(count, seed=20040602):
     return u * (1.0 + 0.2 * np.sin(5.0 * u[:, :1]) * np.cos(4.0 * u[:, 1:2]))
 
 
-def check_closed(test, vertex_count, triangles):
-    """Each directed edge once, and its reverse; every vertex used; V - E + F = 2."""
-    test.assertEqual(triangles.shape, (2 * vertex_count - 4, 3))
+def torus(around):
+    """Points of a torus around z, in twice as many rings as points in each."""
+    ring, k = np.mgrid[: 2 * around, :around].reshape(2, -1)
+    u, v = np.pi / around * ring, 2 * np.pi / around * (k + ring % 2 / 2)
+    radius = 1.0 + 0.4 * np.cos(v)
+    return np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.4 * np.sin(v)])
+
+
+def check_closed(test, vertex_count, triangles, genus=0):
+    """Each directed edge once, and its reverse; every vertex used; V - E + F = 2 - 2 genus."""
+    test.assertEqual(triangles.shape, (2 * vertex_count - 4 + 4 * genus, 3))
     test.assertEqual(set(np.unique(triangles)), set(range(vertex_count)))
     edges = {(t[i], t[(i + 1) % 3]) for t in triangles.tolist() for i in range(3)}
     test.assertEqual(len(edges), triangles.size)

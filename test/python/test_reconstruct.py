@@ -134,16 +134,54 @@ class Mesh(unittest.TestCase):
         marks = mesh.diagnosis.triangle_marks
         self.assertEqual((marks.shape, marks.dtype), ((len(mesh.triangles),), np.dtype(np.uint8)))
         np.testing.assert_array_equal(np.flatnonzero(marks & 2), np.sort(opening.triangles))
-        angle, around = 2 * np.pi * np.random.default_rng(1).random((2, 600))
-        radius = 1.0 + 0.4 * np.cos(angle)
-        torus = [radius * np.cos(around), radius * np.sin(around), 0.4 * np.sin(angle)]
-        diagnosis = sp.reconstruct(np.transpose(torus)).diagnosis
-        self.assertEqual((diagnosis.kind, diagnosis.genus), ("handles", 1))
         parts = np.concatenate([points, shapes.ellipsoid(300) + [5, 0, 0]])
         mesh = sp.reconstruct(parts)
         self.assertEqual(mesh.diagnosis.kind, "several_parts")
         (part,) = mesh.diagnosis.bridges
         self.assertEqual((part.points, part.other_points), (300, len(points)))
+
+
+    def test_handles_are_listed_and_such_meshes_have_no_sphere(self):
+        points = shapes.torus(24)
+        mesh = sp.reconstruct(points, details=True)
+        shapes.check_closed(self, len(points), mesh.triangles, genus=1)
+        self.assertEqual((mesh.topology.genus, mesh.diagnosis.kind), (1, "handles"))
+        self.assertEqual(mesh.verdict, "A sound mesh with 1 handle.")
+        (handle,) = mesh.handles
+        self.assertEqual((handle.is_cut, len(np.unique(handle.loop))), (False, len(handle.loop)))
+        ring = points[handle.loop]
+        length = np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum()
+        self.assertAlmostEqual(handle.length, length, delta=1e-12)
+        np.testing.assert_allclose(handle.center, ring.mean(axis=0), atol=1e-12)
+        self.assertIsNone(mesh.sphere)
+        self.assertIsNone(mesh.vertex_residuals)
+        other = sp.reconstruct(shapes.ellipsoid(100))
+        remedy = 'no map to one sphere: it has 1 handle; .*handles="none"'
+        for refused in (
+            lambda: sp.sphere_map(mesh),
+            lambda: sp.measure_map_distortion(mesh),
+            lambda: sp.remesh(mesh),
+            lambda: sp.morph(other, mesh),
+        ):
+            with self.assertRaisesRegex(sp.InvalidInput, remedy):
+                refused()
+        with self.assertRaisesRegex(sp.InvalidInput, "its genus is 1; cut its handles"):
+            sp.sphere_map(points, mesh.triangles, points)
+        if _core.has_report:
+            with tempfile.TemporaryDirectory() as folder:
+                page = Path(folder, "page.html")
+                mesh.report(page)
+                self.assertGreater(page.stat().st_size, 100000)
+
+    def test_handles_are_cut_if_asked(self):
+        points = shapes.torus(24)
+        mesh = sp.reconstruct(points, handles="none")
+        shapes.check_closed(self, len(points), mesh.triangles)
+        self.assertEqual((mesh.topology.genus, mesh.sphere.shape), (0, points.shape))
+        self.assertEqual((mesh.diagnosis.kind, mesh.diagnosis.genus), ("handles", 1))
+        finding = next(finding for finding in mesh.findings if finding.option == "handles")
+        self.assertEqual(str(finding), '1 handle, cut: the mesh is a sphere: try handles="auto"')
+        self.assertEqual(sp.sphere_map(mesh, sweeps=1).distortion.flipped_triangles, 0)
 
 
 class Options(unittest.TestCase):

@@ -57,7 +57,9 @@ TEST(RosParameters, EachChangesWhatItNamesOnly) {
                    {"max_cancellations", std::int64_t{9}}};
   for (const spherical_param::OptionRow& row : spherical_param::optionTable()) {
     if (!row.choices.empty())
-      values.emplace_back(row.name, row.choices.back());
+      values.emplace_back(row.name, parameterOf({}, row.name) == Value(row.choices.back())
+                                        ? row.choices.front()
+                                        : row.choices.back());
     else if (row.is_integer)
       values.emplace_back(row.name, static_cast<std::int64_t>(row.min) + 7);
     else

@@ -21,7 +21,8 @@ namespace pcl {
  * \param[out] points 3 x v, the vertices: consolidated and smoothed if the options say so
  * \param[out] map the map of these vertices
  * \param[in] options without a number of threads, that of the reconstruction is used
- * \return false after a failure, which PCL_ERROR reports; points and map are empty then. No
+ * \return false after a failure, which PCL_ERROR reports: also for a mesh with handles, which
+ * setHandles(HandleMode::None) cuts. Points and map are empty then. No
  * exception leaves the function, except one that a progress callback throws. \ingroup surface
  */
 template <typename PointInT>
@@ -30,6 +31,9 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
                               const spherical_param::SphereMapOptions& options = {});
 
 namespace detail {
+
+/** \brief Throws InvalidInput for a mesh without a map to one sphere. */
+PCL_EXPORTS void requireSphere(const spherical_param::Surface& surface);
 
 /** \brief A mesh with its map to the sphere. */
 struct MappedMesh {
@@ -101,6 +105,7 @@ bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruc
     spherical_param::SphereMapOptions guarded = options;
     static_cast<spherical_param::Execution&>(guarded) = execution;
     const spherical_param::Surface& result = reconstruction.getResult().surface();
+    detail::requireSphere(result);
     spherical_param::Positions vertices = detail::verticesOf(reconstruction);
     map = spherical_param::computeSphereMap(vertices, result.triangles, result.sphere, guarded);
     points = std::move(vertices);

@@ -17,16 +17,18 @@
 
 namespace pcl {
 
-/** \brief Meshes the point cloud of an object without holes through it (a topological sphere) into
- * a closed, manifold, consistently outward-oriented genus-0 triangle mesh through every distinct
- * finite input point. It needs no normals, no radius and no tuning.
+/** \brief Meshes the point cloud of an object into a closed, manifold, consistently
+ * outward-oriented triangle mesh through every distinct finite input point. The mesh has the
+ * handles of the object that are certain (setHandles()). It needs no normals, no radius and no
+ * tuning.
  *
  * A graph of local Delaunay neighbourhoods is embedded on the unit sphere from coarse to fine, so
  * that limbs are unfolded, towards a vanishing tangential Laplacian. The Delaunay triangulation of
  * the embedded points, which is their convex hull, gives a first connectivity; its decisions are
- * exact. It is then optimised on the points themselves, by moves that keep a sphere a sphere, until
- * no triangles intersect, if possible (getSelfIntersections()); the points are never moved.
- * getDiagnosis() lists evidence against a closed surface without handles, and its place.
+ * exact. A surface with handles is cut into spheres first, whose meshes are then glued. The mesh is
+ * optimised on the points themselves, by moves that keep its topology, until no triangles
+ * intersect, if possible (getSelfIntersections()); the points are never moved. getDiagnosis() lists
+ * evidence against a closed surface without handles, and its place.
  *
  * The method comes from M. Zwicker, C. Gotsman: "Meshing Point Clouds Using Spherical
  * Parameterization", Eurographics Symposium on Point-Based Graphics, 2004. Their own way, with
@@ -74,6 +76,8 @@ public:
   using ConsolidationMode = spherical_param::ConsolidationMode;
   /** \brief Whether openings of the surface are filled. */
   using SurfaceMode = spherical_param::SurfaceMode;
+  /** \brief Whether the mesh has the handles of the surface. */
+  using HandleMode = spherical_param::HandleMode;
   /** \brief Which points are left out. */
   using OutlierMode = spherical_param::OutlierMode;
   /** \brief Which parts of the cloud are meshed. */
@@ -109,6 +113,16 @@ public:
   /** \brief Get up to which size openings are filled.
    * \return the number of edges around them */
   inline int getFillHoles() const { return options_.fill_holes; }
+
+  /** \brief Set whether the mesh has the handles of the surface.
+   * \param[in] mode default HandleMode::Auto: it has those that are certain. None: it has none and
+   * is one sphere, or one with openings.
+   * \note A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None
+   * for remeshing, texturing and morphing. getResult() has the loops of the handles. */
+  inline void setHandles(HandleMode mode) { options_.handles = mode; }
+  /** \brief Get whether the mesh has the handles of the surface.
+   * \return the mode */
+  inline HandleMode getHandles() const { return options_.handles; }
 
   /** \brief Set which points are left out first because they belong to no surface.
    * \param[in] mode default OutlierMode::None. Auto: stray points, small clusters and isolated
@@ -284,7 +298,7 @@ public:
 
   /** \brief Get the embedding on the unit sphere, one point for each point of the input cloud, so
    * that the polygons fit. Duplicates have the place of their vertex; points that were not meshed
-   * are NaN. Empty after a failure.
+   * or whose mesh has handles are NaN. Empty after a failure and if no mesh has a sphere.
    * \note Where the optimisation moved vertices, as on noise, some polygons are inverted on the
    * sphere; with Method::Paper only by rounding.
    * \return a new cloud of the size of the input */
@@ -312,7 +326,6 @@ public:
   /** \brief Get the evidence against a closed surface without handles, in one piece, and its place.
    * Indices are vertices, which getVertexIndices() maps to the cloud.
    * \param[in] part below getPartCount()
-   * \note The mesh is always a sphere; the diagnosis says whether it should be.
    * \return the diagnosis; getResult().verdict and getResult().findings put it in words */
   inline const spherical_param::SurfaceDiagnosis& getDiagnosis(std::size_t part = 0) const {
     return getSurfaceOf(part).diagnosis;

@@ -1,4 +1,4 @@
-"""Genus-0 meshes of point clouds by spherical parameterisation.
+"""Meshes of point clouds by spherical parameterisation.
 
     >>> import numpy as np, spherical_param
     >>> points = np.random.default_rng(1).normal(size=(1000, 3))
@@ -7,11 +7,12 @@
     >>> mesh.triangles.shape
     (1996, 3)
 
-``reconstruct`` makes of the points of an object without holes through it a closed, manifold
-triangle mesh through every point, and a map to the sphere; with ``surface="open"`` the openings of
-the scan stay open. ``sphere_map`` makes that map one to one
-and of low distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it
-out in the plane, ``morph`` changes it into another. ``find_outliers`` finds points to leave out
+``reconstruct`` makes of the points of an object a closed, manifold triangle mesh through every
+point, with the handles of the object; with ``surface="open"`` the openings of the scan stay open. A
+mesh without handles has a map to the sphere. ``sphere_map`` makes that map one to one and of low
+distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it out in the
+plane, ``morph`` changes it into another: with ``handles="none"`` also of objects with handles,
+which are cut. ``find_outliers`` finds points to leave out
 before, ``find_parts`` the surfaces of a cloud.
 
 Arrays are NumPy's: points (n, 3) float64, triangles (m, 3) int32, counter-clockwise seen from
@@ -30,6 +31,7 @@ from ._figures import (
     EmbeddingLevel,
     Finding,
     Handle,
+    HandleLoop,
     History,
     HistoryFrame,
     Measures,
@@ -65,6 +67,7 @@ __all__ = [
     "EmbeddingLevel",
     "Finding",
     "Handle",
+    "HandleLoop",
     "History",
     "HistoryFrame",
     "ImpossiblePair",

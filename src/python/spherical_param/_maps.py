@@ -88,6 +88,17 @@ def _distortion(fields: dict[str, Any]) -> Distortion:
     return Distortion(**fields)
 
 
+def _sphere(mesh: Result) -> FloatArray:
+    if mesh.sphere is None:
+        count = mesh.topology.genus or 0
+        what = f"has {count} handle{'s' * (count > 1)}" if count else "was glued from several"
+        raise InvalidInput(
+            f"the mesh has no map to one sphere: it {what}; give reconstruct() "
+            'handles="none", which cuts them'
+        )
+    return mesh.sphere
+
+
 def _mesh(
     mesh: Union[Result, SphereMap, ArrayLike],
     triangles: Optional[ArrayLike],
@@ -102,7 +113,7 @@ def _mesh(
             )
         if isinstance(mesh, SphereMap):
             return mesh.vertices, mesh.triangles, mesh.directions
-        return mesh._export_points(), mesh.triangles, mesh.sphere
+        return mesh._export_points(), mesh.triangles, _sphere(mesh)
     if triangles is None or sphere is None:
         raise InvalidInput(
             "points were given without triangles and sphere; give all three, or the Result of "
@@ -130,8 +141,9 @@ def sphere_map(
     Parameters
     ----------
     mesh : Result, SphereMap, or array-like (v, 3)
-        A mesh of ``reconstruct`` (its smoothed or consolidated points, if it has them); or the points of one, with
-        ``triangles`` and ``sphere``.
+        A mesh of ``reconstruct`` (its smoothed or consolidated points, if it has them); or the
+        points of one, with ``triangles`` and ``sphere``. One with handles needs
+        ``handles="none"`` of ``reconstruct``, which cuts them.
     triangles : array-like of integers, (m, 3)
         Manifold, oriented outward, of genus 0, in one piece, each point used; openings stay open on
         the sphere.
@@ -150,7 +162,7 @@ def sphere_map(
     Raises
     ------
     InvalidInput
-        The mesh, the start or an option is not as described.
+        The mesh has handles, or the mesh, the start or an option is not as described.
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt
     """
     points, indices, start = _mesh(mesh, triangles, sphere)
@@ -317,7 +329,7 @@ def remesh(
     Raises
     ------
     InvalidInput
-        The mesh, the start or an option is not as described.
+        The mesh has handles, or the mesh, the start or an option is not as described.
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt
     """
     arguments.choice("grid", grid, get_args(GridName))

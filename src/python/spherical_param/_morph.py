@@ -131,7 +131,7 @@ def morph(
     Raises
     ------
     InvalidInput
-        A shape or an option is not as described.
+        A shape has handles, or a shape or an option is not as described.
     ComputeError, Cancelled, MemoryError, KeyboardInterrupt
     """
     arguments.choice("align", align, get_args(AlignName))

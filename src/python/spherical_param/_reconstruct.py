@@ -23,10 +23,11 @@ def reconstruct(
     progress: Progress = None,
     **options: Any,
 ) -> Union[Result, Results]:
-    """Mesh the points of an object without holes through it.
+    """Mesh the points of an object.
 
-    The mesh is closed, manifold, oriented outward, of genus 0 and in one piece, and every distinct
-    finite point is a vertex. No normals and no radius are needed, and the defaults need no tuning.
+    The mesh is closed, manifold, oriented outward and in one piece, and every distinct finite point
+    is a vertex. It has the handles of the object that are certain; with ``handles="none"`` it is a
+    sphere. No normals and no radius are needed, and the defaults need no tuning.
 
     Parameters
     ----------
@@ -43,9 +44,10 @@ OPTIONS
     Returns
     -------
     Result
-        Mesh and map to the sphere; ``verdict``, ``findings`` and ``diagnosis`` say how far to trust
-        them. With ``parts="each"`` a tuple of results, the largest part first, with a verdict over
-        all; parts that cannot be meshed are left out with a warning.
+        Mesh and, without handles, its map to the sphere; ``verdict``, ``findings`` and
+        ``diagnosis`` say how far to trust them. With ``parts="each"`` a tuple of results, the
+        largest part first, with a verdict over all; parts that cannot be meshed are left out with
+        a warning.
 
     Raises
     ------
@@ -59,11 +61,11 @@ OPTIONS
 
     Notes
     -----
-    No guarantees: the mesh may intersect itself, and openings of the cloud are closed and its
-    handles cut; ``diagnosis`` reports them. Below 2 KB of memory a point, 3 KB with a tolerance.
-    The result does not depend on ``threads``; a forked process works with one. Ctrl-C and False of
-    ``progress`` are noticed every second or two; the paper's own method may
-    take longer.
+    No guarantees: the mesh may intersect itself, openings of the cloud are closed, and handles that
+    are not certain are cut; ``diagnosis`` reports them. Below 2 KB of memory a point, 3 KB with a
+    tolerance. The result does not depend on ``threads``; a forked process works with one. Ctrl-C
+    and False of ``progress`` are noticed every second or two; the paper's own method may take
+    longer.
 
     Examples
     --------

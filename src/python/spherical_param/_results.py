@@ -64,7 +64,8 @@ class Source:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Result(Surface, MeshExport):
-    """A genus-0 mesh through all points, closed or open, its map to the sphere, and their quality.
+    """A mesh through all points, closed or open, its quality, and its map to the sphere if it has
+    no handles.
 
     Vertices are the distinct finite points, in the order of the input; ``vertex_of_input`` and
     ``input_of_vertex`` carry anything that points have to the vertices and back:

@@ -8,6 +8,7 @@
 
 #include "spherical_param/errors.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -81,6 +82,11 @@ void SphericalParamReconstruction<PointInT>::reconstruct() {
 template <typename PointInT>
 pcl::PointCloud<pcl::PointXYZ>::Ptr
 SphericalParamReconstruction<PointInT>::getSphereCoordinates() const {
+  const auto has_sphere = [](const spherical_param::Surface& surface) {
+    return surface.sphere.cols() > 0;
+  };
+  if (std::none_of(result_.surfaces.begin(), result_.surfaces.end(), has_sphere))
+    return detail::cloudOfNothing(0);
   return cloudOf(&spherical_param::Surface::sphere);
 }
 
@@ -99,8 +105,10 @@ SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
   std::size_t used = 0;
   for (std::size_t part = 0; part < result_.surfaces.size(); ++part) {
     const spherical_param::Surface& surface = result_.surfaces[part];
-    detail::placeVertices(std::invoke(places, surface), surface.vertex_of_input,
-                          parts_[part].used_indices, *cloud);
+    const auto& positions = std::invoke(places, surface);
+    if (positions.cols() == 0)
+      continue;
+    detail::placeVertices(positions, surface.vertex_of_input, parts_[part].used_indices, *cloud);
     used += surface.inputs.size();
   }
   cloud->is_dense = used == input_size_;
