@@ -52,9 +52,7 @@ def mesh(cloud, name, *options):
 
 def draw(path, size, views, *options):
     """Draws files with their captions."""
-    words = [str(file) for file, _ in views]
-    for _, caption in views:
-        words += ["--caption", caption]
+    words = [str(file) for file, _ in views] + [f"--caption={caption}" for _, caption in views]
     subprocess.run([ROOT / "tools" / "draw.py", path, *words, f"--size={size}", *options], check=True)
     save(path, Image.open(path).convert("RGB"))
 
@@ -85,7 +83,10 @@ def demo():
     mesh(cloud, "open", "-surface", "open", "-sphere", "open_sphere.ply")
     draw("open.png", "680x400", [(cloud, "a scan with openings"), ("open.ply", "open mesh")],
          "--colors=open_sphere.ply", "--view=60,15")  # fmt: skip
-    beside(GITHUB / "demo.png", "whole.png", "open.png")
+    cloud = scan("chair", 8000)
+    mesh(cloud, "chair_mesh")
+    draw("chair.png", "560x400", [(cloud, "a chair"), ("chair_mesh.ply", "its mesh: 4 handles")], "--view=35,15")
+    beside(GITHUB / "demo.png", "whole.png", "open.png", "chair.png")
 
 
 def remesh():
@@ -118,6 +119,24 @@ def openings():
     draw(PICTURES / "openings.png", "1320x400", [(cloud, "points"), ("closed.ply", "closed: the openings are filled"),
          ("open.ply", "open"), ("sphere.ply", "directions: room for the openings")], "--edges", "--view=60,15",
          "--view=60,15", "--view=60,15", "--view=60,15")  # fmt: skip
+
+
+def handles():
+    """The points beside the loops of the handles are left out to show the cut."""
+    run("scan", "double_torus", "double.xyz", "-points", 5000)
+    mesh("double.xyz", "glued")
+    points = [[float(x) for x in line.split()[:3]] for line in open("double.xyz")]
+    loops = [points[v] for handle in json.loads(pathlib.Path("report.json").read_text())["handles"]
+             for v in handle["loop"]]  # fmt: skip
+    with open("cut.xyz", "w") as cut:
+        for point in points:
+            if min(sum((x - y) ** 2 for x, y in zip(point, node)) for node in loops) > 0.055**2:
+                cut.write(" ".join(str(x) for x in point) + "\n")
+    mesh("cut.xyz", "cut", "-handles", "none", "-surface", "open", "-sphere", "sphere.ply")
+    run("scan", "double_torus", "points.ply", "-points", 5000)
+    draw(PICTURES / "handles.png", "1320x330", [("points.ply", "points"), ("cut.ply", "cut along the loops of two handles"),
+         ("sphere.ply", "a sphere with four discs taken out"), ("glued.ply", "glued: genus 2")], "--edges",
+         "--view=0,50", "--view=0,50", "--view=0,50", "--view=0,50")  # fmt: skip
 
 
 def embedding():
@@ -167,13 +186,12 @@ def symptoms():
         ("opening", scan("bowl", 4000), ["-surface", "open"], "--view=30,20"),
         ("outliers", "stray.xyz", ["-outliers", "auto"], FRONT),
         ("noise", scan("animal", 12000, "-noise", 0.6), ["-consolidation", "auto"], SIDE),
+        ("handle", scan("torus", 4000), ["-handles", "none"], "--view=30,40"),
     ):
         mesh(cloud, "before")
         run("reconstruction", cloud, "after.ply", *options)
         draw(PICTURES / f"symptom_{name}.png", "720x300", [("before.ply", "by default"),
-             ("after.ply", " ".join(options))], "--edges" if name in ("parts", "opening") else "--zoom=1", view)  # fmt: skip
-    mesh(scan("torus", 4000), "cut")
-    draw(PICTURES / "symptom_handle.png", "360x300", [("cut.ply", "a torus, cut")], "--edges", "--view=30,40")
+             ("after.ply", " ".join(options))], "--edges" if name in ("parts", "opening", "handle") else "--zoom=1", view)  # fmt: skip
 
 
 def depth_camera():
@@ -195,7 +213,7 @@ def scans():
     draw(PICTURES / "scans.png", "1320x170", [(scan(shape, 2500), shape) for shape in shapes], "--view=25,15")
 
 
-ALL = [demo, remesh, morph, pipeline, openings, embedding, smoothing, consolidation, symptoms, depth_camera, scans]
+ALL = [demo, remesh, morph, pipeline, openings, handles, embedding, smoothing, consolidation, symptoms, depth_camera, scans]
 
 
 def main(names):
