@@ -289,7 +289,7 @@ Eigen::Matrix<double, 4, Eigen::Dynamic> colorsAt(const MappedCloud& mapped,
   for (std::size_t i = 0; i < places.size(); ++i) {
     Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     for (Eigen::Index corner = 0; corner < 3; ++corner) {
-      const Index vertex = mapped.triangles()(corner, places[i].triangle);
+      const Index vertex = mapped.mesh.triangles(corner, places[i].triangle);
       const Color& color = mapped.colors[static_cast<std::size_t>(vertex)];
       sum += places[i].weights[corner] * Eigen::Vector4d(color[0], color[1], color[2], color[3]);
     }
@@ -303,8 +303,8 @@ void matchSecond(const std::array<MappedCloud, 2>& clouds, MorphResult& morph) {
   std::array<Eigen::Vector3d, 2> centers;
   std::array<double, 2> areas{};
   for (std::size_t side = 0; side < 2; ++side) {
-    const Positions& points = clouds[side].points;
-    const spherical_param::Triangles& triangles = clouds[side].triangles();
+    const Positions& points = clouds[side].mesh.points;
+    const spherical_param::Triangles& triangles = clouds[side].mesh.triangles;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const Eigen::Vector3d origin = points.col(triangles(0, 0));
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
@@ -342,9 +342,9 @@ void makeMorph(const Settings& settings, const std::array<MappedCloud, 2>& cloud
     }
   }
   console.begin("morph");
-  const SphereSurface first(clouds[0].points, clouds[0].triangles(), clouds[0].map.sphere,
+  const SphereSurface first(clouds[0].mesh.points, clouds[0].mesh.triangles, clouds[0].map.sphere,
                             {settings.fit, settings.threads(), clouds[0].map.caps});
-  const SphereSurface second(clouds[1].points, clouds[1].triangles(), clouds[1].map.sphere,
+  const SphereSurface second(clouds[1].mesh.points, clouds[1].mesh.triangles, clouds[1].map.sphere,
                              {settings.fit, settings.threads(), clouds[1].map.caps});
   morph.result = spherical_param::morphSurfaces(first, second, options);
   std::vector<std::string> reasons(morph.pairs.size());
@@ -545,7 +545,8 @@ void run(const std::vector<std::string>& words) {
   std::array<MappedCloud, 2> clouds;
   Morph morph;
   for (std::size_t side = 0; side < 2; ++side) {
-    mapCloud(settings.inputs[side], settings.product, console, clouds[side]);
+    mapCloud(settings.inputs[side], settings.product, HandlesOnSphere::Refused, console,
+             clouds[side]);
   }
   if (!settings.pairs.empty()) {
     morph.pairs = readPointPairs(settings.pairs, clouds[0].cloud, clouds[1].cloud);

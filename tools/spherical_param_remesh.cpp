@@ -341,7 +341,7 @@ std::vector<Color> interpolatedColors(const MappedCloud& mapped,
   for (const SphereLocation& location : locations) {
     Eigen::Vector4d sum = Eigen::Vector4d::Constant(0.5);  // to round to the nearest
     for (Eigen::Index corner = 0; corner < 3; ++corner) {
-      const Index vertex = mapped.triangles()(corner, location.triangle);
+      const Index vertex = mapped.mesh.triangles(corner, location.triangle);
       const Color& color = mapped.colors[static_cast<std::size_t>(vertex)];
       for (std::size_t channel = 0; channel < 4; ++channel) {
         sum[static_cast<Eigen::Index>(channel)] += location.weights[corner] * color[channel];
@@ -371,7 +371,7 @@ GridSphere gridOf(const Settings& settings, std::size_t points, const SphereSurf
 void resample(const Settings& settings, const MappedCloud& mapped, const SphereSurface& surface,
               Output& output) {
   const std::size_t wanted =
-      settings.points ? *settings.points : static_cast<std::size_t>(mapped.points.cols());
+      settings.points ? *settings.points : static_cast<std::size_t>(mapped.mesh.points.cols());
   if (settings.makesCloud()) {
     spherical_param::SurfacePoints points = spherical_param::sampleEvenly(
         surface, wanted, settings.product.reconstruction.options.seed);
@@ -409,7 +409,7 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
     if (!settings.reads_image && output.topology.closed) {
       const SphereSurface surface(mesh.points, mesh.triangles, mesh.directions,
                                   {SurfaceFit::Linear, settings.threads()});
-      output.distance = distanceFromMesh(mapped.points, mapped.map.sphere, surface);
+      output.distance = distanceFromMesh(mapped.mesh.points, mapped.map.sphere, surface);
     }
   }
   output.stages.push_back({"verify", console.end("")});
@@ -417,9 +417,9 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
 
 void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output,
                    Console& console) {
-  mapCloud(settings.input, settings.product, console, mapped);
+  mapCloud(settings.input, settings.product, HandlesOnSphere::Refused, console, mapped);
   console.begin("surface");
-  const SphereSurface surface(mapped.points, mapped.triangles(), mapped.map.sphere,
+  const SphereSurface surface(mapped.mesh.points, mapped.mesh.triangles, mapped.map.sphere,
                               {settings.fit, settings.threads(), mapped.map.caps});
   output.stages = mapped.cloud.stages;
   output.stages.push_back({"surface", console.end("")});

@@ -35,6 +35,7 @@ namespace {
 using namespace spherical_param::tools;
 using spherical_param::BakeOptions;
 using spherical_param::SphereChart;
+using spherical_param::Surface;
 using spherical_param::TextureAtlas;
 using spherical_param::TextureAtlasOptions;
 using spherical_param::TextureImage;
@@ -258,11 +259,11 @@ struct Output {
 };
 
 void make(const Settings& settings, MappedCloud& mapped, Output& output, Console& console) {
-  mapCloud(settings.input, settings.product, console, mapped);
+  mapCloud(settings.input, settings.product, HandlesOnSphere::Cut, console, mapped);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
   output.atlas =
-      spherical_param::makeTextureAtlas(mapped.triangles(), mapped.map.sphere, settings.atlas);
+      spherical_param::makeTextureAtlas(mapped.mesh.triangles, mapped.map.sphere, settings.atlas);
   output.stages.push_back({"atlas", console.end("")});
 
   console.begin("image");
@@ -271,13 +272,14 @@ void make(const Settings& settings, MappedCloud& mapped, Output& output, Console
     output.image = spherical_param::bakeCheckerboard(
         output.atlas, mapped.map.sphere, settings.cells.value_or(usual_cells), settings.bake);
   } else {
-    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.points.cols());
+    Eigen::Matrix<double, 3, Eigen::Dynamic> colors(3, mapped.mesh.points.cols());
     for (Eigen::Index v = 0; v < colors.cols(); ++v) {
       const Color& color = mapped.colors[static_cast<std::size_t>(v)];
       colors.col(v) << color[0], color[1], color[2];
     }
     output.image = spherical_param::bakeColors(output.atlas, colors, settings.bake);
   }
+  output.atlas = spherical_param::joinCuts(std::move(output.atlas), mapped.mesh);
   output.stages.push_back({"image", console.end(std::to_string(output.image.width) + " x " +
                                                 std::to_string(output.image.height) + " pixels")});
 }
@@ -289,6 +291,11 @@ std::vector<spherical_param::Finding> findingsOf(const Settings& settings,
     findings.push_back({"the cloud has no colours: the texture is a checkerboard", "", "", false});
   }
   return findings;
+}
+
+/// Those that arise where the chart cuts triangles.
+std::size_t cutVertices(const MappedCloud& mapped, const Output& output) {
+  return output.atlas.vertices.size() - mapped.cloud.surface().input_of_vertex.size();
 }
 
 Json report(const Settings& settings, const MappedCloud& mapped, const Output& output) {
@@ -304,8 +311,8 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
                    {"height", output.image.height},
                    {"covered_share", output.share(1)},
                    {"gutter_share", output.share(2)}};
-  json["cut_vertices"] =
-      output.atlas.vertices.size() - static_cast<std::size_t>(mapped.points.cols());
+  json["cut_handles"] = mapped.cloud.surface().genus();
+  json["cut_vertices"] = cutVertices(mapped, output);
   json["texture_coordinates"] = output.atlas.coordinates.cols();
   json["triangles"] = output.atlas.triangles.cols();
   json["stages"] = toJson(output.stages);
@@ -321,8 +328,8 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
                                std::to_string(output.image.width) + " x " +
                                std::to_string(output.image.height) + " pixels, " +
                                formatted(100.0 * output.share(1), 4) + " % in triangles");
-  console.entry("cut vertices", std::to_string(output.atlas.vertices.size() -
-                                               static_cast<std::size_t>(mapped.points.cols())));
+  console.entry("cut handles", std::to_string(mapped.cloud.surface().genus()));
+  console.entry("cut vertices", std::to_string(cutVertices(mapped, output)));
   console.entry("coordinates", std::to_string(output.atlas.coordinates.cols()));
   console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
   const CloudReconstruction& cloud = mapped.cloud;
@@ -339,7 +346,9 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
 std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const MappedCloud& mapped,
                                                Output& output, Console& console) {
   console.begin("write");
-  const TexturedMesh mesh = makeTexturedMesh(output.atlas, mapped.points, mapped.triangles());
+  const Surface& surface = mapped.cloud.surface();
+  const TexturedMesh mesh =
+      makeTexturedMesh(output.atlas, vertexPositions(mapped.cloud, surface), surface.triangles);
   const std::string png = encodePng(output.image);
   console.update(0.5);
   std::vector<std::unique_ptr<OutputFile>> files;

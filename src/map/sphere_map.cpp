@@ -57,7 +57,7 @@ std::optional<internal::CappedMesh> checkMesh(const Positions& points, const Tri
     throw InvalidInput(caller + "the mesh does not map to a sphere: its genus is " +
                        std::to_string(*topology.genus) +
                        "; cut its handles, by handles = none of reconstruct()");
-  if (start.cols() != points.cols())
+  if (start.cols() > 0 && start.cols() != points.cols())
     throw InvalidInput(caller + "there are " + std::to_string(points.cols()) +
                        " vertices, but the start has " + std::to_string(start.cols()) +
                        "; give a unit vector for each");
@@ -310,10 +310,13 @@ SphereMap computeSphereMap(const Positions& points, const Triangles& triangles,
   Positions sphere(3, refined.cols());
   for (Index i = 0; i < refined.cols(); ++i)
     sphere.col(hierarchy.order[i]) = refined.col(i);
-  const Positions unit_start = start.colwise().normalized();
-  map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
-  internal::reportFraction(report, 0.0);
-  const Eigen::Matrix3d rotation = rotationTo(unit_start, sphere, points, triangles);
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (start.cols() > 0) {
+    const Positions unit_start = start.colwise().normalized();
+    map.before = measureMapDistortion(points, triangles, unit_start, options.threads);
+    internal::reportFraction(report, 0.0);
+    rotation = rotationTo(unit_start, sphere, points, triangles);
+  }
   const auto take = [&](const Positions& all) {
     map.sphere = all.leftCols(points.cols());
     map.caps = all.rightCols(all.cols() - points.cols());

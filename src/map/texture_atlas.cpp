@@ -233,16 +233,16 @@ private:
     const Index a = triangle[longest];
     const Index b = triangle[(longest + 1) % 3];
     const Index c = triangle[(longest + 2) % 3];
-    const auto across = left_of_.find({b, a});
-    if (across == left_of_.end())
-      return {};
-    const Index other = across->second;
     const double fraction = fractionBeside(sphere_.points[a], sphere_.points[b], sphere_.points[c]);
     const Index middle = addVertex(a, b, fraction);
     if (middle < 0)
       return {};
-    const Index new_part = replace(t, a, b, middle);
-    return {t, new_part, other, replace(other, b, a, middle)};
+    const auto across = left_of_.find({b, a});
+    const Index other = across == left_of_.end() ? -1 : across->second;
+    std::vector<Index> parts = {t, replace(t, a, b, middle)};
+    if (other >= 0)  // else the edge is in the boundary
+      parts.insert(parts.end(), {other, replace(other, b, a, middle)});
+    return parts;
   }
 
   /// How far along from a to b the point is that is closest to c.

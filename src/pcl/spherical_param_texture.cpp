@@ -54,19 +54,26 @@ pcl::TextureMesh textureMesh(const MappedMesh& mesh, const spherical_param::Posi
                              spherical_param::TextureImage& image) {
   spherical_param::BakeOptions bake = options.bake;
   bake.threads = threads;
-  const spherical_param::TextureAtlas atlas =
+  spherical_param::TextureAtlas atlas =
       spherical_param::makeTextureAtlas(mesh.triangles, mesh.map.sphere, options.atlas);
   spherical_param::TextureImage baked =
-      colors.cols() > 0 ? spherical_param::bakeColors(atlas, colors, bake)
-                        : spherical_param::bakeCheckerboard(atlas, mesh.map.sphere,
-                                                            options.checkerboard_cells, bake);
+      colors.cols() > 0
+          ? spherical_param::bakeColors(
+                atlas, spherical_param::Positions(colors(Eigen::all, mesh.vertex_of)), bake)
+          : spherical_param::bakeCheckerboard(atlas, mesh.map.sphere, options.checkerboard_cells,
+                                              bake);
+  atlas = spherical_param::joinCuts(std::move(atlas), mesh);
+  spherical_param::Triangles triangles = mesh.triangles;
+  for (spherical_param::Index& v : triangles.reshaped())
+    v = mesh.vertex_of[static_cast<std::size_t>(v)];
+  const spherical_param::Positions points = mesh.points.leftCols(triangles.maxCoeff() + 1);
   spherical_param::Positions normals = spherical_param::atCutVertices(
-      atlas, spherical_param::areaWeightedNormals(mesh.points, mesh.triangles));
+      atlas, spherical_param::areaWeightedNormals(points, triangles));
   for (Eigen::Index i = 0; i < normals.cols(); ++i)
     normals.col(i).stableNormalize();
 
   pcl::TextureMesh output;
-  output.cloud = cloudOf(spherical_param::atCutVertices(atlas, mesh.points), normals);
+  output.cloud = cloudOf(spherical_param::atCutVertices(atlas, points), normals);
   output.tex_polygons = {polygonsOf(atlas.triangles)};
   output.tex_materials = {materialOf(options.image_file)};
   addCoordinates(atlas, output);

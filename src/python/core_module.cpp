@@ -10,6 +10,7 @@
 #include "python/options.h"
 #include "python/reports.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/sphere_map.h"
@@ -214,16 +215,25 @@ py::dict remeshSurface(const DoubleArray& points, const IndexArray& triangles,
   return dict;
 }
 
-py::dict textureAtlas(const IndexArray& triangles, const DoubleArray& sphere,
-                      const std::string& chart, double margin) {
+/// \param points of a mesh without a map, which may have handles; then `sphere` is a start of the
+///               map, or empty.
+py::dict textureAtlas(const std::optional<DoubleArray>& points, const IndexArray& triangles,
+                      const DoubleArray& sphere, const std::string& chart, double margin) {
   TextureAtlasOptions options;
   options.chart = valueOf("chart", chart, kChartNames);
   options.margin = margin;
   Listener listener(py::none{});
   const Triangles mesh = toTriangles(triangles);
   const Positions directions = toPositions(sphere);
-  const TextureAtlas atlas =
-      listener.run([&] { return makeTextureAtlas(mesh, directions, options); });
+  const std::optional<Positions> vertices =
+      points ? std::optional(toPositions(*points)) : std::nullopt;
+  const TextureAtlas atlas = listener.run([&] {
+    if (!vertices)
+      return makeTextureAtlas(mesh, directions, options);
+    const CutMesh cut = cutHandles(*vertices, mesh);
+    const SphereMap map = computeSphereMap(cut.points, cut.triangles, directions);
+    return joinCuts(makeTextureAtlas(cut.triangles, map.sphere, options), cut);
+  });
   std::vector<std::array<Index, 3>> corners;
   Positions weights(3, static_cast<Eigen::Index>(atlas.vertices.size()));
   for (std::size_t i = 0; i < atlas.vertices.size(); ++i) {
@@ -344,6 +354,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("remesh", &remeshSurface, points, triangles, sphere, py::kw_only(),
              py::arg("caps").noconvert(), "grid"_a, "count"_a, "fit"_a, "seed"_a, "threads"_a,
              "progress"_a);
-  module.def("texture_coordinates", &textureAtlas, triangles, sphere, py::kw_only(), "chart"_a,
-             "margin"_a);
+  module.def("texture_coordinates", &textureAtlas, points, triangles, sphere, py::kw_only(),
+             "chart"_a, "margin"_a);
 }

@@ -1,6 +1,7 @@
 // The calls of fuzz_stages on the map and what is made of it.
 
 #include "fuzz_stages.h"
+#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/morphing.h"
 #include "spherical_param/map/resampling.h"
 #include "spherical_param/map/sphere_map.h"
@@ -68,6 +69,29 @@ void fuzzResampling(Bytes& bytes, const SphereSurface& surface, bool untangles) 
   geometryImageOfMesh(mesh);
 }
 
+void fuzzCuts(Bytes& bytes) {
+  const int rings = 3 + bytes.byte() % 8;
+  const int around = 3 + bytes.byte() % 8;
+  Triangles triangles = spherical_param::test::torusTriangles(rings, around);
+  Positions points(3, rings * around);
+  for (double& x : points.reshaped())
+    x = bytes.byte();
+  if (bytes.oneIn(8))
+    triangles.data()[bytes.byte() % triangles.size()] = bytes.byte() % points.cols();
+  if (bytes.oneIn(2))  // an opening
+    triangles = Triangles(triangles.rightCols(triangles.cols() - 1 - bytes.byte() % 2));
+  const CutMesh cut = cutHandles(points, triangles);
+  require(checkTopology(cut.triangles, cut.vertex_of.size()).isOpenSurface(),
+          "a cut torus is an open surface");
+  const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
+  TextureAtlas atlas = makeTextureAtlas(cut.triangles, map.sphere, {bytes.choice<SphereChart>(3)});
+  if (bytes.oneIn(8))
+    atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
+  atlas = joinCuts(std::move(atlas), cut);
+  const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
+  require(topology.isSurface() && topology.genus == 1, "joined, it is a torus");
+}
+
 }  // namespace
 
 void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
@@ -100,6 +124,10 @@ void fuzzSurface(Bytes& bytes, const Positions& points, Watch& watch) {
 }
 
 void fuzzTexture(Bytes& bytes, const Positions& points, Watch& watch) {
+  if (bytes.oneIn(4)) {
+    fuzzCuts(bytes);
+    return;
+  }
   const Mapped mapped = mapFrom(bytes, points, watch);
   TextureAtlasOptions options;
   options.chart = bytes.choice<SphereChart>(3);

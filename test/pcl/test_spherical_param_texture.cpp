@@ -90,6 +90,24 @@ TEST_F(SphericalParamTexture, TakesColorsFromAllTypesThatHaveThemForAnyNumberOfT
   EXPECT_EQ(image.pixels, board.pixels);
 }
 
+TEST_F(SphericalParamTexture, AMeshWithHandlesIsCutInTheImageAlone) {
+  pcl::SphericalParamReconstruction<pcl::PointXYZ> reconstruction;
+  reconstruction.setInputCloud(test::makeTorus(16));
+  ASSERT_TRUE(pcl::textureSphericalParam(reconstruction, mesh, image, options));
+  EXPECT_EQ(reconstruction.getResult().surface().genus(), 1U);
+  const auto points = test::cloudOf<pcl::PointNormal>(mesh.cloud);
+  const auto topology =
+      spherical_param::checkTopology(test::trianglesOf(mesh.tex_polygons[0]), points.size());
+  EXPECT_TRUE(topology.isSurface() && topology.closed);
+  EXPECT_EQ(topology.genus, 1);
+  ASSERT_GT(points.size(), 512U);
+  for (std::size_t v = 0; v < 512; ++v) {
+    const Eigen::Vector3f ring(points[v].x, points[v].y, 0.0F);
+    const Eigen::Vector3f outward = points[v].getVector3fMap() - ring.normalized();
+    EXPECT_GT(points[v].getNormalVector3fMap().dot(outward.normalized()), 0.9F);
+  }
+}
+
 TEST_F(SphericalParamTexture, AFailureLeavesNothingButTheHeader) {
   const auto expect_failure = [this](const auto& spoil) {
     options = {};

@@ -93,6 +93,19 @@ class Maps(unittest.TestCase):
                 volume = shapes.volume(atlas.vertices, atlas.triangles)
                 self.assertAlmostEqual(volume, self.mesh.measures.volume, delta=1e-9)
 
+    def test_a_mesh_with_handles_is_cut_for_the_image_alone(self):
+        points = shapes.torus(24)
+        mesh = sp.reconstruct(points)
+        atlas = sp.texture_coordinates(mesh)
+        shapes.check_closed(self, len(atlas.vertices), atlas.triangles, genus=1)
+        np.testing.assert_array_equal(atlas.vertices[: len(points)], mesh.vertices)
+        volume = shapes.volume(atlas.vertices, atlas.triangles)
+        self.assertAlmostEqual(volume, mesh.measures.volume, delta=1e-9)
+        # A mesh without handles has the atlas of its map.
+        np.testing.assert_array_equal(
+            sp.texture_coordinates(self.mesh).coordinates, sp.texture_coordinates(self.map).coordinates
+        )
+
     def test_a_morph_is_both_shapes_at_its_ends(self):
         points = shapes.ellipsoid(400)
         other = sp.reconstruct(shapes.record(points, shapes.colors_of(points)))
@@ -141,7 +154,7 @@ class Maps(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, "; "):
                 sp.measure_map_distortion(points, triangles, wrong)
         with self.assertRaisesRegex(sp.InvalidInput, "; give the SphereMap"):
-            sp.texture_coordinates(mesh)
+            sp.texture_coordinates(points)
         for function, argument, name, values in (
             (sp.sphere_map, mesh, "area_weight", (2, "1")),
             (sp.sphere_map, mesh, "sweeps", (1001, 1.5)),

@@ -199,7 +199,6 @@ TEST_F(BadInput, MeshesWithHandlesHaveNoMapToOneSphere) {
                      {"both.xyz", "out%03d.ply", "-parts", "each", "-sphere", "s%03d.ply"},
                      "part 2 of 'both.xyz' has no map to one sphere"},
                     {remesh_tool, {"torus.xyz", "out.ply"}, cause},
-                    {texture_tool, {"torus.xyz", "out.glb"}, cause},
                     {morph_tool, {"in.xyz", "torus.xyz", "out.ply"}, cause}},
                    failed);
   run(mesh_tool,

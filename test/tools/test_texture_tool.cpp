@@ -1,6 +1,8 @@
 // pcl_spherical_param_texture, run as a user does: its formats, taken apart without the tools.
 
+#include "handle_shapes.h"
 #include "helpers.h"
+#include "spherical_param/mesh_topology.h"
 #include "tool_test.h"
 
 #include <gtest/gtest.h>
@@ -332,6 +334,29 @@ TEST_F(TextureTool, WithoutColoursThereIsACheckerboardAndThatIsSaid) {
     const json asked = reportOf(TEXTURE_TOOL, {input, "asked.glb", "-size", "64", "-checker", "8"});
     EXPECT_TRUE(content("asked.glb") == content("plain.glb")) << input;
     EXPECT_TRUE(asked["findings"].empty());
+  }
+}
+
+TEST_F(TextureTool, ASurfaceWithHandlesIsCutInTheImageAlone) {
+  const Positions points =
+      spherical_param::test::torusCloud(40, 20, 0.7, 0.3).cast<float>().cast<double>();
+  write("torus.ply", tool_test::plyOf(points, {}, colorsOf(points)));
+  const json report = reportOf(TEXTURE_TOOL, {"torus.ply", "out.obj", "-size", "512"});
+  expectEntries(report, R"({"vertices": 800, "mesh_triangles": 1600, "cut_handles": 1,
+      "texture": "colors", "embedding_distortion": null, "findings": []})"_json);
+  std::string material;
+  const TexturedFile mesh = parseObj(content("out.obj"), material);
+  const auto topology =
+      spherical_param::checkTopology(mesh.triangles, static_cast<std::size_t>(mesh.points.cols()));
+  EXPECT_TRUE(topology.isSurface() && topology.closed);
+  EXPECT_EQ(topology.genus, 1);
+  EXPECT_EQ(mesh.points.leftCols(800), points);
+  const Image image = decode(content("out.png"));
+  const Positions colors = colorsOf(mesh.points);
+  for (Eigen::Index t = 0; t < mesh.triangles.size(); ++t) {
+    const Eigen::Vector2d place = mesh.coordinates.col(mesh.coordinate_triangles(t));
+    const Eigen::Vector3d off = image.at(place) - colors.col(mesh.triangles(t));
+    EXPECT_LE(off.cwiseAbs().maxCoeff(), 10.0);
   }
 }
 

@@ -22,21 +22,26 @@ void addToJson(const MapDistortion& distortion, Json& json) {
   json["stretch_efficiency"] = distortion.stretch_efficiency;
 }
 
-std::string listed(const DistortionStatistics& statistics, const DistortionStatistics& before) {
+/// \param before of the embedding, if there is one.
+std::string listed(const DistortionStatistics& statistics, const DistortionStatistics* before) {
   const auto three = [](const DistortionStatistics& values) {
     return formatted(values.mean, 4) + ", " + formatted(values.p95, 4) + ", " +
            formatted(values.max, 4);
   };
-  return three(statistics) + " (mean, 95 %, max; embedding: " + three(before) + ")";
+  return three(statistics) + " (mean, 95 %, max" +
+         (before != nullptr ? "; embedding: " + three(*before) : "") + ")";
 }
 
-std::vector<Color> vertexColors(const CloudReconstruction& cloud) {
+/// \param vertex_of of each vertex of the cut mesh.
+std::vector<Color> vertexColors(const CloudReconstruction& cloud,
+                                const std::vector<Index>& vertex_of) {
   std::vector<Color> colors;
   if (cloud.data->colors.empty()) {
     return colors;
   }
-  colors.reserve(cloud.surface().input_of_vertex.size());
-  for (const Index point : cloud.surface().input_of_vertex) {
+  colors.reserve(vertex_of.size());
+  for (const Index v : vertex_of) {
+    const Index point = cloud.surface().input_of_vertex[static_cast<std::size_t>(v)];
     colors.push_back(cloud.data->colors[static_cast<std::size_t>(point)]);
   }
   return colors;
@@ -96,12 +101,15 @@ Json productOptionsToJson(const ProductSettings& settings) {
   return json;
 }
 
-void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
-              MappedCloud& mapped) {
+void mapCloud(const std::string& path, const ProductSettings& settings, HandlesOnSphere handles,
+              Console& console, MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
-  requireSpheres(path, mapped.cloud);
-  mapped.points = vertexPositions(mapped.cloud, mapped.cloud.surface());
-  mapped.colors = vertexColors(mapped.cloud);
+  if (handles == HandlesOnSphere::Refused) {
+    requireSpheres(path, mapped.cloud);
+  }
+  const Surface& surface = mapped.cloud.surface();
+  mapped.mesh = cutHandles(vertexPositions(mapped.cloud, surface), surface.triangles);
+  mapped.colors = vertexColors(mapped.cloud, mapped.mesh.vertex_of);
   console.begin("map");
   SphereMapOptions options = settings.map;
   options.progress = [&console](const Progress& progress) {
@@ -110,7 +118,7 @@ void mapCloud(const std::string& path, const ProductSettings& settings, Console&
   };
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
     mapped.map =
-        computeSphereMap(mapped.points, mapped.triangles(), mapped.cloud.surface().sphere, options);
+        computeSphereMap(mapped.mesh.points, mapped.mesh.triangles, surface.sphere, options);
   });
   mapped.cloud.stages.push_back({"map", console.end("")});
 }
@@ -127,26 +135,33 @@ std::vector<Finding> findingsOf(const MappedCloud& mapped) {
 
 void addMapToJson(const MappedCloud& mapped, Json& json) {
   json["input_points"] = mapped.cloud.data->points.size();
-  json["vertices"] = mapped.points.cols();
-  json["mesh_triangles"] = mapped.triangles().cols();
+  json["vertices"] = mapped.cloud.surface().input_of_vertex.size();
+  json["mesh_triangles"] = mapped.mesh.triangles.cols();
   json["mesh_self_intersections"] = mapped.cloud.surface().self_intersections.size();
   addToJson(mapped.map.distortion, json);
-  json["embedding_distortion"] = Json::object();
-  addToJson(mapped.map.before, json["embedding_distortion"]);
+  json["embedding_distortion"] = nullptr;
+  if (mapped.cloud.surface().sphere.cols() > 0) {
+    addToJson(mapped.map.before, json["embedding_distortion"]);
+  }
 }
 
 void printMap(const MappedCloud& mapped, Console& console) {
   const SphereMap& map = mapped.map;
   console.entry("input points", std::to_string(mapped.cloud.data->points.size()));
-  console.entry("vertices", std::to_string(mapped.points.cols()));
+  console.entry("vertices", std::to_string(mapped.cloud.surface().input_of_vertex.size()));
   console.entry("mesh",
-                std::to_string(mapped.triangles().cols()) + " triangles, " +
+                std::to_string(mapped.mesh.triangles.cols()) + " triangles, " +
                     counted(mapped.cloud.surface().self_intersections.size(), "self-intersection"));
+  const MapDistortion* before = mapped.cloud.surface().sphere.cols() > 0 ? &map.before : nullptr;
   console.entry("flipped on sphere",
                 std::to_string(map.distortion.flipped_triangles) +
-                    " (embedding: " + std::to_string(map.before.flipped_triangles) + ")");
-  console.entry("angle distortion", listed(map.distortion.angle, map.before.angle));
-  console.entry("area distortion", listed(map.distortion.area, map.before.area));
+                    (before != nullptr
+                         ? " (embedding: " + std::to_string(before->flipped_triangles) + ")"
+                         : ""));
+  console.entry("angle distortion",
+                listed(map.distortion.angle, before != nullptr ? &before->angle : nullptr));
+  console.entry("area distortion",
+                listed(map.distortion.area, before != nullptr ? &before->area : nullptr));
 }
 
 }  // namespace spherical_param::tools

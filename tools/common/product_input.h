@@ -6,6 +6,7 @@
 #include "common/json_report.h"
 #include "common/point_data.h"
 #include "common/reconstruction_options.h"
+#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/sphere_map.h"
 
 #include <string>
@@ -37,17 +38,18 @@ Json productOptionsToJson(const ProductSettings& settings);
 /// A cloud, its mesh, and the map of that to the sphere.
 struct MappedCloud {
   CloudReconstruction cloud;  ///< with the stage "map" as the last
-  Positions points;           ///< 3 x v, the vertices; moved, if that was asked for
-  std::vector<Color> colors;  ///< of the vertices: v, or none if the cloud has no colours
-  SphereMap map;
-
-  const Triangles& triangles() const { return cloud.surface().triangles; }
+  CutMesh mesh;               ///< its points are moved, if that was asked for
+  std::vector<Color> colors;  ///< of its vertices, or none if the cloud has no colours
+  SphereMap map;              ///< of `mesh`
 };
+
+/// Whether a mesh with handles is cut so that it has a map to one sphere, or refused.
+enum class HandlesOnSphere { Cut, Refused };
 
 /// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.
 /// \throw UsageError, Failure
-void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
-              MappedCloud& mapped);
+void mapCloud(const std::string& path, const ProductSettings& settings, HandlesOnSphere handles,
+              Console& console, MappedCloud& mapped);
 
 /// What the library found, with options that tools of one surface take.
 std::vector<Finding> findingsOf(const MappedCloud& mapped);
@@ -55,7 +57,7 @@ std::vector<Finding> findingsOf(const MappedCloud& mapped);
 /// Adds the size of the mesh and the faults of the map: `input_points`, `vertices`,
 /// `mesh_triangles`, `mesh_self_intersections`, `flipped_triangles`, `angle_distortion`,
 /// `area_distortion`, `mean_angle_difference_degrees`, `stretch_efficiency`, and the same of the
-/// embedding as `embedding_distortion`.
+/// embedding as `embedding_distortion`, null without one.
 void addMapToJson(const MappedCloud& mapped, Json& json);
 
 /// Prints the same.

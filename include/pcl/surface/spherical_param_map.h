@@ -3,6 +3,7 @@
 #include <pcl/surface/impl/spherical_param_run_core.hpp>
 #include <pcl/surface/spherical_param_reconstruction.h>
 
+#include "spherical_param/map/handle_cutting.h"
 #include "spherical_param/map/sphere_map.h"
 #include "spherical_param/types.h"
 
@@ -35,12 +36,13 @@ namespace detail {
 /** \brief Throws InvalidInput for a mesh without a map to one sphere. */
 PCL_EXPORTS void requireSphere(const spherical_param::Surface& surface);
 
-/** \brief A mesh with its map to the sphere. */
-struct MappedMesh {
-  spherical_param::Positions points;     ///< 3 x v
-  spherical_param::Triangles triangles;  ///< 3 x m
-  spherical_param::SphereMap map;        ///< of the points
+/** \brief A mesh with its map to the sphere; one with handles is cut. */
+struct MappedMesh : spherical_param::CutMesh {
+  spherical_param::SphereMap map;
 };
+
+/** \brief What becomes of a mesh with handles, which has no map to one sphere. */
+enum class HandlesOnSphere { Cut, Refused };
 
 /** \brief The vertices of the last mesh, consolidated and smoothed.
  * \return 3 x v */
@@ -60,17 +62,42 @@ verticesOf(const SphericalParamReconstruction<PointInT>& reconstruction) {
   return points;
 }
 
+/** \brief Meshes a cloud and maps the mesh.
+ * \return false after a failure */
+template <typename PointInT>
+bool mapMesh(SphericalParamReconstruction<PointInT>& reconstruction, HandlesOnSphere handles,
+             const spherical_param::SphereMapOptions& options, MappedMesh& mesh) {
+  mesh = {};
+  reconstruction.reconstruct();
+  // The reconstruction has reported why.
+  if (!reconstruction.getErrorMessage().empty())
+    return false;
+  const auto work = [&](const spherical_param::Execution& execution) {
+    spherical_param::SphereMapOptions guarded = options;
+    static_cast<spherical_param::Execution&>(guarded) = execution;
+    const spherical_param::Surface& result = reconstruction.getResult().surface();
+    if (handles == HandlesOnSphere::Refused)
+      requireSphere(result);
+    MappedMesh made{spherical_param::cutHandles(verticesOf(reconstruction), result.triangles), {}};
+    made.map =
+        spherical_param::computeSphereMap(made.points, made.triangles, result.sphere, guarded);
+    mesh = std::move(made);
+  };
+  return runCore("computeSphericalParamMap", options, reconstruction.getNumberOfThreads(), work);
+}
+
 /** \brief Meshes a cloud, maps the mesh, and makes an output of it; only its header is left after a
  * failure.
  * \param[in] function the name that messages begin with
+ * \param[in] handles cut or refused
  * \param[in] options of the map
  * \param[in] threads of `make`; 0: those of the reconstruction
  * \param[in] make called with the mesh and the threads; returns the output without its header
  * \return false after a failure */
 template <typename PointInT, typename Output, typename Make>
 bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& reconstruction,
-                 const spherical_param::SphereMapOptions& options, int threads, Output& output,
-                 const Make& make) {
+                 HandlesOnSphere handles, const spherical_param::SphereMapOptions& options,
+                 int threads, Output& output, const Make& make) {
   output = Output();
   MappedMesh mesh;
   const auto keep_header = [&](const spherical_param::Execution&) {
@@ -78,14 +105,12 @@ bool makeFromMap(const char* function, SphericalParamReconstruction<PointInT>& r
       output.header = reconstruction.getInputCloud()->header;
   };
   const auto work = [&](const spherical_param::Execution& execution) {
-    mesh.triangles = reconstruction.getResult().surface().triangles;
     Output made = make(std::as_const(mesh), execution.threads);
     made.header = output.header;
     made.cloud.header = output.header;
     output = std::move(made);
   };
-  return runCore(function, {}, 0, keep_header) &&
-         computeSphericalParamMap(reconstruction, mesh.points, mesh.map, options) &&
+  return runCore(function, {}, 0, keep_header) && mapMesh(reconstruction, handles, options, mesh) &&
          runCore(function, {threads, {}}, reconstruction.getNumberOfThreads(), work);
 }
 
@@ -95,23 +120,12 @@ template <typename PointInT>
 bool computeSphericalParamMap(SphericalParamReconstruction<PointInT>& reconstruction,
                               spherical_param::Positions& points, spherical_param::SphereMap& map,
                               const spherical_param::SphereMapOptions& options) {
-  points.resize(3, 0);
-  map = spherical_param::SphereMap();
-  reconstruction.reconstruct();
-  // The reconstruction has reported why.
-  if (!reconstruction.getErrorMessage().empty())
-    return false;
-  const auto work = [&](const spherical_param::Execution& execution) {
-    spherical_param::SphereMapOptions guarded = options;
-    static_cast<spherical_param::Execution&>(guarded) = execution;
-    const spherical_param::Surface& result = reconstruction.getResult().surface();
-    detail::requireSphere(result);
-    spherical_param::Positions vertices = detail::verticesOf(reconstruction);
-    map = spherical_param::computeSphereMap(vertices, result.triangles, result.sphere, guarded);
-    points = std::move(vertices);
-  };
-  return detail::runCore("computeSphericalParamMap", options, reconstruction.getNumberOfThreads(),
-                         work);
+  detail::MappedMesh mesh;
+  const bool is_done =
+      detail::mapMesh(reconstruction, detail::HandlesOnSphere::Refused, options, mesh);
+  points = std::move(mesh.points);
+  map = std::move(mesh.map);
+  return is_done;
 }
 
 }  // namespace pcl

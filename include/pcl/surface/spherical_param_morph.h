@@ -80,14 +80,13 @@ template <typename PointInT>
 bool mapForMorph(SphericalParamReconstruction<PointInT>& reconstruction,
                  const spherical_param::SphereMapOptions& options, MorphShape& shape) {
   const auto work = [&](const spherical_param::Execution&) {
-    shape.mesh.triangles = reconstruction.getResult().surface().triangles;
     shape.vertex_of_point.assign(reconstruction.getInputCloud()->size(), -1);
     const pcl::Indices& used = reconstruction.getUsedIndices();
     for (std::size_t i = 0; i < used.size(); ++i)
       shape.vertex_of_point[static_cast<std::size_t>(used[i])] =
           reconstruction.getResult().surface().vertex_of_input[i];
   };
-  return computeSphericalParamMap(reconstruction, shape.mesh.points, shape.mesh.map, options) &&
+  return mapMesh(reconstruction, HandlesOnSphere::Refused, options, shape.mesh) &&
          runCore("morphSphericalParam", {}, 0, work);
 }
 

@@ -35,7 +35,7 @@ struct SphericalParamTextureOptions {
 };
 
 /** \brief Mesh a cloud, and give the mesh a texture: the colours of the points, or a checkerboard
- * if their type has none.
+ * if their type has none. A mesh with handles is cut in the image, not in space.
  *
  * \param[in,out] reconstruction with its input cloud set; its reconstruct() is called, and its
  * results stay there
@@ -58,7 +58,7 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
 namespace detail {
 
 /** \brief Gives a mesh that is mapped to the sphere a texture.
- * \param[in] colors 3 x v, or empty: a checkerboard
+ * \param[in] colors 3 x v of the mesh before it was cut, or empty: a checkerboard
  * \return the mesh, without a header */
 PCL_EXPORTS pcl::TextureMesh textureMesh(const MappedMesh& mesh,
                                          const spherical_param::Positions& colors,
@@ -102,8 +102,8 @@ bool textureSphericalParam(SphericalParamReconstruction<PointInT>& reconstructio
                            const SphericalParamTextureOptions& options) {
   image = spherical_param::TextureImage();
   return detail::makeFromMap(
-      "textureSphericalParam", reconstruction, options.map, options.bake.threads, output,
-      [&](const detail::MappedMesh& mesh, int threads) {
+      "textureSphericalParam", reconstruction, detail::HandlesOnSphere::Cut, options.map,
+      options.bake.threads, output, [&](const detail::MappedMesh& mesh, int threads) {
         const spherical_param::Positions colors =
             options.checkerboard ? spherical_param::Positions() : detail::colorsOf(reconstruction);
         return detail::textureMesh(mesh, colors, options, threads, image);

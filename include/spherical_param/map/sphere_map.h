@@ -69,7 +69,7 @@ struct SphereMap {
   Positions sphere;  ///< 3 x v, unit vectors
   Positions caps;    ///< 3 x c, unit vectors: vertices inside the openings; empty for a closed mesh
   MapDistortion distortion;            ///< of `sphere`
-  MapDistortion before;                ///< of the start that was given
+  MapDistortion before;                ///< of the start that was given; 0 without one
   std::vector<SphereMapLevel> levels;  ///< finest first
 };
 
@@ -80,7 +80,7 @@ struct SphereMap {
 /// \param triangles manifold, consistently oriented outward, of genus 0, in one piece, every vertex
 ///                  used; with openings or, as 3 x (2v - 4), without.
 /// \param start     3 x v, unit vectors: the embedding; it gives the map its orientation in space,
-///                  and may have flipped triangles.
+///                  and may have flipped triangles. Or 3 x 0.
 /// \param options areas against angles, sweeps, threads, progress
 /// \return the map, and how good it is.
 /// \throw InvalidInput for an invalid mesh or start; ComputeError; Cancelled.

@@ -95,6 +95,7 @@ def remesh(
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def texture_coordinates(
+    points: Optional[NDArray[np.float64]],
     triangles: NDArray[np.int32],
     sphere: NDArray[np.float64],
     *,

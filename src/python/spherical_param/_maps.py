@@ -387,7 +387,7 @@ class TextureCoordinates:
 
 
 def texture_coordinates(
-    mesh: Union[SphereMap, Remeshed],
+    mesh: Union[Result, SphereMap, Remeshed],
     *,
     chart: ChartName = "octahedral",
     margin: SupportsFloat = 1.0 / 64,
@@ -396,8 +396,9 @@ def texture_coordinates(
 
     Parameters
     ----------
-    mesh : SphereMap or Remeshed
-        With a map that is one to one.
+    mesh : SphereMap, Remeshed or Result
+        With a map that is one to one. A ``Result`` is mapped as by ``sphere_map``; one with handles
+        is cut along short loops for it, which stay cuts of the chart, but not of the mesh.
     chart : {"octahedral", "equirectangular", "cube"}
         Layout, for images of 1:1, 2:1 and 3:2.
     margin : float, [0, 0.25)
@@ -408,19 +409,23 @@ def texture_coordinates(
     InvalidInput
         A triangle is flipped on the sphere, or an option is not as described.
     """
-    if not isinstance(mesh, (SphereMap, Remeshed)):
+    if not isinstance(mesh, (Result, SphereMap, Remeshed)):
         raise InvalidInput(
             f"a {type(mesh).__name__} has no map to the sphere that is one to one; give the "
             "SphereMap of sphere_map()"
         )
+    is_mapped = not isinstance(mesh, Result)
+    points = mesh.vertices if is_mapped else mesh._export_points()
+    start = mesh.directions if is_mapped else mesh.sphere
     fields = _core.texture_coordinates(
+        None if is_mapped else points,
         mesh.triangles,
-        mesh.directions,
+        np.empty((0, 3)) if start is None else start,
         chart=arguments.text("chart", chart),
         margin=arguments.real("margin", margin),
     )
-    corners = mesh.vertices[fields["source_vertices"]]
+    corners = points[fields["source_vertices"]]
     vertices = np.einsum("ijk,ij->ik", corners, fields["source_weights"])
     # Without rounding.
-    vertices[: len(mesh.vertices)] = mesh.vertices
+    vertices[: len(points)] = points
     return TextureCoordinates(vertices=vertices, **fields)
