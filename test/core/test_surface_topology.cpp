@@ -198,5 +198,28 @@ TEST(SurfaceTopology, WorksWithTheOtherOptions) {
   EXPECT_EQ(test::surfaceOf(torus, test::quick(test::paper())).topology.genus, 0);
 }
 
+TEST(SurfaceTopology, EndsAtEveryCallOfProgressAndWithinATimeLimit) {
+  const Positions torus = test::torusCloud(30, 12);
+  std::size_t calls = 0;
+  std::size_t last = 0;
+  Options options;
+  options.progress = [&](const Progress&) { return ++calls != last; };
+  const Triangles whole = test::surfaceOf(torus, options).triangles;
+  const std::size_t all = calls;
+  for (last = 1; last <= all; ++last) {
+    calls = 0;
+    EXPECT_THROW(test::surfaceOf(torus, options), Cancelled) << last;
+  }
+  options.progress = nullptr;
+  EXPECT_EQ(test::surfaceOf(torus, options).triangles, whole);
+  for (const double seconds : {0.0, 1e-3, 3e-3, 1e-2}) {
+    options.time_limit = seconds;
+    const Surface hasty = test::surfaceOf(torus, options);
+    EXPECT_TRUE(hasty.topology.isSurface() && hasty.topology.closed);
+    EXPECT_EQ(hasty.topology.vertices, static_cast<std::size_t>(torus.cols()));
+    EXPECT_EQ(hasty.genus(), static_cast<std::size_t>(*hasty.topology.genus));
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param
