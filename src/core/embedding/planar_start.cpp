@@ -2,6 +2,7 @@
 
 #include "indexed.h"
 #include "pi.h"
+#include "shortest_paths.h"
 
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
@@ -20,28 +21,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Lengths of the shortest paths from a node (E. W. Dijkstra, 1959).
+/// Lengths of the shortest paths from a node.
 Indexed<double> pathLengths(const Graph& graph, Index source) {
-  Indexed<double> distances(graph.size(), kInfinity);
-  using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  distances[source] = 0.0;
-  queue.emplace(0.0, source);
-  while (!queue.empty()) {
-    const auto [distance, i] = queue.top();
-    queue.pop();
-    if (distance > distances[i])
-      continue;
-    for (const std::size_t e : graph.entries(i)) {
-      const double through = distance + graph.lengths[e];
-      double& least = distances[graph.neighbors[e]];
-      if (through < least) {
-        least = through;
-        queue.emplace(through, graph.neighbors[e]);
-      }
-    }
-  }
-  return distances;
+  Indexed<double> lengths(graph.size(), kInfinity);
+  shortestPaths(source, lengths, [&](Index v, const auto& go) {
+    for (const std::size_t e : graph.entries(v))
+      go(graph.neighbors[e], graph.lengths[e]);
+  });
+  return lengths;
 }
 
 /// The centre and two of its neighbours, joined to each other if there are such.

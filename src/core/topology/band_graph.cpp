@@ -1,13 +1,12 @@
 #include "band_graph.h"
 
 #include "pi.h"
+#include "shortest_paths.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
-#include <queue>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -19,36 +18,18 @@ constexpr double kBandWidth = 3.0;
 constexpr double kAreaOfPoint = 0.866;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// What is nearest, first.
-using NearestFirst = std::priority_queue<std::pair<double, Index>,
-                                         std::vector<std::pair<double, Index>>, std::greater<>>;
-
-/// The nodes of a component by ascending distance from one of them (Dijkstra 1959).
+/// The nodes of a component by ascending distance from one of them.
 ///
 /// \param distance infinite before [spacing].
 std::vector<Index> byDistance(const Graph& graph, const NodeSizes& sizes, Index start,
                               Indexed<double>& distance) {
-  std::vector<Index> nodes;
-  NearestFirst queue;
-  distance[start] = 0.0;
-  queue.emplace(0.0, start);
-  while (!queue.empty()) {
-    const auto [d, v] = queue.top();
-    queue.pop();
-    if (d > distance[v])
-      continue;
-    nodes.push_back(v);
+  return shortestPaths(start, distance, [&](Index v, const auto& go) {
     for (const std::size_t e : graph.entries(v)) {
       const Index w = graph.neighbors[e];
       const double spacing = (sizes.spacing[v] + sizes.spacing[w]) / 2.0;
-      const double to_w = d + (spacing > 0.0 ? graph.lengths[e] / spacing : 1.0);
-      if (to_w < distance[w]) {
-        distance[w] = to_w;
-        queue.emplace(to_w, w);
-      }
+      go(w, spacing > 0.0 ? graph.lengths[e] / spacing : 1.0);
     }
-  }
-  return nodes;
+  });
 }
 
 }  // namespace
@@ -114,26 +95,14 @@ double BandGraph::squeezeBetween(const Band& from, const Band& to) const {
 SqueezedWay BandGraph::worstWayFrom(Index root) const {
   Indexed<double> squeeze(bands_.size(), kFar);
   Indexed<Index> from(bands_.size(), -1);
-  NearestFirst queue;
-  squeeze[root] = 0.0;
-  queue.emplace(0.0, root);
-  Index last = root;
-  while (!queue.empty()) {
-    const auto [s, a] = queue.top();
-    queue.pop();
-    if (s > squeeze[a])
-      continue;
-    if (s > squeeze[last])
-      last = a;
-    for (const Index b : bands_[a].joined) {
-      const double to_b = s + squeezeBetween(bands_[a], bands_[b]);
-      if (to_b < squeeze[b]) {
-        squeeze[b] = to_b;
+  const std::vector<Index> reached = shortestPaths(root, squeeze, [&](Index a, const auto& go) {
+    for (const Index b : bands_[a].joined)
+      if (go(b, squeezeBetween(bands_[a], bands_[b])))
         from[b] = a;
-        queue.emplace(to_b, b);
-      }
-    }
-  }
+  });
+  // The first of those that are squeezed most.
+  const Index last = *std::find_if(reached.begin(), reached.end(),
+                                   [&](Index a) { return squeeze[a] == squeeze[reached.back()]; });
   SqueezedWay way;
   for (Index band = last; band >= 0; band = from[band]) {
     way.bands.push_back(band);
