@@ -34,24 +34,31 @@ struct Candidate {
 
 class Mesher {
 public:
-  Mesher(const Positions& points, const Graph& graph, const SurfaceTopology& topology,
+  Mesher(const Positions& points, const Graph& graph, SurfaceTopology& topology,
          const Options& options, StageClock& clock)
-      : points_(points), graph_(graph), topology_(topology), options_(options), clock_(clock) {}
+      : points_(points), graph_(graph), openings_(topology.openings), options_(options),
+        clock_(clock), cutter_(std::in_place, points, graph, topology) {}
 
-  /// The mesh along the first of the cuts from one on that can be glued, if its handles are certain
-  /// or pay; else that of the cuts after it, or the sphere.
-  Candidate best(std::size_t cut = 0) {
-    if (cut == topology_.cuts.size())
+  /// The mesh along the first of the further cuts that can be glued, if its handles are certain or
+  /// pay; else that of the cuts after it, or the sphere.
+  Candidate best(bool is_first = true) {
+    clock_.begin("openings");
+    const std::optional<SurfaceCut> cut = cutter_->next();
+    if (!cut) {
+      cutter_.reset();
       return sphere();
-    std::optional<Candidate> glued = gluedAlong(topology_.cuts[cut]);
+    }
+    std::optional<Candidate> glued = gluedAlong(*cut);
     if (!glued) {
-      has_failed_ = has_failed_ || cut == 0;
-      return best(cut + 1);
+      has_failed_ = has_failed_ || is_first;
+      return best(false);
     }
     const double doubtful = doubtfulSteps(glued->handles);
-    if (doubtful == 0.0)
+    if (doubtful == 0.0) {
+      cutter_.reset();
       return std::move(*glued);
-    Candidate other = best(cut + 1);
+    }
+    Candidate other = best(false);
     return pay(*glued, other, doubtful) ? std::move(*glued) : std::move(other);
   }
 
@@ -67,7 +74,7 @@ public:
     clock_.begin("optimization");
     candidate.optimization = optimizeMesh(
         points_, candidate.triangles, graph_,
-        OptimizationOptions{topology_.openings.places(), !is_smoothed, options_.seed}, execution);
+        OptimizationOptions{openings_.places(), !is_smoothed, options_.seed}, execution);
   }
 
   /// Whether no mesh with all handles could be made.
@@ -106,7 +113,7 @@ private:
   Candidate sphere() {
     Candidate result;
     clock_.begin("embedding");
-    result.embedding = topology_.openings.embedded(points_, graph_, options_, clock_.execution());
+    result.embedding = openings_.embedded(points_, graph_, options_, clock_.execution());
     clock_.begin("triangulation");
     result.triangles = triangulateSphere(result.embedding.directions, clock_.execution());
     orientOutward(points_, result.triangles, result.embedding);
@@ -116,16 +123,16 @@ private:
   std::optional<Candidate> gluedAlong(const SurfaceCut& cut) {
     clock_.begin("embedding");
     std::optional<GluedMesh> mesh;
-    for (std::size_t i = 0; !mesh && i < cut.graphs.size(); ++i)
-      mesh = meshGluedSpheres(graph_.size(), cut.graphs[i], topology_.openings.embeddedOpenings(),
-                              options_, clock_.execution());
+    for (std::size_t i = 0; !mesh && i < cut.loops.size(); ++i)
+      mesh = meshGluedSpheres(graph_.size(), cutter_->along(cut.loops[i]),
+                              openings_.embeddedOpenings(), options_, clock_.execution());
     if (!mesh)
       return std::nullopt;
     Candidate result;
     result.handles = cut.handles;
     result.triangles = std::move(mesh->triangles);
     if (cut.has_sphere) {
-      result.embedding = topology_.openings.embedded(points_, graph_, options_, clock_.execution());
+      result.embedding = openings_.embedded(points_, graph_, options_, clock_.execution());
       if (volumeSign(result.embedding.directions, result.triangles) < 0)
         mirror(result.embedding);
     } else {
@@ -139,19 +146,19 @@ private:
   double flippedEnergy(const Candidate& candidate) {
     clock_.begin("optimization");
     return energy(flipMesh(points_, candidate.triangles, graph_,
-                           {topology_.openings.places(), false, options_.seed},
-                           clock_.execution()));
+                           {openings_.places(), false, options_.seed}, clock_.execution()));
   }
 
   double energy(const Triangles& triangles) const {
-    return meshEnergy(points_, triangles, graph_, topology_.openings.places());
+    return meshEnergy(points_, triangles, graph_, openings_.places());
   }
 
   const Positions& points_;
   const Graph& graph_;
-  const SurfaceTopology& topology_;
+  const OpenSurface& openings_;
   const Options& options_;
   StageClock& clock_;
+  std::optional<SurfaceCutter> cutter_;
   bool has_failed_ = false;
 };
 
@@ -187,16 +194,15 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
   mirror(embedding);
 }
 
-MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph,
-                          const SurfaceTopology& topology, const Options& options,
-                          StageClock& clock) {
+MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
+                          const Options& options, StageClock& clock) {
   MeshedCloud mesh;
   Mesher mesher(points, graph.graph, topology, options, clock);
   Candidate best = mesher.best();
   mesher.optimize(best);
   mesh.graph = std::move(graph);
-  mesh.handles = handlesOf(
-      points, mesher.hasFailed() ? topology.cuts.front().handles : best.handles, best.handles);
+  mesh.handles =
+      handlesOf(points, mesher.hasFailed() ? topology.handles : best.handles, best.handles);
   mesh.embedding = std::move(best.embedding);
   mesh.optimization = std::move(*best.optimization);
   return mesh;

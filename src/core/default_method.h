@@ -13,9 +13,10 @@ namespace spherical_param::internal {
 ///
 /// Handles that are not certain are kept if the mesh with them has clearly less energy than the one
 /// without them.
-MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph,
-                          const SurfaceTopology& topology, const Options& options,
-                          StageClock& clock);
+///
+/// \param topology gives away its rotation system.
+MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
+                          const Options& options, StageClock& clock);
 
 /// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
 /// face outward on both.

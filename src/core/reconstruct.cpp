@@ -127,8 +127,7 @@ SurfaceTopology findTopology(const Positions& points, const Graph& graph, int ex
 /// \param is_flat all points are in one plane.
 Surface meshGraph(const Positions& points, NeighborGraph graph, int exponent, bool is_flat,
                   const Options& options, StageClock& clock) {
-  const SurfaceTopology topology =
-      findTopology(points, graph.graph, exponent, is_flat, options, clock);
+  SurfaceTopology topology = findTopology(points, graph.graph, exponent, is_flat, options, clock);
   const OpenSurface& openings = topology.openings;
   if (is_flat && !openings.isOpen())
     refuseFlat(options);

@@ -11,62 +11,6 @@
 #include <utility>
 
 namespace spherical_param::internal {
-namespace {
-
-/// Cuts a surface along handles, and along necks.
-class SurfaceCutter {
-public:
-  /// \param openings of the graph, which virtual nodes fill.
-  SurfaceCutter(const Positions& points, const Graph& graph, const RotationSystem& rotation,
-                const Openings& openings)
-      : points_(points), graph_(graph), rotation_(rotation), openings_(openings) {}
-
-  /// Empty if there is nothing to cut.
-  SurfaceCut along(std::vector<CutLoop> handles) const {
-    SurfaceCut result;
-    Necks necks = findNecks(points_, graph_, rotation_, openings_, handles);
-    // As the measured squeeze is the predicted one to the power of 1.5 to 2, this is the range of
-    // double.
-    constexpr double max_squeeze = 15.0;
-    result.has_sphere = handles.empty() && necks.squeeze <= max_squeeze;
-    if (!necks.loops.empty()) {
-      necks.loops.insert(necks.loops.begin(), handles.begin(), handles.end());
-      result.graphs.push_back(cutAlong(points_, graph_, rotation_, necks.loops));
-    }
-    if (!handles.empty())
-      result.graphs.push_back(cutAlong(points_, graph_, rotation_, handles));
-    result.handles = std::move(handles);
-    return result;
-  }
-
-private:
-  const Positions& points_;
-  const Graph& graph_;
-  const RotationSystem& rotation_;
-  const Openings& openings_;
-};
-
-/// The cuts of a surface. \see SurfaceTopology
-std::vector<SurfaceCut> cutsOf(const SurfaceCutter& cutter, std::vector<CutLoop> handles) {
-  std::vector<SurfaceCut> cuts;
-  const auto add = [&](std::vector<CutLoop> loops) {
-    SurfaceCut cut = cutter.along(std::move(loops));
-    if (!cut.graphs.empty())
-      cuts.push_back(std::move(cut));
-  };
-  std::vector<CutLoop> certain;
-  std::copy_if(handles.begin(), handles.end(), std::back_inserter(certain),
-               [](const CutLoop& loop) { return loop.certainty >= 1.0; });
-  const bool are_all_certain = certain.size() == handles.size();
-  if (!handles.empty())
-    add(std::move(handles));
-  if (!certain.empty() && !are_all_certain)
-    add(std::move(certain));
-  add({});
-  return cuts;
-}
-
-}  // namespace
 
 SurfaceTopology findTopology(const Positions& points, const Graph& graph, bool is_flat, double unit,
                              const Options& options, const Execution& execution) {
@@ -86,15 +30,58 @@ SurfaceTopology findTopology(const Positions& points, const Graph& graph, bool i
   const bool may_be_cut = options.handles == HandleMode::Auto && !openings.is_one_sided;
   OpenSurface surface(points, graph, std::move(openings), is_flat, unit, options);
   if (!may_be_cut)
-    return {std::move(surface), {}};
-  // Without false edges, but for those that keep it in one piece.
-  const Openings& filled = surface.embeddedOpenings();
-  const bool has_false = !handles.loops.empty() || !filled.openings.empty();
-  const Graph without_false =
-      has_false ? withoutVirtualNodes(fillOpenings(points, graph, filled), graph.size()) : Graph();
-  std::vector<SurfaceCut> cuts = cutsOf(
-      {points, has_false ? without_false : graph, rotation, filled}, std::move(handles.loops));
-  return {std::move(surface), std::move(cuts)};
+    return {std::move(surface), {}, {}};
+  return {std::move(surface), std::move(handles.loops),
+          std::make_unique<const RotationSystem>(std::move(rotation))};
+}
+
+SurfaceCutter::SurfaceCutter(const Positions& points, const Graph& graph, SurfaceTopology& topology)
+    : points_(points), all_edges_(graph), openings_(topology.openings.embeddedOpenings()),
+      rotation_(std::move(topology.rotation)) {
+  if (!rotation_)
+    return;
+  const std::vector<CutLoop>& handles = topology.handles;
+  // Those of a sphere without openings stay.
+  if (!openings_.false_edges.empty() && (!handles.empty() || !openings_.openings.empty()))
+    rest_ = withoutFalseEdges(points, graph, openings_.false_edges);
+  std::vector<CutLoop> certain;
+  std::copy_if(handles.begin(), handles.end(), std::back_inserter(certain),
+               [](const CutLoop& loop) { return loop.certainty >= 1.0; });
+  if (!handles.empty())
+    handles_.push_back(handles);
+  if (!certain.empty() && certain.size() < handles.size())
+    handles_.push_back(std::move(certain));
+  handles_.emplace_back();
+}
+
+std::optional<SurfaceCut> SurfaceCutter::next() {
+  while (next_ < handles_.size()) {
+    SurfaceCut cut = waysAlong(handles_[next_++]);
+    if (!cut.loops.empty())
+      return cut;
+  }
+  return std::nullopt;
+}
+
+CutGraph SurfaceCutter::along(const std::vector<CutLoop>& loops) const {
+  return cutAlong(points_, graph(), *rotation_, loops);
+}
+
+SurfaceCut SurfaceCutter::waysAlong(const std::vector<CutLoop>& handles) const {
+  SurfaceCut cut;
+  const Necks necks = findNecks(points_, graph(), *rotation_, openings_, handles);
+  // As the measured squeeze is the predicted one to the power of 1.5 to 2, this is the range of
+  // double.
+  constexpr double max_squeeze = 15.0;
+  cut.has_sphere = handles.empty() && necks.squeeze <= max_squeeze;
+  if (!necks.loops.empty()) {
+    cut.loops.push_back(handles);
+    cut.loops.back().insert(cut.loops.back().end(), necks.loops.begin(), necks.loops.end());
+  }
+  if (!handles.empty())
+    cut.loops.push_back(handles);
+  cut.handles = handles;
+  return cut;
 }
 
 }  // namespace spherical_param::internal

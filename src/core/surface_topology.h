@@ -7,30 +7,21 @@
 #include "spherical_param/execution.h"
 #include "spherical_param/options.h"
 
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// A surface that is cut into spheres.
-struct SurfaceCut {
-  std::vector<CutLoop> handles;
-  /// Along the handles and the necks, if there are any; along the handles alone, if that leaves one
-  /// to be cut.
-  std::vector<CutGraph> graphs;
-  /// Whether one sphere can hold the surface.
-  bool has_sphere = false;
-};
-
 /// What is known of a surface before it is meshed.
 struct SurfaceTopology {
   OpenSurface openings;
-  /// Along all handles that were found; along those that are certain, if not all are; along necks
-  /// alone. Empty: the surface is a sphere.
-  std::vector<SurfaceCut> cuts;
+  std::vector<CutLoop> handles;                    ///< all that were found
+  std::unique_ptr<const RotationSystem> rotation;  ///< null: the surface is not to be cut
 };
 
-/// Finds the openings, the handles and the necks of a surface.
+/// Finds the openings and the handles of a surface.
 ///
 /// \param points   nodes, must outlive the result.
 /// \param graph    of the nodes.
@@ -38,5 +29,38 @@ struct SurfaceTopology {
 /// \param unit     of the nodes' coordinates [unit of the input].
 SurfaceTopology findTopology(const Positions& points, const Graph& graph, bool is_flat, double unit,
                              const Options& options, const Execution& execution);
+
+/// A way to cut a surface into spheres.
+struct SurfaceCut {
+  std::vector<CutLoop> handles;
+  /// The handles and the necks, if there are any; the handles alone, if that leaves one to be cut.
+  std::vector<std::vector<CutLoop>> loops;
+  /// Whether one sphere can hold the surface.
+  bool has_sphere = false;
+};
+
+/// Cuts a surface along handles, and along necks, in one way after the other.
+class SurfaceCutter {
+public:
+  /// \param points, graph, topology must outlive this; the rotation system is taken.
+  SurfaceCutter(const Positions& points, const Graph& graph, SurfaceTopology& topology);
+
+  /// Along all handles that were found; then along those that are certain, if not all are; then
+  /// along necks alone. Unset: no further way, the surface is a sphere.
+  std::optional<SurfaceCut> next();
+  CutGraph along(const std::vector<CutLoop>& loops) const;
+
+private:
+  SurfaceCut waysAlong(const std::vector<CutLoop>& handles) const;
+  const Graph& graph() const { return rest_ ? *rest_ : all_edges_; }
+
+  const Positions& points_;
+  const Graph& all_edges_;
+  const Openings& openings_;  ///< that virtual nodes fill
+  std::unique_ptr<const RotationSystem> rotation_;
+  std::optional<Graph> rest_;  ///< without false edges, if there are any
+  std::vector<std::vector<CutLoop>> handles_;
+  std::size_t next_ = 0;
+};
 
 }  // namespace spherical_param::internal

@@ -204,7 +204,7 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
   return bridges;
 }
 
-Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
+Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_t nodes) {
   std::vector<Bridge> added;  // both ways
   added.reserve(2 * edges.size());
   for (const Bridge& edge : edges) {
@@ -215,11 +215,11 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
     return std::tuple(a.from, a.to, a.length) < std::tuple(b.from, b.to, b.length);
   });
   Graph result;
-  result.offsets.reserve(graph.offsets.size());
+  result.offsets.reserve(nodes + 1);
   result.neighbors.reserve(graph.neighbors.size() + added.size());
   result.lengths.reserve(graph.neighbors.size() + added.size());
   auto next = added.begin();
-  for (const Index i : graph.nodes()) {
+  for (const Index i : NumberRange(Index{0}, static_cast<Index>(nodes))) {
     const auto add = [&](Index neighbor, double length) {
       if (result.neighbors.size() > result.offsets.back() && result.neighbors.back() == neighbor)
         return;
@@ -230,20 +230,23 @@ Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
       for (; next != added.end() && next->from == i && next->to < end; ++next)
         add(next->to, next->length);
     };
-    for (const std::size_t e : graph.entries(i)) {
-      add_below(graph.neighbors[e]);
-      add(graph.neighbors[e], graph.lengths[e]);
-    }
+    if (i < static_cast<Index>(graph.size()))
+      for (const std::size_t e : graph.entries(i)) {
+        add_below(graph.neighbors[e]);
+        add(graph.neighbors[e], graph.lengths[e]);
+      }
     add_below(std::numeric_limits<Index>::max());
     result.endRow();
   }
   return result;
 }
 
+Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges) {
+  return withEdges(graph, edges, graph.size());
+}
+
 Graph graphOfEdges(std::size_t nodes, const std::vector<Bridge>& edges) {
-  Graph no_edges;
-  no_edges.offsets.assign(nodes + 1, 0);
-  return withEdges(no_edges, edges);
+  return withEdges({}, edges, nodes);
 }
 
 }  // namespace spherical_param::internal

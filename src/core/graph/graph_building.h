@@ -73,6 +73,8 @@ std::vector<Bridge> articulationBridges(const Positions& points, const Graph& gr
 /// The graph with further edges. Of those that repeat each other the shortest is added, and none
 /// that repeats one of the graph.
 Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges);
+/// \param nodes of the result, the first ones those of the graph.
+Graph withEdges(const Graph& graph, const std::vector<Bridge>& edges, std::size_t nodes);
 /// The graph of some edges alone, as withEdges() adds them.
 Graph graphOfEdges(std::size_t nodes, const std::vector<Bridge>& edges);
 

@@ -1,10 +1,11 @@
 #include "cut_graph.h"
 
-#include "cycle_labels.h"
 #include "graph_building.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -22,8 +23,8 @@ struct Fate {
 class Cutter {
 public:
   Cutter(const Positions& points, const Graph& graph, const RotationSystem& rotation)
-      : points_(points), lengths_(graph.lengths), graph_(graph), rotation_(rotation),
-        fates_(graph_.ends.size()), side_(graph.size(), Side::None), right_of_(graph.size(), -1) {
+      : points_(points), graph_(graph), rotation_(rotation), is_divided_(graph.size(), 0),
+        side_(graph.size(), Side::None), right_of_(graph.size(), -1) {
     for (const Index v : graph.nodes())
       cut_.node_of.push_back(v);
   }
@@ -36,9 +37,9 @@ public:
       if (side_[v] == Side::Left)
         for (const std::size_t e : graph_.entries(v))
           if (side_[graph_.neighbors[e]] == Side::Right)
-            fates_[graph_.edges[e]].is_dropped = true;
+            fateOf(v, graph_.neighbors[e]).is_dropped = true;
     for (const auto& [v, w] : loop.left_out)
-      fates_[graph_.edgeOf(v, w)].is_dropped = true;
+      fateOf(v, w).is_dropped = true;
     for (const Index v : touched_)
       side_[v] = Side::None;
     touched_.clear();
@@ -53,29 +54,45 @@ public:
   }
 
   CutGraph take() {
+    Graph rest;  // of the edges that stay as they are
     std::vector<Bridge> edges;
-    for (const Index v : graph_.nodes())
+    for (const Index v : graph_.nodes()) {
       for (const std::size_t e : graph_.entries(v)) {
         const Index w = graph_.neighbors[e];
-        const Fate& fate = fates_[graph_.edges[e]];
-        if (w < v || fate.is_dropped)
-          continue;
-        if (fate.is_doubled) {
-          edges.push_back({v, w, lengths_[e]});
-          edges.push_back({right_of_[v], right_of_[w], lengths_[e]});
-        } else {
-          edges.push_back({fate.is_right[0] ? right_of_[v] : v, fate.is_right[1] ? right_of_[w] : w,
-                           lengths_[e]});
+        const auto fate = is_divided_[v] != 0 ? fates_.find(std::minmax(v, w)) : fates_.end();
+        if (fate == fates_.end()) {
+          rest.neighbors.push_back(w);
+          rest.lengths.push_back(graph_.lengths[e]);
+        } else if (v < w) {
+          addCopies(v, w, graph_.lengths[e], fate->second, edges);
         }
       }
-    Graph none;
-    none.offsets.assign(cut_.node_of.size() + 1, 0);
-    cut_.graph = withEdges(none, edges);
+      rest.endRow();
+    }
+    cut_.graph = withEdges(rest, edges, cut_.node_of.size());
     cut_.points = points_(Eigen::all, cut_.node_of);
     return std::move(cut_);
   }
 
 private:
+  Fate& fateOf(Index v, Index w) {
+    is_divided_[v] = is_divided_[w] = 1;
+    return fates_[std::minmax(v, w)];
+  }
+
+  void addCopies(Index v, Index w, double length, const Fate& fate,
+                 std::vector<Bridge>& edges) const {
+    if (fate.is_dropped)
+      return;
+    if (fate.is_doubled) {
+      edges.push_back({v, w, length});
+      edges.push_back({right_of_[v], right_of_[w], length});
+    } else {
+      edges.push_back(
+          {fate.is_right[0] ? right_of_[v] : v, fate.is_right[1] ? right_of_[w] : w, length});
+    }
+  }
+
   void mark(Index v, Side side) {
     if (side_[v] != Side::None)
       return;
@@ -116,7 +133,7 @@ private:
     const std::size_t n = loop.nodes.size();
     for (const std::size_t e : graph_.entries(v)) {
       const Index w = graph_.neighbors[e];
-      Fate& fate = fates_[graph_.edges[e]];
+      Fate& fate = fateOf(v, w);
       if (side_[w] != Side::On) {
         const Side side = side_[w] == Side::None ? sideOf(loop, i, w) : side_[w];
         fate.is_right[v < w ? 0 : 1] = side == Side::Right;
@@ -129,10 +146,10 @@ private:
   }
 
   const Positions& points_;
-  const std::vector<double>& lengths_;
-  NumberedGraph graph_;
+  const Graph& graph_;
   const RotationSystem& rotation_;
-  std::vector<Fate> fates_;  ///< of the edges
+  std::map<std::pair<Index, Index>, Fate> fates_;  ///< of edges {lower, higher} that may change
+  Indexed<char> is_divided_;                       ///< 1 at their ends
   Indexed<Side> side_;
   std::vector<Index> touched_;
   Indexed<Index> right_of_;  ///< the right copy of a node; -1
@@ -150,18 +167,17 @@ CutGraph cutAlong(const Positions& points, const Graph& graph, const RotationSys
 }
 
 FilledCut fillCut(const CutGraph& cut, const Openings& openings) {
-  Openings rims;
-  rims.spacing.resize(cut.graph.size());
+  Openings all;
+  all.spacing.resize(cut.graph.size());
   for (const Index v : cut.graph.nodes())
-    rims.spacing[v] = openings.spacing[cut.node_of[v]];
+    all.spacing[v] = openings.spacing[cut.node_of[v]];
   for (const std::vector<Index>& rim : cut.rims)
-    rims.openings.push_back(measured(cut.points, rims.spacing, rim));
+    all.openings.push_back(measured(cut.points, all.spacing, rim));
+  all.openings.insert(all.openings.end(), openings.openings.begin(), openings.openings.end());
   FilledCut result;
-  result.filled = fillOpenings(cut.points, cut.graph, rims);
-  result.in_rims = static_cast<Index>(result.filled.graph.size());
-  Openings others;
-  others.openings = openings.openings;
-  result.filled = fillOpenings(result.filled.points, result.filled.graph, others);
+  result.filled = fillOpenings(cut.points, cut.graph, all);
+  result.in_rims = cut.rims.empty() ? static_cast<Index>(cut.graph.size())
+                                    : result.filled.ends[cut.rims.size() - 1];
   return result;
 }
 

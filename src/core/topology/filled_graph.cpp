@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -60,7 +61,8 @@ void fill(const Positions& points, const Opening& opening, std::vector<Eigen::Ve
 
 }  // namespace
 
-Graph withoutFalseEdges(const Graph& graph, const std::vector<std::array<Index, 2>>& false_edges) {
+Graph withoutFalseEdges(const Positions& points, const Graph& graph,
+                        const std::vector<std::array<Index, 2>>& false_edges) {
   Graph rest;
   for (const Index v : graph.nodes()) {
     for (const std::size_t e : graph.entries(v)) {
@@ -73,43 +75,30 @@ Graph withoutFalseEdges(const Graph& graph, const std::vector<std::array<Index, 
     }
     rest.endRow();
   }
-  return rest;
-}
-
-Graph withoutVirtualNodes(const FilledGraph& filled, std::size_t nodes) {
-  Graph rest;
-  for (Index v = 0; v < static_cast<Index>(nodes); ++v) {
-    for (const std::size_t e : filled.graph.entries(v)) {
-      if (filled.graph.neighbors[e] >= static_cast<Index>(nodes))
-        continue;
-      rest.neighbors.push_back(filled.graph.neighbors[e]);
-      rest.lengths.push_back(filled.graph.lengths[e]);
-    }
-    rest.endRow();
-  }
-  return rest;
+  UnionFind parts = connectedComponents(rest);
+  std::vector<Bridge> joints;
+  for (const auto& [v, w] : false_edges)
+    if (parts.unite(v, w))
+      joints.push_back({v, w, edgeLength(points, v, w)});
+  return joints.empty() ? std::move(rest) : withEdges(rest, joints);
 }
 
 FilledGraph fillOpenings(const Positions& points, const Graph& graph, const Openings& openings) {
+  FilledGraph filled;
   std::vector<Eigen::Vector3d> nodes;  // the virtual ones
   std::vector<Bridge> edges;
-  for (const Opening& opening : openings.openings)
+  for (const Opening& opening : openings.openings) {
     fill(points, opening, nodes, edges);
-  FilledGraph filled;
+    filled.ends.push_back(static_cast<Index>(points.cols()) + static_cast<Index>(nodes.size()));
+  }
   filled.points.resize(3, points.cols() + static_cast<Eigen::Index>(nodes.size()));
   filled.points.leftCols(points.cols()) = points;
   std::copy(nodes.begin(), nodes.end(), filled.points.colwise().begin() + points.cols());
-  filled.graph = withoutFalseEdges(graph, openings.false_edges);
-  filled.graph.offsets.resize(graph.offsets.size() + nodes.size(), filled.graph.offsets.back());
-  filled.graph = withEdges(filled.graph, edges);
-  // False edges that keep the graph connected stay.
-  UnionFind parts = connectedComponents(filled.graph);
-  std::vector<Bridge> joints;
-  for (const auto& [v, w] : openings.false_edges)
-    if (parts.unite(v, w))
-      joints.push_back({v, w, edgeLength(points, v, w)});
-  if (!joints.empty())
-    filled.graph = withEdges(filled.graph, joints);
+  const std::size_t count = graph.size() + nodes.size();
+  filled.graph =
+      openings.false_edges.empty()
+          ? withEdges(graph, edges, count)
+          : withEdges(withoutFalseEdges(points, graph, openings.false_edges), edges, count);
   return filled;
 }
 

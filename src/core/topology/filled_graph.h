@@ -3,7 +3,7 @@
 #include "openings.h"
 #include "spherical_param/types.h"
 
-#include <cstddef>
+#include <array>
 #include <vector>
 
 namespace spherical_param::internal {
@@ -12,6 +12,8 @@ namespace spherical_param::internal {
 struct FilledGraph {
   Graph graph;       ///< n nodes and the virtual ones
   Positions points;  ///< 3 x graph.size(), those of the nodes first
+  /// Of each opening, the number of nodes up to its last virtual one.
+  std::vector<Index> ends;
 };
 
 /// Fills each opening by a ringed disc whose rim is the loop, with up to 2.4 times as many virtual
@@ -22,10 +24,11 @@ struct FilledGraph {
 /// \param openings loops of nodes, false edges.
 FilledGraph fillOpenings(const Positions& points, const Graph& graph, const Openings& openings);
 
-/// The graph of the n nodes alone of a filled graph.
-Graph withoutVirtualNodes(const FilledGraph& filled, std::size_t nodes);
-
-/// A graph without false edges, which are {lower, higher}, ascending.
-Graph withoutFalseEdges(const Graph& graph, const std::vector<std::array<Index, 2>>& false_edges);
+/// A graph without false edges, but for those that keep it connected.
+///
+/// \param points      3 x n.
+/// \param false_edges {lower, higher}, ascending.
+Graph withoutFalseEdges(const Positions& points, const Graph& graph,
+                        const std::vector<std::array<Index, 2>>& false_edges);
 
 }  // namespace spherical_param::internal
