@@ -67,8 +67,9 @@ std::optional<GluedMesh> meshGluedSpheres(std::size_t nodes, const CutGraph& cut
                                           const Execution& execution) {
   // Fewer nodes than these are no sphere with two rims.
   constexpr std::size_t min_nodes = 8;
-  const FilledCut all = fillCut(cut, openings);
+  FilledCut all = fillCut(cut, openings);
   std::vector<Piece> pieces = piecesOf(all.filled.graph);
+  all.filled.graph = {};
   GluedMesh result;
   Triangles spheres(3, 0);
   std::size_t largest = 0;

@@ -105,7 +105,7 @@ double nodeSpacing(const Graph& graph, Index node) {
   return lengths.empty() ? 0.0 : medianOf(lengths);
 }
 
-UnionFind connectedComponents(const Graph& graph) {
+UnionFind connectedComponents(const NeighborRows& graph) {
   UnionFind parts(graph.size());
   for (const Index i : graph.nodes())
     for (const Index j : graph.row(i))

@@ -45,7 +45,7 @@ double edgeLength(const Positions& points, Index i, Index j);
 double nodeSpacing(const Graph& graph, Index node);
 
 /// The connected components of a graph.
-UnionFind connectedComponents(const Graph& graph);
+UnionFind connectedComponents(const NeighborRows& graph);
 
 /// The representative of the set of each of 0 ... n - 1.
 Indexed<Index> representatives(UnionFind& sets, std::size_t n);

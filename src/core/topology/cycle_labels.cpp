@@ -27,7 +27,7 @@ std::uint32_t NumberedGraph::edgeOf(Index v, Index w) const {
   return edges[e];
 }
 
-CycleLabels::CycleLabels(const NumberedGraph& graph, const std::vector<std::vector<Index>>& cells)
+CycleLabels::CycleLabels(const NumberedGraph& graph, const NeighborRows& cells)
     : graph_(graph), state_(graph.ends.size(), State::Unknown), value_(graph.ends.size(), 0),
       edge_to_(graph.size(), kNone) {
   addCells(cells);
@@ -67,12 +67,12 @@ void CycleLabels::fill(Label label) {
   applyRelations();
 }
 
-void CycleLabels::addCells(const std::vector<std::vector<Index>>& cells) {
+void CycleLabels::addCells(const NeighborRows& cells) {
   std::vector<Index> edges;
-  for (const std::vector<Index>& walk : cells) {
+  for (const Index cell : cells.nodes()) {
     edges.clear();
-    Index from = walk.back();
-    for (const Index to : walk)
+    Index from = cells.neighbors[cells.end(cell) - 1];
+    for (const Index to : cells.row(cell))
       edges.push_back(static_cast<Index>(graph_.edgeOf(std::exchange(from, to), to)));
     std::sort(edges.begin(), edges.end());
     for (std::size_t i = 0; i < edges.size(); ++i)

@@ -34,7 +34,7 @@ public:
   using Label = std::uint64_t;
 
   /// \param cells closed walks: nodes in order.
-  CycleLabels(const NumberedGraph& graph, const std::vector<std::vector<Index>>& cells);
+  CycleLabels(const NumberedGraph& graph, const NeighborRows& cells);
 
   /// Number of independent cycles, but for those through edges that are left out.
   int rank() const { return rank_; }
@@ -53,7 +53,7 @@ private:
   static constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
   static constexpr int kBits = 64;
 
-  void addCells(const std::vector<std::vector<Index>>& cells);
+  void addCells(const NeighborRows& cells);
   void set(std::uint32_t edge, Label value);
   void spanForest();
   void propagate();

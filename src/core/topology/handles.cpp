@@ -1,6 +1,7 @@
 #include "handles.h"
 
 #include "cycle_labels.h"
+#include "graph_building.h"
 #include "indexed.h"
 #include "loop_search.h"
 #include "parallel.h"
@@ -47,34 +48,59 @@ constexpr int kNotAll = -1;
 constexpr double kMaxDetour = 1.7;
 
 /// The walks of four edges without a diagonal, each once.
-std::vector<std::vector<Index>> squares(const NeighborRows& graph, int threads) {
-  return collectBlocks<std::vector<Index>>(
-      graph.size(), threads, {},
-      [&](Index begin, Index end, std::vector<std::vector<Index>>& found) {
-        for (Index v = begin; v < end; ++v) {
-          const Row<Index> around = graph.row(v);
-          for (const Index a : around)
-            for (const Index b : around) {
-              if (a < v || b <= a || graph.row(a).contains(b))
-                continue;
-              for (const Index w : graph.row(a))
-                if (w > v && graph.row(b).contains(w) && !around.contains(w))
-                  found.push_back({v, a, w, b});
+NeighborRows squares(const NeighborRows& graph, int threads) {
+  return rowsOfBlocks(graph.size(), threads, {}, [&](Index begin, Index end, Graph& found) {
+    for (const Index v : NumberRange(begin, end)) {
+      const Row<Index> around = graph.row(v);
+      for (const Index a : around)
+        for (const Index b : around) {
+          if (a < v || b <= a || graph.row(a).contains(b))
+            continue;
+          for (const Index w : graph.row(a))
+            if (w > v && graph.row(b).contains(w) && !around.contains(w)) {
+              found.neighbors.insert(found.neighbors.end(), {v, a, w, b});
+              found.endRow();
             }
         }
-      });
+    }
+  });
+}
+
+void append(const Row<Index>& row, NeighborRows& rows) {
+  rows.neighbors.insert(rows.neighbors.end(), row.begin(), row.end());
+  rows.endRow();
 }
 
 /// Walks that bound: squares, short faces and openings.
-std::vector<std::vector<Index>> cellsOf(const RotationSystem& rotation,
-                                        const std::vector<Opening>& openings, int threads) {
-  std::vector<std::vector<Index>> cells = squares(rotation.edges(), threads);
-  for (std::vector<Index>& face : rotation.faces(4, 0.0))
-    if (face.size() <= kMaxFace)
-      cells.push_back(std::move(face));
+NeighborRows cellsOf(const NeighborRows& graph, const NeighborRows& faces,
+                     const std::vector<Opening>& openings, int threads) {
+  NeighborRows cells = squares(graph, threads);
+  for (const Index face : faces.nodes())
+    if (faces.row(face).size() > 3 && faces.row(face).size() <= kMaxFace)
+      append(faces.row(face), cells);
   for (const Opening& opening : openings)
-    cells.push_back(opening.loop);
+    append({opening.loop.data(), opening.loop.data() + opening.loop.size()}, cells);
   return cells;
+}
+
+/// Whether the faces of a graph make a sphere of it, and at most one of them does not bound: it has
+/// no cycles then.
+bool isSphere(const NeighborRows& graph, const NeighborRows& faces,
+              const std::vector<Opening>& openings) {
+  if (graph.size() + faces.size() != graph.neighbors.size() / 2 + 2)
+    return false;
+  std::ptrdiff_t unbounded = 0;
+  for (const Index face : faces.nodes())
+    unbounded += faces.row(face).size() > kMaxFace ? 1 : 0;
+  for (const Opening& opening : openings)
+    unbounded -= opening.loop.size() > kMaxFace ? 1 : 0;
+  if (unbounded > 1)
+    return false;
+  UnionFind parts = connectedComponents(graph);
+  for (const Index v : graph.nodes())
+    if (parts.find(v) != 0)
+      return false;
+  return true;
 }
 
 /// Which classes of walks are handles: if there are no false edges, all, and their area tells
@@ -401,9 +427,13 @@ private:
 
 Handles findHandles(const RotationSystem& rotation, const std::vector<Opening>& openings,
                     const Execution& execution) {
+  NeighborRows faces = rotation.faces(1, 0.0);
+  if (isSphere(rotation.edges(), faces, openings))
+    return {};
   const NumberedGraph graph(rotation.edges());
   const CycleLabels labels(
-      graph, cellsOf(rotation, openings, threadCount(execution.threads, graph.size())));
+      graph, cellsOf(graph, faces, openings, threadCount(execution.threads, graph.size())));
+  faces = {};
   const auto search = [&](Classes handles) {
     return HandleSearch(rotation, graph, labels, openings, handles, execution).run();
   };

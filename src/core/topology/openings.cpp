@@ -94,8 +94,9 @@ std::optional<Opening> outsideOf(const Positions& points, const Indexed<double>&
   // A narrower flat patch is a line [spacing].
   constexpr double min_patch_width = 0.1;
   std::optional<Opening> outside;
-  for (std::vector<Index>& loop : rotation.faces(3, 0.0)) {
-    Opening face = measured(points, spacing, std::move(loop));
+  const NeighborRows faces = rotation.faces(3, 0.0);
+  for (const Index i : faces.nodes()) {
+    Opening face = measured(points, spacing, {faces.row(i).begin(), faces.row(i).end()});
     if (face.width >= min_patch_width * face.spacing && (!outside || face.area > outside->area))
       outside = std::move(face);
   }
@@ -113,8 +114,9 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   constexpr double min_roundness = 0.2;
   constexpr double min_slit_width = 4.0;
   result.spacing = spacing;
-  for (std::vector<Index>& loop : rotation.faces(kMinSteps, kMinCorner)) {
-    Opening opening = measured(points, spacing, std::move(loop));
+  const NeighborRows faces = rotation.faces(kMinSteps, kMinCorner);
+  for (const Index i : faces.nodes()) {
+    Opening opening = measured(points, spacing, {faces.row(i).begin(), faces.row(i).end()});
     const double roundness = kPi * opening.width / opening.boundary_length;
     if (opening.width >= (roundness < min_roundness ? min_slit_width : kMinWidth) * opening.spacing)
       result.openings.push_back(std::move(opening));

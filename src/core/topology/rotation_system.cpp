@@ -81,26 +81,28 @@ std::size_t RotationSystem::countTwisted() const {
   });
 }
 
-std::vector<std::vector<Index>> RotationSystem::faces(std::size_t min_steps,
-                                                      double min_corner) const {
-  std::vector<std::vector<Index>> found;
+NeighborRows RotationSystem::faces(std::size_t min_steps, double min_corner) const {
+  NeighborRows found;
+  std::vector<Index>& nodes = found.neighbors;
   std::vector<char> is_seen(edges_.neighbors.size(), 0);
-  std::vector<Index> loop;
   for (const Index v : edges_.nodes())
     for (const std::size_t e : edges_.entries(v)) {
-      loop.clear();
+      const std::size_t begin = nodes.size();
       double corners = 0.0;
       Index from = v;
       for (std::size_t edge = e; std::exchange(is_seen[edge], 1) == 0;) {
         const Index to = edges_.neighbors[edge];
-        loop.push_back(from);
+        nodes.push_back(from);
         const std::size_t back = entryOf(to, from);
         edge = (back > edges_.begin(to) ? back : edges_.end(to)) - 1;
         corners += cornerBetween(edge, back);
         from = to;
       }
-      if (loop.size() >= min_steps && corners >= min_corner * static_cast<double>(loop.size()))
-        found.push_back(loop);
+      const std::size_t steps = nodes.size() - begin;
+      if (steps > 0 && steps >= min_steps && corners >= min_corner * static_cast<double>(steps))
+        found.endRow();
+      else
+        nodes.resize(begin);
     }
   return found;
 }

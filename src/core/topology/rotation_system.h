@@ -54,7 +54,7 @@ public:
 
   /// The loops of all faces with at least some edges whose mean corner is large enough, with the
   /// face on the left seen from where the normals point.
-  std::vector<std::vector<Index>> faces(std::size_t min_steps, double min_corner) const;
+  NeighborRows faces(std::size_t min_steps, double min_corner) const;
 
 private:
   template <typename Condition>

@@ -36,6 +36,15 @@ std::vector<Index> parallel(Index around) {
   return walk;
 }
 
+NeighborRows cells(const std::vector<std::vector<Index>>& walks) {
+  NeighborRows rows;
+  for (const std::vector<Index>& walk : walks) {
+    rows.neighbors.insert(rows.neighbors.end(), walk.begin(), walk.end());
+    rows.endRow();
+  }
+  return rows;
+}
+
 TEST(CycleLabels, TellWhichWalksOfATorusBound) {
   const NumberedGraph graph(torusGraph());
   CycleLabels labels(graph, {});
@@ -54,11 +63,11 @@ TEST(CycleLabels, TellWhichWalksOfATorusBound) {
 
 TEST(CycleLabels, CellsBoundAsTrianglesDo) {
   const NumberedGraph graph(torusGraph());
-  const CycleLabels labels(graph, {parallel(2)});
+  const CycleLabels labels(graph, cells({parallel(2)}));
   EXPECT_EQ(labels.rank(), 1);
   EXPECT_EQ(labels.of(parallel(8)), 0U);
   EXPECT_NE(labels.of(meridian(0)), 0U);
-  EXPECT_EQ(CycleLabels(graph, {parallel(2), meridian(2), meridian(5)}).rank(), 0);
+  EXPECT_EQ(CycleLabels(graph, cells({parallel(2), meridian(2), meridian(5)})).rank(), 0);
 }
 
 TEST(CycleLabels, EdgesWithoutABitAreLeftOut) {
