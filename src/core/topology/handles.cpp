@@ -50,18 +50,26 @@ constexpr double kMaxDetour = 1.7;
 /// The walks of four edges without a diagonal, each once.
 NeighborRows squares(const NeighborRows& graph, int threads) {
   return rowsOfBlocks(graph.size(), threads, {}, [&](Index begin, Index end, Graph& found) {
+    std::vector<Index> opposite;
     for (const Index v : NumberRange(begin, end)) {
       const Row<Index> around = graph.row(v);
-      for (const Index a : around)
+      for (const Index a : around) {
+        if (a < v)
+          continue;
+        opposite.clear();
+        for (const Index w : graph.row(a))
+          if (w > v && !around.contains(w))
+            opposite.push_back(w);
         for (const Index b : around) {
-          if (a < v || b <= a || graph.row(a).contains(b))
+          if (b <= a || graph.row(a).contains(b))
             continue;
-          for (const Index w : graph.row(a))
-            if (w > v && graph.row(b).contains(w) && !around.contains(w)) {
+          for (const Index w : opposite)
+            if (graph.row(b).contains(w)) {
               found.neighbors.insert(found.neighbors.end(), {v, a, w, b});
               found.endRow();
             }
         }
+      }
     }
   });
 }
