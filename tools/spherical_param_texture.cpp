@@ -79,8 +79,7 @@ const std::vector<std::pair<std::string, std::string>> example_table = {
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
-         "Meshes the points of an object without holes through it, and paints their colours into "
-         "a texture.\n"
+         "Meshes the points of an object, and paints their colours into a texture.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) +
          "\n  output: .glb, with the image in it; .obj, with .mtl and .png beside it; .ply, with "

@@ -14,7 +14,8 @@ struct Progress {
   /// Of reconstruct(): "neighbors", "graph", "outliers", "parts", "consolidation", "openings",
   /// "embedding", "triangulation", "optimization", "smoothing" or "quality".
   const char* stage;
-  /// Fraction of the stage's current loop, in [0, 1]. A stage may run several loops.
+  /// Fraction of the stage's current loop, in [0, 1]. A stage may run several loops,
+  /// and "openings" comes back where a surface is cut.
   double fraction;
   std::size_t part = 0;   ///< the part at hand, from 0
   std::size_t parts = 1;  ///< number of parts that are meshed

@@ -41,7 +41,8 @@ public:
 
   /// The mesh along the first of the further cuts that can be glued, if its handles are certain or
   /// pay; else that of the cuts after it, or the sphere.
-  Candidate best(bool is_first = true) {
+  Candidate best() {
+    const bool is_first = std::exchange(is_first_, false);
     clock_.begin("openings");
     const std::optional<SurfaceCut> cut = cutter_->next();
     if (!cut) {
@@ -51,14 +52,14 @@ public:
     std::optional<Candidate> glued = gluedAlong(*cut);
     if (!glued) {
       has_failed_ = has_failed_ || is_first;
-      return best(false);
+      return best();
     }
     const double doubtful = doubtfulSteps(glued->handles);
     if (doubtful == 0.0) {
       cutter_.reset();
       return std::move(*glued);
     }
-    Candidate other = best(false);
+    Candidate other = best();
     return pay(*glued, other, doubtful) ? std::move(*glued) : std::move(other);
   }
 
@@ -159,6 +160,7 @@ private:
   const Options& options_;
   StageClock& clock_;
   std::optional<SurfaceCutter> cutter_;
+  bool is_first_ = true;  ///< no way to cut the surface was tried
   bool has_failed_ = false;
 };
 

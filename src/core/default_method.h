@@ -14,7 +14,7 @@ namespace spherical_param::internal {
 /// Handles that are not certain are kept if the mesh with them has clearly less energy than the one
 /// without them.
 ///
-/// \param topology gives away its rotation system.
+/// \param topology its rotation system is taken.
 MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
                           const Options& options, StageClock& clock);
 

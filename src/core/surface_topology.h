@@ -17,8 +17,9 @@ namespace spherical_param::internal {
 /// What is known of a surface before it is meshed.
 struct SurfaceTopology {
   OpenSurface openings;
-  std::vector<CutLoop> handles;                    ///< all that were found
-  std::unique_ptr<const RotationSystem> rotation;  ///< null: the surface is not to be cut
+  std::vector<CutLoop> handles;  ///< all that were found
+  std::unique_ptr<const RotationSystem>
+      rotation;  ///< null: the surface is not to be cut, or it was taken
 };
 
 /// Finds the openings and the handles of a surface.

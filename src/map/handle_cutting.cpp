@@ -2,6 +2,8 @@
 
 #include "corner_table.h"
 #include "index_loops.h"
+#include "input_checks.h"
+#include "shortest_paths.h"
 #include "spherical_param/errors.h"
 #include "spherical_param/mesh_topology.h"
 #include "union_find.h"
@@ -12,7 +14,8 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <queue>
+#include <numeric>
+#include <string>
 #include <utility>
 
 namespace spherical_param {
@@ -35,6 +38,7 @@ Index sideBefore(Index side) {
 /// The side of another triangle along each side; -1 on the boundary.
 Indexed<Index> sidesAcross(const Triangles& triangles) {
   std::vector<std::array<Index, 3>> ends;  // the lower one, the higher one, the side
+  ends.reserve(static_cast<std::size_t>(triangles.size()));
   for (Index side = 0; side < triangles.size(); ++side) {
     const Index from = triangles.data()[side];
     const Index to = triangles.data()[sideAfter(side)];
@@ -59,17 +63,28 @@ struct Loop {
 
 class HandleCutter {
 public:
-  HandleCutter(const Positions& points, const Triangles& triangles)
-      : original_(triangles), across_(sidesAcross(triangles)), cut_{points, triangles, {}} {
-    for (Index v = 0; v < points.cols(); ++v)
-      cut_.vertex_of.push_back(v);
+  explicit HandleCutter(CutMesh mesh)
+      : original_(mesh.triangles), vertex_count_(indexCount(mesh.vertex_of)), scaled_(mesh.points),
+        across_(sidesAcross(original_)), cut_(std::move(mesh)) {
+    // Squares of lengths are in the range of double, whatever the unit.
+    const Eigen::Vector3d center =
+        0.5 * scaled_.rowwise().minCoeff() + 0.5 * scaled_.rowwise().maxCoeff();
+    scaled_.colwise() -= center;
+    const double extent = scaled_.cwiseAbs().maxCoeff();
+    if (extent > 0.0)
+      scaled_ /= extent;
   }
 
   void cutOne() {
+    // A loop is shortened at most so often: each time costs a search.
+    constexpr int max_searches = 8;
     Loop loop = shortestLoop(0);
-    for (Loop other = shortestLoop(loop.opposite); other.length < loop.length;
-         other = shortestLoop(loop.opposite))
+    for (int i = 1; i < max_searches; ++i) {
+      Loop other = shortestLoop(loop.opposite);
+      if (!(other.length < loop.length))
+        break;
       loop = std::move(other);
+    }
     for (const Index side : loop.sides) {
       if (across_[side] < 0)
         continue;
@@ -87,10 +102,11 @@ private:
   Index start(Index side) const { return cut_.triangles.data()[side]; }
   Index end(Index side) const { return start(sideAfter(side)); }
   double length(Index side) const {
-    return (cut_.points.col(start(side)) - cut_.points.col(end(side))).norm();
+    return (scaled_.col(original_.data()[side]) - scaled_.col(original_.data()[sideAfter(side)]))
+        .norm();
   }
 
-  /// The shortest ways from a vertex (Dijkstra 1959).
+  /// The shortest ways from a vertex.
   struct Ways {
     Indexed<double> distance;
     Indexed<Index> last;  ///< the side along which each vertex is reached, in either direction
@@ -100,28 +116,13 @@ private:
     const std::size_t n = cut_.vertex_of.size();
     const CornerTable corners(cut_.triangles, n, 1);
     Ways ways{Indexed<double>(n, std::numeric_limits<double>::infinity()), Indexed<Index>(n, -1)};
-    std::priority_queue<std::pair<double, Index>, std::vector<std::pair<double, Index>>,
-                        std::greater<>>
-        queue;
-    ways.distance[root] = 0.0;
-    queue.emplace(0.0, root);
-    while (!queue.empty()) {
-      const auto [distance, v] = queue.top();
-      queue.pop();
-      if (distance > ways.distance[v])
-        continue;
+    internal::shortestPaths(root, ways.distance, [&](Index v, const auto& go) {
       corners.forEachCorner(v, [&](Index t, Index k) {
-        for (const Index side : {3 * t + k, sideBefore(3 * t + k)}) {
-          const Index w = otherEnd(side, v);
-          const double to_w = ways.distance[v] + length(side);
-          if (to_w < ways.distance[w]) {
-            ways.distance[w] = to_w;
+        for (const Index side : {3 * t + k, sideBefore(3 * t + k)})
+          if (const Index w = otherEnd(side, v); go(w, length(side)))
             ways.last[w] = side;
-            queue.emplace(to_w, w);
-          }
-        }
       });
-    }
+    });
     return ways;
   }
 
@@ -209,7 +210,7 @@ private:
 
   /// Gives each fan of triangles around a vertex a copy of it, the first one the vertex itself.
   void numberVertices() {
-    cut_.vertex_of.resize(static_cast<std::size_t>(original_.maxCoeff()) + 1);
+    cut_.vertex_of.resize(static_cast<std::size_t>(vertex_count_));
     Indexed<char> is_taken(cut_.vertex_of.size(), 0);
     Indexed<char> is_numbered(across_.size(), 0);
     for (Index side = 0; side < across_.count(); ++side) {
@@ -232,11 +233,13 @@ private:
         cut_.triangles.data()[sideAfter(s)] = copy;
       }
     }
-    const Positions vertices = cut_.points.leftCols(is_taken.count());
+    const Positions vertices = cut_.points.leftCols(vertex_count_);
     cut_.points = internal::columnsOf(vertices, cut_.vertex_of);
   }
 
-  const Triangles& original_;
+  Triangles original_;
+  Index vertex_count_;  ///< of the mesh
+  Positions scaled_;    ///< its vertices, at most 1 from the origin in each coordinate
   Indexed<Index> across_;
   std::vector<std::array<Index, 2>> cuts_;  ///< both sides of each edge
   CutMesh cut_;
@@ -246,7 +249,7 @@ private:
 class CutJoiner {
 public:
   CutJoiner(TextureAtlas atlas, const CutMesh& cut)
-      : atlas_(std::move(atlas)), cut_(cut), copies_(indexCount(cut.vertex_of)),
+      : atlas_(std::move(atlas)), copies_(indexCount(cut.vertex_of)),
         added_(static_cast<std::size_t>(atlas_.triangles.size())), same_(atlas_.vertices.size()) {
     for (Index i = 0; i < same_.count(); ++i)
       same_[i] = i < copies_ ? entry(cut.vertex_of, i) : i;
@@ -421,9 +424,8 @@ private:
   void numberVertices() {
     Indexed<Index> number(same_.size(), -1);
     std::vector<CutVertex> vertices;
-    const Index count = *std::max_element(cut_.vertex_of.begin(), cut_.vertex_of.end()) + 1;
     for (Index i = 0; i < same_.count(); ++i)
-      if (same_[i] == i && (i < count || i >= copies_)) {
+      if (same_[i] == i) {
         number[i] = indexCount(vertices);
         vertices.push_back(entry(atlas_.vertices, i));
       }
@@ -433,15 +435,33 @@ private:
   }
 
   TextureAtlas atlas_;
-  const CutMesh& cut_;
   Index copies_;  ///< the first vertices of the atlas, all those of the cut mesh
   Indexed<std::vector<Added>> added_;  ///< to each side, in its direction
   Indexed<Index> same_;  ///< the vertex that each is in the joined atlas, before it is renumbered
 };
 
+/// Sides are numbered by Index.
+void checkSize(const char* function, const Triangles& triangles) {
+  if (triangles.size() > std::numeric_limits<Index>::max())
+    throw InvalidInput(std::string(function) + ": " + std::to_string(triangles.cols()) +
+                       " triangles are too many; simplify the mesh");
+}
+
+/// Whether each vertex is one of the first ones, which are themselves.
+bool areCopies(const std::vector<Index>& vertex_of) {
+  const auto copies = std::adjacent_find(vertex_of.begin(), vertex_of.end(),
+                                         [](Index v, Index w) { return w != v + 1; });
+  if (vertex_of.empty() || vertex_of.front() != 0)
+    return false;
+  const auto first = copies == vertex_of.end() ? copies : copies + 1;
+  return std::all_of(first, vertex_of.end(),
+                     [&](Index v) { return v >= 0 && v < first - vertex_of.begin(); });
+}
+
 }  // namespace
 
 CutMesh cutHandles(const Positions& points, const Triangles& triangles) {
+  checkSize("cutHandles", triangles);
   const MeshTopology topology = checkTopology(triangles, internal::columnCount(points));
   if (!topology.isSurface())
     throw InvalidInput("cutHandles: the triangles are not an oriented manifold in one piece over "
@@ -449,28 +469,36 @@ CutMesh cutHandles(const Positions& points, const Triangles& triangles) {
   if (!points.allFinite())
     throw InvalidInput("cutHandles: a coordinate of a vertex is not finite; remove such points "
                        "first");
-  HandleCutter cutter(points, triangles);
-  for (long long g = topology.genus.value_or(0); g > 0; --g)
+  CutMesh mesh{points, triangles, std::vector<Index>(internal::columnCount(points))};
+  std::iota(mesh.vertex_of.begin(), mesh.vertex_of.end(), Index{0});
+  if (topology.genus == 0)
+    return mesh;
+  HandleCutter cutter(std::move(mesh));
+  for (long long g = *topology.genus; g > 0; --g)
     cutter.cutOne();
   return cutter.take();
 }
 
 TextureAtlas joinCuts(TextureAtlas atlas, const CutMesh& cut) {
-  const std::size_t vertices = internal::columnCount(cut.points);
+  internal::checkAtlas("joinCuts", atlas);
+  checkSize("joinCuts", atlas.triangles);
+  const auto copies = static_cast<Index>(cut.vertex_of.size());
   const bool fits =
-      cut.vertex_of.size() == vertices && atlas.vertices.size() >= vertices &&
-      std::all_of(atlas.vertices.begin(), atlas.vertices.end(), [&](const auto& v) {
-        return *std::min_element(v.vertices.begin(), v.vertices.end()) >= 0 &&
-               static_cast<std::size_t>(*std::max_element(v.vertices.begin(), v.vertices.end())) <
-                   vertices;
+      areCopies(cut.vertex_of) && atlas.vertices.size() >= cut.vertex_of.size() &&
+      atlas.source.size() == internal::columnCount(atlas.triangles) &&
+      std::all_of(atlas.vertices.begin(), atlas.vertices.end(), [&](const CutVertex& vertex) {
+        const auto [lowest, highest] =
+            std::minmax_element(vertex.vertices.begin(), vertex.vertices.end());
+        return *lowest >= 0 && *highest < copies;
       });
   if (!fits)
     throw InvalidInput("joinCuts: the atlas is not that of the mesh that was cut; give the one "
                        "that makeTextureAtlas() makes of its triangles");
-  if (cut.triangles.cols() == 0 || vertices == static_cast<std::size_t>(*std::max_element(
-                                                   cut.vertex_of.begin(), cut.vertex_of.end())) +
-                                                   1)
+  if (cut.vertex_of.back() == copies - 1)
     return atlas;
+  if (!checkTopology(atlas.triangles, atlas.vertices.size()).isOpenSurface())
+    throw InvalidInput("joinCuts: the triangles of the atlas are no cut surface; give the atlas "
+                       "that makeTextureAtlas() makes of the triangles that cutHandles() made");
   return CutJoiner(std::move(atlas), cut).run();
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "corner_table.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/map/texture_atlas.h"
 #include "spherical_param/types.h"
 
 #include <cmath>
@@ -51,6 +53,18 @@ inline void checkUnitVectors(const char* function, const Positions& sphere, doub
     if (!(std::abs(sphere.col(v).squaredNorm() - 1.0) <= tolerance))
       throw InvalidInput(std::string(function) + ": vertex " + std::to_string(v) + " has length " +
                          std::to_string(sphere.col(v).norm()) + " on the sphere; normalise it");
+}
+
+/// Throws InvalidInput for an atlas that makeTextureAtlas() cannot have made.
+inline void checkAtlas(const char* function, const TextureAtlas& atlas) {
+  checkEnum((std::string(function) + ": chart").c_str(), atlas.chart, SphereChart::CubeMap);
+  checkTriangles(function, atlas.triangles, static_cast<Eigen::Index>(atlas.vertices.size()));
+  checkTriangles(function, atlas.coordinate_triangles, atlas.coordinates.cols());
+  if (atlas.triangles.cols() != atlas.coordinate_triangles.cols() ||
+      !(atlas.coordinates.array() >= 0.0 && atlas.coordinates.array() <= 1.0).all())
+    throw InvalidInput(std::string(function) +
+                       ": the atlas has no place in [0, 1] for each corner of its triangles; use "
+                       "one that makeTextureAtlas() made");
 }
 
 }  // namespace spherical_param::internal

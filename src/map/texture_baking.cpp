@@ -37,19 +37,6 @@ void checkOptions(const std::string& function, const BakeOptions& options) {
   internal::checkThreads(options.threads);
 }
 
-/// Refuses what no makeTextureAtlas() made.
-void checkAtlas(const char* function, const TextureAtlas& atlas) {
-  internal::checkEnum((std::string(function) + ": chart").c_str(), atlas.chart,
-                      SphereChart::CubeMap);
-  internal::checkTriangles(function, atlas.triangles, internal::indexCount(atlas.vertices));
-  internal::checkTriangles(function, atlas.coordinate_triangles, atlas.coordinates.cols());
-  if (atlas.triangles.cols() != atlas.coordinate_triangles.cols() ||
-      !(atlas.coordinates.array() >= 0.0 && atlas.coordinates.array() <= 1.0).all())
-    throw InvalidInput(std::string(function) +
-                       ": the atlas has no place in [0, 1] for each corner of its triangles; use "
-                       "one that makeTextureAtlas() made");
-}
-
 using Color = std::array<std::uint8_t, 3>;
 
 class Painter {
@@ -245,7 +232,7 @@ TextureImage bakeColors(const TextureAtlas& atlas,
                         const Eigen::Matrix<double, 3, Eigen::Dynamic>& colors,
                         const BakeOptions& options) {
   checkOptions("bakeColors", options);
-  checkAtlas("bakeColors", atlas);
+  internal::checkAtlas("bakeColors", atlas);
   if (!(colors.array() >= 0.0 && colors.array() <= 255.0).all())
     throw InvalidInput("bakeColors: a colour is out of range or not finite; give channels from 0 "
                        "to 255");
@@ -268,7 +255,7 @@ TextureImage bakeColors(const TextureAtlas& atlas,
 TextureImage bakeCheckerboard(const TextureAtlas& atlas, const Positions& sphere, int cells,
                               const BakeOptions& options) {
   checkOptions("bakeCheckerboard", options);
-  checkAtlas("bakeCheckerboard", atlas);
+  internal::checkAtlas("bakeCheckerboard", atlas);
   internal::checkRange("bakeCheckerboard: cells", cells, 1, 4096);
   if (!sphere.allFinite())
     throw InvalidInput("bakeCheckerboard: a vertex on the sphere is not finite; give unit vectors");

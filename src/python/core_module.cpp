@@ -231,7 +231,9 @@ py::dict textureAtlas(const std::optional<DoubleArray>& points, const IndexArray
     if (!vertices)
       return makeTextureAtlas(mesh, directions, options);
     const CutMesh cut = cutHandles(*vertices, mesh);
-    const SphereMap map = computeSphereMap(cut.points, cut.triangles, directions);
+    SphereMapOptions map_options;
+    static_cast<Execution&>(map_options) = listener.execution(0);
+    const SphereMap map = computeSphereMap(cut.points, cut.triangles, directions, map_options);
     return joinCuts(makeTextureAtlas(cut.triangles, map.sphere, options), cut);
   });
   std::vector<std::array<Index, 3>> corners;

@@ -85,11 +85,19 @@ void fuzzCuts(Bytes& bytes) {
           "a cut torus is an open surface");
   const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
   TextureAtlas atlas = makeTextureAtlas(cut.triangles, map.sphere, {bytes.choice<SphereChart>(3)});
-  if (bytes.oneIn(8))
+  CutMesh spoiled = cut;
+  const std::uint8_t fault = bytes.byte();
+  if (fault == 1)
     atlas.vertices[bytes.byte() % atlas.vertices.size()].vertices[1] = bytes.raw<Index>() % 1000;
-  atlas = joinCuts(std::move(atlas), cut);
+  else if (fault == 2)
+    atlas.triangles.data()[bytes.byte() % atlas.triangles.size()] = bytes.byte();
+  else if (fault == 3)
+    spoiled.vertex_of[bytes.byte() % spoiled.vertex_of.size()] = bytes.byte();
+  else if (fault == 4)
+    atlas.source.resize(bytes.byte());
+  atlas = joinCuts(std::move(atlas), spoiled);
   const MeshTopology topology = checkTopology(atlas.triangles, atlas.vertices.size());
-  require(topology.isSurface() && topology.genus == 1, "joined, it is a torus");
+  require(fault > 1 || (topology.isSurface() && topology.genus == 1), "joined, it is a torus");
 }
 
 }  // namespace

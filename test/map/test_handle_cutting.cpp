@@ -8,7 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -34,8 +36,8 @@ Mesh meshed(const Positions& points) {
   return {points(Eigen::all, result.surface().input_of_vertex), result.surface().triangles};
 }
 
-/// Without every so manieth triangle that touches no opening: of three edges each, so that cuts can
-/// hardly avoid them.
+/// Without one triangle in `step`, where it touches no opening. Cuts can hardly avoid such
+/// openings.
 Mesh perforated(const Mesh& mesh, Eigen::Index step) {
   std::set<Index> touched;
   std::vector<Eigen::Index> kept;
@@ -96,6 +98,8 @@ TEST(HandleCutting, CutsAreTheShortestLoopsAndEachMakesTwoOpenings) {
     return checkTopology(c.triangles, c.vertex_of.size()).boundary_loops;
   };
   EXPECT_EQ(loops(cut), 2U);
+  for (const double unit : {1e200, 1e-200})
+    EXPECT_EQ(cutHandles(unit * mesh.points, mesh.triangles).triangles, cut.triangles);
   const Mesh two = meshed(test::doubleTorus(0.2));
   EXPECT_EQ(loops(cutHandles(two.points, two.triangles)), 4U);
 }
@@ -119,6 +123,25 @@ TEST(HandleCutting, OtherMeshesAreRefused) {
   EXPECT_THROW(cutHandles(points, mesh.triangles), InvalidInput);
   const CutMesh cut = cutHandles(mesh.points, mesh.triangles);
   EXPECT_THROW(joinCuts({}, cut), InvalidInput);
+  const SphereMap map = computeSphereMap(cut.points, cut.triangles, {});
+  const TextureAtlas atlas = makeTextureAtlas(cut.triangles, map.sphere);
+  const std::vector<std::function<void(TextureAtlas&, CutMesh&)>> faults = {
+      [](TextureAtlas&, CutMesh& c) { c.vertex_of.back() = -1; },
+      [](TextureAtlas&, CutMesh& c) { c.vertex_of.back() = 30; },
+      [](TextureAtlas&, CutMesh& c) { c.vertex_of.clear(); },
+      [](TextureAtlas&, CutMesh& c) { c.vertex_of[3] = 2; },
+      [](TextureAtlas& a, CutMesh&) { a.source.pop_back(); },
+      [](TextureAtlas& a, CutMesh&) { a.vertices.resize(5); },
+      [](TextureAtlas& a, CutMesh&) { a.vertices[40].vertices[1] = 1000; },
+      [](TextureAtlas& a, CutMesh&) { a.triangles(0, 7) = -1; },
+      [](TextureAtlas& a, CutMesh&) { a.triangles(0, 7) = a.triangles(0, 9); },
+      [](TextureAtlas& a, CutMesh&) { a.coordinate_triangles.resize(3, 4); }};
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    TextureAtlas wrong_atlas = atlas;
+    CutMesh wrong_cut = cut;
+    faults[i](wrong_atlas, wrong_cut);
+    EXPECT_THROW(joinCuts(wrong_atlas, wrong_cut), InvalidInput) << i;
+  }
   mesh.points(0, 3) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(cutHandles(mesh.points, mesh.triangles), InvalidInput);
 }

@@ -153,7 +153,7 @@ class Maps(unittest.TestCase):
         for wrong in (sphere[:-1], sphere[:, :2]):
             with self.assertRaisesRegex(sp.InvalidInput, "; "):
                 sp.measure_map_distortion(points, triangles, wrong)
-        with self.assertRaisesRegex(sp.InvalidInput, "; give the SphereMap"):
+        with self.assertRaisesRegex(sp.InvalidInput, "; give the mesh"):
             sp.texture_coordinates(points)
         for function, argument, name, values in (
             (sp.sphere_map, mesh, "area_weight", (2, "1")),

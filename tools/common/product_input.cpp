@@ -108,8 +108,6 @@ void mapCloud(const std::string& path, const ProductSettings& settings, HandlesO
     requireSpheres(path, mapped.cloud);
   }
   const Surface& surface = mapped.cloud.surface();
-  mapped.mesh = cutHandles(vertexPositions(mapped.cloud, surface), surface.triangles);
-  mapped.colors = vertexColors(mapped.cloud, mapped.mesh.vertex_of);
   console.begin("map");
   SphereMapOptions options = settings.map;
   options.progress = [&console](const Progress& progress) {
@@ -117,9 +115,11 @@ void mapCloud(const std::string& path, const ProductSettings& settings, HandlesO
     return true;
   };
   runLibrary("cannot map " + inQuotes(path) + " to the sphere", "try another -seed", [&] {
+    mapped.mesh = cutHandles(vertexPositions(mapped.cloud, surface), surface.triangles);
     mapped.map =
         computeSphereMap(mapped.mesh.points, mapped.mesh.triangles, surface.sphere, options);
   });
+  mapped.colors = vertexColors(mapped.cloud, mapped.mesh.vertex_of);
   mapped.cloud.stages.push_back({"map", console.end("")});
 }
 

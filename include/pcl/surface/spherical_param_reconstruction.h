@@ -118,7 +118,7 @@ public:
    * \param[in] mode default HandleMode::Auto: it has those that are certain. None: it has none and
    * is one sphere, or one with openings.
    * \note A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None
-   * for remeshing, texturing and morphing. getResult() has the loops of the handles. */
+   * for remeshing and morphing. getResult() has the loops of the handles. */
   inline void setHandles(HandleMode mode) { options_.handles = mode; }
   /** \brief Get whether the mesh has the handles of the surface.
    * \return the mode */

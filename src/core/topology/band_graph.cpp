@@ -27,7 +27,7 @@ std::vector<Index> byDistance(const Graph& graph, const NodeSizes& sizes, Index 
     for (const std::size_t e : graph.entries(v)) {
       const Index w = graph.neighbors[e];
       if (distance[w] <= distance[v])
-        continue;
+        continue;  // saves the division
       const double spacing = (sizes.spacing[v] + sizes.spacing[w]) / 2.0;
       go(w, spacing > 0.0 ? graph.lengths[e] / spacing : 1.0);
     }

@@ -10,10 +10,10 @@
 ``reconstruct`` makes of the points of an object a closed, manifold triangle mesh through every
 point, with the handles of the object; with ``surface="open"`` the openings of the scan stay open. A
 mesh without handles has a map to the sphere. ``sphere_map`` makes that map one to one and of low
-distortion; ``remesh`` samples the surface anew by it, ``texture_coordinates`` lays it out in the
-plane, ``morph`` changes it into another: with ``handles="none"`` also of objects with handles,
-which are cut. ``find_outliers`` finds points to leave out
-before, ``find_parts`` the surfaces of a cloud.
+distortion; ``remesh`` samples the surface anew by it, ``morph`` changes it into another: with
+``handles="none"`` also of objects with handles, which are cut. ``texture_coordinates`` lays any
+mesh out in the plane. ``find_outliers`` finds points to leave out before, ``find_parts`` the
+surfaces of a cloud.
 
 Arrays are NumPy's: points (n, 3) float64, triangles (m, 3) int32, counter-clockwise seen from
 outside. All functions let other Python threads run while they work, may be called from several

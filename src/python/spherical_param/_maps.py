@@ -397,7 +397,7 @@ def texture_coordinates(
     Parameters
     ----------
     mesh : SphereMap, Remeshed or Result
-        With a map that is one to one. A ``Result`` is mapped as by ``sphere_map``; one with handles
+        A map that is one to one, or a mesh, which is mapped as by ``sphere_map``. One with handles
         is cut along short loops for it, which stay cuts of the chart, but not of the mesh.
     chart : {"octahedral", "equirectangular", "cube"}
         Layout, for images of 1:1, 2:1 and 3:2.
@@ -408,19 +408,22 @@ def texture_coordinates(
     ------
     InvalidInput
         A triangle is flipped on the sphere, or an option is not as described.
+    ComputeError, MemoryError, KeyboardInterrupt
     """
-    if not isinstance(mesh, (Result, SphereMap, Remeshed)):
+    if isinstance(mesh, Result):
+        points = mesh._export_points()
+        sphere = np.empty((0, 3)) if mesh.sphere is None else mesh.sphere
+    elif isinstance(mesh, (SphereMap, Remeshed)):
+        points, sphere = mesh.vertices, mesh.directions
+    else:
         raise InvalidInput(
-            f"a {type(mesh).__name__} has no map to the sphere that is one to one; give the "
-            "SphereMap of sphere_map()"
+            f"a {type(mesh).__name__} is no Result, SphereMap or Remeshed; give the mesh of "
+            "reconstruct() or the map of sphere_map()"
         )
-    is_mapped = not isinstance(mesh, Result)
-    points = mesh.vertices if is_mapped else mesh._export_points()
-    start = mesh.directions if is_mapped else mesh.sphere
     fields = _core.texture_coordinates(
-        None if is_mapped else points,
+        points if isinstance(mesh, Result) else None,
         mesh.triangles,
-        np.empty((0, 3)) if start is None else start,
+        sphere,
         chart=arguments.text("chart", chart),
         margin=arguments.real("margin", margin),
     )
