@@ -9,7 +9,6 @@
 #include "mesh_optimization.h"
 #include "neighbor_search.h"
 #include "open_shapes.h"
-#include "openings.h"
 #include "optimization/optimization_cases.h"
 #include "ordered_points.h"
 #include "paper_method.h"
@@ -24,6 +23,7 @@
 #include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 #include "surface_diagnosis.h"
+#include "surface_topology.h"
 #include "thread_checks.h"
 
 #include <gtest/gtest.h>
@@ -204,7 +204,11 @@ std::vector<Stage> stagesOf(const Inputs& in) {
        }},
       {"openings",
        [&](const Execution& e) {
-         const Openings result = findOpenings(in.holed, in.holed_graph, e);
+         Options options;
+         options.surface = SurfaceMode::Open;
+         const internal::SurfaceTopology topology =
+             internal::findTopology(in.holed, in.holed_graph, false, 1.0, options, e);
+         const Openings& result = topology.openings.embeddedOpenings();
          Numbers numbers(result.spacing, result.false_edges);
          for (const Opening& opening : result.openings)
            numbers.add(opening.loop);

@@ -107,17 +107,12 @@ private:
     const std::size_t n = loop.nodes.size();
     for (std::size_t i = 0; i < n; ++i)
       for (const Index w : rotation_.edges().row(loop.nodes[i]))
-        if (!isLeftOut(loop, loop.nodes[i], w))
+        if (!loop.leavesOut(loop.nodes[i], w))
           mark(w, sideOf(loop, i, w));
     for (std::size_t i = n, end = touched_.size(); i < end; ++i)
       for (const Index w : rotation_.edges().row(touched_[i]))
-        if (!isLeftOut(loop, touched_[i], w))
+        if (!loop.leavesOut(touched_[i], w))
           mark(w, side_[touched_[i]]);
-  }
-
-  static bool isLeftOut(const CutLoop& loop, Index v, Index w) {
-    return std::find(loop.left_out.begin(), loop.left_out.end(),
-                     std::array<Index, 2>{std::min(v, w), std::max(v, w)}) != loop.left_out.end();
   }
 
   Side sideOf(const CutLoop& loop, std::size_t i, Index w) const {

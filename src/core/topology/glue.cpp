@@ -5,7 +5,6 @@
 #include "spherical_param/mesh_topology.h"
 #include "union_find.h"
 
-#include <array>
 #include <utility>
 #include <vector>
 

@@ -317,11 +317,6 @@ private:
     return loop;
   }
 
-  bool isLeftOut(const CutLoop& loop, Index v, Index w) const {
-    return std::find(loop.left_out.begin(), loop.left_out.end(), edgeOf(v, w)) !=
-           loop.left_out.end();
-  }
-
   /// The shortest walk that crosses a loop once.
   struct Dual {
     int steps = kSeparates;
@@ -351,7 +346,7 @@ private:
       const Index v = loop.nodes[i];
       forEachBeside(loop.nodes[(i + n - 1) % n], v, loop.nodes[(i + 1) % n],
                     [&](Index w, Side side) {
-                      if (side_[w] == Side::On || isLeftOut(loop, v, w))
+                      if (side_[w] == Side::On || loop.leavesOut(v, w))
                         return;
                       if (side_[w] == Side::None) {
                         side_[w] = side;
@@ -379,7 +374,7 @@ private:
       const Index v = wave.queue[i];
       for (const std::size_t e : graph_.entries(v)) {
         Index w = graph_.neighbors[e];
-        if (side_[w] == Side::On || labels_.isLeftOut(graph_.edges[e]) || isLeftOut(loop, v, w) ||
+        if (side_[w] == Side::On || labels_.isLeftOut(graph_.edges[e]) || loop.leavesOut(v, w) ||
             !wave.reached.insert(w))
           continue;
         wave.steps[w] = wave.steps[v] + 1;

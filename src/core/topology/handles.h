@@ -5,6 +5,7 @@
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -15,6 +16,10 @@ namespace spherical_param::internal {
 struct CutLoop {
   /// Of a torus with this loop and its dual [squared steps].
   double area() const { return static_cast<double>(nodes.size()) * dual; }
+  bool leavesOut(Index v, Index w) const {
+    return std::find(left_out.begin(), left_out.end(),
+                     std::array{std::min(v, w), std::max(v, w)}) != left_out.end();
+  }
 
   std::vector<Index> nodes;                    ///< in order, each once
   int dual = 0;                                ///< steps of the shortest walk that crosses it once

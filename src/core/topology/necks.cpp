@@ -6,7 +6,6 @@
 #include "loop_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>

@@ -5,7 +5,6 @@
 #include "graph_cycles.h"
 #include "pi.h"
 #include "point_set.h"
-#include "progress.h"
 #include "rotation_system.h"
 #include "rows.h"
 
@@ -155,16 +154,5 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Indexed
 }
 
 }  // namespace internal
-
-Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution) {
-  const internal::Indexed<double> spacing = internal::nodeSpacings(graph, execution.threads);
-  const internal::FractionReport report = internal::reportOf(execution, "openings");
-  internal::reportFraction(report, 0.1);
-  internal::RotationSystem rotation(points, graph, spacing, execution.threads);
-  internal::reportFraction(report, 0.6);
-  Openings found = internal::findOpenings(points, graph, spacing, rotation);
-  internal::reportFraction(report, 0.8);
-  return found;
-}
 
 }  // namespace spherical_param

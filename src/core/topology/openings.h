@@ -3,7 +3,6 @@
 #include "graph.h"
 #include "indexed.h"
 #include "rotation_system.h"
-#include "spherical_param/execution.h"
 #include "spherical_param/result.h"
 
 #include <array>
@@ -25,15 +24,15 @@ struct Openings {
   bool is_one_sided = false;
 };
 
-/// Finds the openings of a sampled surface in its neighbour graph, before meshing.
-///
-/// 1. Drop edges longer than 1.5 times the larger spacing of their ends.
-/// 2. Fit a plane to the directions to the neighbours within two steps, and orient the normals,
-/// along
-///    edges between similar normals first (Hoppe et al. 1992).
-/// 3. Drop the longer of two crossing edges, and edges that are steep to a plane and join different
-///    normals.
-/// 4. Trace all faces of the graph in the order of the neighbours around the normals.
+/// @}
+
+namespace internal {
+
+/// Sizes of what a loop encloses.
+Opening measured(const Positions& points, const Indexed<double>& spacing, std::vector<Index> loop);
+
+/// Finds the openings of a sampled surface in its neighbour graph, before meshing, among the faces
+/// of its rotation system.
 ///
 /// A face is an opening if it has at least 7 edges, is at least 3 spacings wide, and has corners of
 /// at least 117 degrees on average (narrow seams have sharp corners). A slit, longer than 5 times
@@ -44,25 +43,15 @@ struct Openings {
 /// sides of a thin part. A one-sided surface keeps them: there, many are not steep to their planes,
 /// and the graph has no cycles once the openings are filled.
 ///
-/// \param points 3 x n, finite.
-/// \param graph  n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.
-/// \param execution threads
-/// \return the openings, the same, bit by bit, for any number of threads.
-/// Cost: O(n).
+/// \param points   3 x n, finite.
+/// \param graph    n nodes, local Delaunay neighbourhoods; bridges between parts do no harm.
+/// \param spacing  of each node.
+/// \param rotation of the graph; afterwards without edges between opposite sheets if there are
+///                 openings.
+/// \return the openings. Cost: O(n).
 ///
 /// Not guaranteed: openings below some 5 spacings and seams between sheets that nearly touch are
 /// missed; a flat face of the surface without points inside counts as an opening.
-Openings findOpenings(const Positions& points, const Graph& graph, const Execution& execution = {});
-
-/// @}
-
-namespace internal {
-
-/// Sizes of what a loop encloses.
-Opening measured(const Positions& points, const Indexed<double>& spacing, std::vector<Index> loop);
-
-/// The same with the rotation system at hand, which afterwards has no edges between opposite sheets
-/// if there are openings.
 Openings findOpenings(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                       RotationSystem& rotation);
 

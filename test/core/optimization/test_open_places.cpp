@@ -1,6 +1,7 @@
 #include "graphs.h"
 #include "open_places.h"
 
+#include "core/topology/topologies.h"
 #include "graph.h"
 #include "open_shapes.h"
 
@@ -13,7 +14,7 @@ TEST(OpenPlaces, AreTrianglesNearALoopWithALongSide) {
   // Rings 0, 1, 2, ... of 40 points; the loops are rings 0 and 19.
   const Positions points = test::tube(20, 40);
   const Graph graph = test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
-  const OpenPlaces places(points, graph, findOpenings(points, graph));
+  const OpenPlaces places(points, graph, test::openingsOf(points, graph));
   EXPECT_TRUE(places.isOpen(0, 10, 20));
   EXPECT_TRUE(places.isOpen(20, 0, 10));
   EXPECT_TRUE(places.isOpen(0, 2, 1));      // two steps along the loop

@@ -1,5 +1,6 @@
 #include "surface_diagnosis.h"
 
+#include "core/topology/topologies.h"
 #include "graphs.h"
 #include "helpers.h"
 #include "openings.h"
@@ -20,7 +21,7 @@ namespace {
 
 /// The openings of the graph are filled.
 SurfaceDiagnosis diagnose(const Scene& scene, const DiagnosisOptions& options = {}) {
-  std::vector<Opening> openings = findOpenings(scene.points, scene.graph.graph).openings;
+  std::vector<Opening> openings = openingsOf(scene.points, scene.graph.graph).openings;
   for (Opening& opening : openings)
     opening.is_filled = true;
   return diagnoseSurface(scene.points, scene.triangles, scene.graph.graph, scene.graph.bridges,

@@ -4,6 +4,7 @@
 #include "graph_cycles.h"
 #include "graphs.h"
 #include "open_shapes.h"
+#include "topologies.h"
 
 namespace spherical_param {
 namespace {
@@ -26,7 +27,7 @@ TEST(FilledGraph, IsThatOfAClosedSurface) {
   for (const Positions& points :
        {test::hemisphere(800), test::tube(20, 40), test::sphereWithHoles(3000, 5, 0.3)}) {
     const Graph graph = test::graphOf(points, test::bruteForceNeighbors(points, 24)).graph;
-    const Openings openings = findOpenings(points, graph);
+    const Openings openings = test::openingsOf(points, graph);
     const FilledGraph filled = internal::fillOpenings(points, graph, openings);
     EXPECT_EQ(internal::countCycles(filled.graph, 2), 0);
     // About twice as many nodes as the loops have.

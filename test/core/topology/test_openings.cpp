@@ -3,6 +3,7 @@
 
 #include "core/graph/graph_helpers.h"
 #include "open_shapes.h"
+#include "topologies.h"
 
 #include <cmath>
 #include <functional>
@@ -21,7 +22,7 @@ Graph graphOf(const Positions& points) {
 }
 
 std::vector<Opening> openingsOf(const Positions& points) {
-  return findOpenings(points, graphOf(points)).openings;
+  return test::openingsOf(points, graphOf(points)).openings;
 }
 
 TEST(Openings, AreNoneOfClosedSurfacesHoweverTheyAreSampled) {

@@ -9,8 +9,14 @@
 
 #include <optional>
 
-/// What is known of a cloud before it is meshed, for tests of cuts.
+/// What is known of a cloud before it is meshed.
 namespace spherical_param::test {
+
+inline Openings openingsOf(const Positions& points, const Graph& graph) {
+  const internal::Indexed<double> spacing = internal::nodeSpacings(graph, 1);
+  internal::RotationSystem rotation(points, graph, spacing, 1);
+  return internal::findOpenings(points, graph, spacing, rotation);
+}
 
 struct Topology {
   explicit Topology(const Positions& cloud, const Execution& execution = {})
