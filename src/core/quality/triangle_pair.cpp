@@ -13,8 +13,11 @@ using Eigen::Vector2d;
 class ExactTriangle {
 public:
   explicit ExactTriangle(const std::array<Vector3d, 3>& corners) : corners_(corners) {
-    while (axis_ < 3 && (turn_ = turn(corners[0], corners[1], corners[2])) == 0)
-      ++axis_;
+    // The widest view first: it needs no exact arithmetic.
+    const auto& [a, b, c] = corners;
+    (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis_);
+    for (int i = 0; i < 3 && (turn_ = turn(a, b, c)) == 0; ++i)
+      axis_ = (axis_ + 1) % 3;
   }
 
   bool hasArea() const { return turn_ != 0; }
@@ -26,8 +29,8 @@ public:
   int turn(const Vector3d& a, const Vector3d& b, const Vector3d& c) const {
     return orientation2d(flat(a), flat(b), flat(c));
   }
-  /// Whether a point, a segment or a triangle in the plane shares no point with this triangle: then
-  /// a line along a side of one of the two separates them.
+  /// Whether a line along a side of one of them separates this triangle from a point, a segment or
+  /// a triangle, seen along the axis. In one plane, nothing else separates them.
   template <std::size_t N>
   bool isApart(const std::array<Vector3d, N>& hull) const {
     for (std::size_t i = 0; i < 3; ++i)
@@ -51,7 +54,7 @@ private:
   Vector2d flat(const Vector3d& p) const { return {p[(axis_ + 1) % 3], p[(axis_ + 2) % 3]}; }
 
   std::array<Vector3d, 3> corners_;
-  int axis_ = 0;  ///< along which the triangle has an area; 3 if it has none
+  int axis_ = 0;  ///< along which the triangle has an area, if it has one
   int turn_ = 0;  ///< sign of that area
 };
 
@@ -97,6 +100,8 @@ bool intersectExactly(const Face& face_a, const Face& face_b) {
     return false;
   if (common == 3)
     return true;
+  if (common == 0 && a.isApart(of_b))  // cheap, and in a flat mesh nearly always so
+    return false;
   if (common == 2)  // The cheap question first: in a flat mesh, neighbours lie on different sides.
     return a.turn(of_a[0], of_a[1], of_a[2]) * a.turn(of_a[0], of_a[1], of_b[2]) > 0 &&
            a.side(of_b[2]) == 0;
@@ -107,7 +112,7 @@ bool intersectExactly(const Face& face_a, const Face& face_b) {
     b_sides[i] = a.side(of_b[i]);
   }
   if (common == 0 && b_sides == std::array{0, 0, 0})
-    return !a.isApart(of_b);
+    return true;
   // Where two triangles meet, a side of one of them meets the other: from a common corner, the
   // opposite one.
   for (std::size_t i = common; i < 3 - common; ++i) {
