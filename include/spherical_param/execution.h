@@ -29,9 +29,10 @@ struct Execution {
   /// and smoothing may take longer between two calls.
   std::function<bool(const Progress&)> progress = {};
   /// Wall time after which the work ends with the best mesh so far [s]; [0, 1e9]. Unset: no limit.
-  /// It ends the optimisation, not the stages before. Parts share it in proportion to their points;
-  /// before smoothing, the optimisation gets half of the remaining time. If it ends the work,
-  /// handles and folds are not distinguished. The mesh then depends on the machine.
+  /// 0: the work ends with the first mesh, however long that takes. Where there is no mesh in time,
+  /// the work fails, or leaves out that part. Parts share it in proportion to their points; before
+  /// smoothing, the optimisation gets half of the remaining time. If it ends the work, handles and
+  /// folds are not distinguished. The mesh then depends on the machine.
   std::optional<double> time_limit = {};
 };
 

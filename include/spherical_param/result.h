@@ -251,7 +251,7 @@ struct Surface {
   std::vector<Index> vertex_of_input;  ///< n entries: vertex of each entry of `inputs`
   std::vector<Index> input_of_vertex;  ///< v entries: first input point at that position
 
-  /// Pairs of triangles that intersect, ascending. \see findSelfIntersections
+  /// Pairs of triangles that intersect, ascending: all, or a sample. \see findSelfIntersections
   std::vector<std::array<Index, 2>> self_intersections;
   /// 3 x v, the points after smoothing; empty without smoothing [unit of the input].
   Positions smoothed;
@@ -280,6 +280,8 @@ struct Surface {
 
   /// Triangles that intersect others, on the smoothed points if the mesh was smoothed.
   std::size_t intersecting_triangles = 0;
+  /// The mesh is not usable, and that ended the search for intersections: there may be more.
+  bool intersections_are_sampled = false;
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< remarks and remedies; empty if all is well
 

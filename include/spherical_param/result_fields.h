@@ -336,7 +336,11 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"topology", "checked on the triangles"}, &Of::topology);
   visit({"intersecting_triangles", "number of triangles that intersect others, after smoothing"},
         &Of::intersecting_triangles);
-  visit({"self_intersections", "pairs of triangles that intersect (exact), ascending", 0,
+  visit({"intersections_are_sampled",
+         "the mesh is not usable, and that ended the search: more triangles may intersect"},
+        &Of::intersections_are_sampled);
+  visit({"self_intersections",
+         "pairs of triangles that intersect (exact), ascending: all, or a sample", 0,
          FieldKind::TriangleList},
         &Of::self_intersections);
   visit({"measures", "of the mesh on the input or consolidated points"}, &Of::measures);

@@ -107,8 +107,8 @@ private:
     optimize(other);
     return energy(other.optimization->triangles) - energy(cut.optimization->triangles) >
                min_optimized * steps &&
-           cut.optimization->self_intersections.size() <=
-               other.optimization->self_intersections.size();
+           cut.optimization->intersecting.pairs.size() <=
+               other.optimization->intersecting.pairs.size();
   }
 
   Candidate sphere() {

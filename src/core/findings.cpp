@@ -204,7 +204,9 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
 
 std::string verdictOf(const Options& options, const Surface& result) {
   if (result.intersecting_triangles > 0)
-    return "The mesh has faults: " + grouped(result.intersecting_triangles) + " of " +
+    return std::string("The mesh has faults: ") +
+           (result.intersections_are_sampled ? "more than " : "") +
+           grouped(result.intersecting_triangles) + " of " +
            counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::string text = "A sound mesh";
@@ -230,16 +232,21 @@ std::string verdictOf(const Options& options, const Surface& result) {
   return text + ".";
 }
 
-std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
-                      std::string error) {
+std::string failureOf(std::size_t first, std::size_t end,
+                      const std::vector<std::vector<Index>>& parts, std::string error) {
   const std::string function = "reconstruct: ";
   if (error.compare(0, function.size(), function) == 0)
     error.erase(0, function.size());
-  return "part " + std::to_string(part + 1) + " of " + std::to_string(parts.size()) + " (" +
-         counted(parts[part].size(), "point") + ") cannot be meshed: " + error;
+  std::size_t points = 0;
+  for (std::size_t part = first; part < end; ++part)
+    points += parts[part].size();
+  return (end > first + 1 ? "parts " + std::to_string(first + 1) + " to " + std::to_string(end)
+                          : "part " + std::to_string(end)) +
+         " of " + std::to_string(parts.size()) + " (" + counted(points, "point") +
+         ") cannot be meshed: " + error;
 }
 
-void summarize(Result& result) {
+void summarize(std::size_t parts_in_all, Result& result) {
   const std::vector<Surface>& surfaces = result.surfaces;
   std::vector<std::string> parts;  // of each finding
   std::size_t faulty = 0;
@@ -268,8 +275,8 @@ void summarize(Result& result) {
     result.verdict = grouped(surfaces.size()) + " meshes, " +
                      (faulty == 0 ? "all sound." : grouped(faulty) + " of them with faults.");
   }
-  if (!result.failures.empty())
-    result.verdict += " " + counted(result.failures.size(), "part") + " cannot be meshed.";
+  if (parts_in_all > surfaces.size())
+    result.verdict += " " + counted(parts_in_all - surfaces.size(), "part") + " cannot be meshed.";
 }
 
 }  // namespace spherical_param::internal

@@ -12,16 +12,16 @@ namespace spherical_param::internal {
 /// The findings of a result, causes before their consequences.
 std::vector<Finding> findingsOf(const Options& options, const Surface& result);
 
-/// Message for a part that cannot be meshed.
+/// Message for parts that cannot be meshed.
 ///
-/// \param part  index among the parts.
-/// \param error message of the exception.
-std::string failureOf(std::size_t part, const std::vector<std::vector<Index>>& parts,
-                      std::string error);
+/// \param first, end indices among the parts.
+/// \param error      message of the exception.
+std::string failureOf(std::size_t first, std::size_t end,
+                      const std::vector<std::vector<Index>>& parts, std::string error);
 
 /// Fills verdict and findings of a result from its surfaces and failures; equal findings of several
 /// surfaces become one.
-void summarize(Result& result);
+void summarize(std::size_t parts_in_all, Result& result);
 
 /// A headline: whether the mesh is sound, and what it leaves open, fills, cuts or joins.
 std::string verdictOf(const Options& options, const Surface& result);

@@ -244,7 +244,8 @@ std::vector<OptionRow> runRows() {
       number("seed", "seed", "seed of all random choices", Expert, 0,
              std::numeric_limits<std::uint32_t>::max(), memberOf(&Options::seed)),
       byDefault(number("time_limit", "time_limit",
-                       "seconds until the work ends with the best mesh so far; unset: no limit",
+                       "seconds until the work ends with the best mesh so far; 0: with the first; "
+                       "unset: no limit",
                        Everybody, 0, 1e9, memberOf(&Options::time_limit))),
       number("threads", "threads", "threads; 0: one for each processor", Expert, 0, 1024,
              memberOf(&Options::threads)),

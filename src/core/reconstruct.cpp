@@ -13,7 +13,6 @@
 #include "result_units.h"
 #include "selection.h"
 #include "spherical_param/errors.h"
-#include "spherical_param/self_intersection.h"
 #include "stage_clock.h"
 #include "surface_topology.h"
 
@@ -95,8 +94,8 @@ MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const 
   triangles = internal::paper::convexHull(mesh.embedding.directions, clock.execution());
   internal::orientOutward(points, triangles, mesh.embedding);
   clock.begin("quality");
-  mesh.optimization.self_intersections =
-      findSelfIntersections(points, triangles, clock.execution());
+  mesh.optimization.intersecting = internal::findPairsUpTo(internal::mostOfUsable(triangles),
+                                                           points, triangles, clock.execution());
   return mesh;
 }
 
@@ -213,22 +212,25 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
     const auto count = static_cast<double>(parts[part].size());
     clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
     left -= parts[part].size();
-    const auto leave_out = [&](const std::exception& error) {
+    const auto leave_out = [&](const std::exception& error, std::size_t end) {
       if (!first_error)
         first_error = std::current_exception();
-      result.failures.push_back(internal::failureOf(part, parts, error.what()));
-      failed.insert(failed.end(), parts[part].begin(), parts[part].end());
+      result.failures.push_back(internal::failureOf(part, end, parts, error.what()));
+      for (std::size_t i = part; i < end; ++i)
+        failed.insert(failed.end(), parts[i].begin(), parts[i].end());
     };
-    // Outside of the try: what the caller's search throws is passed on.
-    Neighborhoods* const neighborhoods = options.consolidation == ConsolidationMode::Auto
-                                             ? nullptr
-                                             : &selection.neighborhoodsOf(part);
     try {
+      Neighborhoods* const neighborhoods = options.consolidation == ConsolidationMode::Auto
+                                               ? nullptr
+                                               : &selection.neighborhoodsOf(part);
       result.surfaces.push_back(meshPart(selection, part, neighborhoods, options, clock));
     } catch (const InvalidInput& error) {
-      leave_out(error);
+      leave_out(error, part + 1);
+    } catch (const internal::OutOfTime& error) {
+      leave_out(error, parts.size());
+      break;
     } catch (const ComputeError& error) {
-      leave_out(error);
+      leave_out(error, part + 1);
     }
   }
   if (result.surfaces.empty())
@@ -272,12 +274,13 @@ Result reconstruct(const Positions& points, const Options& options,
   checkOptions(options);
   StageClock clock(options);
   Result result;
-  explained(result.left_out, [&] {
+  const std::size_t parts = explained(result.left_out, [&] {
     Selection selection(points, options, search_of, clock, result.left_out);
     meshParts(selection, options, clock, result);
+    return selection.parts().size();
   });
   result.stages = clock.take();
-  internal::summarize(result);
+  internal::summarize(parts, result);
   return result;
 }
 

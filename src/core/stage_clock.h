@@ -1,6 +1,8 @@
 #pragma once
 
 #include "progress.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/option_table.h"
 #include "spherical_param/result.h"
 #include "time_left.h"
 
@@ -9,20 +11,31 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// Times the stages, reports their beginning and end, and shares the time limit between parts.
+/// The time limit ended the work before there was a mesh.
+class OutOfTime : public ComputeError {
+public:
+  explicit OutOfTime(double limit)
+      : ComputeError("reconstruct: the time limit of " + textOf(limit) +
+                     " s ended the work before there was a mesh; allow more time") {}
+};
+
+/// Times the stages, reports their beginning and end, and shares the time limit between parts. Ends
+/// all work before a mesh at the limit, the first one of a limit of 0 apart.
 class StageClock {
 public:
   /// \param user how the caller wants the work done; must outlive the clock.
   explicit StageClock(const Execution& user) : user_(user), left_(user.time_limit) {
     execution_.threads = user.threads;
-    if (user.progress)
+    if (user.progress || isLimited())
       execution_.progress = [this](const Progress& progress) {
-        return user_.progress({stage_, progress.fraction, part_, parts_});
+        checkTime();
+        return !user_.progress || user_.progress({stage_, progress.fraction, part_, parts_});
       };
   }
   StageClock(const StageClock& other) = delete;  // execution() points here
@@ -35,6 +48,7 @@ public:
   void begin(const char* stage) {
     end();
     stage_ = stage;
+    has_mesh_ = has_mesh_ || std::string_view(stage) == "optimization";
     begin_ = Clock::now();
     report(0.0);
   }
@@ -44,6 +58,7 @@ public:
   void beginPart(std::size_t part, std::size_t parts, double fraction, double points_fraction) {
     part_ = part;
     parts_ = parts;
+    has_mesh_ = false;
     fraction_ = points_fraction;
     std::optional<double> limit = left_();
     if (limit)
@@ -63,12 +78,22 @@ public:
 
   /// Ends the last stage. \return the time of each stage
   std::vector<StageTime> take() {
+    has_mesh_ = true;
     end();
     return std::move(times_);
   }
 
 private:
   using Clock = std::chrono::steady_clock;
+
+  bool isLimited() const { return user_.time_limit && *user_.time_limit > 0.0; }
+
+  void checkTime() const {
+    // So that small clouds have a mesh whatever the limit [s].
+    constexpr double grace = 0.15;
+    if (isLimited() && !has_mesh_ && left_(-grace) == 0.0)
+      throw OutOfTime(*user_.time_limit);
+  }
 
   void end() {
     if (stage_ == nullptr)
@@ -92,6 +117,7 @@ private:
   std::optional<TimeLeft> part_left_;
   double fraction_ = 1.0;
   const char* stage_ = nullptr;
+  bool has_mesh_ = false;  ///< of the part
   Clock::time_point begin_;
   std::size_t part_ = 0;
   std::size_t parts_ = 1;

@@ -145,9 +145,11 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
   result.surfaces.resize(3, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
   result.surfaces[2].findings = {{"noisy", "consolidation", "auto", false}, {"torn", "", "", true}};
-  result.failures = {
-      internal::failureOf(3, {{}, {}, {}, std::vector<Index>(1200)}, "reconstruct: it is flat")};
-  internal::summarize(result);
+  const std::vector<std::vector<Index>> parts{{}, {}, {}, std::vector<Index>(1200)};
+  result.failures = {internal::failureOf(3, 4, parts, "reconstruct: it is flat")};
+  EXPECT_EQ(internal::failureOf(2, 4, parts, "slow"),
+            "parts 3 to 4 of 4 (1,200 points) cannot be meshed: slow");
+  internal::summarize(4, result);
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
     texts.push_back(finding.text);
@@ -158,7 +160,7 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
   result.surfaces[0].verdict = "Fine.";
-  internal::summarize(result);
+  internal::summarize(1, result);
   EXPECT_EQ(result.findings[0].text + " " + result.verdict, "noisy Fine.");
 }
 

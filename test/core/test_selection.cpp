@@ -188,7 +188,7 @@ TEST(Selection, PartsShareOneTimeLimit) {
   options.progress = [](const Progress& progress) {
     if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
         progress.fraction == 1.0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(320));
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
     return true;
   };
   const auto out_of_time = [&] {
@@ -200,6 +200,20 @@ TEST(Selection, PartsShareOneTimeLimit) {
   EXPECT_EQ(out_of_time(), 8);
   options.time_limit = 1e9;
   EXPECT_EQ(out_of_time(), 0);
+  // Without time for a mesh, parts are left out.
+  options.time_limit = 0.01;
+  options.progress = [](const Progress& progress) {
+    if (progress.part == 2)
+      std::this_thread::sleep_for(std::chrono::milliseconds(170));
+    return true;
+  };
+  const Result result = reconstruct(points, options);
+  EXPECT_EQ(result.surfaces.size(), 2U);
+  EXPECT_EQ(result.left_out.other_parts.size(), 600U);
+  ASSERT_EQ(result.failures.size(), 1U);
+  EXPECT_EQ(result.failures[0].substr(0, 60),
+            "parts 3 to 8 of 8 (600 points) cannot be meshed: the time li");
+  EXPECT_NE(result.verdict.find("6 parts cannot be meshed"), std::string::npos) << result.verdict;
 }
 
 }  // namespace

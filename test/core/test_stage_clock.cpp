@@ -7,9 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace spherical_param {
@@ -53,6 +55,30 @@ TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
   for (const double fraction : {0.25, 0.5, 1.0}) {  // none of them uses its share
     clock.beginPart(0, 3, fraction, 0.1);
     EXPECT_NEAR(*clock.remaining(), 1e6 * fraction, 1e3);
+  }
+}
+
+TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {
+  for (const double limit : {0.0, 1e-9}) {
+    Execution user;
+    user.time_limit = limit;
+    internal::StageClock clock(user);
+    clock.begin("graph");  // small clouds have their mesh
+    std::this_thread::sleep_for(std::chrono::milliseconds(160));
+    const auto ends = [&](const char* stage) {
+      try {
+        clock.begin(stage);
+        return false;
+      } catch (const internal::OutOfTime&) {
+        return true;
+      }
+    };
+    EXPECT_EQ(ends("embedding"), limit > 0.0);
+    EXPECT_NO_THROW(clock.take());
+    internal::StageClock with_mesh(user);
+    with_mesh.begin("optimization");
+    std::this_thread::sleep_for(std::chrono::milliseconds(160));
+    EXPECT_NO_THROW(with_mesh.begin("quality"));
   }
 }
 

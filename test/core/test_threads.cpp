@@ -84,7 +84,7 @@ Numbers numbersOf(const MeshTopology& topology) {
 }
 
 Numbers numbersOf(const MeshOptimization& optimization) {
-  return Numbers(optimization.triangles, optimization.self_intersections,
+  return Numbers(optimization.triangles, optimization.intersecting.pairs,
                  optimization.report.is_noisy, optimization.report.recreated);
 }
 

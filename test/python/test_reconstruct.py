@@ -321,7 +321,7 @@ class Parts(unittest.TestCase):
             # The first part takes it all.
             if stage == "embedding" and fraction == 1.0 and not calls:
                 calls.append(stage)
-                time.sleep(0.35)
+                time.sleep(0.3)
             return True
 
         eight = np.concatenate([self.small + [4.0 * part, 0.0, 0.0] for part in range(8)])

@@ -269,7 +269,7 @@ TEST(RosCloudMesh, EightPartsShareOneTimeLimit) {
   const Outcome outcome = meshCloud(cloud, settings, [&] {
     // What comes first takes it all.
     if (!std::exchange(has_waited, true))
-      std::this_thread::sleep_for(std::chrono::milliseconds(350));
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
     return true;
   });
   EXPECT_EQ(outcome.parts, 8U);

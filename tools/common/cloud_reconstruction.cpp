@@ -60,9 +60,6 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   StageProgress progress(console);
   Options options = settings.options;
   options.progress = [&progress](const Progress& reported) { return progress(reported); };
-  if (options.time_limit) {
-    *options.time_limit = std::max(0.0, *options.time_limit - seconds);
-  }
   runLibrary("cannot mesh " + inQuotes(path), "check that the file is the right cloud",
              [&] { cloud.result = reconstruct(positionsOf(*cloud.data), options); });
   progress.finish();

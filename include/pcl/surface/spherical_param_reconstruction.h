@@ -216,8 +216,9 @@ public:
   inline std::uint32_t getSeed() const { return options_.seed; }
 
   /** \brief Set the time after which the work ends with the best mesh so far, over all parts.
-   * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit. A first mesh is made in any case;
-   * Surface::is_out_of_time of getResult() says whether the limit ended the work.
+   * \param[in] seconds 0 to 1e9 [s]; unset (default): no limit; 0: the first mesh, however long it
+   * takes. Without a mesh in time, reconstruct() fails, or leaves out the parts that have none;
+   * Surface::is_out_of_time of getResult() says whether the limit ended the work on a mesh.
    * \note Set it if a scan must not delay the next one. The mesh then depends on the machine. */
   inline void setTimeLimit(std::optional<double> seconds) { options_.time_limit = seconds; }
   /** \brief Get the time after which the work ends.

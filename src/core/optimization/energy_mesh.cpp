@@ -190,8 +190,8 @@ void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbor
   neighbors.insert(neighbors.end(), row.begin(), row.end());
 }
 
-std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
-                                                    const FractionReport& report) {
+IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
+                                    const FractionReport& report) {
   Triangles triangles = mesh.mesh().triangles();
   Indexed<Index> surface;  // slots, by the columns that are left
   for (Index t = 0; t < mesh.mesh().size(); ++t)
@@ -207,12 +207,12 @@ std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
       report(progress.fraction);
       return true;
     };
-  auto pairs = findSelfIntersections(mesh.points(), triangles, execution);
-  for (auto& [t, u] : pairs) {
+  IntersectingPairs found = findPairsUpTo(most, mesh.points(), triangles, execution);
+  for (auto& [t, u] : found.pairs) {
     t = surface[t];
     u = surface[u];
   }
-  return pairs;
+  return found;
 }
 
 double meshEnergy(const Positions& points, const Triangles& triangles, const Graph& graph,

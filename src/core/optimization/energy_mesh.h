@@ -2,6 +2,7 @@
 
 #include "graph.h"
 #include "indexed.h"
+#include "intersecting_pairs.h"
 #include "progress.h"
 #include "sphere_mesh.h"
 #include "spherical_param/types.h"
@@ -92,10 +93,10 @@ private:
 /// Appends the neighbours of a vertex in mesh and graph.
 void appendNeighbors(const EnergyMesh& of, Index v, std::vector<Index>& neighbors);
 
-/// All pairs of triangles that intersect, by their slots in the mesh, none of which is free. Open
-/// triangles do not count.
-std::vector<std::array<Index, 2>> findIntersections(const EnergyMesh& mesh,
-                                                    const FractionReport& report = {});
+/// Pairs of triangles that intersect, by their slots in the mesh, none of which is free: a sample
+/// if more than `most` triangles intersect. Open triangles do not count.
+IntersectingPairs findIntersections(const EnergyMesh& mesh, std::size_t most,
+                                    const FractionReport& report);
 
 /// The energy of a closed mesh [mean length of the graph's edges].
 ///

@@ -38,11 +38,14 @@ void Flips::queueSides(const std::vector<Index>& triangles) {
     }
 }
 
-std::size_t Flips::flipQueued(const FractionReport& report) {
+std::size_t Flips::flipQueued(const FractionReport& report, const Ends& ends) {
+  constexpr std::size_t items_per_check = 1024;
   const SphereMesh& mesh = mesh_.mesh();
   std::size_t flips = 0;
   double fraction = 0.0;
   for (std::size_t taken = 1; !queue_.empty(); ++taken) {
+    if (ends && taken % items_per_check == 0 && ends())
+      break;
     if (report && taken % kReportedItems == 0) {
       // What is in the queue by now puts in less than it takes out.
       fraction = std::max(fraction,
@@ -78,7 +81,7 @@ void Flips::flipAround(const std::vector<Index>& triangles) {
   flipQueued();
 }
 
-std::size_t Flips::flipAll(const FractionReport& report) {
+std::size_t Flips::flipAll(const FractionReport& report, const Ends& ends) {
   queue_ = collectBlocks<Candidate>(stamps_.size(), mesh_.threads(), report,
                                     [&](Index begin, Index end, std::vector<Candidate>& found) {
                                       for (Index t = begin; t < end; ++t)
@@ -87,7 +90,7 @@ std::size_t Flips::flipAll(const FractionReport& report) {
                                             append(t, k, found);
                                     });
   std::make_heap(queue_.begin(), queue_.end());
-  return flipQueued(report);
+  return flipQueued(report, ends);
 }
 
 }  // namespace spherical_param::internal

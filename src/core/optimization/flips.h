@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -18,11 +19,14 @@ public:
   /// \param mesh must outlive this.
   explicit Flips(EnergyMesh& mesh);
 
+  /// Whether the flips have to end early.
+  using Ends = std::function<bool()>;
+
   /// Flips any edges. Returns the number of flips.
   ///
   /// \param report receives an estimate of the fraction done. If it throws, the mesh stays
   ///               consistent.
-  std::size_t flipAll(const FractionReport& report = {});
+  std::size_t flipAll(const FractionReport& report = {}, const Ends& ends = {});
   /// Flips the sides of some triangles, and those whose gain that changes.
   void flipAround(const std::vector<Index>& triangles);
 
@@ -45,7 +49,7 @@ private:
   void append(Index t, int corner, std::vector<Candidate>& candidates) const;
   /// Queues the flips of some triangles' sides; voids older entries.
   void queueSides(const std::vector<Index>& triangles);
-  std::size_t flipQueued(const FractionReport& report = {});
+  std::size_t flipQueued(const FractionReport& report = {}, const Ends& ends = {});
 
   EnergyMesh& mesh_;
   std::vector<Candidate> queue_;                  ///< a heap

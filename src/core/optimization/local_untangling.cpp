@@ -58,7 +58,7 @@ int LocalUntangling::flipChangedApart() {
 int LocalUntangling::flipApart(std::vector<Index> bad) {
   int fewer = 0;
   for (std::size_t i = 0; i < bad.size(); ++i)
-    while (intersects(bad[i])) {
+    while (work_ < max_work_ && intersects(bad[i])) {
       const Repairs repairs = bestRepairs(bad[i]);
       if (repairs.flips.empty())
         break;

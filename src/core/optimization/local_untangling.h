@@ -4,6 +4,7 @@
 #include "local_intersections.h"
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -30,6 +31,9 @@ public:
   /// how many pairs the number has changed since then; pairs of unwatched triangles count as new.
   int flipChangedApart();
 
+  /// No flips after this much more work. Each flip has less pairs than before, unless rounding
+  /// hides it.
+  void limitWork(std::size_t most) { max_work_ = work_ + most; }
   /// Searches so far [vertices taken out and put back in the same time].
   std::size_t work() const { return work_; }
 
@@ -74,6 +78,7 @@ private:
   EnergyMesh& mesh_;
   double scale_;  ///< brings the coordinates to at most 1
   std::size_t work_ = 0;
+  std::size_t max_work_ = std::numeric_limits<std::size_t>::max();
   LocalIntersections local_;               ///< the watched triangles
   std::unordered_map<Index, int> counts_;  ///< from countOf(), since the last change
 };

@@ -19,8 +19,8 @@ namespace spherical_param {
 namespace {
 
 namespace tuned = internal::optimization_constants;
+using internal::IntersectingPairs;
 using internal::Workbench;
-using Pairs = std::vector<std::array<Index, 2>>;
 
 /// Open triangles that no loop leads to are part of the surface, and must not intersect it.
 /// Returns whether some were closed.
@@ -37,63 +37,65 @@ bool closeWithoutLoop(Workbench& bench) {
   return true;
 }
 
-Pairs intersectionsOf(Workbench& bench) {
-  return internal::findIntersections(bench.mesh, bench.report);
-}
-
 /// Untangles, again as long as that leaves open triangles without a loop.
-Pairs untangleSurface(Workbench& bench, Pairs pairs, int rounds_by_energy) {
+IntersectingPairs untangleSurface(Workbench& bench, IntersectingPairs pairs, int rounds_by_energy) {
   pairs = internal::untangle(bench, std::move(pairs), rounds_by_energy);
   for (int round = 0; round < tuned::kMaxRounds && closeWithoutLoop(bench); ++round)
-    pairs = internal::untangle(bench, intersectionsOf(bench), rounds_by_energy);
+    pairs = internal::untangle(bench, bench.findIntersections(), rounds_by_energy);
   return pairs;
 }
 
 /// Goes back to the mesh before the polish if fewer of its triangles intersect.
-void rollBackPolish(Workbench& bench, const Triangles& unpolished, Pairs& pairs) {
+void rollBackPolish(Workbench& bench, const Triangles& unpolished, IntersectingPairs& found) {
   const Triangles polished = bench.mesh.mesh().triangles();
   bench.mesh.reset(unpolished);
-  Pairs before = intersectionsOf(bench);
-  if (before.size() < pairs.size())
-    pairs = std::move(before);
+  IntersectingPairs before = bench.findIntersections();
+  if (before.pairs.size() < found.pairs.size())
+    found = std::move(before);
   else
     bench.mesh.reset(polished);
 }
 
 /// From the first flips to the polish, on the points of the bench. Returns the intersections.
-Pairs optimize(Workbench& bench, const internal::Sampling& sampling, std::vector<Index> rough) {
+IntersectingPairs optimize(Workbench& bench, const internal::Sampling& sampling,
+                           std::vector<Index> rough) {
   const internal::SurfaceEnergy energy;
   bench.mesh.setEnergy(energy);
   internal::relocate(bench, std::move(rough));
   // Where nothing is folded, hardly anything intersects: once after the polish is enough.
-  if (internal::unfold(bench))
-    internal::untangle(bench, intersectionsOf(bench), tuned::kMaxRoundsByEnergy);
+  if (internal::unfold(bench)) {
+    IntersectingPairs found =
+        internal::untangle(bench, bench.findIntersections(), tuned::kMaxRoundsByEnergy);
+    if (found.is_sample)
+      return found;
+  }
   const Triangles unpolished = bench.mesh.mesh().triangles();
-  const bool is_polished = !bench.isOutOfTime();
+  // Without repairs afterwards, most of what the polish moves intersects.
+  const bool is_polished = bench.mayRepair();
   if (is_polished)
     internal::polish(bench, sampling);
   // With the first energy: it is what keeps sheets apart.
   bench.mesh.setEnergy(energy);
   closeWithoutLoop(bench);
-  Pairs pairs = untangleSurface(bench, intersectionsOf(bench), tuned::kMaxRoundsByEnergy);
-  if (is_polished && !pairs.empty())
-    rollBackPolish(bench, unpolished, pairs);
-  return pairs;
+  IntersectingPairs found =
+      untangleSurface(bench, bench.findIntersections(), tuned::kMaxRoundsByEnergy);
+  if (is_polished && !found.pairs.empty())
+    rollBackPolish(bench, unpolished, found);
+  return found;
 }
 
 /// After work on smoothed points: untangles on the given ones, unless too many triangles intersect
 /// there. Returns the intersections.
-Pairs finishOn(const Positions& points, Workbench& bench) {
+IntersectingPairs finishOn(const Positions& points, Workbench& bench) {
   bench.mesh.setPoints(points);
   closeWithoutLoop(bench);
   // The smoothed points may have taken all the work: a few points then stayed tangled.
   bench.renewWork();
-  Pairs pairs = intersectionsOf(bench);
-  // Slow, and in vain: without this limit 8 of 10 noisy clouds keep 9 to 122 intersections instead
-  // of 0. The second number matters only above 150,000 points.
-  if (static_cast<double>(pairs.size()) > std::max(1500.0, 0.005 * bench.mesh.mesh().size()))
-    return pairs;
-  return untangleSurface(bench, std::move(pairs), 0);
+  // More pairs are slow, and in vain: without this limit 8 of 10 noisy clouds keep 9 to 122
+  // intersections instead of 0. The second number matters only above 150,000 points.
+  const std::size_t most = std::max<std::size_t>(1500, internal::columnCount(points) / 100);
+  IntersectingPairs found = internal::findIntersections(bench.mesh, 2 * most, bench.report);
+  return found.pairs.size() > most ? found : untangleSurface(bench, std::move(found), 0);
 }
 
 }  // namespace
@@ -133,10 +135,11 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
     bench.mesh.setPoints(smoothed);
     rough = flip();
   }
-  MeshOptimization result;
-  result.self_intersections = optimize(bench, sampling, std::move(rough));
+  IntersectingPairs found = optimize(bench, sampling, std::move(rough));
   if (bench.log.is_noisy && options.finish_on_points)
-    result.self_intersections = finishOn(points, bench);
+    found = finishOn(points, bench);
+  MeshOptimization result;
+  result.intersecting = std::move(found);
   result.triangles = bench.mesh.mesh().triangles();
   result.report = bench.log;
   return result;

@@ -1,14 +1,13 @@
 #pragma once
 
 #include "graph.h"
+#include "intersecting_pairs.h"
 #include "open_places.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace spherical_param {
 
@@ -35,9 +34,9 @@ struct OptimizationReport {
 /// An optimised mesh.
 struct MeshOptimization {
   Triangles triangles;  ///< 3 x m, as many as before
-  /// Pairs of triangles that intersect, on the given points; if noisy and without
-  /// OptimizationOptions::finish_on_points, on the smoothed ones. \see findSelfIntersections
-  std::vector<std::array<Index, 2>> self_intersections;
+  /// On the given points; if noisy and without OptimizationOptions::finish_on_points, on the
+  /// smoothed ones. A sample if the mesh is a tangle.
+  internal::IntersectingPairs intersecting;
   OptimizationReport report;
 };
 

@@ -62,10 +62,17 @@ constexpr int kMaxUnfoldingRounds = 5;
 /// and a noisy cloud keep some.
 constexpr std::size_t kMinRuin = 4;
 /// Maximum work of all repairs for each point, and 1,000 more [vertices taken out and put back]. A
-/// vertex takes 10 to 16 us, a point of the first mesh some 20: on 112 clouds repairs took at most
-/// 9 times as long as all the rest. With 200 more instead of 1,000 a tube from a bad start keeps
-/// its spikes. 49 of the 56 runs below end without intersections, with 5 for each point 40.
+/// vertex takes 10 to 16 us, a point of a clean mesh some 10 in all. With 200 more instead of 1,000
+/// a tube from a bad start keeps its spikes. 49 of the 56 runs below end without intersections,
+/// with 5 for each point 40.
 constexpr std::size_t kMaxWorkOfPoint = 10;
+/// Beyond 3,300 points: this, and 1 for each point. 230 clouds that take more than twice as long as
+/// clean ones then take 130 s instead of 203, and 117 instead of 118 of them end without
+/// intersections; with 20,000 it is 109 s and 109 clouds.
+constexpr std::size_t kMaxWork = 40000;
+/// Unfolding may take one of so many parts of it: what folds many times would leave nothing for the
+/// rest. With 4, a tube from a bad start keeps its spikes.
+constexpr std::size_t kUnfoldingPart = 2;
 
 // --- Untangling ----------------------------------------------------------------------------------
 

@@ -20,7 +20,7 @@ void flipFor(Workbench& bench, const Sampling& sampling, double mu) {
   energy.bend = isEven(sampling) ? SurfaceEnergy::Bend::Excess : SurfaceEnergy::Bend::Power;
   energy.mu = isEven(sampling) ? tuned::kEvenMu : mu;
   bench.mesh.setEnergy(energy);
-  bench.flips.flipAll(bench.report);
+  bench.flips.flipAll(bench.report, [&] { return bench.isOverdue(); });
 }
 
 void polish(Workbench& bench, const Sampling& sampling) {

@@ -74,8 +74,11 @@ std::vector<Index> roughVertices(const EnergyMesh& mesh, const FractionReport& r
 }
 
 void relocate(Workbench& bench, std::vector<Index> rough) {
+  std::size_t left = columnCount(bench.mesh.points());
   for (int round = 0; round < tuned::kMaxRounds && !rough.empty() && !bench.isOutOfTime();
        ++round) {
+    rough.resize(std::min(rough.size(), left));
+    left -= rough.size();
     std::vector<Index> moved;
     for (std::size_t i = 0; i < rough.size() && !bench.isOutOfTime(); ++i) {
       bench.reportItem(i, rough.size(), 256);

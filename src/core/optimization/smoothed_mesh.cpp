@@ -14,19 +14,21 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
   const TimeLeft time_left(execution.time_limit);
   Smoothing smoothing = smoothSurface(points, triangles, options, execution.threads);
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
-  auto pairs =
-      findIntersections(EnergyMesh(result.points, triangles, graph, execution.threads, openings));
-  if (!pairs.empty() && optimizes) {
+  IntersectingPairs found =
+      findIntersections(EnergyMesh(result.points, triangles, graph, execution.threads, openings),
+                        mostOfUsable(triangles), {});
+  if (!found.pairs.empty() && optimizes) {
     Execution rest = execution;
     rest.time_limit = time_left();
     MeshOptimization outcome =
         optimizeMesh(result.points, triangles, graph, {openings, true, seed}, rest);
     result.triangles = std::move(outcome.triangles);
-    pairs = std::move(outcome.self_intersections);
+    found = std::move(outcome.intersecting);
     result.is_out_of_time = outcome.report.is_out_of_time;
   }
-  result.report.self_intersections = pairs.size();
-  result.intersecting_triangles = countTriangles(pairs);
+  result.report.self_intersections = found.pairs.size();
+  result.intersecting_triangles = countTriangles(found.pairs);
+  result.is_sample = found.is_sample;
   return result;
 }
 

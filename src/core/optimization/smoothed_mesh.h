@@ -15,6 +15,7 @@ struct SmoothedMesh {
   Positions points;                        ///< 3 x n
   SmoothingReport report;                  ///< with the self-intersections on the smoothed points
   std::size_t intersecting_triangles = 0;  ///< of those self-intersections
+  bool is_sample = false;                  ///< more triangles may intersect
   bool is_out_of_time = false;             ///< the time limit ended the optimisation early
 };
 

@@ -9,7 +9,6 @@ namespace spherical_param::internal {
 namespace {
 
 namespace tuned = optimization_constants;
-using Pairs = std::vector<std::array<Index, 2>>;
 
 std::vector<Index> verticesOf(const SphereMesh& mesh, const std::array<Index, 2>& pair) {
   std::vector<Index> vertices;
@@ -35,8 +34,9 @@ bool tryByNumber(Workbench& bench, const std::vector<Index>& seeds, std::size_t 
 /// triangles have not changed since. It returns whether it has changed the mesh. Updates the pairs;
 /// returns whether the mesh has changed.
 template <typename Work>
-bool forEachPair(Workbench& bench, Pairs& pairs, const Work& work) {
+bool forEachPair(Workbench& bench, IntersectingPairs& found, const Work& work) {
   const SphereMesh& mesh = bench.mesh.mesh();
+  const auto& pairs = found.pairs;
   std::vector<std::vector<Index>> vertices;
   for (const auto& pair : pairs)
     vertices.push_back(verticesOf(mesh, pair));
@@ -47,13 +47,13 @@ bool forEachPair(Workbench& bench, Pairs& pairs, const Work& work) {
     has_changed = work(vertices[i], is_there) || has_changed;
   }
   if (has_changed)
-    pairs = findIntersections(bench.mesh, bench.report);
+    found = bench.findIntersections();
   return has_changed;
 }
 
 /// Flips near intersecting triangles, and rebuilds small parts there: flips alone may leave the
 /// surface crumpled. Without those parts, a cube of 8 points keeps a corner cut off.
-void flipApart(Workbench& bench, Pairs& pairs) {
+void flipApart(Workbench& bench, IntersectingPairs& pairs) {
   forEachPair(bench, pairs, [&](const auto& seeds, const auto& is_there) {
     if (!bench.mayRepair() || !is_there())
       return false;
@@ -67,7 +67,7 @@ void flipApart(Workbench& bench, Pairs& pairs) {
 }
 
 /// A round with parts up to a size. Returns whether one of them was committed.
-bool rebuild(Workbench& bench, bool is_by_number, std::size_t largest, Pairs& pairs) {
+bool rebuild(Workbench& bench, bool is_by_number, std::size_t largest, IntersectingPairs& pairs) {
   return forEachPair(bench, pairs, [&](const auto& seeds, const auto& is_there) {
     bool has_changed = false;
     // A pair that has changed waits for the next round.
@@ -80,22 +80,22 @@ bool rebuild(Workbench& bench, bool is_by_number, std::size_t largest, Pairs& pa
 
 }  // namespace
 
-Pairs untangle(Workbench& bench, Pairs pairs, int rounds_by_energy) {
-  const auto is_due = [&] { return !pairs.empty() && bench.mayRepair(); };
+IntersectingPairs untangle(Workbench& bench, IntersectingPairs found, int rounds_by_energy) {
+  const auto is_due = [&] { return !found.pairs.empty() && !found.is_sample && bench.mayRepair(); };
   for (int round = 0; round < rounds_by_energy && is_due(); ++round)
-    if (!rebuild(bench, false, 8 * tuned::kMinUntangled, pairs))
+    if (!rebuild(bench, false, 8 * tuned::kMinUntangled, found))
       break;
   // Rounds in a row without a gain. Small parts gain more in the same time: large ones once nothing
   // else helps.
   for (int idle = 0; idle < tuned::kMaxIdleRounds && is_due();) {
     if (idle == 0)
-      flipApart(bench, pairs);
+      flipApart(bench, found);
     if (!is_due())
       break;
     const std::size_t largest = tuned::kMinUntangled << std::min(idle + 2, 4);
-    idle = rebuild(bench, true, largest, pairs) ? 0 : idle + 1;
+    idle = rebuild(bench, true, largest, found) ? 0 : idle + 1;
   }
-  return pairs;
+  return found;
 }
 
 }  // namespace spherical_param::internal

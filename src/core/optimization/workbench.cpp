@@ -2,6 +2,8 @@
 
 #include "optimization_constants.h"
 
+#include <algorithm>
+
 namespace spherical_param::internal {
 
 Workbench::Workbench(const Positions& points, const Triangles& triangles, const Graph& graph,
@@ -18,18 +20,27 @@ void Workbench::reportItem(std::size_t item, std::size_t items, std::size_t betw
     reportFraction(report, static_cast<double>(item) / static_cast<double>(items));
 }
 
+IntersectingPairs Workbench::findIntersections() {
+  const std::size_t most = isOutOfTime() ? mostOfUsable(mesh.mesh().triangles())
+                                         : max_work_ / optimization_constants::kMinUntangled;
+  return internal::findIntersections(mesh, most, report);
+}
+
 bool Workbench::isOutOfTime() {
   log.is_out_of_time = log.is_out_of_time || time_left_() == 0.0;
   return log.is_out_of_time;
 }
 
-bool Workbench::mayRepair() {
-  return work() < max_work_ && !isOutOfTime();
+bool Workbench::mayRepair(std::size_t parts) {
+  return work() < first_work_ + max_work_ / parts && !isOutOfTime();
 }
 
 void Workbench::renewWork() {
   namespace tuned = optimization_constants;
-  max_work_ = work() + tuned::kMaxWorkOfPoint * (1000 + columnCount(mesh.points()));
+  first_work_ = work();
+  const std::size_t points = columnCount(mesh.points());
+  max_work_ = std::min(tuned::kMaxWorkOfPoint * (1000 + points), tuned::kMaxWork + points);
+  local.limitWork(max_work_);
 }
 
 bool Workbench::tryPart(const std::vector<Index>& seeds, std::size_t size,

@@ -2,6 +2,7 @@
 
 #include "box_tree.h"
 #include "corner_table.h"
+#include "intersecting_pairs.h"
 #include "power_of_two.h"
 #include "progress.h"
 #include "radix_sort.h"
@@ -69,8 +70,8 @@ public:
                const FractionReport& report);
 
   /// Appends the intersecting pairs of the triangles in [begin, end) of the order, groups of the
-  /// tree, and later ones.
-  void findLaterPairs(Index begin, Index end, Pairs& pairs) const;
+  /// tree, and later ones; ends early when they are more than `enough` triangles.
+  void findLaterPairs(Index begin, Index end, std::size_t enough, Pairs& pairs) const;
   /// Appends the intersecting pairs of a triangle and one in the tree, from the place `first` on.
   void findPairs(const Face& face, Index first, Pairs& pairs) const;
 
@@ -132,7 +133,8 @@ void TriangleTree::sort(const Indexed<Index>& subset, const Box& all, int thread
     order_.push_back(subset[i]);
 }
 
-void TriangleTree::findLaterPairs(Index begin, Index end, Pairs& pairs) const {
+void TriangleTree::findLaterPairs(Index begin, Index end, std::size_t enough, Pairs& pairs) const {
+  std::size_t next_count = enough;
   // What every test of one of a group's triangles needs.
   Indexed<std::pair<Face, Plane>> own;
   for (Index first = begin; first < end; first += BoxGroup::kSize) {
@@ -149,6 +151,11 @@ void TriangleTree::findLaterPairs(Index begin, Index end, Pairs& pairs) const {
         const auto& [face, plane] = own[i - first];
         appendIfIntersecting(face, plane, order_[j], pairs);
       });
+    if (pairs.size() < next_count)
+      continue;
+    if (countTriangles(pairs) > enough)
+      return;
+    next_count = 2 * pairs.size();
   }
 }
 
@@ -192,7 +199,7 @@ Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& e
                                                          8 * internal::kBlockSize);
   };
   Pairs pairs = collect(subset.size(), [&](Index begin, Index end, Pairs& found) {
-    tree.findLaterPairs(begin, end, found);
+    tree.findLaterPairs(begin, end, mesh.size(), found);
   });
   if (subset.size() < mesh.size()) {
     const Pairs others = collect(mesh.size(), [&](Index begin, Index end, Pairs& found) {
@@ -210,6 +217,42 @@ Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& e
 }
 
 }  // namespace
+
+internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Positions& points,
+                                                    const Triangles& triangles,
+                                                    const Execution& execution) {
+  const Mesh mesh = checkedMesh(points, triangles, execution);
+  IntersectingPairs found;
+  if (mesh.size() == 0)
+    return found;
+  Indexed<Index> all(mesh.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  const int threads = threadCount(execution.threads, mesh.size());
+  const FractionReport report = reportOf(execution, "intersections");
+  const TriangleTree tree(mesh, all, threads, report);
+  IndexSet intersecting(mesh.size());
+  std::size_t count = 0;
+  // Every step-th block of triangles, then those after them, and so on.
+  constexpr std::size_t step = 128;
+  const std::size_t blocks = (mesh.size() + kBlockSize - 1) / kBlockSize;
+  for (std::size_t first = 0; first < std::min(step, blocks) && count <= most; ++first) {
+    const std::size_t size = (blocks - first + step - 1) / step * kBlockSize;
+    const Pairs more = collectBlocks<std::array<Index, 2>>(
+        size, threads, report, [&](Index begin, Index, Pairs& pairs) {
+          const std::size_t block = static_cast<std::size_t>(begin) / kBlockSize * step + first;
+          const std::size_t end = std::min((block + 1) * kBlockSize, mesh.size());
+          tree.findLaterPairs(static_cast<Index>(block * kBlockSize), static_cast<Index>(end), most,
+                              pairs);
+        });
+    for (const auto& pair : more)
+      for (const Index t : pair)
+        count += intersecting.insert(t) ? 1 : 0;
+    found.pairs.insert(found.pairs.end(), more.begin(), more.end());
+  }
+  found.is_sample = count > most;
+  std::sort(found.pairs.begin(), found.pairs.end());
+  return found;
+}
 
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,

@@ -33,6 +33,19 @@ TEST(LocalUntangling, FlipsApartAreCountedAndKeepASphere) {
   EXPECT_GT(all, 0);
 }
 
+TEST(LocalUntangling, EndsAfterItsWork) {
+  const Case of = scrambledEllipsoid(300, 0.5, 600, 3);
+  EnergyMesh mesh = meshOf(of);
+  LocalUntangling local(mesh);
+  local.watch(range(0, of.points.cols()));
+  local.limitWork(0);
+  EXPECT_EQ(local.flipApart(), 0);
+  EXPECT_EQ(mesh.mesh().triangles(), of.triangles);
+  local.limitWork(20);
+  EXPECT_GT(local.flipApart(), 0);
+  EXPECT_LE(local.work(), 20U + 9U);  // a search may begin below the limit
+}
+
 TEST(LocalUntangling, AChangeIsCountedWithWhatFlipsMakeOfIt) {
   int repaired = 0;
   for (const Case& of : roughCases()) {

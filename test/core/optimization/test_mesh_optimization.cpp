@@ -23,7 +23,7 @@ MeshOptimization optimize(const Case& of, const OptimizationOptions& options = {
 /// What holds of every result.
 void expectGuarantees(const Case& of, const MeshOptimization& result) {
   EXPECT_TRUE(isSphereOverAll(result.triangles, static_cast<Index>(of.points.cols())));
-  EXPECT_EQ(result.self_intersections, findSelfIntersections(of.points, result.triangles));
+  EXPECT_EQ(result.intersecting.pairs, findSelfIntersections(of.points, result.triangles));
 }
 
 // --- Meshes that are known -----------------------------------------------------------------------
@@ -40,7 +40,7 @@ TEST(MeshOptimization, ACubeGetsItsEdgesFromScrambledMeshes) {
     const double energy = 12.0 * kPi / 2.0 + 0.3 * 12.0 * cells * std::sqrt(0.5);
     EXPECT_NEAR(energyOf(of.points, result.triangles), energy, 1e-6);
     EXPECT_NEAR(std::abs(volumeOf(of.points, result.triangles)), 1.0, 1e-12);
-    EXPECT_TRUE(result.self_intersections.empty());
+    EXPECT_TRUE(result.intersecting.pairs.empty());
   };
   for (std::uint64_t seed = 0; seed < 20; ++seed)
     expect_cube(1, 10, seed);
@@ -56,7 +56,7 @@ TEST(MeshOptimization, ScrambledMeshesFindBackToTheirHull) {
     EXPECT_GT(findSelfIntersections(of.points, of.triangles).size(), 300U);
     const MeshOptimization result = optimize(of);
     expectGuarantees(of, result);
-    EXPECT_TRUE(result.self_intersections.empty());
+    EXPECT_TRUE(result.intersecting.pairs.empty());
     // Some diagonals of nearly square cells may be the other ones.
     EXPECT_LE(energyOf(of.points, result.triangles), 1.01 * energyOf(of.points, hull.triangles));
     const double volume = volumeOf(of.points, hull.triangles);
@@ -117,7 +117,7 @@ TEST(MeshOptimization, NoiseAloneIsSmoothedAndReportedOnTheGivenPoints) {
   OptimizationOptions unfinished;
   unfinished.finish_on_points = false;
   const MeshOptimization result = optimize(noisy, unfinished);
-  EXPECT_NE(result.self_intersections, findSelfIntersections(noisy.points, result.triangles));
+  EXPECT_NE(result.intersecting.pairs, findSelfIntersections(noisy.points, result.triangles));
 }
 
 // --- What changes nothing, and what does ---------------------------------------------------------

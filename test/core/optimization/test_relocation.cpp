@@ -36,5 +36,19 @@ TEST(Relocation, PutsMisplacedVerticesBack) {
   EXPECT_NEAR(energyOf(of.points, bench.mesh.mesh().triangles()), least, 1e-3 * least);
 }
 
+TEST(Relocation, TakesOutAsManyVerticesAsThereAreAtMost) {
+  const Case of = tangle(200);
+  std::size_t rounds = 0;
+  Execution execution;
+  execution.progress = [&](const Progress&) { return ++rounds > 0; };
+  internal::Workbench bench(of.points, of.triangles, of.graph, {}, execution);
+  for (const auto& [vertices, expected] : {std::pair(200, 1U), std::pair(50, 4U)}) {
+    rounds = 0;
+    internal::relocate(bench, range(0, vertices));
+    EXPECT_LE(rounds, expected);
+    EXPECT_GT(rounds, expected / 2);
+  }
+}
+
 }  // namespace
 }  // namespace spherical_param::test

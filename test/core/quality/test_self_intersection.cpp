@@ -1,5 +1,7 @@
 #include "spherical_param/self_intersection.h"
 
+#include "intersecting_pairs.h"
+
 #include "helpers.h"
 
 #include <Eigen/Geometry>
@@ -283,6 +285,24 @@ TEST(SelfIntersection, PairsOfLargeMeshesAreThoseOfIntegerArithmetic) {
     EXPECT_GT(pairs.size(), 50U);
     EXPECT_EQ(pairsOf(mesh), pairs);
   }
+}
+
+TEST(SelfIntersection, ASearchUpToANumberEndsWithASpreadSample) {
+  const Mesh mesh = unevenSoup(3, 30000, 3000, 4);
+  const Pairs all = pairsOf(mesh);
+  const auto found = [&](std::size_t most, int threads) {
+    return internal::findPairsUpTo(most, mesh.points, mesh.triangles, onThreads(threads));
+  };
+  const std::size_t count = countTriangles(all);
+  ASSERT_GT(count, 5000U);
+  EXPECT_EQ(found(count, 1).pairs, all);
+  EXPECT_FALSE(found(count, 1).is_sample);
+  const internal::IntersectingPairs sample = found(200, 1);
+  EXPECT_TRUE(sample.is_sample);
+  EXPECT_EQ(sample.pairs, found(200, 3).pairs);
+  EXPECT_GT(countTriangles(sample.pairs), 200U);
+  EXPECT_LT(sample.pairs.size(), all.size() / 4);
+  EXPECT_TRUE(std::includes(all.begin(), all.end(), sample.pairs.begin(), sample.pairs.end()));
 }
 
 TEST(SelfIntersection, PairsOfASetAreThoseOfTheWholeMesh) {
