@@ -48,7 +48,9 @@ public:
   void begin(const char* stage) {
     end();
     stage_ = stage;
-    has_mesh_ = has_mesh_ || std::string_view(stage) == "optimization";
+    // Method::Paper has no optimisation.
+    const std::string_view name = stage;
+    has_mesh_ = has_mesh_ || name == "optimization" || name == "quality";
     begin_ = Clock::now();
     report(0.0);
   }
