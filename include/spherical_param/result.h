@@ -226,7 +226,7 @@ struct SmoothingReport {
   double rms_displacement = 0.0;       ///< over the points of triangles [unit of the input]
   double volume_before = 0.0;          ///< signed volume enclosed [cubed unit of the input]
   double volume_after = 0.0;           ///< signed volume enclosed [cubed unit of the input]
-  std::size_t self_intersections = 0;  ///< pairs of triangles, on the smoothed points
+  std::size_t self_intersections = 0;  ///< pairs of triangles, on the smoothed points, or a sample
 };
 
 /// A mesh through all points, its map to the sphere, and their quality. The mesh is a closed,
@@ -280,7 +280,8 @@ struct Surface {
 
   /// Triangles that intersect others, on the smoothed points if the mesh was smoothed.
   std::size_t intersecting_triangles = 0;
-  /// The mesh is not usable, and that ended the search for intersections: there may be more.
+  /// The search for intersections ended early, as more than 1 % of the triangles intersect: there
+  /// may be more pairs, and more such triangles.
   bool intersections_are_sampled = false;
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< remarks and remedies; empty if all is well

@@ -317,7 +317,7 @@ void visitFields(const SmoothingReport*, const Visit& visit) {
   visit({"rms_displacement", "over the points of triangles", 1}, &Of::rms_displacement);
   visit({"volume_before", "signed volume enclosed", 3}, &Of::volume_before);
   visit({"volume_after", "signed volume enclosed", 3}, &Of::volume_after);
-  visit({"self_intersections", "pairs of triangles, on the smoothed points"},
+  visit({"self_intersections", "pairs of triangles, on the smoothed points, or a sample"},
         &Of::self_intersections);
 }
 
@@ -337,7 +337,7 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"intersecting_triangles", "number of triangles that intersect others, after smoothing"},
         &Of::intersecting_triangles);
   visit({"intersections_are_sampled",
-         "the mesh is not usable, and that ended the search: more triangles may intersect"},
+         "more than 1 % of the triangles intersect, and the search ended: there may be more"},
         &Of::intersections_are_sampled);
   visit({"self_intersections",
          "pairs of triangles that intersect (exact), ascending: all, or a sample", 0,

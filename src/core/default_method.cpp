@@ -55,7 +55,7 @@ public:
       return best();
     }
     const double doubtful = doubtfulSteps(glued->handles);
-    if (doubtful == 0.0) {
+    if (doubtful == 0.0 || clock_.remaining() == 0.0) {
       cutter_.reset();
       return std::move(*glued);
     }
@@ -107,8 +107,7 @@ private:
     optimize(other);
     return energy(other.optimization->triangles) - energy(cut.optimization->triangles) >
                min_optimized * steps &&
-           cut.optimization->intersecting.pairs.size() <=
-               other.optimization->intersecting.pairs.size();
+           !other.optimization->intersecting.areFewerThan(cut.optimization->intersecting);
   }
 
   Candidate sphere() {
@@ -117,6 +116,7 @@ private:
     result.embedding = openings_.embedded(points_, graph_, options_, clock_.execution());
     clock_.begin("triangulation");
     result.triangles = triangulateSphere(result.embedding.directions, clock_.execution());
+    clock_.noteMesh();
     orientOutward(points_, result.triangles, result.embedding);
     return result;
   }
@@ -129,6 +129,7 @@ private:
                               openings_.embeddedOpenings(), options_, clock_.execution());
     if (!mesh)
       return std::nullopt;
+    clock_.noteMesh();
     Candidate result;
     result.handles = cut.handles;
     result.triangles = std::move(mesh->triangles);
@@ -145,9 +146,11 @@ private:
 
   /// The energy of a mesh whose edges are flipped.
   double flippedEnergy(const Candidate& candidate) {
+    Execution execution = clock_.execution();
+    execution.time_limit = clock_.remaining();
     clock_.begin("optimization");
     return energy(flipMesh(points_, candidate.triangles, graph_,
-                           {openings_.places(), false, options_.seed}, clock_.execution()));
+                           {openings_.places(), false, options_.seed}, execution));
   }
 
   double energy(const Triangles& triangles) const {

@@ -205,7 +205,7 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
 std::string verdictOf(const Options& options, const Surface& result) {
   if (result.intersecting_triangles > 0)
     return std::string("The mesh has faults: ") +
-           (result.intersections_are_sampled ? "more than " : "") +
+           (result.intersections_are_sampled ? "at least " : "") +
            grouped(result.intersecting_triangles) + " of " +
            counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";
   const SurfaceDiagnosis& diagnosis = result.diagnosis;

@@ -21,6 +21,8 @@ std::string failureOf(std::size_t first, std::size_t end,
 
 /// Fills verdict and findings of a result from its surfaces and failures; equal findings of several
 /// surfaces become one.
+///
+/// \param parts_in_all number of parts, also those without a mesh.
 void summarize(std::size_t parts_in_all, Result& result);
 
 /// A headline: whether the mesh is sound, and what it leaves open, fills, cuts or joins.

@@ -21,12 +21,12 @@ void takeSurface(const Positions& points, const OpenSurface& openings, MeshedClo
     result.triangles = surfaceOf(openMesh(points, mesh.triangles(), *openings.places()));
   else
     result.triangles = std::move(mesh.triangles());
-  IntersectingPairs found =
-      openings.isOpen() || mesh.isSmoothed()
-          ? findPairsUpTo(mostOfUsable(result.triangles), points, result.triangles, execution)
-          : std::move(mesh.optimization.intersecting);
+  IntersectingPairs found = openings.isOpen() || mesh.isSmoothed()
+                                ? findPairsUpTo(mostOfUsable(columnCount(result.triangles)), points,
+                                                result.triangles, execution)
+                                : std::move(mesh.optimization.intersecting);
   result.self_intersections = std::move(found.pairs);
-  result.intersections_are_sampled = mesh.isSmoothed() ? mesh.smoothed.is_sample : found.is_sample;
+  result.intersections_are_sampled = found.is_sample || mesh.smoothed.is_sample;
 }
 
 /// Diagnoses the cloud by its mesh, its graph and their openings.

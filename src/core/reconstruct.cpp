@@ -92,10 +92,12 @@ MeshedCloud meshAsPublished(const Positions& points, NeighborGraph graph, const 
   clock.begin("triangulation");
   Triangles& triangles = mesh.optimization.triangles;
   triangles = internal::paper::convexHull(mesh.embedding.directions, clock.execution());
+  clock.noteMesh();
   internal::orientOutward(points, triangles, mesh.embedding);
   clock.begin("quality");
-  mesh.optimization.intersecting = internal::findPairsUpTo(internal::mostOfUsable(triangles),
-                                                           points, triangles, clock.execution());
+  mesh.optimization.intersecting =
+      internal::findPairsUpTo(internal::mostOfUsable(internal::columnCount(triangles)), points,
+                              triangles, clock.execution());
   return mesh;
 }
 
@@ -259,6 +261,7 @@ auto explained(const LeftOut& left_out, const Work& work) {
 std::vector<std::vector<Index>> select(const Positions& points, Options options, PartsMode parts,
                                        LeftOut& left_out) {
   options.parts = parts;
+  options.time_limit.reset();
   checkOptions(options);
   StageClock clock(options);
   std::vector<std::vector<Index>> selected =

@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,8 +24,8 @@ public:
                      " s ended the work before there was a mesh; allow more time") {}
 };
 
-/// Times the stages, reports their beginning and end, and shares the time limit between parts. Ends
-/// all work before a mesh at the limit, the first one of a limit of 0 apart.
+/// Times the stages, reports their beginning and end, and shares the time limit between parts. At
+/// the limit it ends the work before a mesh with OutOfTime, unless the limit is 0.
 class StageClock {
 public:
   /// \param user how the caller wants the work done; must outlive the clock.
@@ -48,12 +47,12 @@ public:
   void begin(const char* stage) {
     end();
     stage_ = stage;
-    // Method::Paper has no optimisation.
-    const std::string_view name = stage;
-    has_mesh_ = has_mesh_ || name == "optimization" || name == "quality";
     begin_ = Clock::now();
     report(0.0);
   }
+
+  /// Notes that the part has a mesh: the limit no longer ends its work with OutOfTime.
+  void noteMesh() { has_mesh_ = true; }
 
   /// Begins a part. \param fraction of the remaining points, and so of the remaining time. \param
   /// points_fraction of all points.
@@ -80,7 +79,7 @@ public:
 
   /// Ends the last stage. \return the time of each stage
   std::vector<StageTime> take() {
-    has_mesh_ = true;
+    noteMesh();
     end();
     return std::move(times_);
   }
@@ -107,6 +106,7 @@ private:
       times_.push_back({stage_, seconds.count()});
     else
       known->seconds += seconds.count();
+    begin_ = Clock::now();  // the report may throw
     report(1.0);
     stage_ = nullptr;
   }

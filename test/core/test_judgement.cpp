@@ -3,6 +3,7 @@
 #include "graphs.h"
 #include "paper_method.h"
 #include "reconstructions.h"
+#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
@@ -90,6 +91,19 @@ TEST(Judgement, SurfacesThatAreNoSpheresAreMeshedAsOneAndReported) {
       EXPECT_TRUE(is_reported || test::isFound(result, "folded"));
     }
   }
+}
+
+TEST(Judgement, WhatIsNotUsableHasASampleOfItsIntersections) {
+  const Positions points = test::randomCube(6000, 1);
+  const Surface result = mesh(points, quick());
+  EXPECT_TRUE(result.intersections_are_sampled);
+  EXPECT_FALSE(result.isUsable());
+  EXPECT_NE(result.verdict.find("faults: at least "), std::string::npos) << result.verdict;
+  const auto all = findSelfIntersections(points, result.triangles);
+  const auto& sample = result.self_intersections;
+  EXPECT_LT(sample.size(), all.size());
+  EXPECT_TRUE(std::includes(all.begin(), all.end(), sample.begin(), sample.end()));
+  EXPECT_EQ(result.intersecting_triangles, countTriangles(sample));
 }
 
 TEST(Judgement, ResidualsOfVerticesAreThoseOfTheSphere) {

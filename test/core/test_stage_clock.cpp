@@ -76,7 +76,8 @@ TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {
     EXPECT_EQ(ends("embedding"), limit > 0.0);
     EXPECT_NO_THROW(clock.take());
     internal::StageClock with_mesh(user);
-    with_mesh.begin("optimization");
+    with_mesh.begin("triangulation");
+    with_mesh.noteMesh();
     std::this_thread::sleep_for(std::chrono::milliseconds(160));
     EXPECT_NO_THROW(with_mesh.begin("quality"));
   }

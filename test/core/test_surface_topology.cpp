@@ -214,7 +214,13 @@ TEST(SurfaceTopology, EndsAtEveryCallOfProgressAndWithinATimeLimit) {
   EXPECT_EQ(test::surfaceOf(torus, options).triangles, whole);
   for (const double seconds : {0.0, 1e-3, 3e-3, 1e-2}) {
     options.time_limit = seconds;
-    const Surface hasty = test::surfaceOf(torus, options);
+    Surface hasty;
+    try {
+      hasty = test::surfaceOf(torus, options);
+    } catch (const ComputeError&) {  // there was no mesh in time
+      EXPECT_GT(seconds, 0.0);
+      continue;
+    }
     EXPECT_TRUE(hasty.topology.isSurface() && hasty.topology.closed);
     EXPECT_EQ(hasty.topology.vertices, static_cast<std::size_t>(torus.cols()));
     EXPECT_EQ(hasty.genus(), static_cast<std::size_t>(*hasty.topology.genus));

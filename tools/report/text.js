@@ -56,7 +56,7 @@ function showVerdict(data) {
     [report.manifold, 'Manifold', 'Not manifold'],
     [report.oriented, 'Oriented', 'Not oriented'],
     [crossing === 0, 'No self-intersections',
-      `${number(crossing)} of ${counted(data.mesh.triangles, 'triangle')} intersect`],
+      `${report.intersections_are_sampled ? 'At least ' : ''}${number(crossing)} of ${counted(data.mesh.triangles, 'triangle')} intersect`],
   ];
   const handles = (report.handles ?? []).filter((handle) => !handle.is_cut).length;
   if (report.closed || handles > 0) {

@@ -44,8 +44,10 @@ std::size_t Flips::flipQueued(const FractionReport& report, const Ends& ends) {
   std::size_t flips = 0;
   double fraction = 0.0;
   for (std::size_t taken = 1; !queue_.empty(); ++taken) {
-    if (ends && taken % items_per_check == 0 && ends())
+    if (ends && taken % items_per_check == 0 && ends()) {
+      queue_.clear();
       break;
+    }
     if (report && taken % kReportedItems == 0) {
       // What is in the queue by now puts in less than it takes out.
       fraction = std::max(fraction,

@@ -22,7 +22,7 @@ public:
   /// Whether the flips have to end early.
   using Ends = std::function<bool()>;
 
-  /// Flips any edges. Returns the number of flips.
+  /// Flips any edges, until none gains or `ends` returns true. Returns the number of flips.
   ///
   /// \param report receives an estimate of the fraction done. If it throws, the mesh stays
   ///               consistent.

@@ -50,7 +50,7 @@ void rollBackPolish(Workbench& bench, const Triangles& unpolished, IntersectingP
   const Triangles polished = bench.mesh.mesh().triangles();
   bench.mesh.reset(unpolished);
   IntersectingPairs before = bench.findIntersections();
-  if (before.pairs.size() < found.pairs.size())
+  if (before.areFewerThan(found))
     found = std::move(before);
   else
     bench.mesh.reset(polished);

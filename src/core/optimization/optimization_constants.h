@@ -70,9 +70,9 @@ constexpr std::size_t kMaxWorkOfPoint = 10;
 /// clean ones then take 130 s instead of 203, and 117 instead of 118 of them end without
 /// intersections; with 20,000 it is 109 s and 109 clouds.
 constexpr std::size_t kMaxWork = 40000;
-/// Unfolding may take one of so many parts of it: what folds many times would leave nothing for the
+/// Unfolding may take the work divided by this: what folds many times would leave nothing for the
 /// rest. With 4, a tube from a bad start keeps its spikes.
-constexpr std::size_t kUnfoldingPart = 2;
+constexpr std::size_t kUnfoldingDivisor = 2;
 
 // --- Untangling ----------------------------------------------------------------------------------
 

@@ -16,7 +16,7 @@ SmoothedMesh smoothMesh(const Positions& points, const Triangles& triangles, con
   SmoothedMesh result{triangles, std::move(smoothing.points), smoothing.report};
   IntersectingPairs found =
       findIntersections(EnergyMesh(result.points, triangles, graph, execution.threads, openings),
-                        mostOfUsable(triangles), {});
+                        mostOfUsable(columnCount(triangles)), {});
   if (!found.pairs.empty() && optimizes) {
     Execution rest = execution;
     rest.time_limit = time_left();

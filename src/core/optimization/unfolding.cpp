@@ -29,13 +29,13 @@ std::vector<std::array<Index, 2>> foldedEdges(const EnergyMesh& of) {
 bool unfold(Workbench& bench) {
   auto folded = foldedEdges(bench.mesh);
   for (int round = 0; round < tuned::kMaxUnfoldingRounds && !folded.empty() &&
-                      bench.mayRepair(tuned::kUnfoldingPart);
+                      bench.mayRepair(tuned::kUnfoldingDivisor);
        ++round) {
     for (std::size_t i = 0; i < folded.size(); ++i) {
       bench.reportItem(i, folded.size(), 16);
       const auto& [v, w] = folded[i];
       for (std::size_t size = tuned::kMinRuin; size <= 8 * tuned::kMinRuin; size *= 2)
-        if (bench.mesh.mesh().areJoined(v, w) && bench.mayRepair(tuned::kUnfoldingPart))
+        if (bench.mesh.mesh().areJoined(v, w) && bench.mayRepair(tuned::kUnfoldingDivisor))
           bench.tryPart({v, w}, size, isGain);
     }
     folded = foldedEdges(bench.mesh);

@@ -21,8 +21,9 @@ void Workbench::reportItem(std::size_t item, std::size_t items, std::size_t betw
 }
 
 IntersectingPairs Workbench::findIntersections() {
-  const std::size_t most = isOutOfTime() ? mostOfUsable(mesh.mesh().triangles())
-                                         : max_work_ / optimization_constants::kMinUntangled;
+  const std::size_t most = isOutOfTime()
+                               ? mostOfUsable(static_cast<std::size_t>(mesh.mesh().size()))
+                               : max_work_ / optimization_constants::kMinUntangled;
   return internal::findIntersections(mesh, most, report);
 }
 
@@ -31,8 +32,8 @@ bool Workbench::isOutOfTime() {
   return log.is_out_of_time;
 }
 
-bool Workbench::mayRepair(std::size_t parts) {
-  return work() < first_work_ + max_work_ / parts && !isOutOfTime();
+bool Workbench::mayRepair(std::size_t divisor) {
+  return work() < first_work_ + max_work_ / divisor && !isOutOfTime();
 }
 
 void Workbench::renewWork() {

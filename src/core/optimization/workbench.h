@@ -33,15 +33,15 @@ public:
 
   /// Reports the fraction of a phase's items that are done.
   void reportItem(std::size_t item, std::size_t items, std::size_t between_reports) const;
-  /// Pairs of triangles that intersect: a sample if they are too many to
-  /// repair, or after the time many.
+  /// Pairs of triangles that intersect: a sample if they are too many to repair or, after the time
+  /// limit, if the mesh is not usable.
   IntersectingPairs findIntersections();
   /// Notes in the log that the time is over.
   bool isOutOfTime();
   /// Whether even the first flips have to end.
   bool isOverdue() const { return time_left_(-kGrace) == 0.0; }
-  /// Whether work and time are left for repairs, or for the first part of them.
-  bool mayRepair(std::size_t parts = 1);
+  /// Whether time is left for repairs, and some of their work divided by a number.
+  bool mayRepair(std::size_t divisor = 1);
   /// Allows as much work again as at the beginning.
   void renewWork();
   /// Ruins and recreates a part around some vertices, if work is left. Returns whether it was
@@ -56,8 +56,8 @@ private:
   static constexpr double kGrace = 0.1;
 
   TimeLeft time_left_;
-  std::size_t first_work_ = 0;
-  std::size_t max_work_ = 0;  ///< after that
+  std::size_t first_work_ = 0;  ///< before renewWork()
+  std::size_t max_work_ = 0;    ///< since then
 };
 
 }  // namespace spherical_param::internal

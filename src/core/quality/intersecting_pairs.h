@@ -6,20 +6,25 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 
-/// Maximum number of intersecting triangles of a usable mesh, or more where counting takes no time.
-/// \see Surface::isUsable
-inline std::size_t mostOfUsable(const Triangles& triangles) {
-  return std::max<std::size_t>(static_cast<std::size_t>(triangles.cols()) / 100, 3000);
+/// Beyond this number of intersecting triangles, a mesh of some triangles is not usable. Counting
+/// up to 3,000 takes no time. \see Surface::isUsable
+inline std::size_t mostOfUsable(std::size_t triangles) {
+  return std::max<std::size_t>(triangles / 100, 3000);
 }
 
-/// Pairs of triangles that intersect, ascending.
+/// Pairs of triangles that intersect.
 struct IntersectingPairs {
-  std::vector<std::array<Index, 2>> pairs;
-  bool is_sample = false;  ///< more triangles may intersect
+  std::vector<std::array<Index, 2>> pairs;  ///< {lower, higher}, ascending
+  bool is_sample = false;                   ///< the search ended early: there may be more
+
+  bool areFewerThan(const IntersectingPairs& other) const {
+    return std::pair(is_sample, pairs.size()) < std::pair(other.is_sample, other.pairs.size());
+  }
 };
 
 /// Finds pairs of triangles that intersect, spread over the mesh, until more than a number of

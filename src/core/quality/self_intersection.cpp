@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -36,6 +37,9 @@ using internal::FractionReport;
 using internal::Indexed;
 using internal::Plane;
 using Pairs = std::vector<std::array<Index, 2>>;
+
+/// Items between two reports: where the mesh is a tangle, a block takes a tenth of a second.
+constexpr std::size_t kTangledItems = 8 * internal::kBlockSize;
 
 /// A mesh as the tests want it.
 struct Mesh {
@@ -70,8 +74,9 @@ public:
                const FractionReport& report);
 
   /// Appends the intersecting pairs of the triangles in [begin, end) of the order, groups of the
-  /// tree, and later ones; ends early when they are more than `enough` triangles.
-  void findLaterPairs(Index begin, Index end, std::size_t enough, Pairs& pairs) const;
+  /// tree, and later ones. Ends early when these are more than `most` triangles; returns whether it
+  /// did not.
+  bool findLaterPairs(Index begin, Index end, std::size_t most, Pairs& pairs) const;
   /// Appends the intersecting pairs of a triangle and one in the tree, from the place `first` on.
   void findPairs(const Face& face, Index first, Pairs& pairs) const;
 
@@ -133,8 +138,8 @@ void TriangleTree::sort(const Indexed<Index>& subset, const Box& all, int thread
     order_.push_back(subset[i]);
 }
 
-void TriangleTree::findLaterPairs(Index begin, Index end, std::size_t enough, Pairs& pairs) const {
-  std::size_t next_count = enough;
+bool TriangleTree::findLaterPairs(Index begin, Index end, std::size_t most, Pairs& pairs) const {
+  std::size_t next_count = most;
   // What every test of one of a group's triangles needs.
   Indexed<std::pair<Face, Plane>> own;
   for (Index first = begin; first < end; first += BoxGroup::kSize) {
@@ -153,10 +158,11 @@ void TriangleTree::findLaterPairs(Index begin, Index end, std::size_t enough, Pa
       });
     if (pairs.size() < next_count)
       continue;
-    if (countTriangles(pairs) > enough)
-      return;
+    if (countTriangles(pairs) > most)
+      return false;
     next_count = 2 * pairs.size();
   }
+  return true;
 }
 
 void TriangleTree::findPairs(const Face& face, Index first, Pairs& pairs) const {
@@ -194,9 +200,8 @@ Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& e
   const FractionReport report = internal::reportOf(execution, "intersections");
   const TriangleTree tree(mesh, subset, threads, report);
   const auto collect = [&](std::size_t count, const auto& find) {
-    // Where the mesh is a tangle, a block takes a tenth of a second.
     return internal::collectBlocks<std::array<Index, 2>>(count, threads, report, find,
-                                                         8 * internal::kBlockSize);
+                                                         kTangledItems);
   };
   Pairs pairs = collect(subset.size(), [&](Index begin, Index end, Pairs& found) {
     tree.findLaterPairs(begin, end, mesh.size(), found);
@@ -232,24 +237,31 @@ internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Posi
   const TriangleTree tree(mesh, all, threads, report);
   IndexSet intersecting(mesh.size());
   std::size_t count = 0;
-  // Every step-th block of triangles, then those after them, and so on.
-  constexpr std::size_t step = 128;
+  // Rounds of at least 8 blocks of triangles: every step-th block, then those after them, and so
+  // on.
   const std::size_t blocks = (mesh.size() + kBlockSize - 1) / kBlockSize;
-  for (std::size_t first = 0; first < std::min(step, blocks) && count <= most; ++first) {
+  const std::size_t step = std::clamp<std::size_t>(blocks / 8, 1, 128);
+  std::atomic<bool> is_complete{true};
+  for (std::size_t first = 0; first < step && count <= most; ++first) {
     const std::size_t size = (blocks - first + step - 1) / step * kBlockSize;
     const Pairs more = collectBlocks<std::array<Index, 2>>(
-        size, threads, report, [&](Index begin, Index, Pairs& pairs) {
+        size, threads, report,
+        [&](Index begin, Index, Pairs& pairs) {
           const std::size_t block = static_cast<std::size_t>(begin) / kBlockSize * step + first;
           const std::size_t end = std::min((block + 1) * kBlockSize, mesh.size());
-          tree.findLaterPairs(static_cast<Index>(block * kBlockSize), static_cast<Index>(end), most,
-                              pairs);
-        });
+          if (!tree.findLaterPairs(static_cast<Index>(block * kBlockSize), static_cast<Index>(end),
+                                   most, pairs))
+            is_complete = false;
+        },
+        kTangledItems);
     for (const auto& pair : more)
       for (const Index t : pair)
         count += intersecting.insert(t) ? 1 : 0;
     found.pairs.insert(found.pairs.end(), more.begin(), more.end());
+    if (count > most && first + 1 < step)
+      is_complete = false;
   }
-  found.is_sample = count > most;
+  found.is_sample = !is_complete;
   std::sort(found.pairs.begin(), found.pairs.end());
   return found;
 }
