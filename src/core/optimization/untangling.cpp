@@ -38,6 +38,7 @@ bool forEachPair(Workbench& bench, IntersectingPairs& found, const Work& work) {
   const SphereMesh& mesh = bench.mesh.mesh();
   const auto& pairs = found.pairs;
   std::vector<std::vector<Index>> vertices;
+  vertices.reserve(pairs.size());
   for (const auto& pair : pairs)
     vertices.push_back(verticesOf(mesh, pair));
   bool has_changed = false;
