@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace spherical_param {
@@ -183,28 +185,20 @@ TEST(Selection, PartsShareOneTimeLimit) {
     points = horizontally(points, movedTo(4.0 * part, test::noisySphere(100, 0.5)));
   Options options;
   options.parts = PartsMode::Each;
-  options.time_limit = 0.3;
-  // The first part takes it all.
-  options.progress = [](const Progress& progress) {
-    if (progress.part == 0 && std::string(progress.stage) == "embedding" &&
-        progress.fraction == 1.0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    return true;
-  };
-  const auto out_of_time = [&] {
+  for (const auto& [limit, expected] : {std::pair(0.0, 8), std::pair(1e9, 0)}) {
+    options.time_limit = limit;
     const Result result = reconstruct(points, options);
     EXPECT_EQ(result.surfaces.size(), 8U);
-    return std::count_if(result.surfaces.begin(), result.surfaces.end(),
-                         [](const Surface& surface) { return surface.is_out_of_time; });
-  };
-  EXPECT_EQ(out_of_time(), 8);
-  options.time_limit = 1e9;
-  EXPECT_EQ(out_of_time(), 0);
-  // Without time for a mesh, parts are left out.
-  options.time_limit = 0.01;
-  options.progress = [](const Progress& progress) {
-    if (progress.part == 2)
-      std::this_thread::sleep_for(std::chrono::milliseconds(170));
+    EXPECT_EQ(std::count_if(result.surfaces.begin(), result.surfaces.end(),
+                            [](const Surface& surface) { return surface.is_out_of_time; }),
+              expected);
+  }
+  // Without time for a mesh, parts are left out. The third takes it all.
+  options.time_limit = 3.0;
+  bool has_waited = false;
+  options.progress = [&](const Progress& progress) {
+    if (progress.part == 2 && !std::exchange(has_waited, true))
+      std::this_thread::sleep_for(std::chrono::milliseconds(3200));
     return true;
   };
   const Result result = reconstruct(points, options);
