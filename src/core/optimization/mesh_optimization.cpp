@@ -135,11 +135,10 @@ MeshOptimization optimizeMesh(const Positions& points, const Triangles& triangle
     bench.mesh.setPoints(smoothed);
     rough = flip();
   }
-  IntersectingPairs found = optimize(bench, sampling, std::move(rough));
-  if (bench.log.is_noisy && options.finish_on_points)
-    found = finishOn(points, bench);
   MeshOptimization result;
-  result.intersecting = std::move(found);
+  result.intersecting = optimize(bench, sampling, std::move(rough));
+  if (bench.log.is_noisy && options.finish_on_points)
+    result.intersecting = finishOn(points, bench);
   result.triangles = bench.mesh.mesh().triangles();
   result.report = bench.log;
   return result;

@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -40,6 +41,9 @@ using Pairs = std::vector<std::array<Index, 2>>;
 
 /// Items between two reports: where the mesh is a tangle, a block takes a tenth of a second.
 constexpr std::size_t kTangledItems = 8 * internal::kBlockSize;
+
+/// No limit of the triangles that are looked for.
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 /// A mesh as the tests want it.
 struct Mesh {
@@ -204,7 +208,7 @@ Pairs pairsOf(const Mesh& mesh, const Indexed<Index>& subset, const Execution& e
                                                          kTangledItems);
   };
   Pairs pairs = collect(subset.size(), [&](Index begin, Index end, Pairs& found) {
-    tree.findLaterPairs(begin, end, mesh.size(), found);
+    tree.findLaterPairs(begin, end, kAll, found);
   });
   if (subset.size() < mesh.size()) {
     const Pairs others = collect(mesh.size(), [&](Index begin, Index end, Pairs& found) {
@@ -237,10 +241,9 @@ internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Posi
   const TriangleTree tree(mesh, all, threads, report);
   IndexSet intersecting(mesh.size());
   std::size_t count = 0;
-  // Rounds of at least 8 blocks of triangles: every step-th block, then those after them, and so
-  // on.
+  // Rounds of at least 8 blocks of triangles: every step-th block, then those after them, ...
   const std::size_t blocks = (mesh.size() + kBlockSize - 1) / kBlockSize;
-  const std::size_t step = std::clamp<std::size_t>(blocks / 8, 1, 128);
+  const std::size_t step = most == kAll ? 1 : std::clamp<std::size_t>(blocks / 8, 1, 128);
   std::atomic<bool> is_complete{true};
   for (std::size_t first = 0; first < step && count <= most; ++first) {
     const std::size_t size = (blocks - first + step - 1) / step * kBlockSize;
@@ -269,10 +272,7 @@ internal::IntersectingPairs internal::findPairsUpTo(std::size_t most, const Posi
 std::vector<std::array<Index, 2>> findSelfIntersections(const Positions& points,
                                                         const Triangles& triangles,
                                                         const Execution& execution) {
-  const Mesh mesh = checkedMesh(points, triangles, execution);
-  Indexed<Index> all(mesh.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  return pairsOf(mesh, all, execution);
+  return internal::findPairsUpTo(kAll, points, triangles, execution).pairs;
 }
 
 std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& points,
