@@ -78,8 +78,8 @@ const std::vector<OptionInfo> own_options = {
     {"match", "", "move and scale the second object to the place and the area of the first"},
     {"check", "", "count the self-intersections of all frames"},
 };
-const std::vector<OptionInfo> option_table =
-    joined({own_options, productOptions(), outputOptions()});
+const std::vector<OptionInfo> option_table = joined(
+    {own_options, productOptions(ProductDefaults(HandlesOnSphere::Refused)), outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -222,7 +222,7 @@ Settings parseSettings(const CommandLine& command_line) {
   settings.match = command_line.has("match");
   settings.check = command_line.has("check");
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line);
+  settings.product = parseProductOptions(command_line, ProductDefaults(HandlesOnSphere::Refused));
   return settings;
 }
 

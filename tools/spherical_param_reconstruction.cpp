@@ -98,8 +98,8 @@ std::string numbered(const std::string& name, std::size_t part) {
   return name.substr(0, mark) + number.data() + name.substr(mark + number_mark.size());
 }
 
-bool makesParts(const Settings& settings) {
-  return settings.reconstruction.options.parts == PartsMode::Each;
+bool mayMakeParts(const Settings& settings) {
+  return withTopology(settings.reconstruction.options).parts == PartsMode::Each;
 }
 
 /// The settings of a part, with the names of its files.
@@ -112,16 +112,15 @@ Settings settingsOf(Settings settings, std::size_t part) {
 
 /// \throw UsageError for names without the numbers that they need, or with some that they do not.
 void checkNumbers(const Settings& settings) {
-  if (isNumbered(settings.output) && !makesParts(settings)) {
+  if (isNumbered(settings.output) && !mayMakeParts(settings)) {
     throw UsageError(inQuotes(settings.output) +
                          " is a pattern for several parts, but the output is one mesh",
                      "give -parts each, or a name without " + number_mark);
   }
-  const bool has_numbers = isNumbered(settings.output);
   for (const std::string& name : {settings.sphere, settings.page}) {
-    if (makesParts(settings) && !name.empty() && !(isNumbered(name) && has_numbers)) {
-      throw UsageError(inQuotes(name) + " can hold only one part",
-                       "use " + number_mark + " in its name and in that of the output");
+    if (isNumbered(name) && !isNumbered(settings.output)) {
+      throw UsageError(inQuotes(name) + " is a pattern, but the output is one file",
+                       "use " + number_mark + " in both names, or in none");
     }
   }
 }
@@ -233,9 +232,10 @@ Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
 std::vector<std::string> writtenFiles(const Settings& settings, std::size_t surfaces) {
   std::vector<std::string> files;
   for (const std::string& name : outputsOf(settings)) {
+    const bool is_view = name != settings.output && name != settings.report.json;
     files.push_back(isNumbered(name) && surfaces > 1
                         ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
-                        : numbered(name, 0));
+                        : numbered(name, 0) + (is_view && surfaces > 1 ? " (the largest)" : ""));
   }
   return files;
 }
@@ -282,24 +282,25 @@ void printSummary(const Settings& settings, const CloudReconstruction& cloud, Co
 
 using Files = std::vector<std::unique_ptr<OutputFile>>;
 
-/// Writes the mesh, the sphere and the page of a surface.
-void writeSurface(const Settings& settings, CloudReconstruction& cloud, const Surface& surface,
-                  Console& console, Files& files) {
+void writeMeshFile(const Settings& settings, const MeshView& mesh, CloudReconstruction& cloud,
+                   Console& console, Files& files) {
   console.begin("write");
-  // The mesh, and the sphere if it is wanted, are halves of one stage.
-  const double fraction_of_file = settings.sphere.empty() ? 1.0 : 0.5;
   files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), meshOf(cloud, surface), settings.output_format, settings.report.encoding,
-            [&](double fraction) { console.update(fraction_of_file * fraction); });
+  writeMesh(*files.back(), mesh, settings.output_format, settings.report.encoding,
+            [&](double fraction) { console.update(fraction); });
   files.back()->finish();
+  cloud.stages.push_back({"write", console.end("")});
+}
+
+/// Writes the sphere and the page of a surface, where they are wanted.
+void writeViews(const Settings& settings, CloudReconstruction& cloud, const Surface& surface,
+                Console& console, Files& files) {
   if (!settings.sphere.empty()) {
     files.push_back(std::make_unique<OutputFile>(settings.sphere));
     writeMesh(*files.back(), sphereOf(cloud, surface, surface.sphere), settings.sphere_format,
-              settings.report.encoding,
-              [&](double fraction) { console.update(0.5 + 0.5 * fraction); });
+              settings.report.encoding, {});
     files.back()->finish();
   }
-  cloud.stages.push_back({"write", console.end("")});
   if (!settings.page.empty()) {
     console.begin("report");
     files.push_back(std::make_unique<OutputFile>(settings.page));
@@ -311,29 +312,20 @@ void writeSurface(const Settings& settings, CloudReconstruction& cloud, const Su
   }
 }
 
-/// Writes all surfaces to one file.
-void writeJoined(const Settings& settings, CloudReconstruction& cloud, Console& console,
-                 Files& files) {
-  const JoinedMesh joined(cloud);
-  console.begin("write");
-  files.push_back(std::make_unique<OutputFile>(settings.output));
-  writeMesh(*files.back(), joined.view(), settings.output_format, settings.report.encoding,
-            [&](double fraction) { console.update(fraction); });
-  files.back()->finish();
-  cloud.stages.push_back({"write", console.end("")});
-}
-
+/// Several surfaces go to one file, with the views of the largest, or to numbered files.
 void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& console,
                 Files& files) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
-  if (surfaces.size() > 1 && !isNumbered(settings.output)) {
-    writeJoined(settings, cloud, console, files);
+  if (!isNumbered(settings.output)) {
+    writeMeshFile(settings, JoinedMesh(cloud).view(), cloud, console, files);
+    writeViews(settings, cloud, surfaces.front(), console, files);
     return;
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const Settings of_part = settingsOf(settings, i);
     checkOutputs({settings.input}, outputsOf(of_part));
-    writeSurface(of_part, cloud, surfaces[i], console, files);
+    writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, console, files);
+    writeViews(of_part, cloud, surfaces[i], console, files);
   }
 }
 
@@ -350,15 +342,15 @@ void run(const std::vector<std::string>& words) {
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, console, cloud);
   if (!settings.sphere.empty()) {
-    requireSpheres(settings.input, cloud);
+    requireSpheres(settings.input, cloud, isNumbered(settings.sphere));
   }
   Files files;
   writeFiles(settings, cloud, console, files);
   publish(
       settings.report, files, console,
       [&] {
-        return makesParts(settings) ? reportOnParts(settings, cloud)
-                                    : report(settings, cloud, cloud.surface());
+        return cloud.result.surfaces.size() > 1 ? reportOnParts(settings, cloud)
+                                                : report(settings, cloud, cloud.surface());
       },
       [&] { printSummary(settings, cloud, console); });
   Findings findings(settings.report.quiet, settings.reconstruction.strict, settings.page.empty());

@@ -85,8 +85,11 @@ const std::vector<OptionInfo> own_options = {
     {"series", "", "output the surface of that series"},
     {"degree", "L", "degree of the series, up to 512 (32)"},
 };
-const std::vector<OptionInfo> option_table = joined(
-    {own_options, productOptions(spherical_param::mapOptionsForResampling()), outputOptions()});
+const std::vector<OptionInfo> option_table =
+    joined({own_options,
+            productOptions(ProductDefaults(HandlesOnSphere::Refused,
+                                           spherical_param::mapOptionsForResampling())),
+            outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -239,7 +242,9 @@ Settings parseSettings(const CommandLine& command_line) {
         static_cast<int>(parseInteger("degree", command_line.value("degree", ""), {0, 512}));
   }
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line, spherical_param::mapOptionsForResampling());
+  settings.product = parseProductOptions(
+      command_line,
+      ProductDefaults(HandlesOnSphere::Refused, spherical_param::mapOptionsForResampling()));
   checkCombination(command_line, settings);
   if (settings.writes_image) {
     settings.sampling = Sampling::Octahedral;

@@ -68,7 +68,7 @@ const std::vector<OptionInfo> own_options = {
     {"image", "FILE", "image beside .obj and .ply, .png (as the output)"},
 };
 const std::vector<OptionInfo> option_table =
-    joined({own_options, productOptions(), outputOptions()});
+    joined({own_options, productOptions(ProductDefaults(HandlesOnSphere::Cut)), outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -184,7 +184,7 @@ Settings parseSettings(const CommandLine& command_line) {
     settings.cells = integer("checker", usual_cells, {1, 4096});
   }
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line);
+  settings.product = parseProductOptions(command_line, ProductDefaults(HandlesOnSphere::Cut));
   if (command_line.has("ascii") && settings.format != TextureFormat::Ply) {
     throw UsageError("option -ascii does nothing with " + nameOf(settings.format, format_names),
                      "leave -ascii out, or write .ply");

@@ -11,8 +11,19 @@ namespace spherical_param {
 /// \addtogroup pipeline
 /// @{
 
+/// The topology of the mesh.
+enum class TopologyMode {
+  /// What the cloud shows: a surface for each part, with certain openings and handles, without
+  /// certain outliers.
+  Scan,
+  /// One closed surface of genus 0 through every point, whatever the cloud shows: the guarantee of
+  /// the paper. Method::Paper makes no other.
+  Sphere,
+};
+
 /// Which points are left out first because they belong to no surface.
 enum class OutlierMode {
+  AsTopology,  ///< Auto for TopologyMode::Scan, else None
   None,  ///< no points; a finding reports likely outliers
   Auto,  ///< stray points: isolated points, small clusters, nets, isolated points near a surface
   /// points too far from the average of their neighbours (Zwicker and Gotsman 2004, section 4.2).
@@ -21,6 +32,7 @@ enum class OutlierMode {
 
 /// Which parts of a cloud are meshed. A part is a set of points that neighbours connect.
 enum class PartsMode {
+  AsTopology,  ///< Each for TopologyMode::Scan (all points, if each part is too small), else All
   All,      ///< all together, as one surface
   Largest,  ///< the part with the most points
   Each,     ///< each part as a mesh of its own
@@ -79,6 +91,7 @@ struct EmbeddingOptions {
 
 /// Whether openings of the sampled surface are filled.
 enum class SurfaceMode {
+  AsTopology,  ///< Auto for TopologyMode::Scan, else Closed
   Closed,  ///< all are filled: the mesh is always closed
   Open,    ///< all stay open
   Auto,    ///< certain openings stay open, others are filled
@@ -86,6 +99,7 @@ enum class SurfaceMode {
 
 /// Whether the mesh has the handles of the sampled surface.
 enum class HandleMode {
+  AsTopology,  ///< Auto for TopologyMode::Scan, else None
   None,  ///< no handles: the mesh is one sphere, or one with openings
   Auto,  ///< those that are certain; long tubes are cut into several spheres while they are meshed
 };
@@ -95,11 +109,14 @@ enum class HandleMode {
 struct Options : Execution {
   Method method = Method::Default;           ///< how the cloud is meshed
   PaperOptions paper;                        ///< of Method::Paper
-  OutlierMode outliers = OutlierMode::None;  ///< which points are left out first
+  /// The topology of the mesh, of which `outliers`, `parts`, `surface` and `handles` override a
+  /// part each.
+  TopologyMode topology = TopologyMode::Scan;
+  OutlierMode outliers = OutlierMode::AsTopology;  ///< which points are left out first
   /// OutlierMode::Deviation: outliers deviate by more than the mean and this number of standard
   /// deviations; [0, 1000].
   double outlier_sigma = 4.0;
-  PartsMode parts = PartsMode::All;  ///< which parts are meshed
+  PartsMode parts = PartsMode::AsTopology;  ///< which parts are meshed
   /// Minimum number of distinct points of a part; >= 4. Smaller parts are left out. No effect with
   /// PartsMode::All.
   int min_points = 50;
@@ -114,19 +131,25 @@ struct Options : Execution {
 
   /// Whether openings are filled. Only Method::Default finds them. Its embedding leaves room for
   /// them in any case, so that the surface beside them does not fold.
-  SurfaceMode surface = SurfaceMode::Closed;
+  SurfaceMode surface = SurfaceMode::AsTopology;
   /// Openings of up to this number of edges are filled in any case; >= 0.
   int fill_holes = 0;
   /// Openings of up to this area are filled in any case [squared unit of the input]; [0, 1e15].
   double fill_holes_area = 0.0;
 
   /// Whether the mesh has the handles of the surface. Only Method::Default finds them.
-  HandleMode handles = HandleMode::Auto;
+  HandleMode handles = HandleMode::AsTopology;
 
   std::uint32_t seed = 1;  ///< of all random choices
   /// Fill Surface::vertex_residuals and SurfaceDiagnosis::triangle_marks.
   bool details = false;
 };
+
+/// The options with what is as the topology says.
+///
+/// \param options any.
+/// \return the same without AsTopology.
+Options withTopology(Options options);
 
 /// Checks the ranges of all options. reconstruct() does so too; callers may check before long work.
 ///

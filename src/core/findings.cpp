@@ -272,9 +272,17 @@ void summarize(std::size_t parts_in_all, Result& result) {
   } else {
     for (std::size_t i = 0; i < parts.size(); ++i)
       result.findings[i].text.insert(0, parts[i] + ": ");
-    result.verdict = grouped(surfaces.size()) + " meshes, " +
+    const auto open = static_cast<std::size_t>(
+        std::count_if(surfaces.begin(), surfaces.end(),
+                      [](const Surface& surface) { return !surface.isClosed(); }));
+    result.verdict = grouped(surfaces.size()) + " surfaces, " +
+                     (open == 0 ? "" : grouped(open) + " with openings, ") +
                      (faulty == 0 ? "all sound." : grouped(faulty) + " of them with faults.");
   }
+  LeftOut stray = result.left_out;
+  stray.not_finite.clear();
+  if (const std::string text = stray.text(); !text.empty())
+    result.verdict.replace(result.verdict.size() - 1, 1, "; " + text + " left out.");
   if (parts_in_all > surfaces.size())
     result.verdict += " " + counted(parts_in_all - surfaces.size(), "part") + " cannot be meshed.";
 }
@@ -291,7 +299,7 @@ std::string LeftOut::text() const {
           (text.empty() ? "" : ", ") + internal::grouped(count) + " " + (count == 1 ? one : many);
   };
   add(not_finite.size(), "point that is not finite", "points that are not finite");
-  add(outliers.size(), "outlier", "outliers");
+  add(outliers.size(), "stray point", "stray points");
   add(other_parts.size(), "point in other parts", "points in other parts");
   return text;
 }

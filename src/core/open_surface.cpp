@@ -9,13 +9,6 @@
 namespace spherical_param::internal {
 namespace {
 
-/// Whether virtual nodes fill an opening, open or filled. SurfaceMode::Auto trusts those alone that
-/// are 9 spacings wide. The closed models have none above 4.8; a random quarter of the points of
-/// one has a false one of 6.4.
-bool isTrusted(const Opening& opening, const Options& options) {
-  return options.surface != SurfaceMode::Auto || opening.certainty >= 1.0;
-}
-
 /// Whether the mesh has triangles over an opening.
 bool isFilled(const Opening& opening, bool is_cloud_flat, double unit, const Options& options) {
   if (is_cloud_flat)
@@ -54,11 +47,6 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings f
   if (!open.openings.empty())
     places_.emplace(points, graph, open);
   found_ = found.openings;
-  found.openings.erase(std::remove_if(found.openings.begin(), found.openings.end(),
-                                      [&](const Opening& opening) {
-                                        return opening.is_filled && !isTrusted(opening, options);
-                                      }),
-                       found.openings.end());
   embedded_ = std::move(found);
 }
 

@@ -131,9 +131,11 @@ OptionRow outlierRow() {
       "outliers to leave out: stray points (auto), or points off the surface by this number of "
       "standard deviations",
       Everybody, 0, 1000, memberOf(&Options::outlier_sigma));
-  row.choices = {"none", "auto"};
+  row.choices = {"topology", "none", "auto"};
   row.get = [](const Options& options) -> OptionValue {
     switch (options.outliers) {
+    case OutlierMode::AsTopology:
+      return std::string("topology");
     case OutlierMode::None:
       return std::string("none");
     case OutlierMode::Auto:
@@ -145,7 +147,9 @@ OptionRow outlierRow() {
   };
   row.set = [](Options& options, const OptionValue& value) {
     if (const auto* name = std::get_if<std::string>(&value)) {
-      options.outliers = *name == "auto" ? OutlierMode::Auto : OutlierMode::None;
+      options.outliers = *name == "auto"   ? OutlierMode::Auto
+                         : *name == "none" ? OutlierMode::None
+                                           : OutlierMode::AsTopology;
       return;
     }
     options.outliers = OutlierMode::Deviation;
@@ -156,12 +160,21 @@ OptionRow outlierRow() {
 
 std::vector<OptionRow> pointRows() {
   return {
+      byDefault(choice<TopologyMode>(
+          "topology", "topology",
+          "topology of the mesh: what the cloud shows (parts, openings, handles, without stray "
+          "points), or one sphere through every point",
+          Everybody, {{"scan", TopologyMode::Scan}, {"sphere", TopologyMode::Sphere}},
+          memberOf(&Options::topology))),
       outlierRow(),
       choice<PartsMode>(
           "parts", "parts",
           "parts of the cloud to mesh: all as one surface, the largest alone, or each by itself",
           Everybody,
-          {{"all", PartsMode::All}, {"largest", PartsMode::Largest}, {"each", PartsMode::Each}},
+          {{"topology", PartsMode::AsTopology},
+           {"all", PartsMode::All},
+           {"largest", PartsMode::Largest},
+           {"each", PartsMode::Each}},
           memberOf(&Options::parts)),
       usedWith({{"parts", {"largest", "each"}}},
                number("min_points", "min_points",
@@ -221,7 +234,8 @@ std::vector<OptionRow> surfaceRows() {
       byDefault(choice<SurfaceMode>(
           "surface", "surface", "openings are filled, left open, or left open if certain (auto)",
           Everybody,
-          {{"closed", SurfaceMode::Closed},
+          {{"topology", SurfaceMode::AsTopology},
+           {"closed", SurfaceMode::Closed},
            {"open", SurfaceMode::Open},
            {"auto", SurfaceMode::Auto}},
           memberOf(&Options::surface))),
@@ -234,7 +248,10 @@ std::vector<OptionRow> surfaceRows() {
       byDefault(choice<HandleMode>(
           "handles", "handles",
           "handles of the surface that the mesh has: those that are certain (auto), or none",
-          Everybody, {{"none", HandleMode::None}, {"auto", HandleMode::Auto}},
+          Everybody,
+          {{"topology", HandleMode::AsTopology},
+           {"none", HandleMode::None},
+           {"auto", HandleMode::Auto}},
           memberOf(&Options::handles))),
   };
 }
@@ -342,6 +359,19 @@ std::string textOf(const OptionValue& value) {
   else
     text << "unset";
   return text.str();
+}
+
+Options withTopology(Options options) {
+  const bool is_scan = options.topology == TopologyMode::Scan && options.method == Method::Default;
+  if (options.outliers == OutlierMode::AsTopology)
+    options.outliers = is_scan ? OutlierMode::Auto : OutlierMode::None;
+  if (options.parts == PartsMode::AsTopology)
+    options.parts = is_scan ? PartsMode::Each : PartsMode::All;
+  if (options.surface == SurfaceMode::AsTopology)
+    options.surface = is_scan ? SurfaceMode::Auto : SurfaceMode::Closed;
+  if (options.handles == HandleMode::AsTopology)
+    options.handles = is_scan ? HandleMode::Auto : HandleMode::None;
+  return options;
 }
 
 void checkOptions(const Options& options) {

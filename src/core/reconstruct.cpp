@@ -174,7 +174,7 @@ Surface meshConsolidated(const Positions& points, const Options& options, StageC
   as_is.parts = PartsMode::All;
   LeftOut none;
   const NeighborSearchFactory by_tree;
-  Selection selection(consolidation.points, as_is, by_tree, clock, none);
+  Selection selection(consolidation.points, as_is, false, by_tree, clock, none);
   Surface surface = meshAsIs(selection, 0, selection.neighborhoodsOf(0), options, clock);
   internal::toInput(consolidation, surface);
   return surface;
@@ -260,25 +260,28 @@ auto explained(const LeftOut& left_out, const Work& work) {
 /// The points to mesh, in parts.
 std::vector<std::vector<Index>> select(const Positions& points, Options options, PartsMode parts,
                                        LeftOut& left_out) {
-  options.parts = parts;
   options.time_limit.reset();
   checkOptions(options);
+  options.parts = parts;
+  options = withTopology(options);
   StageClock clock(options);
-  std::vector<std::vector<Index>> selected =
-      explained(left_out, [&] { return Selection(points, options, {}, clock, left_out).parts(); });
+  std::vector<std::vector<Index>> selected = explained(
+      left_out, [&] { return Selection(points, options, false, {}, clock, left_out).parts(); });
   clock.take();
   return selected;
 }
 
 }  // namespace
 
-Result reconstruct(const Positions& points, const Options& options,
+Result reconstruct(const Positions& points, const Options& given,
                    const NeighborSearchFactory& search_of) {
-  checkOptions(options);
+  checkOptions(given);
+  const Options options = withTopology(given);
   StageClock clock(options);
   Result result;
   const std::size_t parts = explained(result.left_out, [&] {
-    Selection selection(points, options, search_of, clock, result.left_out);
+    Selection selection(points, options, given.parts == PartsMode::AsTopology, search_of, clock,
+                        result.left_out);
     meshParts(selection, options, clock, result);
     return selection.parts().size();
   });

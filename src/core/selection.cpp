@@ -20,7 +20,7 @@ std::vector<Index> without(const std::vector<Index>& points, const std::vector<I
 
 }  // namespace
 
-Selection::Selection(const Positions& points, const Options& options,
+Selection::Selection(const Positions& points, const Options& options, bool is_never_empty,
                      const NeighborSearchFactory& search_of, StageClock& clock, LeftOut& left_out)
     : points_(points), options_(options), search_of_(search_of), clock_(clock),
       left_out_(left_out) {
@@ -38,7 +38,7 @@ Selection::Selection(const Positions& points, const Options& options,
   if (options.parts == PartsMode::All)
     parts_.push_back(inputs_);
   else
-    takeApart();
+    takeApart(is_never_empty);
 }
 
 void Selection::leaveOutOutliers() {
@@ -57,12 +57,15 @@ void Selection::leaveOutOutliers() {
   cloud_->findStars(clock_.execution());
 }
 
-void Selection::takeApart() {
+void Selection::takeApart(bool is_never_empty) {
   clock_.begin("parts");
   parts_ = cloud_->groupInputs(partsOf(cloud_->points(), cloud_->agreed(), cloud_->stars(),
                                        static_cast<std::size_t>(options_.min_points)));
-  if (parts_.empty())
+  if (parts_.empty()) {
+    if (is_never_empty)
+      parts_.push_back(inputs_);
     return;
+  }
   if (options_.parts == PartsMode::Largest)
     parts_.resize(1);
   std::vector<Index> meshed;

@@ -16,10 +16,11 @@ class Selection {
 public:
   /// \param points    3 x n. All arguments must outlive this.
   /// \param search_of makes the search for neighbours; may be empty.
+  /// \param is_never_empty all points are one part if each part is too small.
   /// \param left_out  receives the points that are not meshed.
   /// \throw InvalidInput if too few points are left.
-  Selection(const Positions& points, const Options& options, const NeighborSearchFactory& search_of,
-            StageClock& clock, LeftOut& left_out);
+  Selection(const Positions& points, const Options& options, bool is_never_empty,
+            const NeighborSearchFactory& search_of, StageClock& clock, LeftOut& left_out);
 
   /// The points of each part, the largest part first. Empty if all are too small.
   const std::vector<std::vector<Index>>& parts() const { return parts_; }
@@ -30,7 +31,7 @@ public:
 
 private:
   void leaveOutOutliers();
-  void takeApart();
+  void takeApart(bool is_never_empty);
 
   const Positions& points_;
   const Options& options_;

@@ -67,9 +67,9 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   cloud.stages.insert(cloud.stages.begin(), {"read", seconds});
 }
 
-void requireSpheres(const std::string& path, const CloudReconstruction& cloud) {
+void requireSpheres(const std::string& path, const CloudReconstruction& cloud, bool of_all) {
   const std::vector<Surface>& surfaces = cloud.result.surfaces;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+  for (std::size_t i = 0; i < (of_all ? surfaces.size() : 1); ++i) {
     if (surfaces[i].sphere.cols() > 0) {
       continue;
     }

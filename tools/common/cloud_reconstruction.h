@@ -28,8 +28,8 @@ struct CloudReconstruction {
 void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, CloudReconstruction& cloud);
 
-/// \throw Failure if a surface of the file has no map to one sphere
-void requireSpheres(const std::string& path, const CloudReconstruction& cloud);
+/// \throw Failure if a surface of the file, or the largest one, has no map to one sphere
+void requireSpheres(const std::string& path, const CloudReconstruction& cloud, bool of_all);
 
 /// What was left out of a cloud and why, or "nothing".
 std::string leftOut(const CloudReconstruction& cloud);

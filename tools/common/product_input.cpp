@@ -49,23 +49,32 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud,
 
 }  // namespace
 
-std::vector<OptionInfo> productOptions(const SphereMapOptions& defaults) {
-  std::vector<OptionInfo> options = reconstructionOptions();
+ProductDefaults::ProductDefaults(HandlesOnSphere handles, SphereMapOptions of_map)
+    : map(std::move(of_map)) {
+  if (handles == HandlesOnSphere::Cut) {
+    reconstruction.parts = PartsMode::Largest;
+  } else {
+    reconstruction.topology = TopologyMode::Sphere;
+  }
+}
+
+std::vector<OptionInfo> productOptions(const ProductDefaults& defaults) {
+  std::vector<OptionInfo> options = reconstructionOptions(defaults.reconstruction);
   options.push_back(
       {"area-weight", "X",
-       "map: weight of areas, 0 (angles) to 1 (" + formatted(defaults.area_weight, 3) + ")"});
+       "map: weight of areas, 0 (angles) to 1 (" + formatted(defaults.map.area_weight, 3) + ")"});
   options.push_back({"map-sweeps", "N",
                      "map: maximum number of sweeps a level, up to 1000 (" +
-                         std::to_string(defaults.sweeps) + ")"});
+                         std::to_string(defaults.map.sweeps) + ")"});
   return options;
 }
 
 ProductSettings parseProductOptions(const CommandLine& command_line,
-                                    const SphereMapOptions& defaults) {
+                                    const ProductDefaults& defaults) {
   ProductSettings settings;
-  settings.map = defaults;
-  settings.reconstruction = parseReconstructionOptions(command_line);
-  if (settings.reconstruction.options.parts == PartsMode::Each) {
+  settings.map = defaults.map;
+  settings.reconstruction = parseReconstructionOptions(command_line, defaults.reconstruction);
+  if (withTopology(settings.reconstruction.options).parts == PartsMode::Each) {
     throw UsageError("option -parts: this tool makes one surface",
                      "give -parts largest, or write each part to its own file first");
   }
@@ -81,7 +90,7 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
   if (settings.map.sweeps == 0 && command_line.has("area-weight")) {
     throw UsageError("option -area-weight does nothing with -map-sweeps 0",
                      "leave -area-weight out, or give -map-sweeps " +
-                         std::to_string(defaults.sweeps));
+                         std::to_string(defaults.map.sweeps));
   }
   return settings;
 }
@@ -105,7 +114,7 @@ void mapCloud(const std::string& path, const ProductSettings& settings, HandlesO
               Console& console, MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
   if (handles == HandlesOnSphere::Refused) {
-    requireSpheres(path, mapped.cloud);
+    requireSpheres(path, mapped.cloud, true);
   }
   const Surface& surface = mapped.cloud.surface();
   console.begin("map");

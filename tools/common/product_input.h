@@ -20,14 +20,23 @@ struct ProductSettings {
   SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
 };
 
+/// Whether a mesh with handles is cut so that it has a map to one sphere, or refused.
+enum class HandlesOnSphere { Cut, Refused };
+
+/// The defaults of a tool that makes one surface.
+struct ProductDefaults {
+  explicit ProductDefaults(HandlesOnSphere handles, SphereMapOptions map = {});
+
+  Options reconstruction;  ///< one sphere, or the largest part with its handles
+  SphereMapOptions map;
+};
+
 /// The lines of the options of the reconstruction, then those of the map.
-///
-/// \param defaults of the map, which each tool may have of its own.
-std::vector<OptionInfo> productOptions(const SphereMapOptions& defaults = {});
+std::vector<OptionInfo> productOptions(const ProductDefaults& defaults);
 
 /// Refuses options that would change nothing as well. \throw UsageError
 ProductSettings parseProductOptions(const CommandLine& command_line,
-                                    const SphereMapOptions& defaults = {});
+                                    const ProductDefaults& defaults);
 
 /// Prints the settings.
 void printProductOptions(const ProductSettings& settings, Console& console);
@@ -42,9 +51,6 @@ struct MappedCloud {
   std::vector<Color> colors;  ///< of its vertices, or none if the cloud has no colours
   SphereMap map;              ///< of `mesh`
 };
-
-/// Whether a mesh with handles is cut so that it has a map to one sphere, or refused.
-enum class HandlesOnSphere { Cut, Refused };
 
 /// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.
 /// \throw UsageError, Failure

@@ -69,19 +69,19 @@ std::vector<OptionRow> toolRows() {
   return rows;
 }
 
-Options parseOptions(const CommandLine& command_line) {
-  Options options;
+Options parseOptions(const CommandLine& command_line, Options options) {
   for (const OptionRow& row : toolRows()) {
     if (command_line.has(flagOf(row))) {
       setOption(options, row.name, parseValue(row, command_line.value(flagOf(row), "")));
     }
   }
+  const Options in_force = withTopology(options);
   for (const OptionRow& row : toolRows()) {
-    const auto failed = failedCondition(row, options);
+    const auto failed = failedCondition(row, in_force);
     if (failed && command_line.has(flagOf(row))) {
       const auto& [other, needed] = *failed;
       throw UsageError("option -" + flagOf(row) + " does nothing with -" + other + " " +
-                           optionText(options, other),
+                           optionText(in_force, other),
                        "leave -" + flagOf(row) + " out, or give -" + other + " " + needed);
     }
   }
@@ -107,9 +107,8 @@ std::string optionText(const Options& options, const std::string& name) {
   return spherical_param::textOf(findOption(name).get(options));
 }
 
-std::vector<OptionInfo> reconstructionOptions() {
+std::vector<OptionInfo> reconstructionOptions(const Options& defaults) {
   std::vector<OptionInfo> lines;
-  const Options defaults;
   for (const OptionRow& row : toolRows()) {
     std::string argument;
     for (const std::string& choice : row.choices) {
@@ -131,17 +130,19 @@ std::vector<OptionInfo> reconstructionOptions() {
   return lines;
 }
 
-ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line) {
+ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line,
+                                                  const Options& defaults) {
   ReconstructionSettings settings;
-  settings.options = parseOptions(command_line);
+  settings.options = parseOptions(command_line, defaults);
   settings.strict = command_line.has("strict");
   return settings;
 }
 
 void printReconstructionOptions(const ReconstructionSettings& settings, Console& console) {
+  const Options in_force = withTopology(settings.options);
   for (const OptionRow& row : toolRows()) {
-    const OptionValue value = row.get(settings.options);
-    if (value.index() != 0 && !failedCondition(row, settings.options)) {
+    const OptionValue value = row.get(in_force);
+    if (value.index() != 0 && !failedCondition(row, in_force)) {
       console.entry(flagOf(row), spherical_param::textOf(value));
     }
   }
@@ -152,9 +153,9 @@ void printReconstructionOptions(const ReconstructionSettings& settings, Console&
 
 Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   Json json;
+  const Options in_force = withTopology(settings.options);
   for (const OptionRow& row : toolRows()) {
-    json[row.name] =
-        failedCondition(row, settings.options) ? Json(nullptr) : jsonOf(row.get(settings.options));
+    json[row.name] = failedCondition(row, in_force) ? Json(nullptr) : jsonOf(row.get(in_force));
   }
   json["strict"] = settings.strict;
   return json;

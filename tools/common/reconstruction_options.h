@@ -17,10 +17,11 @@ struct ReconstructionSettings {
 };
 
 /// The lines of the options of the reconstruction: those of the library's table, and a few more.
-std::vector<OptionInfo> reconstructionOptions();
+std::vector<OptionInfo> reconstructionOptions(const Options& defaults = {});
 
 /// Refuses options that would have no effect as well. \throw UsageError
-ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line);
+ReconstructionSettings parseReconstructionOptions(const CommandLine& command_line,
+                                                  const Options& defaults = {});
 
 /// Prints the values in force.
 void printReconstructionOptions(const ReconstructionSettings& settings, Console& console);

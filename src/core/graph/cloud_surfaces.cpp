@@ -142,11 +142,31 @@ Indexed<char> pointsOf(const Indexed<Index>& piece, const Indexed<char>& is_surf
   return on_surface;
 }
 
+/// Joins small components to large ones beside them: a base, the tip of an ear.
+void joinSmall(const Positions& points, const Graph& agreed, UnionFind& components) {
+  // Small is up to this fraction of the other's points, beside is up to this distance [spacing].
+  constexpr double max_fraction = 0.05;
+  constexpr double max_gap = 4.0;
+  const Indexed<Index> component = representatives(components, agreed.size());
+  const Indexed<std::size_t> sizes = setSizes(component);
+  UnionFind all = components;
+  for (const auto& [from, to, length] : shortestBridges(points, all, 1)) {
+    const bool is_from_large = sizes[component[from]] > sizes[component[to]];
+    const auto [large, small] = is_from_large ? std::pair(from, to) : std::pair(to, from);
+    const auto most = max_fraction * static_cast<double>(sizes[component[large]]);
+    if (sizes[component[small]] >= kMinSurface &&
+        static_cast<double>(sizes[component[small]]) <= most &&
+        length < max_gap * nodeSpacing(agreed, large))
+      components.unite(from, to);
+  }
+}
+
 }  // namespace
 
 Indexed<Index> partsOf(const Positions& points, const Graph& agreed, const Stars& stars,
                        std::size_t min_points) {
   UnionFind components = connectedComponents(agreed);
+  joinSmall(points, agreed, components);
   Indexed<Index> part = representatives(components, agreed.size());
   const Indexed<std::size_t> sizes = setSizes(part);
   Indexed<char> in_part(part.size());

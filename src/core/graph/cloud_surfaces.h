@@ -7,17 +7,17 @@
 #include <cstddef>
 #include <vector>
 
-// The surfaces of a cloud are the connected components of its agreed graph (see agreedGraph()).
-// Points of other components are beside a surface if they are in a star of one of its points, or
-// within the mean distance of neighbours there and 6 times the roughness, the RMS distance of some
-// 12 points there from their plane.
+// The surfaces of a cloud are the connected components of its agreed graph (see agreedGraph()),
+// with small ones beside them. Points of other components are beside a surface if they are in a
+// star of one of its points, or within the mean distance of neighbours there and 6 times the
+// roughness, the RMS distance of some 12 points there from their plane.
 
 namespace spherical_param::internal {
 
 /// Splits a cloud into its surfaces.
 ///
-/// Components of fewer than `min_points` nodes are not parts. Their nodes join the nearest part if
-/// they are beside it.
+/// Small components beside large ones belong to these. Others of fewer than `min_points` nodes are
+/// not parts. Their nodes join the nearest part if they are beside it.
 ///
 /// No guarantees: surfaces that touch are one part, and sparse stray points may form a part.
 ///

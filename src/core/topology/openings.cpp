@@ -102,6 +102,21 @@ std::optional<Opening> outsideOf(const Positions& points, const Indexed<double>&
   return outside;
 }
 
+/// Whether an opening is certainly the rim of a sheet: the surface is within its loop, and low over
+/// the plane of the loop.
+bool isRimOfSheet(const Positions& points, const Opening& opening) {
+  // A hemisphere has 0.5 times the width.
+  constexpr double max_height = 0.25;
+  const Eigen::Matrix3Xd loop = points(Eigen::all, opening.loop).colwise() - opening.center;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(loop * loop.transpose());
+  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+  const double radius = 1.01 * loop.colwise().norm().maxCoeff();
+  return std::all_of(points.colwise().begin(), points.colwise().end(), [&](const auto& point) {
+    const Eigen::Vector3d offset = point - opening.center;
+    return offset.norm() <= radius && std::abs(normal.dot(offset)) <= max_height * opening.width;
+  });
+}
+
 /// The openings that are seen.
 Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                     const RotationSystem& rotation) {
@@ -132,6 +147,10 @@ Openings openingsOf(const Positions& points, const Graph& graph, const Indexed<d
   std::stable_sort(
       result.openings.begin(), result.openings.end(),
       [](const Opening& a, const Opening& b) { return a.boundary_length > b.boundary_length; });
+  if (!result.openings.empty() && isRimOfSheet(points, result.openings.front())) {
+    result.openings.front().certainty = 1.0;
+    result.openings.front().is_flat = false;
+  }
   return result;
 }
 
