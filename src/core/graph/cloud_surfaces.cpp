@@ -144,19 +144,20 @@ Indexed<char> pointsOf(const Indexed<Index>& piece, const Indexed<char>& is_surf
 
 /// Joins small components to large ones beside them: a base, the tip of an ear.
 void joinSmall(const Positions& points, const Graph& agreed, UnionFind& components) {
-  // Small is up to this fraction of the other's points, beside is up to this distance [spacing].
+  // Small is up to this fraction of the large one's points, beside is up to this number of spacings
+  // of the coarser one.
   constexpr double max_fraction = 0.05;
   constexpr double max_gap = 4.0;
   const Indexed<Index> component = representatives(components, agreed.size());
   const Indexed<std::size_t> sizes = setSizes(component);
+  Indexed<char> is_surface(agreed.size(), 0);
+  markSheets(agreed, component, sizes, is_surface);
   UnionFind all = components;
   for (const auto& [from, to, length] : shortestBridges(points, all, 1)) {
-    const bool is_from_large = sizes[component[from]] > sizes[component[to]];
-    const auto [large, small] = is_from_large ? std::pair(from, to) : std::pair(to, from);
-    const auto most = max_fraction * static_cast<double>(sizes[component[large]]);
-    if (sizes[component[small]] >= kMinSurface &&
-        static_cast<double>(sizes[component[small]]) <= most &&
-        length < max_gap * nodeSpacing(agreed, large))
+    const auto [less, more] = std::minmax(sizes[component[from]], sizes[component[to]]);
+    if (is_surface[component[from]] != 0 && is_surface[component[to]] != 0 &&
+        static_cast<double>(less) <= max_fraction * static_cast<double>(more) &&
+        length < max_gap * std::max(nodeSpacing(agreed, from), nodeSpacing(agreed, to)))
       components.unite(from, to);
   }
 }
