@@ -36,7 +36,7 @@ bool isOff(const std::vector<Eigen::Vector3d>& neighbors, QuadricFit& quadric) {
   // Outliers are off by more than this number of standard deviations of their neighbours. With 10
   // none of the 56 clouds loses a point, and 108 of 196 stray points near the surface are found;
   // with 6, 14 clouds lose 22 points, and 135 are found.
-  constexpr double min_deviations = 10.0;
+  constexpr double min_deviations = 20.0;
   return distance > std::max(min_distance, min_deviations * deviation);
 }
 
