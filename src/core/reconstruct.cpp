@@ -126,9 +126,8 @@ SurfaceTopology findTopology(const Positions& points, const Graph& graph, int ex
 /// Meshes a graph of points, and judges the mesh.
 ///
 /// \param is_flat all points are in one plane.
-Surface meshGraph(const Positions& points, NeighborGraph graph, int exponent, bool is_flat,
-                  const Options& options, StageClock& clock) {
-  SurfaceTopology topology = findTopology(points, graph.graph, exponent, is_flat, options, clock);
+Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology topology,
+                  bool is_flat, const Options& options, StageClock& clock) {
   const OpenSurface& openings = topology.openings;
   if (is_flat && !openings.isOpen())
     refuseFlat(options);
@@ -143,26 +142,28 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, int exponent, bo
   return internal::judge(points, std::move(mesh), openings, options, clock.execution());
 }
 
-/// Meshes some nodes. \param is_flat all points are in one plane.
-Surface meshNodes(internal::OrderedPoints& nodes, NeighborGraph graph, bool is_flat,
-                  const Options& options, StageClock& clock) {
-  Surface surface =
-      meshGraph(nodes.points, std::move(graph), nodes.exponent, is_flat, options, clock);
-  if (is_flat && surface.isClosed())
-    refuseFlat(options);
-  internal::toInput(nodes, surface);
-  return surface;
-}
-
-/// Meshes the points of a part as they are.
-Surface meshAsIs(Selection& selection, std::size_t part, Neighborhoods& neighborhoods,
-                 const Options& options, StageClock& clock) {
-  const bool is_flat = areCoplanar(selection.pointsOf(part));
-  if (is_flat && !mayBeOpen(options))
-    refuseFlat(options);
-  NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());
-  neighborhoods.release();
-  return meshNodes(neighborhoods.nodes(), std::move(graph), is_flat, options, clock);
+/// Meshes the points of a part as they are, with those that were left out and belong to it.
+Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
+                 StageClock& clock) {
+  for (;;) {
+    Neighborhoods& neighborhoods = selection.neighborhoodsOf(part);
+    const bool is_flat = areCoplanar(selection.pointsOf(part));
+    if (is_flat && !mayBeOpen(options))
+      refuseFlat(options);
+    NeighborGraph graph = takeGraph(neighborhoods, options, clock.execution());
+    neighborhoods.release();
+    internal::OrderedPoints& nodes = neighborhoods.nodes();
+    SurfaceTopology topology =
+        findTopology(nodes.points, graph.graph, nodes.exponent, is_flat, options, clock);
+    if (selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
+      continue;
+    Surface surface =
+        meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat, options, clock);
+    if (is_flat && surface.isClosed())
+      refuseFlat(options);
+    internal::toInput(nodes, surface);
+    return surface;
+  }
 }
 
 /// Moves the points of a part to the surface that they sample, and meshes them.
@@ -175,17 +176,16 @@ Surface meshConsolidated(const Positions& points, const Options& options, StageC
   LeftOut none;
   const NeighborSearchFactory by_tree;
   Selection selection(consolidation.points, as_is, false, by_tree, clock, none);
-  Surface surface = meshAsIs(selection, 0, selection.neighborhoodsOf(0), options, clock);
+  Surface surface = meshAsIs(selection, 0, options, clock);
   internal::toInput(consolidation, surface);
   return surface;
 }
 
-/// \param neighborhoods of the part as it is; null: its points are consolidated.
-Surface meshPart(Selection& selection, std::size_t part, Neighborhoods* neighborhoods,
-                 const Options& options, StageClock& clock) {
-  Surface surface = neighborhoods == nullptr
+Surface meshPart(Selection& selection, std::size_t part, const Options& options,
+                 StageClock& clock) {
+  Surface surface = options.consolidation == ConsolidationMode::Auto
                         ? meshConsolidated(selection.pointsOf(part), options, clock)
-                        : meshAsIs(selection, part, *neighborhoods, options, clock);
+                        : meshAsIs(selection, part, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError(
         "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
@@ -222,10 +222,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
         failed.insert(failed.end(), parts[i].begin(), parts[i].end());
     };
     try {
-      Neighborhoods* const neighborhoods = options.consolidation == ConsolidationMode::Auto
-                                               ? nullptr
-                                               : &selection.neighborhoodsOf(part);
-      result.surfaces.push_back(meshPart(selection, part, neighborhoods, options, clock));
+      result.surfaces.push_back(meshPart(selection, part, options, clock));
     } catch (const InvalidInput& error) {
       leave_out(error, part + 1);
     } catch (const internal::OutOfTime& error) {

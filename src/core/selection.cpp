@@ -1,7 +1,9 @@
 #include "selection.h"
 
 #include "cloud_surfaces.h"
+#include "openings.h"
 #include "outliers.h"
+#include "power_of_two.h"
 
 #include <algorithm>
 #include <iterator>
@@ -85,7 +87,7 @@ Positions Selection::pointsOf(std::size_t part) const {
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
   clock_.begin("neighbors");
   // The caller's search is made once, among all points.
-  if (!cloud_ || parts_[part].size() != inputs_.size())
+  if (!cloud_ || !cloud_->areOf(parts_[part]))
     cloud_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_,
                                              cloud_ ? NeighborSearchFactory() : search_of_,
                                              clock_.execution());
@@ -93,6 +95,28 @@ Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
   if (options_.method == Method::Default)
     cloud_->findStars(clock_.execution());
   return *cloud_;
+}
+
+bool Selection::complete(std::size_t part, const OrderedPoints& nodes,
+                         const std::vector<Opening>& openings) {
+  std::vector<Index> added;
+  const auto take = [&](std::vector<Index>& left_out) {
+    std::vector<Index> taken;
+    for (const Index i : pointsInOpenings(
+             nodes.points, openings,
+             timesPowerOfTwo(Positions(points_(Eigen::all, left_out)), -nodes.exponent)))
+      taken.push_back(left_out[static_cast<std::size_t>(i)]);
+    left_out = without(left_out, taken);
+    added.insert(added.end(), taken.begin(), taken.end());
+  };
+  if (options_.outliers == OutlierMode::Auto)
+    take(left_out_.outliers);
+  if (options_.parts == PartsMode::Each)
+    take(left_out_.other_parts);
+  std::vector<Index>& inputs = parts_[part];
+  inputs.insert(inputs.end(), added.begin(), added.end());
+  std::sort(inputs.begin(), inputs.end());
+  return !added.empty();
 }
 
 }  // namespace spherical_param::internal

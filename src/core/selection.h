@@ -28,6 +28,12 @@ public:
   Positions pointsOf(std::size_t part) const;
   /// The neighbours of the points of a part, valid until the next call.
   Neighborhoods& neighborhoodsOf(std::size_t part);
+  /// Adds points that were left out, and are in openings of a part, to this part: the surface there
+  /// is sampled by a few.
+  ///
+  /// \param nodes of the part, with the openings that were found among them.
+  /// \return whether there are such points.
+  bool complete(std::size_t part, const OrderedPoints& nodes, const std::vector<Opening>& openings);
 
 private:
   void leaveOutOutliers();

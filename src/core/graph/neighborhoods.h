@@ -32,6 +32,8 @@ public:
   /// Frees neighbours and stars, which are not needed once there is a graph.
   void release();
 
+  /// Whether they are those of the given points.
+  bool areOf(const std::vector<Index>& inputs) const { return inputs_ == inputs; }
   const Positions& points() const { return nodes_.points; }  ///< 3 x v, of the nodes
   /// The nodes; their input points are positions in the inputs.
   OrderedPoints& nodes() { return nodes_; }

@@ -102,18 +102,37 @@ std::optional<Opening> outsideOf(const Positions& points, const Indexed<double>&
   return outside;
 }
 
+/// The disc over the loop of an opening.
+class LoopDisc {
+public:
+  LoopDisc(const Positions& points, const Opening& opening) : center_(opening.center) {
+    const Eigen::Matrix3Xd loop = points(Eigen::all, opening.loop).colwise() - center_;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(loop * loop.transpose());
+    normal_ = axes.eigenvectors().col(0);
+    radius_ = loop.colwise().norm().maxCoeff();
+  }
+
+  bool isNear(const Eigen::Vector3d& point) const {
+    return (point - center_).norm() <= 1.01 * radius_;
+  }
+  double heightOf(const Eigen::Vector3d& point) const {
+    return std::abs(normal_.dot(point - center_));
+  }
+
+private:
+  Eigen::Vector3d center_;
+  Eigen::Vector3d normal_;
+  double radius_ = 0.0;
+};
+
 /// Whether an opening is certainly the rim of a sheet: the surface is within its loop, and low over
 /// the plane of the loop.
 bool isRimOfSheet(const Positions& points, const Opening& opening) {
   // A hemisphere has 0.5 times the width.
   constexpr double max_height = 0.25;
-  const Eigen::Matrix3Xd loop = points(Eigen::all, opening.loop).colwise() - opening.center;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(loop * loop.transpose());
-  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
-  const double radius = 1.01 * loop.colwise().norm().maxCoeff();
+  const LoopDisc disc(points, opening);
   return std::all_of(points.colwise().begin(), points.colwise().end(), [&](const auto& point) {
-    const Eigen::Vector3d offset = point - opening.center;
-    return offset.norm() <= radius && std::abs(normal.dot(offset)) <= max_height * opening.width;
+    return disc.isNear(point) && disc.heightOf(point) <= max_height * opening.width;
   });
 }
 
@@ -170,6 +189,24 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Indexed
     return found;
   rotation.separateOpposite();
   return openingsOf(points, graph, spacing, rotation);
+}
+
+std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<Opening>& openings,
+                                    const Positions& others) {
+  std::vector<Index> found;
+  for (const Opening& opening : openings) {
+    const LoopDisc disc(points, opening);
+    std::vector<Index> near;
+    for (Eigen::Index i = 0; i < others.cols(); ++i)
+      if (disc.isNear(others.col(i)))
+        near.push_back(static_cast<Index>(i));
+    if (std::all_of(near.begin(), near.end(),
+                    [&](Index i) { return disc.heightOf(others.col(i)) <= opening.spacing; }))
+      found.insert(found.end(), near.begin(), near.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
 }
 
 }  // namespace internal

@@ -55,6 +55,15 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
 Openings findOpenings(const Positions& points, const Graph& graph, const Indexed<double>& spacing,
                       RotationSystem& rotation);
 
+/// Which points are in openings, as if what is open were sampled by a few: those within a loop and
+/// near its plane, if no other point of these is within the same distance.
+///
+/// \param points 3 x n, of the openings.
+/// \param others 3 x m.
+/// \return columns of `others`, ascending.
+std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<Opening>& openings,
+                                    const Positions& others);
+
 }  // namespace internal
 
 }  // namespace spherical_param
