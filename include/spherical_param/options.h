@@ -24,7 +24,7 @@ enum class TopologyMode {
 /// Which points are left out first because they belong to no surface.
 enum class OutlierMode {
   AsTopology,  ///< Auto for TopologyMode::Scan, else None
-  None,  ///< no points; a finding reports likely outliers
+  None,        ///< no points; a finding reports likely outliers
   Auto,  ///< stray points: isolated points, small clusters, nets, isolated points near a surface
   /// points too far from the average of their neighbours (Zwicker and Gotsman 2004, section 4.2).
   Deviation,
@@ -32,10 +32,10 @@ enum class OutlierMode {
 
 /// Which parts of a cloud are meshed. A part is a set of points that neighbours connect.
 enum class PartsMode {
-  AsTopology,  ///< Each for TopologyMode::Scan (all points, if each part is too small), else All
-  All,      ///< all together, as one surface
-  Largest,  ///< the part with the most points
-  Each,     ///< each part as a mesh of its own
+  AsTopology,  ///< Each for TopologyMode::Scan, else All
+  All,         ///< all together, as one surface
+  Largest,     ///< the part with the most points
+  Each,        ///< each part as a mesh of its own
 };
 
 /// Whether points are consolidated before meshing.
@@ -92,23 +92,23 @@ struct EmbeddingOptions {
 /// Whether openings of the sampled surface are filled.
 enum class SurfaceMode {
   AsTopology,  ///< Auto for TopologyMode::Scan, else Closed
-  Closed,  ///< all are filled: the mesh is always closed
-  Open,    ///< all stay open
-  Auto,    ///< certain openings stay open, others are filled
+  Closed,      ///< all are filled: the mesh is always closed
+  Open,        ///< all stay open
+  Auto,        ///< certain openings stay open, others are filled
 };
 
 /// Whether the mesh has the handles of the sampled surface.
 enum class HandleMode {
   AsTopology,  ///< Auto for TopologyMode::Scan, else None
-  None,  ///< no handles: the mesh is one sphere, or one with openings
+  None,        ///< no handles: the mesh is one sphere, or one with openings
   Auto,  ///< those that are certain; long tubes are cut into several spheres while they are meshed
 };
 
 /// Parameters of reconstruct(). The defaults need no tuning. optionTable() lists the options of
 /// tools, Python and ROS with their ranges.
 struct Options : Execution {
-  Method method = Method::Default;           ///< how the cloud is meshed
-  PaperOptions paper;                        ///< of Method::Paper
+  Method method = Method::Default;  ///< how the cloud is meshed
+  PaperOptions paper;               ///< of Method::Paper
   /// The topology of the mesh, of which `outliers`, `parts`, `surface` and `handles` override a
   /// part each.
   TopologyMode topology = TopologyMode::Scan;

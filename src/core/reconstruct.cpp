@@ -277,7 +277,7 @@ Result reconstruct(const Positions& points, const Options& given,
   StageClock clock(options);
   Result result;
   const std::size_t parts = explained(result.left_out, [&] {
-    Selection selection(points, options, given.parts == PartsMode::AsTopology, search_of, clock,
+    Selection selection(points, options, given.parts != PartsMode::Each, search_of, clock,
                         result.left_out);
     meshParts(selection, options, clock, result);
     return selection.parts().size();

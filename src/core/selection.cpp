@@ -4,6 +4,7 @@
 #include "openings.h"
 #include "outliers.h"
 #include "power_of_two.h"
+#include "progress.h"
 
 #include <algorithm>
 #include <iterator>
@@ -61,8 +62,11 @@ void Selection::leaveOutOutliers() {
 
 void Selection::takeApart(bool is_never_empty) {
   clock_.begin("parts");
-  parts_ = cloud_->groupInputs(partsOf(cloud_->points(), cloud_->agreed(), cloud_->stars(),
-                                       static_cast<std::size_t>(options_.min_points)));
+  const FractionReport report = reportOf(clock_.execution(), "parts");
+  const Indexed<Index> part_of = partsOf(cloud_->points(), cloud_->agreed(), cloud_->stars(),
+                                         static_cast<std::size_t>(options_.min_points));
+  reportFraction(report, 0.5);
+  parts_ = cloud_->groupInputs(part_of);
   if (parts_.empty()) {
     if (is_never_empty)
       parts_.push_back(inputs_);
@@ -85,12 +89,13 @@ Positions Selection::pointsOf(std::size_t part) const {
 }
 
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
-  clock_.begin("neighbors");
-  // The caller's search is made once, among all points.
-  if (!cloud_ || !cloud_->areOf(parts_[part]))
+  if (!cloud_ || !cloud_->areOf(parts_[part])) {
+    clock_.begin("neighbors");
+    // The caller's search is made once, among all points.
     cloud_ = std::make_unique<Neighborhoods>(points_, parts_[part], options_,
                                              cloud_ ? NeighborSearchFactory() : search_of_,
                                              clock_.execution());
+  }
   clock_.begin("graph");
   if (options_.method == Method::Default)
     cloud_->findStars(clock_.execution());

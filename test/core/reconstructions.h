@@ -33,6 +33,12 @@ inline Positions twoSpheres(Index n, Index m, double distance) {
   return horizontally(spiralSphere(n), second);
 }
 
+/// One sphere through every point.
+inline Options sphere(Options options = {}) {
+  options.topology = TopologyMode::Sphere;
+  return options;
+}
+
 /// The method as it was published.
 inline Options paper() {
   Options options;
@@ -40,9 +46,9 @@ inline Options paper() {
   return options;
 }
 
-/// Both methods.
+/// Both methods, for one sphere.
 inline std::vector<Options> bothMethods() {
-  return {Options(), paper()};
+  return {sphere(), paper()};
 }
 
 /// For clouds that cannot be meshed well: without the search for a better mesh.

@@ -155,7 +155,7 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
     texts.push_back(finding.text);
   EXPECT_EQ(result.failures[0], "part 4 of 4 (1,200 points) cannot be meshed: it is flat");
   EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
-  EXPECT_EQ(result.verdict, "3 meshes, 1 of them with faults. 1 part cannot be meshed.");
+  EXPECT_EQ(result.verdict, "3 surfaces, 1 of them with faults. 1 part cannot be meshed.");
   result = {};
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
@@ -168,11 +168,11 @@ TEST(LeftOut, SaysWhatAndHowMany) {
   LeftOut left_out;
   EXPECT_EQ(left_out.text(), "");
   left_out.outliers = {3};
-  EXPECT_EQ(left_out.text(), "1 outlier");
+  EXPECT_EQ(left_out.text(), "1 stray point");
   left_out.not_finite = {1, 2};
   left_out.other_parts.resize(1000);
   EXPECT_EQ(left_out.text(),
-            "2 points that are not finite, 1 outlier, 1,000 points in other parts");
+            "2 points that are not finite, 1 stray point, 1,000 points in other parts");
 }
 
 TEST(Findings, OpeningsThatWereToBeFilledAreNoFault) {

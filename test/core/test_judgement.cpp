@@ -143,7 +143,7 @@ TEST(Judgement, MarksAreThoseOfTheFindings) {
     EXPECT_NE(tangled.diagnosis.triangle_marks[static_cast<std::size_t>(t)] &
                   triangle_mark::self_intersection,
               0);
-  const Surface parts = mesh(test::twoSpheres(200, 160, 5.0), watched());
+  const Surface parts = mesh(test::twoSpheres(200, 160, 5.0), watched(test::sphere()));
   EXPECT_GT(count(parts, triangle_mark::part_bridge), 0U);
   EXPECT_EQ(count(parts, triangle_mark::handle), 0U);
   EXPECT_EQ(count(mesh(test::ellipsoid(300), watched()), 0xff), 0U);

@@ -15,7 +15,7 @@ namespace {
 using test::canonical;
 
 /// The topology must be sound.
-Surface meshOf(const Positions& points, const Options& options = {}) {
+Surface meshOf(const Positions& points, const Options& options = test::sphere()) {
   const Surface result = test::mesh(points, options);
   EXPECT_TRUE(test::isSphereOverAll(result.triangles, static_cast<Index>(result.vertexCount())));
   return result;
@@ -77,7 +77,7 @@ TEST(Numbers, AClusterAsLargeAsTheGapAroundItIsAPartOfTheSurface) {
 
 TEST(Numbers, OfAClusterThatIsFarSmallerTheTopologyIsSoundAndTheRestIsSaid) {
   for (const double radius : {1e-5, 1e-20}) {
-    const Surface result = meshOf(sphereWithDisc(radius, 100), test::quick());
+    const Surface result = meshOf(sphereWithDisc(radius, 100), test::quick(test::sphere()));
     EXPECT_EQ(result.duplicates(), 0U) << radius;
     EXPECT_FALSE(result.self_intersections.empty()) << radius;
     EXPECT_FALSE(result.findings.empty()) << radius;
@@ -103,9 +103,7 @@ TEST(Numbers, TheMeshIsThatOfAnyExtentDownToDenormalNumbers) {
 
 TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
   const test::Mesh tube = test::bentTube(90.0, 0.0, 8);
-  Options options;
-  options.handles = HandleMode::None;  // one sphere
-  const Surface result = meshOf(tube.points, options);
+  const Surface result = meshOf(tube.points);
   EXPECT_EQ(canonical(result.triangles), canonical(tube.triangles));
   // Its ends are some units in the last place of 1 wide, as exp(-45 / sqrt(2)) = 1.5e-14 has it.
   double shortest = 1.0;
@@ -118,11 +116,11 @@ TEST(Numbers, ATubeIsMeshedTrulyTo45RadiiFromItsMiddle) {
 
 TEST(Numbers, WhereATubeIsTooLongForTheSphereThatIsSaid) {
   const test::Mesh tube = test::bentTube(130.0, 0.0, 8);
-  Options options = test::quick();
-  options.handles = HandleMode::None;
-  EXPECT_FALSE(meshOf(tube.points, options).findings.empty());
+  Options options = test::sphere();
+  EXPECT_FALSE(meshOf(tube.points, test::quick(options)).findings.empty());
   // Cut into several spheres it is not.
-  EXPECT_EQ(canonical(meshOf(tube.points).triangles), canonical(tube.triangles));
+  options.handles = HandleMode::Auto;
+  EXPECT_EQ(canonical(meshOf(tube.points, options).triangles), canonical(tube.triangles));
 }
 
 }  // namespace

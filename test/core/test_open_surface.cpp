@@ -103,7 +103,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
   const Positions patch = test::pointsWhere(test::flatPatch(40), [](const Eigen::Vector3d& p) {
     return (p - Eigen::Vector3d(20.0, 20.0, 0.0)).norm() > 6.0;
   });
-  EXPECT_THROW(reconstruct(patch), InvalidInput);
+  EXPECT_THROW(reconstruct(patch, test::sphere()), InvalidInput);
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto}) {
     const Surface result = test::surfaceOf(patch, leftOpen(mode));
     expectSound(result, 2);
@@ -132,7 +132,7 @@ TEST(OpenSurface, OfAFlatPatchIsThePatch) {
 
 TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
   const Positions points = test::randomSphere(1500, 3);
-  const Surface closed = test::surfaceOf(points);
+  const Surface closed = test::surfaceOf(points, test::sphere());
   EXPECT_TRUE(closed.openings.empty());
   for (const SurfaceMode mode : {SurfaceMode::Open, SurfaceMode::Auto})
     EXPECT_EQ(test::surfaceOf(points, leftOpen(mode)).triangles, closed.triangles);
@@ -140,7 +140,7 @@ TEST(OpenSurface, IsTheClosedOneWithoutOpenings) {
 
 TEST(OpenSurface, AClosedMeshHasRoomForTheOpeningsAndTrianglesOverThem) {
   const Positions points = sphereWithHoles(3000, 2, 0.4);
-  Options options;
+  Options options = test::sphere();
   options.details = true;
   const Surface closed = test::surfaceOf(points, options);
   const Surface open = test::surfaceOf(points, leftOpen());

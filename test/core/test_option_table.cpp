@@ -136,7 +136,7 @@ TEST_P(EveryOption, OutOfRangeOrOfAnotherKindIsRefusedByName) {
 }
 
 TEST(OptionTable, OutliersAreNamesOrTheNumberOfDeviations) {
-  EXPECT_EQ(rangeOf(findOption("outliers")), "none, auto or a number from 0 to 1000");
+  EXPECT_EQ(rangeOf(findOption("outliers")), "topology, none, auto or a number from 0 to 1000");
   Options options;
   setOption(options, "outliers", std::int64_t{3});
   EXPECT_EQ(options.outliers, OutlierMode::Deviation);
@@ -151,7 +151,7 @@ TEST(OptionTable, EnumerationsAndCombinationsAreChecked) {
     change(options);
     expectRefusal(options, name);
   };
-  for (const int past : {-1, 3}) {
+  for (const int past : {-1, 4}) {
     refuses("outliers", [=](Options& o) { o.outliers = static_cast<OutlierMode>(past); });
     refuses("parts", [=](Options& o) { o.parts = static_cast<PartsMode>(past); });
     refuses("method", [=](Options& o) { o.method = static_cast<Method>(past); });

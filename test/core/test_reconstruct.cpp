@@ -305,7 +305,7 @@ TEST(Reconstruct, ATimeLimitIsSaidAndTheMeshIsAsPromised) {
 TEST(Reconstruct, BadInputIsInvalidInputWithItsReason) {
   const auto expect_reason = [](const Positions& points, const std::string& reason) {
     try {
-      reconstruct(points);
+      reconstruct(points, test::sphere());
       ADD_FAILURE() << "no exception for: " << reason;
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();

@@ -126,7 +126,7 @@ TEST(StageClock, EveryStageOfALargeCloudReportsWhileItWorks) {
     return true;
   };
   test::surfaceOf(test::spiralSphere(40000), options);
-  ASSERT_EQ(fractions.size(), 7U);
+  ASSERT_EQ(fractions.size(), 9U);
   for (const auto& [stage, of_stage] : fractions) {
     EXPECT_TRUE(test::areFractions(of_stage)) << stage;
     EXPECT_EQ(of_stage.front(), 0.0) << stage;

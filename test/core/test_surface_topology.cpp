@@ -158,7 +158,9 @@ TEST(SurfaceTopology, ToriThatTouchAndOneSidedSurfacesAreSaidToBeUnsound) {
   Positions tori = test::horizontally(test::torusCloud(60, 24), test::torusCloud(60, 24));
   tori.row(0).tail(60 * 24).array() += 2.82;
   for (const Positions& points : {tori, test::kleinBottle(60, 30), test::moebiusBand(160, 12)}) {
-    const Surface result = test::surfaceOf(points, test::quick());
+    Options options = test::quick(test::sphere());
+    options.handles = HandleMode::Auto;
+    const Surface result = test::surfaceOf(points, options);
     EXPECT_TRUE(test::isSurfaceOverAll(result.triangles, static_cast<Index>(points.cols()),
                                        static_cast<Index>(result.genus())));
     EXPECT_FALSE(result.findings.empty());

@@ -85,7 +85,7 @@ TEST(PartsOfCloud, ThatAreFlatAreLeftOutWithAWarning) {
                               0.2F * static_cast<float>(i / 10), 0.0F));
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
-  reconstruction.setParts(PartsMode::Each);
+  reconstruction.setSurface(spherical_param::SurfaceMode::Closed);
   testing::internal::CaptureStderr();
   EXPECT_EQ(meshed(reconstruction).size(), 596U);
   const std::string warning = testing::internal::GetCapturedStderr();
@@ -121,6 +121,7 @@ TEST(OutliersOfCloud, AreLeftOutAndListed) {
     cloud->push_back(PointXYZ(x, 0.0F, 0.0F));
   Reconstruction reconstruction;
   reconstruction.setInputCloud(cloud);
+  reconstruction.setTopology(spherical_param::TopologyMode::Sphere);
   for (const double sigma : {6.0, 1000.0}) {
     reconstruction.setOutliers(spherical_param::OutlierMode::Deviation);
     reconstruction.setOutlierSigma(sigma);

@@ -131,7 +131,10 @@ TEST_F(SphericalParamReconstruction, EachMistakeIsNamed) {
   const Cloud::Ptr flat = makeEllipsoid(100);
   for (PointXYZ& point : *flat)
     point.z = 0.25F;
-  expect_failure_of(flat, "plane");
+  expect_failure("plane", [&](Reconstruction& r) {
+    r.setTopology(spherical_param::TopologyMode::Sphere);
+    r.setInputCloud(flat);
+  });
   const Cloud::Ptr wrong_width = makeEllipsoid(100);
   wrong_width->width = 7;
   expect_failure_of(wrong_width, "width");

@@ -117,14 +117,14 @@ class Mesh(unittest.TestCase):
     def test_surfaces_that_are_no_spheres_are_diagnosed(self):
         points = shapes.directions(1000)
         points = points[points[:, 2] < 0.3]
-        mesh = sp.reconstruct(points, surface="open")
+        mesh = sp.reconstruct(points)
         self.assertEqual((mesh.topology.closed, mesh.topology.manifold), (False, True))
         sides = {(t[i], t[(i + 1) % 3]) for t in mesh.triangles.tolist() for i in range(3)}
         (loop,) = mesh.boundary
         rim = {(a, b) for a, b in sides if (b, a) not in sides}
         self.assertEqual(set(zip(loop, np.roll(loop, -1))), rim)
         self.assertFalse(mesh.openings[0].is_filled)
-        mesh = sp.reconstruct(points, details=True)
+        mesh = sp.reconstruct(points, topology="sphere", details=True)
         self.assertEqual((mesh.diagnosis.kind, mesh.boundary), ("open", ()))
         (opening,) = mesh.openings
         self.assertTrue(opening.is_filled and opening.is_certain)
@@ -134,7 +134,7 @@ class Mesh(unittest.TestCase):
         self.assertEqual((marks.shape, marks.dtype), ((len(mesh.triangles),), np.dtype(np.uint8)))
         np.testing.assert_array_equal(np.flatnonzero(marks & 2), np.sort(opening.triangles))
         parts = np.concatenate([points, shapes.ellipsoid(300) + [5, 0, 0]])
-        mesh = sp.reconstruct(parts)
+        mesh = sp.reconstruct(parts, topology="sphere")
         self.assertEqual(mesh.diagnosis.kind, "several_parts")
         (part,) = mesh.diagnosis.bridges
         self.assertEqual((part.points, part.other_points), (300, len(points)))
@@ -240,7 +240,7 @@ class Options(unittest.TestCase):
         self.check_refused(OTHERS)
         with self.assertRaisesRegex(sp.InvalidInput, "do not fit into memory; use a smaller k"):
             sp.reconstruct(shapes.directions(60000), method="paper", k=2**31 - 1)
-        with self.assertRaisesRegex(TypeError, "no option 'radius'; use one of outliers, parts, min_points, "):
+        with self.assertRaisesRegex(TypeError, "no option 'radius'; use one of topology, outliers, parts, min_points, "):
             sp.reconstruct(self.points, radius=1)
 
     def check_refused(self, options):
@@ -291,7 +291,7 @@ class Outliers(unittest.TestCase):
         self.assertEqual(len(sp.find_outliers(cloud, sigma=1000).indices), 0)
         stray = sp.find_outliers(cloud, sigma="auto")
         np.testing.assert_array_equal(stray.indices, outliers.indices)
-        np.testing.assert_array_equal(sp.reconstruct(cloud).outliers, [2001, 2002, 2003])
+        np.testing.assert_array_equal(sp.reconstruct(cloud, topology="sphere").outliers, [2001, 2002, 2003])
         self.assertEqual(len(sp.reconstruct(cloud[stray.inliers]).outliers), 0)
         for wrong in ({"sigma": -1}, {"sigma": "4"}, {"threads": -1}):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
@@ -320,10 +320,19 @@ class Parts(unittest.TestCase):
         self.assertIn("part 7, part 8: the time limit", str(hurried.findings[0]))
 
     def test_parts_are_meshed_each_or_the_largest_and_refer_to_the_whole_input(self):
-        both = sp.reconstruct(self.cloud, parts="each")
+        both = sp.reconstruct(self.cloud)
         self.assertIsInstance(both, tuple)
-        self.assertEqual((both.verdict, both.findings), ("2 meshes, all sound.", ()))
-        np.testing.assert_array_equal(both.left_out.other_parts, [601])
+        verdict = "2 surfaces, all sound; 1 stray point left out."
+        self.assertEqual((both.verdict, both.findings), (verdict, ()))
+        np.testing.assert_array_equal(both.left_out.outliers, [601])
+        np.testing.assert_array_equal(self.cloud[both.input_of_vertex], both.vertices)
+        joined = np.concatenate([both[0].triangles, both[1].triangles + 400])
+        np.testing.assert_array_equal(both.triangles, joined)
+        self.assertEqual((both.normals.shape, both.colors), ((600, 3), None))
+        with tempfile.TemporaryDirectory() as folder:
+            both.write(f"{folder}/both.obj")
+            with open(f"{folder}/both.obj", encoding="ascii") as file:
+                self.assertEqual(sum(line.startswith("f ") for line in file), len(joined))
         self.check(both[0], 201, self.large)
         self.check(both[1], 1, self.small)
         self.check(sp.reconstruct(self.cloud, parts="largest"), 201, self.large)
@@ -335,11 +344,11 @@ class Parts(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, f"{[*wrong][0]} = .*; "):
                 sp.find_parts(self.cloud, **wrong)
         with self.assertRaisesRegex(sp.InvalidInput, "no part has min_points = 500 points.*; give a lower"):
-            sp.reconstruct(self.cloud, parts="largest", min_points=500)
+            sp.reconstruct(self.cloud, parts="each", min_points=500)
 
     def test_outliers_are_left_out(self):
         cloud = np.delete(self.cloud, np.s_[1:201], axis=0)
-        self.assertEqual(len(sp.reconstruct(cloud).outliers), 1)
+        self.assertEqual(len(sp.reconstruct(cloud, topology="sphere").outliers), 1)
         for choice in ("auto", 8):
             mesh = sp.reconstruct(cloud, outliers=choice)
             self.assertEqual(mesh.triangles.tobytes(), sp.reconstruct(self.large).triangles.tobytes())
@@ -350,11 +359,11 @@ class Parts(unittest.TestCase):
         flat = np.stack(np.meshgrid(side, side, [50.0]), axis=-1).reshape(-1, 3) / 10
         cloud = np.concatenate([self.large, flat])
         with self.assertWarnsRegex(UserWarning, r"part 2 of 2 \(100 points\) cannot be meshed"):
-            (mesh,) = sp.reconstruct(cloud, parts="each")
+            mesh = sp.reconstruct(cloud, surface="closed")
         self.assertEqual(len(mesh.vertices), 400)
 
     def test_findings_can_be_pasted(self):
-        mesh = sp.reconstruct(np.concatenate([self.small[:100], self.large]))
+        mesh = sp.reconstruct(np.concatenate([self.small[:100], self.large]), topology="sphere")
         finding = next(finding for finding in mesh.findings if finding.option == "parts")
         self.assertEqual(
             str(finding), '2 separate parts (100 and 400 points): try parts="each"'

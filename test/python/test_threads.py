@@ -19,7 +19,8 @@ import numpy as np
 import shapes
 import spherical_param as sp
 
-STAGES = ["neighbors", "graph", "openings", "embedding", "triangulation", "optimization", "quality"]
+STAGES = ["neighbors", "graph", "outliers", "parts"]
+STAGES += ["openings", "embedding", "triangulation", "optimization", "quality"]
 MAP_STAGES = ["map", "surface", "resample", "untangle", "intersections"]
 
 INTERRUPTED = """
@@ -133,12 +134,12 @@ class Progress(unittest.TestCase):
                 sp.reconstruct(shapes.bumpy(300), progress=True)
             if tqdm is None:
                 lines = [line.split("\r")[-1] for line in error.getvalue().split("\n")[:-1]]
-                self.assertEqual([line.split()[0] for line in lines], STAGES)
+                self.assertEqual([*dict.fromkeys(line.split()[0] for line in lines)], STAGES)
                 self.assertTrue(all("100 %" in line and "#" * 25 in line for line in lines))
             else:
                 stages = [call.kwargs["desc"] for call in tqdm.tqdm.call_args_list]
-                self.assertEqual(stages, STAGES)
-                self.assertEqual(tqdm.tqdm().close.call_count, len(STAGES))
+                self.assertEqual([*dict.fromkeys(stages)], STAGES)
+                self.assertEqual(tqdm.tqdm().close.call_count, len(stages))
         sp.reconstruct(shapes.bumpy(50), progress=False)
 
     def test_exceptions_of_the_function_come_out_as_they_are(self):

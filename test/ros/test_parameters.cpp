@@ -34,7 +34,7 @@ TEST(RosParameters, AreTheRowsOfTheTableAndThoseOfTheSettings) {
 }
 
 TEST(RosParameters, DefaultsAreThoseOfTheLibrary) {
-  const Values own = {{"outliers", std::string("none")},
+  const Values own = {{"outliers", std::string("topology")},
                       {"max_points", std::int64_t{5000000}},
                       {"queue_depth", std::int64_t{1}},
                       {"cancel_running", true},

@@ -76,7 +76,7 @@ TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
        {mesh_tool, {"in.xyz", "./a.obj", "-sphere", "a.obj"}, "would overwrite"},
        {mesh_tool, {"in.xyz", "out.ply", "-json", "in.xyz"}, "would overwrite"},
        {mesh_tool, {"in.ply", "link.ply"}, "would overwrite"},
-       {mesh_tool, {"in.xyz", "out_%03d.ply"}, "is a pattern for several parts"},
+       {mesh_tool, {"in.xyz", "out_%03d.ply", "-parts", "all"}, "is a pattern for several parts"},
        {scan_tool, {}, "the shape is missing"},
        {scan_tool, {"sphere"}, "the output file"},
        {scan_tool, {"cube", "out.pcd"}, "unknown shape 'cube'"},
@@ -137,8 +137,8 @@ TEST_F(BadInput, OptionsThatMakeNoSenseAreRefused) {
                         {{"-history_frames", "5"}, "'-history_frames'"},
                         {{"-parts", "some"}, "'some' is not allowed"},
                         {{"-parts", "each", "-min-points", "3"}, "-min-points"},
-                        {{"-parts", "each", "-sphere", "s.ply"}, "can hold only one part"},
-                        {{"-parts", "each", "-sphere", "s%03d.ply"}, "can hold only one part"}});
+                        {{"-topology", "torus"}, "'torus' is not allowed"},
+                        {{"-sphere", "s%03d.ply"}, "is a pattern, but the output is one file"}});
   expectOptionsRefused(scan_tool, {"sphere", "out.pcd"},
                        {{{"more"}, "one word too many: 'more'"},
                         {{"-points", "3"}, "option -points: '3'"},
@@ -169,7 +169,7 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   expectOptionsRefused(
       mesh_tool, {"in.xyz", "out.ply"},
       {{{"-max-iterations", "5"}, "-max-iterations" + nothing + "-method default"},
-       {{"-min-points", "60"}, "-min-points" + nothing + "-parts all"},
+       {{"-min-points", "60", "-topology", "sphere"}, "-min-points" + nothing + "-parts all"},
        {{"-time-limit", "1", "-method", "paper"}, "-time-limit" + nothing + "-method paper"}});
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.ply"},
                        {{{"-side", "9"}, "-side" + nothing},
@@ -198,8 +198,8 @@ TEST_F(BadInput, MeshesWithHandlesHaveNoMapToOneSphere) {
                     {mesh_tool,
                      {"both.xyz", "out%03d.ply", "-parts", "each", "-sphere", "s%03d.ply"},
                      "part 2 of 'both.xyz' has no map to one sphere"},
-                    {remesh_tool, {"torus.xyz", "out.ply"}, cause},
-                    {morph_tool, {"in.xyz", "torus.xyz", "out.ply"}, cause}},
+                    {remesh_tool, {"torus.xyz", "out.ply", "-handles", "auto"}, cause},
+                    {morph_tool, {"in.xyz", "torus.xyz", "out.ply", "-handles", "auto"}, cause}},
                    failed);
   run(mesh_tool,
       {"torus.xyz", "out.ply", "-sphere", "s.ply", "-handles", "none", "-time-limit", "0"});
@@ -222,12 +222,14 @@ TEST_F(BadInput, FilesThatCannotBeReadAreAFailure) {
        {mesh_tool, {"empty.ply", "out.ply"}, "is empty"},
        {mesh_tool, {"three.xyz", "out.ply"}, "at least 4"},
        {mesh_tool,
-        {"in.xyz", "out.ply", "-parts", "largest", "-min-points", "501"},
+        {"in.xyz", "out.ply", "-parts", "each", "-min-points", "501"},
         "no part has min_points = 501"},
-       {mesh_tool, {"flat.xyz", "out.ply"}, "cannot mesh 'flat.xyz': all points lie in one plane"},
        {mesh_tool,
-        {"outliers.xyz", "out.ply", "-outliers", "0"},
-        "all points lie in one plane (left out: 1 outlier)"},
+        {"flat.xyz", "out.ply", "-topology", "sphere"},
+        "cannot mesh 'flat.xyz': all points lie in one plane"},
+       {mesh_tool,
+        {"outliers.xyz", "out.ply", "-topology", "sphere", "-outliers", "0"},
+        "all points lie in one plane (left out: 1 stray point)"},
        {remesh_tool, {"no.xyz", "out.ply"}, "no.xyz"},
        {remesh_tool, {"no.tif", "out.ply"}, "no.tif"},
        {remesh_tool, {"in.tif", "out.ply"}, "in.tif"},

@@ -149,10 +149,13 @@ TEST_F(EveryTool, StrictMakesFaultsAFailureAndWritesTheFiles) {
   expectSuccess(SCAN_TOOL, {"bowl", "in.ply", "-points", "500"});
   for (const Tool& tool : meshingTools()) {
     SCOPED_TRACE(tool.name);
-    EXPECT_EQ(expectSuccess(tool.program, with(tool.arguments, {"-quiet"})).errors, "");
+    EXPECT_EQ(
+        expectSuccess(tool.program, with(tool.arguments, {"-topology", "sphere", "-quiet"})).errors,
+        "");
     const auto files = directory.listing();
     const RunResult strict =
-        run(tool.program, with(tool.arguments, {"-strict", "-quiet", "-json", "-"}));
+        run(tool.program,
+            with(tool.arguments, {"-topology", "sphere", "-strict", "-quiet", "-json", "-"}));
     EXPECT_EQ(strict.exit_code, 1);
     const std::vector<std::string> lines = strict.errorLines();
     ASSERT_EQ(lines.size(), 2U) << strict.errors;

@@ -59,7 +59,8 @@ TEST_F(PartsOption, EachMeshesEachPartToAFileOfItsOwnAsIfItWereAlone) {
 }
 
 TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
-  const RunResult result = tool({"three.xyz", "out.ply", "-parts", "each", "-json", "report.json"});
+  const RunResult result =
+      tool({"three.xyz", "out.ply", "-surface", "closed", "-json", "report.json"});
   const tool_test::MeshFile out = mesh("out.ply");
   EXPECT_EQ(out.triangles.cols(), 596 + 396);
   EXPECT_EQ(out.points().leftCols(300), large);
@@ -72,8 +73,9 @@ TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
   EXPECT_NE(report["failures"].dump().find(failure), std::string::npos);
   EXPECT_NE(result.errors.find("warning: " + failure), std::string::npos);
   EXPECT_EQ(
-      run(RECONSTRUCTION_TOOL, {"three.xyz", "out.ply", "-parts", "each", "-strict"}).exit_code, 1);
-  tool({"three.xyz", "open.ply", "-parts", "each", "-surface", "open"});
+      run(RECONSTRUCTION_TOOL, {"three.xyz", "out.ply", "-surface", "closed", "-strict"}).exit_code,
+      1);
+  tool({"three.xyz", "open.ply"});
   EXPECT_EQ(mesh("open.ply").points().cols(), 560);
 }
 

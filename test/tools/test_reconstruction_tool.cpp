@@ -147,18 +147,18 @@ TEST_F(ReconstructionTool, ReportHasAllKeysWithTheirTypes) {
 TEST_F(ReconstructionTool, OpenSurfacesAreLeftOpenIfAsked) {
   constexpr int count = 1500;  // the spiral goes from one end to the other
   write("open.ply", plyOf(ellipsoid(2000).leftCols(count)));
-  const json open = reportOf({"open.ply", "out.ply", "-surface", "open"});
+  const json open = reportOf({"open.ply", "out.ply"});
   expectEntries(open, {{"closed", false}, {"diagnosis", {{"kind", "open"}}}});
   EXPECT_EQ(open["openings"][0]["is_filled"], false);
   ASSERT_EQ(open["boundary"].size(), 1U);
   // V - E + F = 1.
   const auto edges = static_cast<Eigen::Index>(open["boundary"][0].size());
   EXPECT_EQ(mesh("out.ply").triangles.cols(), 2 * count - 2 - edges);
-  const RunResult text = tool({"open.ply", "out.ply", "-surface", "open"});
+  const RunResult text = tool({"open.ply", "out.ply"});
   EXPECT_NE(text.output.find("\nverdict   A sound mesh with 1 opening.\n"), std::string::npos);
   EXPECT_EQ(text.errors, "");
-  for (const Words& words : {Words{"open.ply", "out.ply"}, Words{"open.ply", "out.ply", "-surface",
-                                                                 "open", "-fill-holes", "1000"}}) {
+  for (const Words& words : {Words{"open.ply", "out.ply", "-topology", "sphere"},
+                             Words{"open.ply", "out.ply", "-fill-holes", "1000"}}) {
     const json closed = reportOf(words);
     EXPECT_EQ(closed["closed"], true);
     EXPECT_EQ(closed["openings"][0]["is_filled"], true);
@@ -200,8 +200,9 @@ TEST_F(ReconstructionTool, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
   // Outliers and points that are not finite before all others shift the vertices.
   expectSuccess(SCAN_TOOL, {"bowl", "plain.xyz", "-points", "1000"});
   write("shifted.xyz", "nan 0 0\n5 5 5\n5 5 5\n" + content("plain.xyz"));
-  const json plain = reportOf({"plain.xyz", "out.ply", "-outliers", "6"});
-  const json shifted = reportOf({"shifted.xyz", "out.ply", "-outliers", "6"});
+  const Words closed = {"-topology", "sphere", "-outliers", "6"};
+  const json plain = reportOf(tool_test::with({"plain.xyz", "out.ply"}, closed));
+  const json shifted = reportOf(tool_test::with({"shifted.xyz", "out.ply"}, closed));
   EXPECT_TRUE(plain["left_out"]["outliers"].empty());
   expectEntries(shifted, R"({"left_out": {"outliers": [1, 2], "not_finite": [0]}, "outliers": [],
                              "vertices": 1000})"_json);
@@ -214,7 +215,7 @@ TEST_F(ReconstructionTool, FindingsNamePointsOfTheInputBehindThoseLeftOut) {
   auto expected = plain["openings"][0]["loop"].get<std::vector<int>>();
   std::transform(expected.begin(), expected.end(), expected.begin(), [](int v) { return v + 3; });
   EXPECT_EQ(shifted["openings"][0]["loop"], json(expected));
-  EXPECT_EQ(reportOf({"shifted.xyz", "out.ply"})["outliers"], json({1}));
+  EXPECT_EQ(reportOf({"shifted.xyz", "out.ply", "-topology", "sphere"})["outliers"], json({1}));
 }
 
 TEST_F(ReconstructionTool, SelfIntersectionsOfTheReportAreThoseOfTheMesh) {
@@ -290,21 +291,21 @@ TEST_F(ReconstructionTool, TakesLessThanOneKilobyteAPoint) {
 
 TEST_F(ReconstructionTool, PrintsSixLinesAndWarningsApart) {
   write("noisy.xyz", "nan 0 0\n9 9 9\n" + linesOf(points));
-  const RunResult clean = tool({"noisy.xyz", "out.ply", "-outliers", "5"});
+  const RunResult clean = tool({"noisy.xyz", "out.ply"});
   EXPECT_EQ(clean.errors, "");
   EXPECT_EQ(std::count(clean.output.begin(), clean.output.end(), '\n'), 6);
   EXPECT_EQ(clean.output.rfind("read      noisy.xyz, 202 points\n"
-                               "verdict   A sound mesh.\n"
+                               "verdict   A sound mesh; 1 stray point left out.\n"
                                "made      200 vertices, 396 triangles\n"
                                "time      ",
                                0),
             0U)
       << clean.output;
-  EXPECT_NE(clean.output.find("\nleft out  1 point that is not finite, 1 outlier\n"
+  EXPECT_NE(clean.output.find("\nleft out  1 point that is not finite, 1 stray point\n"
                               "written   out.ply\n"),
             std::string::npos);
   for (const Words& words : {Words{}, Words{"-json", "-"}}) {
-    EXPECT_EQ(tool(tool_test::with({"noisy.xyz", "out.ply"}, words)).errors,
+    EXPECT_EQ(tool(tool_test::with({"noisy.xyz", "out.ply", "-topology", "sphere"}, words)).errors,
               "warning: 1 point looks like an outlier: try -outliers auto\n");
   }
   EXPECT_EQ(tool({"noisy.xyz", "out.ply", "-quiet"}).errors, "");

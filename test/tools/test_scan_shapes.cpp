@@ -130,7 +130,7 @@ TEST_P(EveryShape, IsMeshedAsAClosedOutwardSphereThroughAllPoints) {
   Options options;
   options.threads = 1;       // so few points take longer on more
   options.time_limit = 0.0;  // all of the optimisation takes long where it is in vain
-  options.handles = HandleMode::None;
+  options.topology = TopologyMode::Sphere;
   Options converged = options;
   converged.embedding.tolerance = 1e-8;
   Options as_published = options;

@@ -17,10 +17,10 @@
 
 namespace pcl {
 
-/** \brief Meshes the point cloud of an object into a closed, manifold, consistently
- * outward-oriented triangle mesh through every distinct finite input point. The mesh has the
- * handles of the object that are certain (setHandles()). It needs no normals, no radius and no
- * tuning.
+/** \brief Meshes a point cloud into a manifold, consistently oriented triangle mesh through its
+ * points: by default with the parts, openings and handles that the cloud certainly shows, without
+ * certain stray points; on request as one closed surface of genus 0 through every distinct finite
+ * point (setTopology()). It needs no normals, no radius and no tuning.
  *
  * A graph of local Delaunay neighbourhoods is embedded on the unit sphere from coarse to fine, so
  * that limbs are unfolded, towards a vanishing tangential Laplacian. The Delaunay triangulation of
@@ -74,6 +74,8 @@ public:
   using EdgeWeights = spherical_param::EdgeWeights;
   /** \brief Whether points are consolidated before meshing. */
   using ConsolidationMode = spherical_param::ConsolidationMode;
+  /** \brief The topology of the mesh. */
+  using TopologyMode = spherical_param::TopologyMode;
   /** \brief Whether openings of the surface are filled. */
   using SurfaceMode = spherical_param::SurfaceMode;
   /** \brief Whether the mesh has the handles of the surface. */
@@ -88,19 +90,29 @@ public:
   SphericalParamReconstruction();
   ~SphericalParamReconstruction() override = default;
 
+  /** \brief Set the topology of the mesh.
+   * \param[in] mode default TopologyMode::Scan: what the cloud shows. Sphere: one closed surface of
+   * genus 0 through every point.
+   * \note setParts(), setSurface(), setHandles() and setOutliers() override a part each. */
+  inline void setTopology(TopologyMode mode) { options_.topology = mode; }
+  /** \brief Get the topology of the mesh.
+   * \return the mode */
+  inline TopologyMode getTopology() const { return options_.topology; }
+
   /** \brief Set whether noisy points are moved to the sampled surface and merged within their noise
    * before meshing: for noisy and for merged scans.
    * \param[in] mode default ConsolidationMode::None
    * \note Polygons then index the first of merged points; getMovedPoints() has the new positions,
-   * and Surface::consolidation of getResult() the figures. The search object is not used. */
+   * and Surface::consolidation of getResult() the figures. The search object is used for
+   * setOutliers() and setParts() alone. */
   inline void setConsolidation(ConsolidationMode mode) { options_.consolidation = mode; }
   /** \brief Get whether the points are consolidated.
    * \return the mode */
   inline ConsolidationMode getConsolidation() const { return options_.consolidation; }
 
   /** \brief Set whether openings of the surface are filled.
-   * \param[in] mode default SurfaceMode::Closed: all are filled. Open leaves them open; Auto leaves
-   * certain ones open.
+   * \param[in] mode Closed: all are filled. Open leaves them open; Auto leaves certain ones open.
+   * Default: as setTopology() says.
    * \note getResult() has the openings with their certainty, and the boundary of an open mesh. */
   inline void setSurface(SurfaceMode mode) { options_.surface = mode; }
   /** \brief Get whether openings of the surface are filled.
@@ -115,18 +127,18 @@ public:
   inline int getFillHoles() const { return options_.fill_holes; }
 
   /** \brief Set whether the mesh has the handles of the surface.
-   * \param[in] mode default HandleMode::Auto: it has those that are certain. None: it has none and
-   * is one sphere, or one with openings.
-   * \note A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None
-   * for remeshing and morphing. getResult() has the loops of the handles. */
+   * \param[in] mode Auto: it has those that are certain. None: it has none and is one sphere, or
+   * one with openings. Default: as setTopology() says. \note A mesh with handles has no map to one
+   * sphere: getSphereCoordinates() is empty. Set None for remeshing and morphing. getResult() has
+   * the loops of the handles. */
   inline void setHandles(HandleMode mode) { options_.handles = mode; }
   /** \brief Get whether the mesh has the handles of the surface.
    * \return the mode */
   inline HandleMode getHandles() const { return options_.handles; }
 
   /** \brief Set which points are left out first because they belong to no surface.
-   * \param[in] mode default OutlierMode::None. Auto: stray points, small clusters and isolated
-   * points near a surface. Deviation: points too far from the average of their neighbours.
+   * \param[in] mode Auto: stray points, small clusters and isolated points near a surface.
+   * Deviation: points too far from the average of their neighbours. Default: as setTopology() says.
    * \note getResult().left_out lists them. */
   inline void setOutliers(OutlierMode mode) { options_.outliers = mode; }
   /** \brief Get which points are left out.
@@ -142,8 +154,8 @@ public:
 
   /** \brief Set which parts of the cloud are meshed. A part is a set of points that neighbours
    * connect.
-   * \param[in] mode default PartsMode::All: all together, as one surface. Largest meshes the part
-   * with the most points; Each meshes every part by itself, into polygons of one mesh.
+   * \param[in] mode All: all together, as one surface. Largest: the part with the most points.
+   * Each: every part by itself, into polygons of one mesh. Default: as setTopology() says.
    * \note With Each, a part that cannot be meshed (all points in one plane, for example) is left
    * out with a warning (PCL_WARN). */
   inline void setParts(PartsMode mode) { options_.parts = mode; }
@@ -267,8 +279,8 @@ public:
    * triangles take 24 bytes a point, polygons at least 112. */
   void reconstruct();
 
-  /** \brief Get the number of parts that the last reconstruct() meshed.
-   * \return the number with PartsMode::Each, else 1; 1 after a failure */
+  /** \brief Get the number of surfaces that the last reconstruct() made.
+   * \return the number; 1 after a failure */
   inline std::size_t getPartCount() const { return parts_.size(); }
 
   /** \brief Get the result of the last reconstruct(): the surface of each part, what was left out,

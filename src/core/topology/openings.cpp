@@ -193,6 +193,8 @@ Openings findOpenings(const Positions& points, const Graph& graph, const Indexed
 
 std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<Opening>& openings,
                                     const Positions& others) {
+  // Near is up to this height [spacing]. The base of one model is 1.3 high.
+  constexpr double max_height = 2.0;
   std::vector<Index> found;
   for (const Opening& opening : openings) {
     const LoopDisc disc(points, opening);
@@ -200,8 +202,9 @@ std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<O
     for (Eigen::Index i = 0; i < others.cols(); ++i)
       if (disc.isNear(others.col(i)))
         near.push_back(static_cast<Index>(i));
-    if (std::all_of(near.begin(), near.end(),
-                    [&](Index i) { return disc.heightOf(others.col(i)) <= opening.spacing; }))
+    if (std::all_of(near.begin(), near.end(), [&](Index i) {
+          return disc.heightOf(others.col(i)) <= max_height * opening.spacing;
+        }))
       found.insert(found.end(), near.begin(), near.end());
   }
   std::sort(found.begin(), found.end());

@@ -57,22 +57,25 @@ def documentation(table: list[dict[str, Any]]) -> str:
 def stub(table: list[dict[str, Any]]) -> str:
     """What type checkers read of _reconstruct.py."""
 
-    def overload(parts: str, result: str) -> str:
+    def overload(result: str, **given: str) -> str:
         parameters = [
-            parts if name == "parts" else f"{name}: {kind} = ..."
+            f"{name}: {given[name]}" if name in given else f"{name}: {kind} = ..."
             for name, kind, *_ in keywords(table)
         ]
         lines = "".join(f"    {parameter},\n" for parameter in ["points: CloudLike", "*", *parameters])
         return f"@overload\ndef reconstruct(\n{lines}) -> {result}: ...\n"
 
+    as_topology = 'Literal["topology"] = ...'
     return f'''from typing import Literal, Optional, SupportsFloat, SupportsIndex, Union, overload
 
 from ._clouds import CloudLike
 from ._progress import Progress
 from ._results import Result, Results
 
-{overload('parts: Literal["all", "largest"] = ...', "Result")}
-{overload('parts: Literal["each"]', "Results")}'''
+{overload("Result", parts='Literal["all", "largest"]')}
+{overload("Results", parts='Literal["each"]')}
+{overload("Result", parts=as_topology, topology='Literal["sphere"]')}
+{overload("Union[Result, Results]", parts=as_topology, topology='Literal["scan"] = ...')}'''
 
 
 if __name__ == "__main__":

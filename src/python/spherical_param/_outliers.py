@@ -91,7 +91,8 @@ def find_parts(
     threads : int, 0 (all) to 1024
         The result does not depend on it.
     progress : True, or callable(stage, fraction)
-        As for ``reconstruct``; the stages are "neighbors", "graph" and "parts".
+        As for ``reconstruct``; the stages are "neighbors", "graph", "outliers"
+        and "parts".
 
     Returns
     -------

@@ -23,11 +23,12 @@ def reconstruct(
     progress: Progress = None,
     **options: Any,
 ) -> Union[Result, Results]:
-    """Mesh the points of an object.
+    """Mesh a point cloud.
 
-    The mesh is closed, manifold, oriented outward and in one piece, and every distinct finite point
-    is a vertex. It has the handles of the object that are certain; with ``handles="none"`` it is a
-    sphere. No normals and no radius are needed, and the defaults need no tuning.
+    The mesh is manifold, oriented, and goes through the points. It has the parts, openings and
+    handles that the cloud certainly shows, and leaves certain stray points out. With
+    ``topology="sphere"`` it is one closed surface of genus 0 through every distinct finite point.
+    No normals and no radius are needed, and the defaults need no tuning.
 
     Parameters
     ----------
@@ -43,11 +44,12 @@ OPTIONS
 
     Returns
     -------
-    Result
+    Result or Results
         Mesh and, without handles, its map to the sphere; ``verdict``, ``findings`` and
-        ``diagnosis`` say how far to trust them. With ``parts="each"`` a tuple of results, the
-        largest part first, with a verdict over all; parts that cannot be meshed are left out with
-        a warning.
+        ``diagnosis`` say how far to trust them. Of several surfaces, and always with
+        ``parts="each"``, a tuple of results, the largest first, which is also the mesh of all;
+        parts that cannot be meshed are left out with a warning. ``topology="sphere"`` and the
+        other values of ``parts`` make one result.
 
     Raises
     ------
@@ -61,8 +63,8 @@ OPTIONS
 
     Notes
     -----
-    No guarantees: the mesh may intersect itself, openings of the cloud are closed, and handles that
-    are not certain are cut; ``diagnosis`` reports them. Below 2 KB of memory a point, 3 KB with a
+    No guarantees: the mesh may intersect itself, openings that are not certain are filled, and
+    handles that are not certain are cut; ``diagnosis`` reports them. Below 2 KB of memory a point, 3 KB with a
     tolerance. The result does not depend on ``threads``; a forked process works with one. Ctrl-C
     and False of ``progress`` are noticed every second or two; the paper's own method may take
     longer.
@@ -86,7 +88,7 @@ OPTIONS
     for failure in fields["failures"]:
         warnings.warn(failure, stacklevel=2)
     results = make_results(fields, cloud, options)
-    return results if options.get("parts") == "each" else results[0]
+    return results if len(results) > 1 or options.get("parts") == "each" else results[0]
 
 
 def _describe() -> None:

@@ -167,14 +167,60 @@ if Result.__doc__:  # not with python -OO
     Result.__doc__ = f"{inspect.cleandoc(Result.__doc__)}\n\n{attributes('Surface')}"
 
 
-class Results(tuple[Result, ...]):
-    """The results of the parts of a cloud, the largest first, with a common verdict."""
+class Results(tuple[Result, ...], MeshExport):
+    """The results of the surfaces of a cloud, the largest first, with a common verdict.
 
-    verdict: str  #: a headline: "3 meshes, all sound."
+    All of them together are a mesh, too: the vertices of one after those of the other.
+    """
+
+    verdict: str  #: a headline: "3 surfaces, all sound."
     findings: tuple[Finding, ...]  #: of all results; with several, each names its parts
     failures: tuple[str, ...]  #: why parts could not be meshed
     left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, over all parts [s]
+
+    @cached_property
+    def vertices(self) -> FloatArray:
+        """(v, 3) of all surfaces [unit of the input]."""
+        return np.concatenate([each.vertices for each in self])
+
+    @cached_property
+    def triangles(self) -> IndexArray:
+        """(t, 3) of all surfaces, into ``vertices``."""
+        first = np.cumsum([0] + [len(each.vertices) for each in self])
+        return np.concatenate([each.triangles + at for each, at in zip(self, first)], dtype=np.int32)
+
+    @property
+    def input_of_vertex(self) -> IndexArray:
+        """(v,) row of the cloud of each vertex."""
+        return np.concatenate([each.input_of_vertex for each in self])
+
+    @property
+    def normals(self) -> FloatArray:
+        """(v, 3) as ``Result.normals``."""
+        return np.concatenate([each.normals for each in self])
+
+    @property
+    def colors(self) -> Optional[ByteArray]:
+        """(v, 3) of the points; None if they have none."""
+        colors = [each.colors for each in self if each.colors is not None]
+        return np.concatenate(colors) if colors else None
+
+    def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
+        """Write a page to look at, of the largest surface. As ``Result.report``."""
+        self[0].report(path, progress=progress)
+
+    def _export_points(self) -> FloatArray:
+        return np.concatenate([each._export_points() for each in self])
+
+    def _export_normals(self) -> FloatArray:
+        return self.normals
+
+    def _export_colors(self) -> Optional[ByteArray]:
+        return self.colors
+
+    def _repr_html_(self) -> Optional[str]:
+        return self[0]._repr_html_()
 
     def __repr__(self) -> str:
         return f"<spherical_param.Results: {self.verdict}>"

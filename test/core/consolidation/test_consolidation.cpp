@@ -149,7 +149,7 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
   EXPECT_EQ(plain.moved().cols(), 0);
   EXPECT_EQ(plain.consolidation.merged, 0U);
 
-  Options options;
+  Options options = test::sphere();
   options.consolidation = ConsolidationMode::Auto;
   const Surface mesh = test::surfaceOf(points, options);
   const Consolidation expected = consolidate(points);

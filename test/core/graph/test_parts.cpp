@@ -61,7 +61,9 @@ TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
   others.col(0) = 1.05 * sphere.col(500);  // half a spacing above the surface
   others.col(1) = Eigen::Vector3d(3.0, 1.0, 0.0);
   others.col(2) = Eigen::Vector3d(0.0, 0.0, 0.3);
-  EXPECT_EQ(findParts(horizontally(sphere, others)), Parts{range(0, 1001)});
+  Options options;
+  options.outliers = OutlierMode::None;
+  EXPECT_EQ(findParts(horizontally(sphere, others), options), Parts{range(0, 1001)});
 }
 
 }  // namespace

@@ -117,6 +117,7 @@ TEST(Necks, AreNotCutWithoutHandles) {
     return internal::SurfaceCutter(points, graph, topology).next().has_value();
   };
   Options options;
+  options.handles = HandleMode::Auto;
   EXPECT_TRUE(isCut(options));
   options.handles = HandleMode::None;
   EXPECT_FALSE(isCut(options));
