@@ -121,6 +121,8 @@ struct SurfaceDiagnosis {
   std::vector<Handle> handles;                   ///< in descending number of edges
   std::vector<PartBridge> bridges;               ///< in descending number of points
   bool is_one_sided = false;  ///< like a Moebius strip or a Klein bottle; the mesh is torn
+  bool is_on_lines = false;   ///< the points lie along lines, like contours, far from each other
+  bool fills_volume = false;  ///< the points fill a volume: there is no surface
   /// Fraction of the mesh's edges that join points more than two steps apart in the graph; [0, 1].
   double edges_outside_graph = 0.0;
   /// Number of handles by the cycles of the graph; unset if unknown, or if no torn neighbours call

@@ -226,6 +226,8 @@ void visitFields(const SurfaceDiagnosis*, const Visit& visit) {
   visit({"genus", "handles by the cycles of the graph; none if not counted or unknown"},
         &Of::genus);
   visit({"is_one_sided", "like a Moebius strip or a Klein bottle"}, &Of::is_one_sided);
+  visit({"is_on_lines", "the points lie along lines"}, &Of::is_on_lines);
+  visit({"fills_volume", "the points fill a volume"}, &Of::fills_volume);
   visit({"edges_outside_graph",
          "fraction of edges between points more than two steps apart in the graph"},
         &Of::edges_outside_graph);

@@ -41,7 +41,16 @@ std::size_t missingHandles(const Surface& result) {
 /// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
   return result.is_noisy && result.moved().cols() == 0 && result.outliers.empty() &&
-         result.diagnosis.bridges.empty() && missingHandles(result) == 0;
+         result.diagnosis.bridges.empty() && missingHandles(result) == 0 &&
+         !result.diagnosis.is_on_lines && !result.diagnosis.fills_volume;
+}
+
+/// A finding with the option that lets the mesh have what the cloud shows: the topology, if a
+/// sphere was asked for, or else one for that alone.
+Finding shown(const std::string& text, const Options& options, const std::string& option,
+              const std::string& value, bool is_fault) {
+  const bool is_sphere = options.topology == TopologyMode::Sphere;
+  return {text, is_sphere ? "topology" : option, is_sphere ? "scan" : value, is_fault};
 }
 
 bool isRaw(const Options& options) {
@@ -58,25 +67,22 @@ bool isFolded(const Options& options, const Surface& result) {
          (isRaw(options) && result.diagnosis.edges_outside_graph > max_edges_outside);
 }
 
-Finding partsOf(const std::vector<PartBridge>& bridges) {
+Finding partsOf(const std::vector<PartBridge>& bridges, const Options& options) {
   const PartBridge& bridge = bridges.front();
-  // Parts of at least this fraction of the largest count as objects of their own.
-  constexpr double min_fraction_of_largest = 0.25;
-  // Many parts are a scene, and the largest part is mostly the object.
-  const bool are_alike =
-      bridges.size() == 1 && static_cast<double>(bridge.points) >=
-                                 min_fraction_of_largest * static_cast<double>(bridge.other_points);
-  return {counted(bridges.size() + 1, "separate part") + " (" +
-              (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) + " and " +
-              counted(bridge.other_points, "point") + ")",
-          "parts", are_alike ? "each" : "largest", true};
+  const std::string text = counted(bridges.size() + 1, "separate part") + " (" +
+                           (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) +
+                           " and " + counted(bridge.other_points, "point") + ")";
+  // Each by itself was too small.
+  if (options.parts == PartsMode::Each && bridge.points >= 4)
+    return {text, "min_points", std::to_string(bridge.points), true};
+  return shown(text, options, "parts", "each", true);
 }
 
 /// Handles that the mesh lacks, certain or possible.
 std::optional<Finding> handlesOf(const Surface& result, const Options& options) {
   const bool may_have = options.handles == HandleMode::None && !isRaw(options);
   const auto finding = [&](const std::string& text) {
-    return Finding{text, may_have ? "handles" : "", may_have ? "auto" : "", true};
+    return may_have ? shown(text, options, "handles", "auto", true) : Finding{text, "", "", true};
   };
   const std::size_t missing = missingHandles(result);
   if (missing > 0 && result.genus() == 0)
@@ -129,9 +135,11 @@ std::optional<Finding> filledOf(const Surface& result, const Options& options) {
     return std::nullopt;
   const std::string of = " of " + counted(points, "point") + ", filled";
   const std::string kind = certain > 0 ? "opening" : "possible opening";
-  return Finding{count == 1 ? kind + of : counted(count, kind) + ", the largest" + of,
-                 is_open ? "" : "surface", is_open ? "" : "open",
-                 certain > 0 && options.fill_holes == 0 && options.fill_holes_area == 0.0};
+  const std::string text = count == 1 ? kind + of : counted(count, kind) + ", the largest" + of;
+  const bool is_fault = certain > 0 && options.fill_holes == 0 && options.fill_holes_area == 0.0;
+  return certain > 0 && !is_open
+             ? shown(text, options, "surface", "open", is_fault)
+             : Finding{text, is_open ? "" : "surface", is_open ? "" : "open", is_fault};
 }
 
 /// Twice as many, at least the default, without overflow.
@@ -162,15 +170,20 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
   std::vector<Finding> findings;
   const std::size_t outliers = result.outliers.size();
   if (outliers > 0)
-    findings.push_back({grouped(outliers) + (outliers == 1 ? " point looks like an outlier"
-                                                           : " points look like outliers"),
-                        "outliers", "auto", false});
+    findings.push_back(shown(grouped(outliers) + (outliers == 1 ? " point looks like an outlier"
+                                                                : " points look like outliers"),
+                             options, "outliers", "auto", false));
   if (!diagnosis.bridges.empty())
-    findings.push_back(partsOf(diagnosis.bridges));
+    findings.push_back(partsOf(diagnosis.bridges, options));
   if (const std::optional<Finding> filled = filledOf(result, options))
     findings.push_back(*filled);
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
+  if (diagnosis.fills_volume)
+    findings.push_back({"the points fill a volume: they sample no surface", "", "", false});
+  else if (diagnosis.is_on_lines)
+    findings.push_back(
+        {"the points lie along lines, and the surface between these is a guess", "", "", false});
   if (const std::optional<Finding> handles = handlesOf(result, options))
     findings.push_back(*handles);
   if (const std::optional<Finding> failed = failedHandlesOf(result))
@@ -186,6 +199,8 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
       std::tie(fold.option, fold.value) = std::pair("method", "default");
     else if (isRough(result))
       std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
+    else if (result.is_noisy && options.smoothing == 0 && !diagnosis.fills_volume)
+      std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
     findings.push_back(fold);
   }
   addOfEmbedding(options, result, findings);
@@ -198,7 +213,8 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
     return !finding.option.empty();
   });
   for (Finding& finding : findings)
-    finding.is_consequence = has_option && finding.is_fault && finding.option.empty();
+    finding.is_consequence =
+        (has_option || diagnosis.fills_volume) && finding.is_fault && finding.option.empty();
   return findings;
 }
 

@@ -2,6 +2,7 @@
 
 #include "boundary_loops.h"
 #include "open_mesh.h"
+#include "point_spread.h"
 #include "progress.h"
 #include "spherical_param/self_intersection.h"
 #include "surface_diagnosis.h"
@@ -56,6 +57,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
     result.diagnosis.is_one_sided = true;
     result.diagnosis.kind = SurfaceKind::Unclear;
   }
+  result.diagnosis.is_on_lines = areOnLines(points, mesh.graph.graph);
   for (const StrayPoint& stray : mesh.graph.stray_points)
     result.outliers.push_back(stray.point);
   reportFraction(report, 0.5);
@@ -80,7 +82,10 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   result.sphere = std::move(mesh.embedding.directions);
   result.history = std::move(mesh.embedding.history);
   result.embedding = std::move(mesh.embedding.report);
-  result.is_noisy = mesh.optimization.report.is_noisy;
+  // A grid makes steps.
+  result.is_noisy = mesh.optimization.report.is_noisy && !areOnGrid(points);
+  const bool is_poor = mesh.optimization.report.is_noisy || result.intersecting_triangles > 0;
+  result.diagnosis.fills_volume = is_poor && fillVolume(points);
   result.is_out_of_time = mesh.optimization.report.is_out_of_time;
   return result;
 }
