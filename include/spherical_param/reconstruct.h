@@ -4,12 +4,23 @@
 #include "spherical_param/result.h"
 #include "spherical_param/types.h"
 
+#include <optional>
 #include <vector>
 
 namespace spherical_param {
 
 /// \addtogroup pipeline
 /// @{
+
+/// What the surfaces of a cloud face, as far as it is known.
+struct Facing {
+  Positions normals;                         ///< 3 x n, of each point, of any length; or empty
+  std::optional<Eigen::Vector3d> viewpoint;  ///< of the sensor [unit of the input]
+};
+
+/// Whether a place is within the box of some points, finite or not: a sensor that nobody has set is
+/// not there.
+bool isWithinBox(const Positions& points, const Eigen::Vector3d& place);
 
 /// Meshes a point cloud: neighbours -> neighbour graph -> stray points and parts -> of each part
 /// openings -> embedding on the sphere -> triangulation there -> optimisation on the points ->
@@ -25,6 +36,8 @@ namespace spherical_param {
 ///               at most once, with the first point at each position. It and its search run in the
 ///               calling thread; their exceptions are passed on. Not used once outliers are left
 ///               out, for one of several parts, nor for consolidated points.
+/// \param facing  normals decide which side of a surface is outside; else an open one faces the
+///               viewpoint, or up if it is low; see Surface::faced_by.
 /// \return the surfaces, and what was left out. Triangles index vertices of their surface.
 /// \throw InvalidInput for bad points or options; ComputeError; Cancelled. A part that cannot be
 ///        meshed is left out and reported in Result::failures; if all parts fail, the first error
@@ -40,7 +53,7 @@ namespace spherical_param {
 /// `verdict`, `findings` and `diagnosis` say how far to trust it.
 /// Cost: O(n log n), typically; Method::Paper adds iterations * O(n k). Memory: below 1 KB a point.
 Result reconstruct(const Positions& points, const Options& options = {},
-                   const NeighborSearchFactory& search_of = {});
+                   const NeighborSearchFactory& search_of = {}, const Facing& facing = {});
 
 /// The outliers that reconstruct() leaves out.
 ///

@@ -231,6 +231,14 @@ struct SmoothingReport {
   std::size_t self_intersections = 0;  ///< pairs of triangles, on the smoothed points, or a sample
 };
 
+/// What decided which side of a surface its triangles face.
+enum class FacedBy {
+  Normals,    ///< those of the points
+  Viewpoint,  ///< an open surface faces the sensor
+  Up,         ///< a low open surface, like terrain, faces along +z
+  Outward,    ///< outside of the surface, with its openings filled
+};
+
 /// A mesh through all points, its map to the sphere, and their quality. The mesh is a closed,
 /// oriented manifold with the handles that are listed and not cut, or such a mesh without the
 /// triangles over openings.
@@ -238,6 +246,7 @@ struct Surface {
   /// 3 x m, indices of vertices, counter-clockwise from outside; m = 2v - 4 + 4g of a closed mesh
   /// of genus g.
   Triangles triangles;
+  FacedBy faced_by = FacedBy::Outward;  ///< what decided which side is outside
   /// Boundary loops: vertices joined by edges, the last to the first, with the surface on the left.
   /// The longest loop comes first; each begins at its lowest vertex. Empty for a closed mesh.
   std::vector<std::vector<Index>> boundary;

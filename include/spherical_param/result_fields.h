@@ -45,6 +45,9 @@ constexpr std::array<const char*, 5> namesOf(SurfaceKind) {
   return {"closed_genus0", "open", "handles", "several_parts", "unclear"};
 }
 /// \copydoc namesOf(SurfaceKind)
+constexpr std::array<const char*, 4> namesOf(FacedBy) {
+  return {"normals", "viewpoint", "up", "outward"};
+}
 constexpr std::array<const char*, 5> namesOf(StopReason) {
   return {"converged", "iteration_limit", "stagnated", "collapsed", "unfinished"};
 }
@@ -356,6 +359,7 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"boundary", "boundary loops, the surface on the left; empty for a closed mesh", 0,
          FieldKind::Loops},
         &Of::boundary);
+  visit({"faced_by", "what decided which side of the surface is outside"}, &Of::faced_by);
   visit({"embedding", "how it was reached"}, &Of::embedding);
   visit({"consolidation", "its report; none without consolidation"},
         [](auto& s) { return s.consolidated.cols() > 0 ? &s.consolidation : nullptr; });

@@ -6,6 +6,7 @@
 #include "glued_spheres.h"
 #include "graph_building.h"
 #include "mesh_optimization.h"
+#include "orientation.h"
 #include "spherical_param/mesh_topology.h"
 #include "spherical_param/sphere_triangulation.h"
 
@@ -17,12 +18,6 @@
 
 namespace spherical_param::internal {
 namespace {
-
-void mirror(Embedding& embedding) {
-  embedding.directions = -embedding.directions;
-  for (HistoryFrame& frame : embedding.history.frames)
-    frame.sphere = -frame.sphere;
-}
 
 /// A mesh before the optimisation, and perhaps after.
 struct Candidate {
@@ -190,14 +185,6 @@ std::vector<HandleLoop> handlesOf(const Positions& points, const std::vector<Cut
 }
 
 }  // namespace
-
-void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding) {
-  // Exactly: the volume of a cloud that is nearly flat may be all rounding.
-  if (volumeSign(points, triangles) >= 0)
-    return;
-  flipOrientation(triangles);
-  mirror(embedding);
-}
 
 MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
                           const Options& options, StageClock& clock) {

@@ -18,8 +18,4 @@ namespace spherical_param::internal {
 MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
                           const Options& options, StageClock& clock);
 
-/// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
-/// face outward on both.
-void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding);
-
 }  // namespace spherical_param::internal

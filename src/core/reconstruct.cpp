@@ -7,9 +7,12 @@
 #include "findings.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
+#include "open_mesh.h"
 #include "open_surface.h"
+#include "orientation.h"
 #include "paper_method.h"
 #include "point_set.h"
+#include "power_of_two.h"
 #include "result_units.h"
 #include "selection.h"
 #include "spherical_param/errors.h"
@@ -127,7 +130,7 @@ SurfaceTopology findTopology(const Positions& points, const Graph& graph, int ex
 ///
 /// \param is_flat all points are in one plane.
 Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology topology,
-                  bool is_flat, const Options& options, StageClock& clock) {
+                  bool is_flat, const Facing& facing, const Options& options, StageClock& clock) {
   const OpenSurface& openings = topology.openings;
   if (is_flat && !openings.isOpen())
     refuseFlat(options);
@@ -137,9 +140,24 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
           : internal::meshByDefault(points, std::move(graph), topology, options, clock);
   if (options.smoothing > 0)
     smooth(points, openings, options, clock, mesh);
-  internal::orientOutward(points, mesh.triangles(), mesh.embedding);
+  const FacedBy faced_by = internal::orient(
+      points, facing,
+      openings.isOpen() ? surfaceOf(openMesh(points, mesh.triangles(), *openings.places()))
+                        : Triangles(),
+      mesh.triangles(), mesh.embedding);
   clock.begin("quality");
-  return internal::judge(points, std::move(mesh), openings, options, clock.execution());
+  Surface surface = internal::judge(points, std::move(mesh), openings, options, clock.execution());
+  surface.faced_by = faced_by;
+  return surface;
+}
+
+/// What the nodes of a part face. \param facing of the points of the part.
+Facing facingOf(const internal::OrderedPoints& nodes, Facing facing) {
+  if (facing.normals.cols() > 0)
+    facing.normals = Positions(facing.normals(Eigen::all, nodes.input_of_node));
+  if (facing.viewpoint)
+    facing.viewpoint = internal::timesPowerOfTwo(*facing.viewpoint, -nodes.exponent);
+  return facing;
 }
 
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
@@ -157,8 +175,8 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
         findTopology(nodes.points, graph.graph, nodes.exponent, is_flat, options, clock);
     if (selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
       continue;
-    Surface surface =
-        meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat, options, clock);
+    Surface surface = meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat,
+                                facingOf(nodes, selection.facingOf(part)), options, clock);
     if (is_flat && surface.isClosed())
       refuseFlat(options);
     internal::toInput(nodes, surface);
@@ -167,15 +185,23 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
 }
 
 /// Moves the points of a part to the surface that they sample, and meshes them.
-Surface meshConsolidated(const Positions& points, const Options& options, StageClock& clock) {
+Surface meshConsolidated(const Positions& points, const Facing& facing, const Options& options,
+                         StageClock& clock) {
   clock.begin("consolidation");
   Consolidation consolidation = consolidate(points, clock.execution());
+  Facing merged;
+  merged.viewpoint = facing.viewpoint;
+  if (facing.normals.cols() > 0)
+    merged.normals = Positions::Zero(3, consolidation.points.cols());
+  for (Eigen::Index i = 0; i < facing.normals.cols(); ++i)
+    merged.normals.col(consolidation.point_of_input[static_cast<std::size_t>(i)]) +=
+        facing.normals.col(i);
   Options as_is = options;
   as_is.outliers = OutlierMode::None;
   as_is.parts = PartsMode::All;
   LeftOut none;
   const NeighborSearchFactory by_tree;
-  Selection selection(consolidation.points, as_is, false, by_tree, clock, none);
+  Selection selection(consolidation.points, as_is, false, by_tree, merged, clock, none);
   Surface surface = meshAsIs(selection, 0, options, clock);
   internal::toInput(consolidation, surface);
   return surface;
@@ -183,9 +209,10 @@ Surface meshConsolidated(const Positions& points, const Options& options, StageC
 
 Surface meshPart(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
-  Surface surface = options.consolidation == ConsolidationMode::Auto
-                        ? meshConsolidated(selection.pointsOf(part), options, clock)
-                        : meshAsIs(selection, part, options, clock);
+  Surface surface =
+      options.consolidation == ConsolidationMode::Auto
+          ? meshConsolidated(selection.pointsOf(part), selection.facingOf(part), options, clock)
+          : meshAsIs(selection, part, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError(
         "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
@@ -263,7 +290,7 @@ std::vector<std::vector<Index>> select(const Positions& points, Options options,
   options = withTopology(options);
   StageClock clock(options);
   std::vector<std::vector<Index>> selected = explained(
-      left_out, [&] { return Selection(points, options, false, {}, clock, left_out).parts(); });
+      left_out, [&] { return Selection(points, options, false, {}, {}, clock, left_out).parts(); });
   clock.take();
   return selected;
 }
@@ -271,13 +298,16 @@ std::vector<std::vector<Index>> select(const Positions& points, Options options,
 }  // namespace
 
 Result reconstruct(const Positions& points, const Options& given,
-                   const NeighborSearchFactory& search_of) {
+                   const NeighborSearchFactory& search_of, const Facing& facing) {
   checkOptions(given);
+  if (facing.normals.cols() > 0 && facing.normals.cols() != points.cols())
+    throw InvalidInput("reconstruct: " + std::to_string(facing.normals.cols()) + " normals of " +
+                       std::to_string(points.cols()) + " points; give one for each, or none");
   const Options options = withTopology(given);
   StageClock clock(options);
   Result result;
   const std::size_t parts = explained(result.left_out, [&] {
-    Selection selection(points, options, given.parts != PartsMode::Each, search_of, clock,
+    Selection selection(points, options, given.parts != PartsMode::Each, search_of, facing, clock,
                         result.left_out);
     meshParts(selection, options, clock, result);
     return selection.parts().size();

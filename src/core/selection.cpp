@@ -24,8 +24,9 @@ std::vector<Index> without(const std::vector<Index>& points, const std::vector<I
 }  // namespace
 
 Selection::Selection(const Positions& points, const Options& options, bool is_never_empty,
-                     const NeighborSearchFactory& search_of, StageClock& clock, LeftOut& left_out)
-    : points_(points), options_(options), search_of_(search_of), clock_(clock),
+                     const NeighborSearchFactory& search_of, const Facing& facing,
+                     StageClock& clock, LeftOut& left_out)
+    : points_(points), options_(options), search_of_(search_of), facing_(facing), clock_(clock),
       left_out_(left_out) {
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     (points.col(i).allFinite() ? inputs_ : left_out.not_finite).push_back(static_cast<Index>(i));
@@ -86,6 +87,14 @@ Positions Selection::pointsOf(std::size_t part) const {
   return static_cast<Eigen::Index>(inputs.size()) == points_.cols()
              ? points_
              : Positions(points_(Eigen::all, inputs));
+}
+
+Facing Selection::facingOf(std::size_t part) const {
+  Facing facing;
+  facing.viewpoint = facing_.viewpoint;
+  if (facing_.normals.cols() > 0)
+    facing.normals = facing_.normals(Eigen::all, parts_[part]);
+  return facing;
 }
 
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {

@@ -58,6 +58,16 @@ Triangles toTriangles(const IndexArray& array) {
   return toMatrix<Triangles>(array);
 }
 
+Facing toFacing(const std::optional<DoubleArray>& normals,
+                const std::optional<std::array<double, 3>>& viewpoint) {
+  Facing facing;
+  if (normals)
+    facing.normals = toPositions(*normals);
+  if (viewpoint)
+    facing.viewpoint = Eigen::Map<const Eigen::Vector3d>(viewpoint->data());
+  return facing;
+}
+
 DoubleArray toArray(const Positions& positions) {
   return rowsOf(positions);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "spherical_param/reconstruct.h"
 #include "spherical_param/types.h"
 
 #include <pybind11/numpy.h>
@@ -7,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 /// Between NumPy's arrays and the matrices of the core. Rows of an (n, 3) array in C order lie in
@@ -20,6 +22,8 @@ using IndexArray = pybind11::array_t<Index, pybind11::array::c_style>;
 /// \throw InvalidInput for another shape than (n, 3): the package in Python has checked it before.
 Positions toPositions(const DoubleArray& array);
 Triangles toTriangles(const IndexArray& array);
+Facing toFacing(const std::optional<DoubleArray>& normals,
+                const std::optional<std::array<double, 3>>& viewpoint);
 
 DoubleArray toArray(const Positions& positions);                          ///< (n, 3)
 DoubleArray toArray(const Eigen::Matrix<double, 2, Eigen::Dynamic>& m);   ///< (n, 2)

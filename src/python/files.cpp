@@ -14,6 +14,8 @@
 #include "python/options.h"
 #include "spherical_param/version.h"
 
+#include <pybind11/stl.h>
+
 #include <memory>
 #include <utility>
 
@@ -62,7 +64,9 @@ py::dict readCloudFile(const std::string& path, const py::object& progress) {
                   "normals"_a = data.normals.empty() ? py::object(py::none())
                                                      : py::object(toArray(data.normals)),
                   "colors"_a = data.colors.empty() ? py::object(py::none())
-                                                   : py::object(toArray(data.colors)));
+                                                   : py::object(toArray(data.colors)),
+                  "viewpoint"_a = data.viewpoint ? py::object(py::cast(*data.viewpoint))
+                                                 : py::object(py::none()));
 }
 
 void writeMeshFile(const std::string& path, const DoubleArray& points, const IndexArray& triangles,
@@ -84,7 +88,9 @@ bool hasReportPage() {
 
 void writeReportFile(const std::string& path, const DoubleArray& points,
                      const std::optional<ByteArray>& colors, const py::dict& values,
-                     std::size_t part, const std::string& input, const std::string& command,
+                     const std::optional<DoubleArray>& normals,
+                     const std::optional<std::array<double, 3>>& viewpoint, std::size_t part,
+                     const std::string& input, const std::string& command,
                      const py::object& progress) {
   Listener listener(progress);
   tools::ReconstructionSettings settings;
@@ -95,8 +101,9 @@ void writeReportFile(const std::string& path, const DoubleArray& points,
   tools::CloudReconstruction cloud;
   cloud.data = std::make_shared<tools::PointData>(toPointData(points, std::nullopt, colors));
   const Positions positions = toPositions(points);
+  const Facing facing = toFacing(normals, viewpoint);
   listener.run([&] {
-    cloud.result = reconstruct(positions, settings.options);
+    cloud.result = reconstruct(positions, settings.options, {}, facing);
     cloud.stages = cloud.result.stages;
     const Surface& surface = cloud.result.surfaces.at(part);
     tools::OutputFile file(path);

@@ -4,6 +4,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -30,7 +31,9 @@ bool hasReportPage();
 /// \param command that does the same again.
 void writeReportFile(const std::string& path, const DoubleArray& points,
                      const std::optional<ByteArray>& colors, const pybind11::dict& values,
-                     std::size_t part, const std::string& input, const std::string& command,
+                     const std::optional<DoubleArray>& normals,
+                     const std::optional<std::array<double, 3>>& viewpoint, std::size_t part,
+                     const std::string& input, const std::string& command,
                      const pybind11::object& progress);
 
 }  // namespace spherical_param::python

@@ -114,9 +114,8 @@ Axes axesOf(const pcl::PCLPointCloud2& cloud) {
   return {findField(cloud, "x"), findField(cloud, "y"), findField(cloud, "z")};
 }
 
-/// One point for each record, finite or not.
-Positions pointsOf(const pcl::PCLPointCloud2& cloud) {
-  const Axes axes = axesOf(cloud);
+/// One vector for each record, finite or not.
+Positions vectorsOf(const pcl::PCLPointCloud2& cloud, const Axes& axes) {
   Positions points(3, static_cast<Eigen::Index>(std::size_t{cloud.width} * cloud.height));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const std::uint8_t* record = recordOf(cloud, static_cast<std::size_t>(i));
@@ -124,6 +123,22 @@ Positions pointsOf(const pcl::PCLPointCloud2& cloud) {
         coordinate(record, *axes[2]);
   }
   return points;
+}
+
+/// The normals, if there are any, and the sensor: it is at the origin of a cloud with rows, and of
+/// others without the origin among the points.
+spherical_param::Facing facingOf(const pcl::PCLPointCloud2& cloud, const Positions& points) {
+  spherical_param::Facing facing;
+  if (cloud.height > 1 || !spherical_param::isWithinBox(points, Eigen::Vector3d::Zero()))
+    facing.viewpoint = Eigen::Vector3d::Zero();
+  const Axes axes = {findField(cloud, "normal_x"), findField(cloud, "normal_y"),
+                     findField(cloud, "normal_z")};
+  if (std::all_of(axes.begin(), axes.end(), [&](const pcl::PCLPointField* field) {
+        return field && sizeOf(field->datatype) > 0 &&
+               std::uint64_t{field->offset} + sizeOf(field->datatype) <= cloud.point_step;
+      }))
+    facing.normals = vectorsOf(cloud, axes);
+  return facing;
 }
 
 /// PCL packs colours as blue, green, red, alpha, in an integer or in the bits of a float.
@@ -219,7 +234,8 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   checkLayout(cloud, settings.max_points);
   spherical_param::Options options = settings.options;
   options.progress = [&](const spherical_param::Progress&) { return !is_wanted || is_wanted(); };
-  const Result result = spherical_param::reconstruct(pointsOf(cloud), options);
+  const Result result =
+      spherical_param::reconstruct(vectorsOf(cloud, axesOf(cloud)), options, {}, facingOf(cloud));
   describe(result, outcome);
   outcome.mesh = makeMesh(cloud, result.surfaces);
   outcome.status = Status::Done;

@@ -9,9 +9,18 @@
 namespace spherical_param::tools {
 namespace {
 
-Positions positionsOf(const PointData& data) {
-  return Eigen::Map<const Positions>(data.points.front().data(), 3,
-                                     static_cast<Eigen::Index>(data.points.size()));
+Facing facingOf(const PointData& data) {
+  Facing facing;
+  facing.normals.resize(3, static_cast<Eigen::Index>(data.normals.size()));
+  for (Eigen::Index i = 0; i < facing.normals.cols(); ++i) {
+    facing.normals.col(i) =
+        Eigen::Map<const Eigen::Vector3f>(data.normals[static_cast<std::size_t>(i)].data())
+            .cast<double>();
+  }
+  if (data.viewpoint) {
+    facing.viewpoint = Eigen::Map<const Eigen::Vector3d>(data.viewpoint->data());
+  }
+  return facing;
 }
 
 /// Progress of the library on the console: each stage begins when the one before ends.
@@ -60,8 +69,9 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   StageProgress progress(console);
   Options options = settings.options;
   options.progress = [&progress](const Progress& reported) { return progress(reported); };
-  runLibrary("cannot mesh " + inQuotes(path), "check that the file is the right cloud",
-             [&] { cloud.result = reconstruct(positionsOf(*cloud.data), options); });
+  runLibrary("cannot mesh " + inQuotes(path), "check that the file is the right cloud", [&] {
+    cloud.result = reconstruct(positionsOf(*cloud.data), options, {}, facingOf(*cloud.data));
+  });
   progress.finish();
   cloud.stages = cloud.result.stages;
   cloud.stages.insert(cloud.stages.begin(), {"read", seconds});

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -36,15 +37,21 @@ inline std::vector<Normal> toNormals(const Positions& directions) {
 
 /// Points and what belongs to each of them.
 struct PointData {
-  std::vector<Point> points;    ///< finite or not
-  std::vector<Normal> normals;  ///< one per point, or none at all
-  std::vector<Color> colors;    ///< one per point, or none at all
-  bool has_alpha = false;       ///< the alpha of the colours comes from a file; else it is 255
+  std::vector<Point> points;       ///< finite or not
+  std::vector<Normal> normals;     ///< one per point, or none at all
+  std::vector<Color> colors;       ///< one per point, or none at all
+  std::optional<Point> viewpoint;  ///< of the sensor, if the file says it
+  bool has_alpha = false;          ///< the alpha of the colours comes from a file; else it is 255
 
   Eigen::Map<const Eigen::Vector3d> position(std::size_t i) const {
     return Eigen::Map<const Eigen::Vector3d>(points[i].data());
   }
 };
+
+inline Positions positionsOf(const PointData& data) {
+  return Eigen::Map<const Positions>(data.points.front().data(), 3,
+                                     static_cast<Eigen::Index>(data.points.size()));
+}
 
 /// Triangles over points; no triangles: a plain cloud.
 struct TriangleMesh {

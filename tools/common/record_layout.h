@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -40,6 +41,8 @@ struct RecordLayout {
   std::size_t columns = 0;        ///< numbers on a line of text
   std::uint64_t packed_size = 0;  ///< bytes of the file, if they are packed
   std::vector<RecordField> fields;
+  std::array<double, 3> viewpoint{};   ///< of the sensor
+  bool has_rows = false;               ///< it has seen them in rows
   std::vector<SkippedElement> before;  ///< the points; what follows them is not read
 };
 

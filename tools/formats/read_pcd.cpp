@@ -1,6 +1,7 @@
 #include "common/record_reader.h"
 #include "formats/formats.h"
 #include "formats/header_lines.h"
+#include "spherical_param/reconstruct.h"
 
 #include <array>
 #include <cstring>
@@ -98,6 +99,15 @@ std::int64_t pointCount(const std::string& path, Entries& entries) {
   return points;
 }
 
+/// Where the sensor was.
+Point viewpointOf(Entries& entries) {
+  Point viewpoint{};
+  for (std::size_t axis = 0; axis < std::min<std::size_t>(3, entries["VIEWPOINT"].size()); ++axis) {
+    viewpoint[axis] = toReal(entries["VIEWPOINT"][axis]).value_or(0.0);
+  }
+  return viewpoint;
+}
+
 /// Checks the two sizes before compressed data. \return the compressed one.
 std::uint32_t checkPacked(const std::string& path, std::string_view body, double bytes,
                           std::uint64_t body_size) {
@@ -156,13 +166,22 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   layout.body += lines.position();
   layout.body_line = lines.number();
   layout.points = static_cast<std::uint64_t>(points);
+  layout.viewpoint = viewpointOf(entries);
+  layout.has_rows = entries["HEIGHT"][0] != "1";
   return layout;
 }
 
 }  // namespace
 
 PointData readPcd(const std::string& path, const FileProgress& progress) {
-  return readRecords(path, checkPcdHeader(path, checkInputFile(path)), progress);
+  const RecordLayout layout = checkPcdHeader(path, checkInputFile(path));
+  PointData data = readRecords(path, layout, progress);
+  // The origin is what everybody writes.
+  if (layout.has_rows || layout.viewpoint != Point{} ||
+      !isWithinBox(positionsOf(data), Eigen::Vector3d::Zero())) {
+    data.viewpoint = layout.viewpoint;
+  }
+  return data;
 }
 
 }  // namespace spherical_param::tools

@@ -35,6 +35,10 @@ namespace pcl {
  * k nearest neighbours, a damped iteration from the projection from the centroid, and qhull, is
  * setMethod(Method::Paper).
  *
+ * Triangles face as the normals of the points do, if these have normals; else an open surface faces
+ * the sensor (sensor_origin_; the origin in a cloud without rows is none if it is among the
+ * points), terrain up, and any other outward.
+ *
  * Drop-in for GreedyProjectionTriangulation: change the type and delete the radius and mu setters.
  * Polygons index the input cloud, also if setIndices() gave a subset. Points that are not finite
  * are left out; exact duplicates become one vertex, at the first of them; both are counted.
@@ -402,6 +406,10 @@ private:
    * \param[out] used_indices of these points
    * \return the points, 3 x used_indices.size() */
   spherical_param::Positions collectPoints(pcl::Indices& used_indices);
+
+  /** \brief Collects the normals of these points, and the sensor. */
+  spherical_param::Facing facingOf(const spherical_param::Positions& points,
+                                   const pcl::Indices& used_indices) const;
 
   spherical_param::Options options_;
   spherical_param::Result result_;

@@ -42,6 +42,7 @@ class Cloud:
     normals: Optional[FloatArray]  #: (n, 3)
     colors: Optional[ByteArray]  #: (n, 3)
     name: Optional[str] = None  #: of the file
+    viewpoint: Optional[list[float]] = None  #: of the sensor, if the file says it
 
 
 def read(name: str, value: Any, progress: Optional[ProgressFunction] = None) -> Cloud:

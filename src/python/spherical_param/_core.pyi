@@ -14,6 +14,8 @@ def reconstruct(
     points: NDArray[np.float64],
     options: dict[str, object],
     *,
+    normals: Optional[NDArray[np.float64]],
+    viewpoint: Optional[list[float]],
     details: bool,
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
@@ -35,6 +37,8 @@ def write_report(
     colors: Optional[NDArray[np.uint8]],
     options: dict[str, object],
     *,
+    normals: Optional[NDArray[np.float64]],
+    viewpoint: Optional[list[float]],
     part: int,
     input: str,
     command: str,

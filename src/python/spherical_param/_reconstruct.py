@@ -84,7 +84,14 @@ OPTIONS
     values = {**options, "threads": arguments.thread_count(options.get("threads", 0))}
     with listening(progress) as listener:
         cloud = read("points", points, listener)
-        fields = _core.reconstruct(cloud.points, values, details=has_details, progress=listener)
+        fields = _core.reconstruct(
+            cloud.points,
+            values,
+            normals=cloud.normals,
+            viewpoint=cloud.viewpoint,
+            details=has_details,
+            progress=listener,
+        )
     for failure in fields["failures"]:
         warnings.warn(failure, stacklevel=2)
     results = make_results(fields, cloud, options)

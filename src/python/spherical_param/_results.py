@@ -134,6 +134,8 @@ class Result(Surface, MeshExport):
                 source.cloud.points,
                 source.cloud.colors,
                 {**source.options, "threads": threads},
+                normals=source.cloud.normals,
+                viewpoint=source.cloud.viewpoint,
                 part=source.part,
                 input=source.cloud.name or "points",
                 command=source.command,

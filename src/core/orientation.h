@@ -1,0 +1,29 @@
+#pragma once
+
+#include "embedding.h"
+#include "spherical_param/reconstruct.h"
+#include "spherical_param/result.h"
+#include "spherical_param/types.h"
+
+namespace spherical_param::internal {
+
+/// Turns an embedding into its mirror image.
+void mirror(Embedding& embedding);
+
+/// Turns sphere and triangles inside out if the embedding is a mirror image, so that the triangles
+/// of a closed mesh face outward.
+void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding);
+
+/// Turns sphere and triangles so that the surface faces as the normals do; else an open one the
+/// viewpoint, or up if it is low; else outward. Normals and viewpoint decide if they agree on most
+/// of the area.
+///
+/// \param points    3 x n.
+/// \param facing    with normals of these points, and a viewpoint in their unit.
+/// \param surface   the triangles that are not over openings; empty: all, as the mesh is closed.
+/// \param triangles of the closed mesh.
+/// \return what decided.
+FacedBy orient(const Positions& points, const Facing& facing, const Triangles& surface,
+               Triangles& triangles, Embedding& embedding);
+
+}  // namespace spherical_param::internal
