@@ -348,11 +348,12 @@ struct Surface {
 /// Input points that are in no surface, by reason; each list is ascending.
 struct LeftOut {
   std::vector<Index> not_finite;   ///< with a coordinate that is not finite
+  std::vector<Index> unused;       ///< of a file with faces, in none of these
   std::vector<Index> outliers;     ///< found by Options::outliers
   std::vector<Index> other_parts;  ///< of parts that were not meshed, or of no part
 
-  /// In words. \return e.g. "2 points that are not finite, 3 outliers"; empty if nothing was left
-  /// out
+  /// In words. \return e.g. "2 points that are not finite, 3 stray points"; empty if nothing was
+  /// left out
   std::string text() const;
 };
 

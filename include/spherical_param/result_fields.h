@@ -399,6 +399,7 @@ void visitFields(const LeftOut*, const Visit& visit) {
   using Of = LeftOut;
   visit({"not_finite", "with a coordinate that is not finite", 0, FieldKind::Inputs},
         &Of::not_finite);
+  visit({"unused", "of a file with faces, in none of these", 0, FieldKind::Inputs}, &Of::unused);
   visit({"outliers", "found by the option outliers", 0, FieldKind::Inputs}, &Of::outliers);
   visit({"other_parts", "of parts that were not meshed, or of no part", 0, FieldKind::Inputs},
         &Of::other_parts);

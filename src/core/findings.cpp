@@ -315,6 +315,7 @@ std::string LeftOut::text() const {
           (text.empty() ? "" : ", ") + internal::grouped(count) + " " + (count == 1 ? one : many);
   };
   add(not_finite.size(), "point that is not finite", "points that are not finite");
+  add(unused.size(), "point in no face", "points in no face");
   add(outliers.size(), "stray point", "stray points");
   add(other_parts.size(), "point in other parts", "points in other parts");
   return text;

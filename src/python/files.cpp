@@ -65,6 +65,7 @@ py::dict readCloudFile(const std::string& path, const py::object& progress) {
                                                      : py::object(toArray(data.normals)),
                   "colors"_a = data.colors.empty() ? py::object(py::none())
                                                    : py::object(toArray(data.colors)),
+                  "unused"_a = toArray(data.unused),
                   "viewpoint"_a = data.viewpoint ? py::object(py::cast(*data.viewpoint))
                                                  : py::object(py::none()));
 }

@@ -234,8 +234,9 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   checkLayout(cloud, settings.max_points);
   spherical_param::Options options = settings.options;
   options.progress = [&](const spherical_param::Progress&) { return !is_wanted || is_wanted(); };
+  const Positions points = vectorsOf(cloud, axesOf(cloud));
   const Result result =
-      spherical_param::reconstruct(vectorsOf(cloud, axesOf(cloud)), options, {}, facingOf(cloud));
+      spherical_param::reconstruct(points, options, {}, facingOf(cloud, points));
   describe(result, outcome);
   outcome.mesh = makeMesh(cloud, result.surfaces);
   outcome.status = Status::Done;

@@ -73,6 +73,13 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
     cloud.result = reconstruct(positionsOf(*cloud.data), options, {}, facingOf(*cloud.data));
   });
   progress.finish();
+  LeftOut& left_out = cloud.result.left_out;
+  left_out.unused = cloud.data->unused;
+  std::vector<Index> not_finite;
+  std::set_difference(left_out.not_finite.begin(), left_out.not_finite.end(),
+                      left_out.unused.begin(), left_out.unused.end(),
+                      std::back_inserter(not_finite));
+  left_out.not_finite = std::move(not_finite);
   cloud.stages = cloud.result.stages;
   cloud.stages.insert(cloud.stages.begin(), {"read", seconds});
 }

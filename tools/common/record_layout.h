@@ -26,6 +26,7 @@ struct SkippedElement {
   struct Property {
     std::size_t size = 0;         ///< bytes of a value
     std::size_t length_size = 0;  ///< bytes of the length of a list; 0: one value
+    bool are_corners = false;     ///< its values are points of a face
   };
   std::uint64_t count = 0;
   std::vector<Property> properties;  ///< at least one
@@ -43,7 +44,8 @@ struct RecordLayout {
   std::vector<RecordField> fields;
   std::array<double, 3> viewpoint{};   ///< of the sensor
   bool has_rows = false;               ///< it has seen them in rows
-  std::vector<SkippedElement> before;  ///< the points; what follows them is not read
+  std::vector<SkippedElement> before;  ///< the points
+  std::vector<SkippedElement> after;   ///< the points, up to their faces; the rest is not read
 };
 
 }  // namespace spherical_param::tools

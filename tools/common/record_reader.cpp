@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -17,6 +19,13 @@ namespace spherical_param::tools {
 namespace {
 
 using Fields = std::vector<RecordField>;
+
+/// A word as a number without sign; too large if it is none.
+std::uint64_t toCount(std::string_view word) {
+  const double number = toReal(word).value_or(-1.0);
+  return number >= 0.0 && number < 1e15 ? static_cast<std::uint64_t>(number)
+                                        : std::numeric_limits<std::uint64_t>::max();
+}
 
 [[noreturn]] void failBroken(const std::string& path) {
   failContent(path, "it is broken or not complete");
@@ -168,7 +177,9 @@ public:
     if (isPacked()) {
       unpack();
     }
-    return readPoints();
+    PointData data = readPoints();
+    leaveOutUnused(data);
+    return data;
   }
 
 private:
@@ -282,23 +293,87 @@ private:
 
   void skipBytes(const SkippedElement& element) {
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (const SkippedElement::Property& property : element.properties) {
-        std::uint64_t values = 1;
-        if (property.length_size > 0) {
-          const char* const bytes = reader_.take(property.length_size);
-          if (bytes == nullptr) {
-            failBroken(path_);
-          }
-          values = 0;
-          for (std::size_t b = 0; b < property.length_size; ++b) {
-            const std::size_t place =
-                layout_.storage == RecordStorage::BigEndian ? property.length_size - 1 - b : b;
-            values |= std::uint64_t{static_cast<std::uint8_t>(bytes[place])} << (8 * b);
-          }
+      if (!visitBytes(element, {})) {
+        failBroken(path_);
+      }
+    }
+  }
+
+  /// The next bytes as a number without sign. \return false if the file has fewer
+  bool takeInteger(std::size_t size, std::uint64_t& number) {
+    const char* const bytes = reader_.take(size);
+    number = 0;
+    for (std::size_t b = 0; bytes != nullptr && b < size; ++b) {
+      const std::size_t place = layout_.storage == RecordStorage::BigEndian ? size - 1 - b : b;
+      number |= std::uint64_t{static_cast<std::uint8_t>(bytes[place])} << (8 * b);
+    }
+    return bytes != nullptr;
+  }
+
+  using Visit = std::function<void(std::uint64_t)>;
+
+  /// Passes a record by, and calls a function for each corner. \return false if the file ends
+  bool visitBytes(const SkippedElement& element, const Visit& visit) {
+    for (const SkippedElement::Property& property : element.properties) {
+      std::uint64_t values = 1;
+      if (property.length_size > 0 && !takeInteger(property.length_size, values)) {
+        return false;
+      }
+      const bool is_visited = visit && property.are_corners;
+      for (std::uint64_t corner = 0; is_visited && values > 0; --values) {
+        if (!takeInteger(property.size, corner)) {
+          return false;
         }
-        if (!reader_.skip(values * property.size)) {
-          failBroken(path_);
+        visit(corner);
+      }
+      if (!reader_.skip(values * property.size)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool visitWords(const SkippedElement& element, const Visit& visit) {
+    if (!nextWords()) {
+      return false;
+    }
+    std::size_t word = 0;
+    for (const SkippedElement::Property& property : element.properties) {
+      std::uint64_t values = 1;
+      if (property.length_size > 0) {
+        values = word < words_.size() ? toCount(words_[word++]) : 0;
+      }
+      for (; values > 0 && word < words_.size(); --values, ++word) {
+        if (property.are_corners) {
+          visit(toCount(words_[word]));
         }
+      }
+    }
+    return true;
+  }
+
+  /// Of a mesh, points that no face uses are not finite any more. Faces that cannot be read, or
+  /// have other points, say nothing.
+  void leaveOutUnused(PointData& data) {
+    std::vector<bool> used(data.points.size(), false);
+    bool is_mesh = false;
+    bool is_readable = true;
+    const Visit visit = [&](std::uint64_t corner) {
+      is_mesh = true;
+      is_readable = is_readable && corner < used.size();
+      if (is_readable) {
+        used[corner] = true;
+      }
+    };
+    for (const SkippedElement& element : layout_.after) {
+      for (std::uint64_t i = 0; is_readable && i < element.count; ++i) {
+        is_readable = isText() ? visitWords(element, visit) : visitBytes(element, visit);
+      }
+    }
+    for (std::size_t i = 0; is_mesh && is_readable && i < used.size(); ++i) {
+      if (!used[i]) {
+        data.unused.push_back(static_cast<Index>(i));
+        data.points[i].fill(std::numeric_limits<double>::quiet_NaN());
       }
     }
   }

@@ -82,21 +82,28 @@ SkippedElement toSkipped(const PlyElement& element) {
   for (const PlyProperty& property : element.properties) {
     skipped.properties.push_back(
         {static_cast<std::size_t>(plyTypeSize(property.type)),
-         property.list ? static_cast<std::size_t>(plyTypeSize(property.length_type)) : 0});
+         property.list ? static_cast<std::size_t>(plyTypeSize(property.length_type)) : 0,
+         element.name == "face" &&
+             (property.name == "vertex_indices" || property.name == "vertex_index")});
   }
   return skipped;
 }
 
 RecordLayout toLayout(const std::vector<PlyElement>& elements) {
   RecordLayout layout;
+  bool is_behind = false;
   for (const PlyElement& element : elements) {
     if (element.name != "vertex") {
       // Without properties there is nothing to skip, however many there are.
       if (!element.properties.empty()) {
-        layout.before.push_back(toSkipped(element));
+        (is_behind ? layout.after : layout.before).push_back(toSkipped(element));
+      }
+      if (is_behind && element.name == "face") {
+        break;  // what follows is not read
       }
       continue;
     }
+    is_behind = true;
     layout.points = static_cast<std::uint64_t>(element.count);
     for (const PlyProperty& property : element.properties) {
       RecordField field;
@@ -107,7 +114,6 @@ RecordLayout toLayout(const std::vector<PlyElement>& elements) {
       field.size = static_cast<std::size_t>(plyTypeSize(property.type));
       addField(field, layout);
     }
-    break;  // what follows the points is not read
   }
   return layout;
 }

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arguments as arguments
 from . import _core
-from ._arguments import ByteArray, FloatArray
+from ._arguments import ByteArray, FloatArray, IndexArray
 from ._errors import InvalidInput
 from ._progress import ProgressFunction
 
@@ -43,6 +43,7 @@ class Cloud:
     colors: Optional[ByteArray]  #: (n, 3)
     name: Optional[str] = None  #: of the file
     viewpoint: Optional[list[float]] = None  #: of the sensor, if the file says it
+    unused: Optional[IndexArray] = None  #: rows in no face of the file, which are not finite
 
 
 def read(name: str, value: Any, progress: Optional[ProgressFunction] = None) -> Cloud:

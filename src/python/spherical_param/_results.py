@@ -234,7 +234,11 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     ``vertex_of_input`` of a surface is about its own points, that of a result about the whole
     cloud.
     """
-    left_out = LeftOut(**fields["left_out"])
+    rows = fields["left_out"]
+    if cloud.unused is not None:
+        finite = np.setdiff1d(rows["not_finite"], cloud.unused)
+        rows.update(unused=cloud.unused, not_finite=finite)
+    left_out = LeftOut(**rows)
     results = []
     for part, surface in enumerate(fields["surfaces"]):
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)
