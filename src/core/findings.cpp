@@ -199,7 +199,7 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
       std::tie(fold.option, fold.value) = std::pair("method", "default");
     else if (isRough(result))
       std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
-    else if (result.is_noisy && options.smoothing == 0 && !diagnosis.fills_volume)
+    else if (result.is_noisy && result.consolidated.cols() > 0 && options.smoothing == 0)
       std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
     findings.push_back(fold);
   }
@@ -263,8 +263,8 @@ std::string failureOf(std::size_t first, std::size_t end,
 }
 
 void summarize(std::size_t parts_in_all, Result& result) {
-  const std::vector<Surface>& surfaces = result.surfaces;
-  std::vector<std::string> parts;  // of each finding
+  std::vector<Surface>& surfaces = result.surfaces;
+  std::vector<std::vector<std::size_t>> parts;  // of each finding
   std::size_t faulty = 0;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     faulty += hasFault(surfaces[i].findings) ? 1 : 0;
@@ -274,20 +274,26 @@ void summarize(std::size_t parts_in_all, Result& result) {
             return other.text == finding.text && other.value == finding.value &&
                    other.is_consequence == finding.is_consequence;
           });
-      const std::string part = "part " + std::to_string(i + 1);
+      const auto place = static_cast<std::size_t>(same - result.findings.begin());
       if (same == result.findings.end()) {
         result.findings.push_back(finding);
-        parts.push_back(part);
-      } else {
-        parts[static_cast<std::size_t>(same - result.findings.begin())] += ", " + part;
+        parts.emplace_back();
       }
+      parts[place].push_back(i + 1);
     }
   }
   if (surfaces.size() == 1) {
     result.verdict = surfaces.front().verdict;
   } else {
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      result.findings[i].text.insert(0, parts[i] + ": ");
+    constexpr std::size_t most_named = 8;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      std::string of;
+      for (const std::size_t part : parts[i])
+        of += (of.empty() ? "part " : ", part ") + std::to_string(part);
+      if (parts[i].size() > most_named)
+        of = grouped(parts[i].size()) + " parts";
+      result.findings[i].text.insert(0, of + ": ");
+    }
     const auto open = static_cast<std::size_t>(
         std::count_if(surfaces.begin(), surfaces.end(),
                       [](const Surface& surface) { return !surface.isClosed(); }));
@@ -301,6 +307,8 @@ void summarize(std::size_t parts_in_all, Result& result) {
     result.verdict.replace(result.verdict.size() - 1, 1, "; " + text + " left out.");
   if (parts_in_all > surfaces.size())
     result.verdict += " " + counted(parts_in_all - surfaces.size(), "part") + " cannot be meshed.";
+  if (surfaces.size() == 1)
+    surfaces.front().verdict = result.verdict;
 }
 
 }  // namespace spherical_param::internal

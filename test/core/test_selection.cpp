@@ -1,5 +1,7 @@
 #include "selection.h"
 
+#include "handle_shapes.h"
+#include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
 
@@ -69,6 +71,43 @@ void expectAlone(const Positions& points, const Surface& surface, Options option
               surface.inputs[static_cast<std::size_t>(alone.input_of_vertex[v])]);
   for (std::size_t i = 0; i < surface.inputs.size(); ++i)
     EXPECT_EQ(surface.vertexOf(surface.inputs[i]), alone.vertex_of_input[i]);
+}
+
+TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
+  Positions points = horizontally(test::ellipsoid(500), movedTo(3.0, test::hemisphere(400)));
+  points = horizontally(points, movedTo(6.0, test::torusCloud(40, 16)));
+  points = horizontally(points, Eigen::Vector3d(0.0, 9.0, 0.0));
+  Options options;
+  const Result scan = reconstruct(points, options);
+  EXPECT_EQ(scan.verdict, "3 surfaces, 1 with openings, all sound; 1 stray point left out.");
+  EXPECT_EQ(scan.surface().genus(), 1U);
+  options.surface = SurfaceMode::Closed;
+  options.parts = PartsMode::Largest;
+  EXPECT_EQ(reconstruct(points, options).verdict,
+            "A sound mesh with 1 handle; 1 stray point, 900 points in other parts left out.");
+  const Surface sphere = surfaceOf(points, test::quick(test::sphere()));
+  EXPECT_TRUE(test::isSphereOverAll(sphere.triangles, static_cast<Index>(points.cols())));
+  EXPECT_EQ(withTopology(test::paper()).parts, PartsMode::All);
+}
+
+TEST(Topology, OfWholeObjectsIsASphereInBothWays) {
+  for (const Positions& points :
+       {test::ellipsoid(600), test::noisySphere(800, 0.2), test::randomSphere(700, 5),
+        test::bentTube(6.0, 1.0, 12).points, test::twoSpheres(30, 30, 0.5)}) {
+    const Result scan = reconstruct(points);
+    EXPECT_TRUE(scan.left_out.text().empty());
+    EXPECT_EQ(scan.surface().triangles, surfaceOf(points, test::sphere()).triangles);
+  }
+}
+
+TEST(Topology, PointsThatSampleWhatIsOpenAreNoStrayPoints) {
+  const Positions object = test::pointsWhere(test::spiralSphere(3000),
+                                             [](const Eigen::Vector3d& p) { return p.z() > -0.6; });
+  Positions few = 0.4 * test::spiralSphere(5);
+  few.row(2).setConstant(-0.6);
+  EXPECT_TRUE(reconstruct(horizontally(object, few)).left_out.text().empty());
+  few(2, 0) = 0.0;
+  EXPECT_EQ(reconstruct(horizontally(object, few)).left_out.outliers.size(), 5U);
 }
 
 TEST(Selection, EverySurfaceIsThatOfItsPointsAlone) {

@@ -364,9 +364,9 @@ class Parts(unittest.TestCase):
 
     def test_findings_can_be_pasted(self):
         mesh = sp.reconstruct(np.concatenate([self.small[:100], self.large]), topology="sphere")
-        finding = next(finding for finding in mesh.findings if finding.option == "parts")
+        finding = next(finding for finding in mesh.findings if finding.option == "topology")
         self.assertEqual(
-            str(finding), '2 separate parts (100 and 400 points): try parts="each"'
+            str(finding), '2 separate parts (100 and 400 points): try topology="scan"'
         )
         for value, text in (("1e-8", "1e-8"), ("5", "5"), ("auto", '"auto"')):
             finding = sp.Finding("a text", "option", value, False, False)

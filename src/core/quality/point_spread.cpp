@@ -25,8 +25,8 @@ Positions someOf(const Positions& points, Eigen::Index count) {
 
 bool fillVolume(const Positions& points) {
   constexpr Eigen::Index min_points = 500;
-  // Surfaces have 1.7 to 2.3, with noise of twice the spacing 2.4; the voxels of a ball have 2.7.
-  constexpr double min_dimension = 2.5;
+  // Surfaces have 1.7 to 2.3, with noise of twice the spacing 2.4; solids have 2.6 to 2.8.
+  constexpr double min_dimension = 2.55;
   if (points.cols() < min_points)
     return false;
   const Positions centers = someOf(points, 100);

@@ -10,7 +10,7 @@
 namespace spherical_param::internal {
 
 /// Whether points fill a volume: the number of points within a distance grows faster than its power
-/// 2.5. False of fewer than 500 points. Cost: O(n), of a sample.
+/// 2.55. False of fewer than 500 points. Cost: O(n), of a sample.
 bool fillVolume(const Positions& points);
 
 /// Whether points lie along lines which are farther apart: the nearest neighbours of most points

@@ -55,6 +55,15 @@ TEST(Parts, HaveMinPointsPositions) {
   EXPECT_TRUE(partsOf(twice, 61).empty());
 }
 
+TEST(Parts, SmallSheetsBesideLargeOnesBelongToThem) {
+  const Positions sphere = spiralSphere(4000);  // .06 apart
+  const Positions cap = 0.2 * spiralSphere(100);
+  EXPECT_EQ(findParts(horizontally(sphere, movedTo(1.35, cap))).size(), 1U);
+  EXPECT_EQ(findParts(horizontally(sphere, movedTo(1.6, cap))).size(), 2U);
+  const Positions half = spiralSphere(1000);
+  EXPECT_EQ(findParts(horizontally(half, movedTo(2.2, half))).size(), 2U);
+}
+
 TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
   const Positions sphere = spiralSphere(1000);
   Positions others(3, 3);

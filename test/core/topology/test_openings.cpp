@@ -58,6 +58,19 @@ Positions hexagonalGrid(Index columns, const std::function<bool(Index)>& is_kept
   return test::positionsOf(points);
 }
 
+TEST(Openings, TheRimOfALowSheetIsCertainHoweverFewItsPoints) {
+  const auto dome = [](double height) {
+    Positions points = hexagonalGrid(6, [](Index i) { return i < 36; });
+    const Eigen::Vector3d center = points.rowwise().mean();
+    points.row(2) = -height * (points.colwise() - center).colwise().squaredNorm();
+    return openingsOf(points);
+  };
+  ASSERT_FALSE(dome(0.02).empty());
+  EXPECT_TRUE(dome(0.02).front().isCertain());
+  for (const Opening& opening : dome(0.3))
+    EXPECT_FALSE(opening.isCertain());
+}
+
 TEST(Openings, CountFromThreeSpacingsOn) {
   // Without five points in two rows the hole is of 19 triangles and 11 edges, a little less than 3
   // wide: 4 area / length = 2.99. Without six, it is of 22 and 12: 3.18.

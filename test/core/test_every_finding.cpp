@@ -1,0 +1,144 @@
+#include "handle_shapes.h"
+#include "open_shapes.h"
+#include "reconstructions.h"
+#include "spherical_param/errors.h"
+#include "spherical_param/option_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+/// Points of a grid, where a function is not negative.
+template <typename Inside>
+Positions latticeWhere(int side, const Inside& inside) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < side * side * side; ++i) {
+    const Eigen::Vector3d p(i % side, i / side % side, i / side / side);
+    if (inside(p))
+      points.push_back(p);
+  }
+  return test::positionsOf(points);
+}
+
+Positions elevationModel(int side) {
+  Positions points = latticeWhere(side, [](const auto& p) { return p.z() == 0.0; });
+  for (auto point : points.colwise())
+    point.z() = std::sin(7.0 * point.x() * point.x() + 3.0 * point.y());
+  return points;
+}
+
+/// A capped tube by rings, `ratio` times as far apart as the points on them.
+Positions contours(double ratio, int rings) {
+  constexpr int around = 120;
+  std::vector<Eigen::Vector3d> points;
+  for (int ring = 0; ring < rings; ++ring)
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2.0 * test::kPi * (i + 0.5 * (ring % 2)) / around;
+      points.emplace_back(std::cos(angle), std::sin(angle),
+                          ratio * 2.0 * test::kPi / around * ring);
+    }
+  return test::positionsOf(points);
+}
+
+const std::map<std::string, Positions>& clouds() {
+  static const auto ball = [](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d::Constant(5.0)).norm() <= 5.1;
+  };
+  static const std::map<std::string, Positions> all = {
+      {"whole", test::ellipsoid(800)},
+      {"two", test::twoSpheres(400, 300, 6.0)},
+      {"eight",
+       [] {
+         Positions cloud(3, 0);
+         for (int i = 0; i < 8; ++i)
+           cloud = test::horizontally(cloud, test::spiralSphere(200).colwise() +
+                                                 Eigen::Vector3d(3.0 * i, 0.0, 0.0));
+         return cloud;
+       }()},
+      {"two too small", test::twoSpheres(30, 30, 6.0)},
+      {"bowl", test::hemisphere(800)},
+      {"holes", test::sphereWithHoles(1500, 3, 0.4)},
+      {"patch", test::flatPatch(15)},
+      {"torus", test::torusCloud(40, 16)},
+      {"double torus", test::doubleTorus(0.12)},
+      {"strays inside",
+       test::horizontally(test::spiralSphere(1500),
+                          0.9 * test::randomCube(60, 3) - Positions::Constant(3, 60, 0.45))},
+      {"strays outside", test::horizontally(test::spiralSphere(800), 1.6 * test::spiralSphere(5))},
+      {"noisy", test::noisySphere(1000, 0.5)},
+      {"very noisy", test::noisySphere(1500, 1.7)},
+      {"corners", test::cubeGrid(2)},
+      {"elevations", elevationModel(10)},
+      {"volume", latticeWhere(11, ball)},
+      {"contours", contours(5.0, 12)},
+      {"rings far apart", contours(20.0, 6)}};
+  return all;
+}
+
+/// 0: sound; 1: with faults; 2: with intersections; 3: not usable; 4: there is no mesh.
+int gravityOf(const Positions& points, const Options& options, std::vector<Finding>& findings) {
+  try {
+    const Result result = reconstruct(points, options);
+    findings = result.findings;
+    const bool intersects =
+        std::any_of(result.surfaces.begin(), result.surfaces.end(),
+                    [](const Surface& surface) { return surface.intersecting_triangles > 0; });
+    return !result.isUsable() ? 3 : intersects ? 2 : hasFault(findings) ? 1 : 0;
+  } catch (const InvalidInput&) {
+    return 4;
+  }
+}
+
+TEST(EveryFinding, OfEveryCloudHelpsOrDoesNoHarmAndNoneRepeatsAnOption) {
+  for (const auto& [name, points] : clouds())
+    for (const TopologyMode topology : {TopologyMode::Scan, TopologyMode::Sphere}) {
+      std::vector<std::pair<Options, int>> todo(1);  // what was asked, and the gravity before
+      todo[0].first.topology = topology;
+      todo[0].second = 4;
+      for (std::size_t i = 0; i < todo.size(); ++i) {
+        const auto [options, before] = todo[i];
+        std::vector<Finding> findings;
+        const int gravity = gravityOf(points, options, findings);
+        EXPECT_LE(gravity, before) << name;
+        for (const Finding& finding : findings) {
+          if (finding.option.empty())
+            continue;
+          SCOPED_TRACE(name + ": " + finding.text + ": " + finding.option + " " + finding.value);
+          const OptionRow& row = findOption(finding.option);
+          ASSERT_NE(textOf(row.get(withTopology(options))), finding.value);
+          Options with = options;
+          setOption(with, finding.option,
+                    row.choices.empty() ? OptionValue(std::int64_t{std::stoi(finding.value)})
+                                        : OptionValue(finding.value));
+          ASSERT_LT(todo.size(), 20U) << "they lead in circles";
+          todo.emplace_back(with, gravity);
+        }
+      }
+    }
+}
+
+TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {
+  const auto texts_of = [](const std::string& name) {
+    std::string texts;
+    for (const Finding& finding : reconstruct(clouds().at(name)).findings)
+      texts += finding.text + "; ";
+    return texts;
+  };
+  EXPECT_NE(texts_of("noisy").find("the points are noisy"), std::string::npos);
+  EXPECT_NE(texts_of("volume").find("the points fill a volume"), std::string::npos);
+  EXPECT_NE(texts_of("contours").find("the points lie along lines"), std::string::npos);
+  for (const char* name : {"whole", "corners", "elevations", "torus", "patch"})
+    EXPECT_EQ(texts_of(name), "") << name;
+}
+
+}  // namespace
+}  // namespace spherical_param
