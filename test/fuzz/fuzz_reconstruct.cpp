@@ -20,6 +20,7 @@ using fuzz::require;
 
 Options optionsFrom(Bytes& bytes) {
   Options options;
+  options.topology = TopologyMode::Sphere;
   EmbeddingOptions& embedding = options.embedding;
   PaperOptions& paper = options.paper;
   options.method = bytes.choice<Method>(2);
@@ -45,14 +46,14 @@ Options optionsFrom(Bytes& bytes) {
   if (which / 2 % 2 != 0)
     options.consolidation = ConsolidationMode::Auto;
   if (which / 4 % 2 != 0) {
-    options.outliers = bytes.choice<OutlierMode>(3);
+    options.outliers = bytes.choice<OutlierMode>(4);
     options.outlier_sigma = bytes.realOr(4.0);
   }
   if (which / 8 % 2 != 0) {
-    options.parts = bytes.choice<PartsMode>(3);
+    options.parts = bytes.choice<PartsMode>(4);
     options.min_points = bytes.integerOr(8);
   }
-  return options;
+  return withTopology(options);
 }
 
 /// Whether all options are in range; each range has a test of its own.
@@ -165,7 +166,7 @@ void checkResult(const Positions& points, const Options& options, const Result& 
   if (!fault.empty())
     fuzz::finding(fault);
   for (const Surface& surface : result.surfaces) {
-    require(options.parts == PartsMode::All ||
+    require(options.parts != PartsMode::Each ||
                 stress::firstAtPlaces(points(Eigen::all, surface.inputs)).size() >=
                     static_cast<std::size_t>(options.min_points),
             "a part has its minimum number of distinct points");

@@ -39,7 +39,7 @@ void fuzzOutliers(Bytes& bytes, const Positions& points, Watch& watch) {
   };
   Options options;
   static_cast<Execution&>(options) = executionFrom(bytes, watch);
-  options.outliers = bytes.choice<OutlierMode>(3);
+  options.outliers = bytes.choice<OutlierMode>(4);
   options.outlier_sigma = bytes.realOr(4.0);
   options.min_points = bytes.integerOr(8);
   const std::vector<Index> outliers = findOutliers(points, options);

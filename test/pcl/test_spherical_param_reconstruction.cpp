@@ -80,6 +80,51 @@ TEST_F(SphericalParamReconstruction, IndicesMayHaveAnyOrderAndComeInAllTypesOfPc
   EXPECT_TRUE(isSphere(meshed(reconstruction), 60));
 }
 
+TEST_F(SphericalParamReconstruction, SurfacesFaceAsTheNormalsOfThePointsOrTheSensor) {
+  using spherical_param::FacedBy;
+  pcl::PointCloud<pcl::PointNormal>::Ptr with_normals(new pcl::PointCloud<pcl::PointNormal>);
+  const Cloud::Ptr ellipsoid = makeEllipsoid(300);
+  for (const PointXYZ& p : *ellipsoid)
+    with_normals->push_back(pcl::PointNormal(p.x, p.y, p.z, -p.x, -p.y, -p.z));
+  pcl::SphericalParamReconstruction<pcl::PointNormal> inward;
+  inward.setInputCloud(with_normals);
+  inward.reconstruct();
+  EXPECT_EQ(inward.getResult().surface().faced_by, FacedBy::Normals);
+  EXPECT_LT(inward.getResult().surface().measures.volume, 0.0);
+
+  const Cloud::Ptr patch(new Cloud);
+  for (int i = 0; i < 400; ++i)
+    patch->push_back(PointXYZ(static_cast<float>(i % 20) - 10.0F,
+                              static_cast<float>(i / 20) - 10.0F,
+                              5.0F + 0.01F * static_cast<float>(i % 7)));
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(patch);
+  EXPECT_FALSE(meshed(reconstruction).empty());
+  EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Viewpoint);
+  for (PointXYZ& point : *patch)
+    point.z -= 5.02F;  // around the origin
+  meshed(reconstruction);
+  EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Up);
+  patch->sensor_origin_ = Eigen::Vector4f(0.0F, 0.0F, -30.0F, 0.0F);
+  meshed(reconstruction);
+  EXPECT_EQ(reconstruction.getResult().surface().faced_by, FacedBy::Viewpoint);
+}
+
+TEST_F(SphericalParamReconstruction, TheTopologyIsThatOfTheScanOrASphere) {
+  const Cloud::Ptr cloud = makeTorus(24);
+  const std::size_t of_torus = cloud->size();
+  *cloud += *beside(makeEllipsoid(300));
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  EXPECT_EQ(reconstruction.getTopology(), spherical_param::TopologyMode::Scan);
+  meshed(reconstruction);
+  EXPECT_EQ(reconstruction.getPartCount(), 2U);
+  EXPECT_EQ(reconstruction.getResult().surface().vertexCount(), of_torus);
+  reconstruction.setTopology(spherical_param::TopologyMode::Sphere);
+  reconstruction.setTimeLimit(0.0);
+  EXPECT_TRUE(isSphere(meshed(reconstruction), cloud->size()));
+}
+
 TEST_F(SphericalParamReconstruction, OrganizedCloudsAreMeshedWhateverIsDenseSays) {
   for (const bool is_dense : {true, false}) {
     const HardCase hard;

@@ -59,6 +59,33 @@ class Clouds(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, "; use one of .pcd .ply"):
                 sp.find_parts(folder / "scan.docx")
 
+    def test_surfaces_face_as_normals_do_or_the_sensor(self):
+        self.assertEqual(self.expected.faced_by, "outward")
+        inward = sp.reconstruct(shapes.record(self.points, self.colors, -self.normals))
+        self.assertEqual(inward.faced_by, "normals")
+        self.assertLess(inward.measures.volume, 0)
+        with tempfile.TemporaryDirectory() as name:
+            file = Path(name, "a.pcd")
+            bowl = shapes.ellipsoid(1200)
+            bowl = bowl[bowl[:, 2] > 0]
+            header = (
+                f"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH {len(bowl)}\nHEIGHT 1\n"
+                f"VIEWPOINT 0 0 9 1 0 0 0\nPOINTS {len(bowl)}\nDATA ascii"
+            )
+            np.savetxt(file, bowl, header=header, comments="")
+            self.assertEqual(sp.reconstruct(file).faced_by, "viewpoint")
+
+    def test_rows_in_no_face_of_a_file_are_left_out(self):
+        with tempfile.TemporaryDirectory() as name:
+            file = Path(name, "a.ply")
+            self.expected.write(file)
+            content = file.read_bytes().replace(b"element vertex 300", b"element vertex 301", 1)
+            end = content.index(b"end_header\n") + len(b"end_header\n")
+            row = content[end : end + 24]  # with its normal
+            file.write_bytes(content[:end] + row + content[end:])
+            left_out = sp.reconstruct(file).left_out
+            self.assertEqual((len(left_out.unused), len(left_out.not_finite)), (1, 0))
+
     def test_structured_arrays_have_their_fields_by_many_names(self):
         source = shapes.record(self.points, self.colors, self.normals)
         self.check(source)

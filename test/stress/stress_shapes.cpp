@@ -60,6 +60,7 @@ bool isClosedForVtk(const Triangles& triangles, Index vertices) {
 Options someOptions(stress::Random& random, bool is_large) {
   const auto one = [&random](int count) { return random.integer(0, count - 1); };
   Options options;
+  options.topology = TopologyMode::Sphere;
   if (one(2) == 0)
     return options;
   options.method = one(3) == 0 ? Method::Paper : Method::Default;
@@ -69,8 +70,8 @@ Options someOptions(stress::Random& random, bool is_large) {
   options.smoothing = one(3) == 0 ? one(30) : 0;
   options.embedding.starts = 1 + one(3);
   options.seed = static_cast<std::uint32_t>(one(1000000));
-  options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(3)) : OutlierMode::None;
-  options.parts = one(5) == 0 ? static_cast<PartsMode>(one(3)) : PartsMode::All;
+  options.outliers = one(5) == 0 ? static_cast<OutlierMode>(one(4)) : OutlierMode::None;
+  options.parts = one(5) == 0 ? static_cast<PartsMode>(one(4)) : PartsMode::All;
   options.min_points = 4 + one(60);
   return options;
 }
@@ -78,7 +79,7 @@ Options someOptions(stress::Random& random, bool is_large) {
 /// What is wrong with the answer to a set; empty if nothing is.
 std::string tryOut(const Positions& points, std::uint64_t seed) {
   stress::Random random(seed ^ 0x5eedULL);
-  Options options = someOptions(random, points.cols() > 600);
+  Options options = withTopology(someOptions(random, points.cols() > 600));
   const NeighborSearchFactory search_of =
       random.chance(0.4) ? test::bruteForceFactory(points) : NeighborSearchFactory();
   options.threads = 1;

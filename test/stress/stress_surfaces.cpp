@@ -128,7 +128,10 @@ void checkOpenings(const std::vector<Opening>& all, const Truth& truth, double s
 Complaints complaintsAbout(const Truth& truth, const ScanOptions& scan_options) {
   // Rounded as by a file.
   const Positions points = generateScan(scan_options).points.cast<float>().cast<double>();
-  const Options options;
+  Options options;
+  options.topology = TopologyMode::Sphere;
+  options.handles = HandleMode::Auto;
+  options = withTopology(options);
   const Surface result = reconstruct(points, options).surface();
   const SurfaceDiagnosis& found = result.diagnosis;
   Complaints complaints;

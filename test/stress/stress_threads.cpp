@@ -64,6 +64,8 @@ Job makeJob(std::uint64_t seed, std::size_t number, Index most_points) {
   options.threads = 1 + below(2);
   options.outliers = below(4) == 0 ? OutlierMode::Auto : OutlierMode::None;
   options.parts = below(4) == 0 ? PartsMode::Each : PartsMode::All;
+  options.topology = TopologyMode::Sphere;
+  options = withTopology(options);
   return job;
 }
 

@@ -45,10 +45,16 @@ void Findings::print() const {
     return;
   }
   std::fflush(stdout);
+  constexpr std::size_t most_printed = 12;
+  std::size_t count = 0;
   for (const Entry& entry : entries_) {
-    if (!entry.finding.is_consequence && (!strict_ || !entry.finding.is_fault)) {
+    if (!entry.finding.is_consequence && (!strict_ || !entry.finding.is_fault) &&
+        ++count <= most_printed) {
       std::fprintf(stderr, "warning: %s\n", textOf(entry).c_str());
     }
+  }
+  if (count > most_printed) {
+    std::fprintf(stderr, "warning: %zu more, which -json lists\n", count - most_printed);
   }
 }
 

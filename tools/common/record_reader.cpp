@@ -348,6 +348,9 @@ private:
           visit(toCount(words_[word]));
         }
       }
+      if (values > 0) {
+        return false;
+      }
     }
     return true;
   }

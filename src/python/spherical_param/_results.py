@@ -182,12 +182,12 @@ class Results(tuple[Result, ...], MeshExport):
     stages: dict[str, float]  #: wall time of each stage, over all parts [s]
 
     @cached_property
-    def vertices(self) -> FloatArray:
+    def vertices(self) -> FloatArray:  # type: ignore[override]
         """(v, 3) of all surfaces [unit of the input]."""
         return np.concatenate([each.vertices for each in self])
 
     @cached_property
-    def triangles(self) -> IndexArray:
+    def triangles(self) -> IndexArray:  # type: ignore[override]
         """(t, 3) of all surfaces, into ``vertices``."""
         first = np.cumsum([0] + [len(each.vertices) for each in self])
         return np.concatenate([each.triangles + at for each, at in zip(self, first)], dtype=np.int32)

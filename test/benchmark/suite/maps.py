@@ -6,7 +6,7 @@ from .programs import require, stage_seconds
 
 SHAPES = ("sphere", "ellipsoid", "head", "bird", "hand", "animal", "dumbbell", "star", "snake",
           "plate", "torus", "bowl", "pair")  # fmt: skip
-NO_HANDLES = "-handles", "none"  # without them all clouds have a map
+SPHERE = "-topology", "sphere"  # all clouds have a map
 # Points of a geodesic sphere of frequency 32 or 128, and the side of an image of about as many pixels.
 GRIDS = (10242, 101), (163842, 405)
 # Stages that belong to the map and what is made from it; all others are the meshing.
@@ -53,11 +53,11 @@ def _map_row(cloud, report):
 def _remeshed_rows(context, cloud, points, side):
     """A grid on the sphere, and a geometry image that is read again."""
     mesh, image = context.work / "remeshed.ply", context.work / "image.tif"
-    context.programs.reconstruct(cloud, mesh, *NO_HANDLES)
+    context.programs.reconstruct(cloud, mesh, *SPHERE)
     of_mesh = context.programs.measure(mesh, cloud)
     for made, words in (
-        ("geodesic sphere", [[cloud.points, mesh, "-points", points, *NO_HANDLES]]),
-        ("geometry image", [[cloud.points, image, "-side", side, *NO_HANDLES], [image, mesh]]),
+        ("geodesic sphere", [[cloud.points, mesh, "-points", points, *SPHERE]]),
+        ("geometry image", [[cloud.points, image, "-side", side, *SPHERE], [image, mesh]]),
     ):
         seconds = sum(_remesh(context, *line)[0] for line in words)
         yield {"model": cloud.name, "made": made, "seconds": seconds, "mesh_rms": of_mesh["rms"],
@@ -76,7 +76,7 @@ def section(context):
         rows = []
         for cloud in clouds:
             context.say(f"map: {cloud.name}")
-            rows.append(_map_row(cloud, _remesh(context, cloud.points, mesh, *NO_HANDLES)[1]))
+            rows.append(_map_row(cloud, _remesh(context, cloud.points, mesh, *SPHERE)[1]))
         report.add(name, MAPS, rows)
     by_size = sorted((cloud for cloud in context.models if cloud.truth),
                      key=lambda cloud: cloud.points.stat().st_size)  # fmt: skip

@@ -167,6 +167,38 @@ TEST_F(CloudReader, FindsThePointsAmongOtherElementsInAnyByteOrder) {
   }
 }
 
+TEST_F(CloudReader, PointsInNoFaceAreNotFiniteUnlessTheFacesMakeNoSense) {
+  const std::string path = directory.file("a.ply");
+  for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+    SCOPED_TRACE(format);
+    const std::string file = plyOf(makeCloud(50005), format);  // the faces have 50,002 points
+    tool_test::writeFile(path, file);
+    const PointData data = readCloud(path);
+    EXPECT_EQ(data.unused, (std::vector<Index>{50002, 50003, 50004}));
+    EXPECT_TRUE(std::isfinite(data.points[50001][0]) && std::isnan(data.points[50002][0]));
+    tool_test::writeFile(path, file.substr(0, file.size() - 20));
+    EXPECT_TRUE(readCloud(path).unused.empty());
+    tool_test::writeFile(path, plyOf(makeCloud(1000), format));
+    EXPECT_TRUE(readCloud(path).unused.empty());
+  }
+}
+
+TEST_F(CloudReader, TheViewpointOfPcdIsTheOriginOnlyWithRowsOrIfItIsApart) {
+  const auto viewpoint_of = [&](const std::string& header, double x) {
+    const std::string path = directory.file("a.pcd");
+    tool_test::writeFile(path, "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n" + header +
+                                   "POINTS 2\nDATA ascii\n-1 -1 -1\n" + std::to_string(x) +
+                                   " 1 1\n");
+    return readCloud(path).viewpoint;
+  };
+  EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 1 2 -3 1 0 0 0\n", 1.0),
+            (Point{1.0, 2.0, -3.0}));
+  EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n", 1.0), std::nullopt);
+  EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n", -0.5), Point{});
+  EXPECT_EQ(viewpoint_of("WIDTH 1\nHEIGHT 2\nVIEWPOINT 0 0 0 1 0 0 0\n", 1.0), Point{});
+  EXPECT_EQ(viewpoint_of("WIDTH 2\nHEIGHT 1\n", 1.0), std::nullopt);
+}
+
 std::string textOf(const Cloud& cloud, const std::string& before) {
   std::ostringstream text;
   text.precision(17);  // exact
