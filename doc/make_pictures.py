@@ -80,7 +80,7 @@ def demo():
     draw("whole.png", "1020x400", [(cloud, "point cloud"), ("mesh.ply", "closed mesh"),
          ("sphere.ply", "its map to the sphere")], "--colors=sphere.ply", "--view=25,20")  # fmt: skip
     cloud = scan("holed", 12000)
-    mesh(cloud, "open", "-surface", "open", "-sphere", "open_sphere.ply")
+    mesh(cloud, "open", "-sphere", "open_sphere.ply")
     draw("open.png", "680x400", [(cloud, "a scan with openings"), ("open.ply", "open mesh")],
          "--colors=open_sphere.ply", "--view=60,15")  # fmt: skip
     cloud = scan("chair", 8000)
@@ -174,24 +174,14 @@ def consolidation():
 
 
 def symptoms():
-    run("scan", "hand", "stray.xyz", "-points", 6000)
-    points = [line.split()[:3] for line in pathlib.Path("stray.xyz").read_text().splitlines()]
-    low, high = ([extreme(float(point[c]) for point in points) for c in range(3)] for extreme in (min, max))
-    random = Random(1)
-    with open("stray.xyz", "a") as cloud:
-        for _ in range(40):
-            cloud.write(" ".join(f"{random.uniform(a, b):.6g}" for a, b in zip(low, high)) + "\n")
     for name, cloud, options, view in (
-        ("parts", scan("pair", 4000), ["-parts", "each"], "--view=20,15"),
-        ("opening", scan("bowl", 4000), ["-surface", "open"], "--view=30,20"),
-        ("outliers", "stray.xyz", ["-outliers", "auto"], FRONT),
         ("noise", scan("animal", 12000, "-noise", 0.6), ["-consolidation", "auto"], SIDE),
         ("handle", scan("torus", 4000), ["-handles", "none"], "--view=30,40"),
     ):
         mesh(cloud, "before")
         run("reconstruction", cloud, "after.ply", *options)
         draw(PICTURES / f"symptom_{name}.png", "720x300", [("before.ply", "by default"),
-             ("after.ply", " ".join(options))], "--edges" if name in ("parts", "opening", "handle") else "--zoom=1", view)  # fmt: skip
+             ("after.ply", " ".join(options))], "--edges" if name == "handle" else "--zoom=1", view)  # fmt: skip
 
 
 def depth_camera():
@@ -203,7 +193,7 @@ def depth_camera():
     call("pcl_voxel_grid", "near.pcd", "thin.pcd", "-leaf", "0.009,0.009,0.009")
     for name in ("seen", "thin"):
         call("pcl_pcd2ply", "-format", 0, f"{name}.pcd", f"{name}.ply")
-    run("reconstruction", "thin.pcd", "mesh.ply", "-parts", "largest", "-surface", "open")
+    run("reconstruction", "thin.pcd", "mesh.ply")
     draw(PICTURES / "depth_camera.png", "1260x420", [("seen.ply", "depth image"), ("thin.ply", "cropped and thinned"),
          ("mesh.ply", "its mesh")], "--view=-25,20", "--view=-25,5")  # fmt: skip
 

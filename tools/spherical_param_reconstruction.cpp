@@ -43,20 +43,18 @@ const std::vector<OptionInfo> option_table =
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
-    {"A mesh through all points of a scan", "scan.ply mesh.ply"},
+    {"The surfaces of a scan", "scan.ply mesh.ply"},
     {"With its map to the sphere and a page to look at",
      "scan.ply mesh.ply -sphere sphere.ply -report report.html"},
-    {"A mesh of a noisy scan with outliers",
-     "scan.ply mesh.ply -outliers auto -consolidation auto"},
-    {"The largest object of a depth image, with its openings",
-     "scan.pcd mesh.ply -parts largest -surface open"},
+    {"A mesh of a noisy scan", "scan.ply mesh.ply -consolidation auto"},
+    {"One closed surface through every point", "scan.ply mesh.ply -topology sphere"},
 };
 
 std::string helpText(bool with_experts) {
   return "Usage: " + tool_name +
          " input output [options]\n\n"
-         "Meshes the points of an object into a closed surface with the handles of the object,\n"
-         "or a surface with the openings of the scan.\n"
+         "Meshes a point cloud into surfaces with the parts, openings and handles that it shows,\n"
+         "or into one closed surface through every point.\n"
          "  input:  " +
          extensionsFor(FileUse::ReadCloud) + "\n  output: " + extensionsFor(FileUse::WriteMesh) +
          "\n\nOptions (-name value, --name value or --name=value; defaults in brackets):\n" +
