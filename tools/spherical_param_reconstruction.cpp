@@ -205,6 +205,7 @@ Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
 Json report(const Settings& settings, const CloudReconstruction& cloud, const Surface& surface) {
   Json json = cloudReport(settings, cloud);
   json.update(toJson(surface));
+  json["failures"] = cloud.result.failures;
   return json;
 }
 
@@ -323,7 +324,15 @@ void writeFiles(const Settings& settings, CloudReconstruction& cloud, Console& c
     const Settings of_part = settingsOf(settings, i);
     checkOutputs({settings.input}, outputsOf(of_part));
     writeMeshFile(of_part, meshOf(cloud, surfaces[i]), cloud, console, files);
-    writeViews(of_part, cloud, surfaces[i], console, files);
+    // Those without a number are of the largest.
+    Settings of_views = of_part;
+    if (i > 0 && !isNumbered(settings.sphere)) {
+      of_views.sphere.clear();
+    }
+    if (i > 0 && !isNumbered(settings.page)) {
+      of_views.page.clear();
+    }
+    writeViews(of_views, cloud, surfaces[i], console, files);
   }
 }
 
@@ -347,8 +356,9 @@ void run(const std::vector<std::string>& words) {
   publish(
       settings.report, files, console,
       [&] {
-        return cloud.result.surfaces.size() > 1 ? reportOnParts(settings, cloud)
-                                                : report(settings, cloud, cloud.surface());
+        const bool is_list = cloud.result.surfaces.size() > 1 ||
+                             settings.reconstruction.options.parts == PartsMode::Each;
+        return is_list ? reportOnParts(settings, cloud) : report(settings, cloud, cloud.surface());
       },
       [&] { printSummary(settings, cloud, console); });
   Findings findings(settings.report.quiet, settings.reconstruction.strict, settings.page.empty());

@@ -145,10 +145,10 @@ struct Options : Execution {
   bool details = false;
 };
 
-/// The options with what is as the topology says.
+/// Replaces AsTopology by what the topology and the method imply.
 ///
 /// \param options any.
-/// \return the same without AsTopology.
+/// \return the same otherwise.
 Options withTopology(Options options);
 
 /// Checks the ranges of all options. reconstruct() does so too; callers may check before long work.

@@ -12,15 +12,21 @@ namespace spherical_param {
 /// \addtogroup pipeline
 /// @{
 
-/// What the surfaces of a cloud face, as far as it is known.
-struct Facing {
+/// What is known of a cloud besides its points.
+struct CloudInfo {
   Positions normals;                         ///< 3 x n, of each point, of any length; or empty
   std::optional<Eigen::Vector3d> viewpoint;  ///< of the sensor [unit of the input]
+  std::vector<Index> unused;  ///< points to leave out, ascending: those that no face of a mesh uses
 };
 
-/// Whether a place is within the box of some points, finite or not: a sensor that nobody has set is
-/// not there.
-bool isWithinBox(const Positions& points, const Eigen::Vector3d& place);
+/// The viewpoint of a cloud. The origin, which stands for an unknown one, counts if the points are
+/// in rows, or if it is outside of their box.
+///
+/// \param points   3 x n, finite or not.
+/// \param sensor   as file or message say.
+/// \param has_rows the sensor has seen the points in rows.
+std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen::Vector3d& sensor,
+                                           bool has_rows);
 
 /// Meshes a point cloud: neighbours -> neighbour graph -> stray points and parts -> of each part
 /// openings -> embedding on the sphere -> triangulation there -> optimisation on the points ->
@@ -36,7 +42,7 @@ bool isWithinBox(const Positions& points, const Eigen::Vector3d& place);
 ///               at most once, with the first point at each position. It and its search run in the
 ///               calling thread; their exceptions are passed on. Not used once outliers are left
 ///               out, for one of several parts, nor for consolidated points.
-/// \param facing  normals decide which side of a surface is outside; else an open one faces the
+/// \param info    normals decide which side of a surface is outside; else an open one faces the
 ///               viewpoint, or up if it is low; see Surface::faced_by.
 /// \return the surfaces, and what was left out. Triangles index vertices of their surface.
 /// \throw InvalidInput for bad points or options; ComputeError; Cancelled. A part that cannot be
@@ -53,9 +59,9 @@ bool isWithinBox(const Positions& points, const Eigen::Vector3d& place);
 /// `verdict`, `findings` and `diagnosis` say how far to trust it.
 /// Cost: O(n log n), typically; Method::Paper adds iterations * O(n k). Memory: below 1 KB a point.
 Result reconstruct(const Positions& points, const Options& options = {},
-                   const NeighborSearchFactory& search_of = {}, const Facing& facing = {});
+                   const NeighborSearchFactory& search_of = {}, const CloudInfo& info = {});
 
-/// The outliers that reconstruct() leaves out.
+/// The outliers that reconstruct() leaves out, but for those that turn out to fill an opening.
 ///
 /// \param points 3 x n.
 /// \param options outliers, outlier_sigma, threads, progress
@@ -64,7 +70,8 @@ Result reconstruct(const Positions& points, const Options& options = {},
 /// Cost: that of a neighbour graph.
 std::vector<Index> findOutliers(const Positions& points, const Options& options);
 
-/// The parts of a cloud that reconstruct() meshes with PartsMode::Each.
+/// The parts of a cloud that reconstruct() meshes with PartsMode::Each, without points that turn
+/// out to fill an opening.
 ///
 /// \param points 3 x n.
 /// \param options min_points, outliers, threads, progress

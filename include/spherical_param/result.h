@@ -54,9 +54,11 @@ struct Opening {
   /// input].
   double width = 0.0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< mean of the loop
-  /// Certainty in [0, 1]: 0 at the minimum width of 3 spacings, 1 from 9 spacings on.
+  /// Certainty in [0, 1]: 0 at the minimum width of 3 spacings, 1 from 9 spacings on, or
+  /// for the rim of a low sheet.
   double certainty = 0.0;
-  /// The loop lies in a plane: it may surround a flat face of the surface without points inside.
+  /// The loop lies in a plane and is no rim of a sheet: it may surround a flat face of the surface
+  /// without points inside.
   bool is_flat = false;
   bool is_filled = false;        ///< the mesh has triangles over it
   std::vector<Index> triangles;  ///< of the mesh over a filled opening; in one opening only
@@ -275,7 +277,7 @@ struct Surface {
   /// Options::details or `sphere`.
   std::vector<double> vertex_residuals;
 
-  /// Input points that look like outliers, ascending, one for each vertex; the mesh contains them.
+  /// Stray input points that the mesh contains, ascending, one for each vertex.
   /// Empty for the nearest-neighbour graph.
   std::vector<Index> outliers;
 
@@ -286,7 +288,7 @@ struct Surface {
   ConsolidationReport consolidation;  ///< all zero without consolidation
   EmbeddingReport embedding;          ///< how the embedding was reached
   SmoothingReport smoothing;          ///< all zero without smoothing
-  bool is_noisy = false;              ///< the points look noisy
+  bool is_noisy = false;              ///< the points look noisy, and are on no grid
   bool is_out_of_time = false;        ///< the time limit ended the optimisation early
 
   /// Triangles that intersect others, on the smoothed points if the mesh was smoothed.

@@ -48,6 +48,7 @@ constexpr std::array<const char*, 5> namesOf(SurfaceKind) {
 constexpr std::array<const char*, 4> namesOf(FacedBy) {
   return {"normals", "viewpoint", "up", "outward"};
 }
+/// \copydoc namesOf(SurfaceKind)
 constexpr std::array<const char*, 5> namesOf(StopReason) {
   return {"converged", "iteration_limit", "stagnated", "collapsed", "unfinished"};
 }
@@ -161,9 +162,11 @@ template <typename Visit>
 void visitFields(const Opening*, const Visit& visit) {
   using Of = Opening;
   visit({"is_filled", "the mesh has triangles over it"}, &Of::is_filled);
-  visit({"certainty", "from 0 at 3 spacings of width to 1 at 9"}, &Of::certainty);
+  visit({"certainty", "from 0 at 3 spacings of width to 1 at 9, or 1 for the rim of a low sheet"},
+        &Of::certainty);
   visit({"is_certain", "certainty is 1 and it is not flat"}, &Of::isCertain);
-  visit({"is_flat", "the loop lies in a plane: perhaps a flat face without points"}, &Of::is_flat);
+  visit({"is_flat", "the loop lies in a plane, and is no rim of a sheet: perhaps a flat face"},
+        &Of::is_flat);
   visit({"center", "mean of the loop", 1}, &Of::center);
   visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
   visit({"spacing", "mean point spacing at the loop", 1}, &Of::spacing);
@@ -351,8 +354,7 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"measures", "of the mesh on the input or consolidated points"}, &Of::measures);
   visit({"diagnosis", "whether the cloud looks like a closed surface without handles"},
         &Of::diagnosis);
-  visit({"outliers", "points that look like outliers, ascending; the mesh contains them", 0,
-         FieldKind::Inputs},
+  visit({"outliers", "stray points that the mesh contains, ascending", 0, FieldKind::Inputs},
         &Of::outliers);
   visit({"openings", "of the surface, open or filled"}, &Of::openings);
   visit({"handles", "of the surface, those of the mesh first"}, &Of::handles);

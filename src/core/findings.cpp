@@ -1,5 +1,7 @@
 #include "findings.h"
 
+#include "spherical_param/option_table.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -46,11 +48,13 @@ bool isRough(const Surface& result) {
 }
 
 /// A finding with the option that lets the mesh have what the cloud shows: the topology, if a
-/// sphere was asked for, or else one for that alone.
-Finding shown(const std::string& text, const Options& options, const std::string& option,
+/// sphere was asked for that the option does not override, or else that option.
+Finding shown(const std::string& text, const Options& given, const std::string& option,
               const std::string& value, bool is_fault) {
-  const bool is_sphere = options.topology == TopologyMode::Sphere;
-  return {text, is_sphere ? "topology" : option, is_sphere ? "scan" : value, is_fault};
+  const bool is_overridden = textOf(findOption(option).get(given)) != "topology";
+  if (given.topology == TopologyMode::Sphere && !is_overridden)
+    return {text, "topology", "scan", is_fault};
+  return {text, option, value, is_fault};
 }
 
 bool isRaw(const Options& options) {
@@ -67,22 +71,24 @@ bool isFolded(const Options& options, const Surface& result) {
          (isRaw(options) && result.diagnosis.edges_outside_graph > max_edges_outside);
 }
 
-Finding partsOf(const std::vector<PartBridge>& bridges, const Options& options) {
+Finding partsOf(const std::vector<PartBridge>& bridges, const Options& given) {
   const PartBridge& bridge = bridges.front();
   const std::string text = counted(bridges.size() + 1, "separate part") + " (" +
                            (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) +
                            " and " + counted(bridge.other_points, "point") + ")";
-  // Each by itself was too small.
-  if (options.parts == PartsMode::Each && bridge.points >= 4)
+  const bool are_small = bridge.other_points < static_cast<std::size_t>(given.min_points);
+  if (withTopology(given).parts == PartsMode::Each && bridge.points >= 4)
     return {text, "min_points", std::to_string(bridge.points), true};
-  return shown(text, options, "parts", "each", true);
+  if (withTopology(given).parts == PartsMode::Each || (given.parts == PartsMode::All && are_small))
+    return {text, "", "", true};
+  return shown(text, given, "parts", "each", true);
 }
 
 /// Handles that the mesh lacks, certain or possible.
-std::optional<Finding> handlesOf(const Surface& result, const Options& options) {
-  const bool may_have = options.handles == HandleMode::None && !isRaw(options);
+std::optional<Finding> handlesOf(const Surface& result, const Options& given) {
+  const bool may_have = withTopology(given).handles == HandleMode::None && !isRaw(given);
   const auto finding = [&](const std::string& text) {
-    return may_have ? shown(text, options, "handles", "auto", true) : Finding{text, "", "", true};
+    return may_have ? shown(text, given, "handles", "auto", true) : Finding{text, "", "", true};
   };
   const std::size_t missing = missingHandles(result);
   if (missing > 0 && result.genus() == 0)
@@ -114,8 +120,8 @@ std::optional<Finding> failedHandlesOf(const Surface& result) {
 
 /// Certain openings that the mesh fills are a fault unless the options ask for it; without any,
 /// possible ones are reported.
-std::optional<Finding> filledOf(const Surface& result, const Options& options) {
-  const bool is_open = options.surface == SurfaceMode::Open;
+std::optional<Finding> filledOf(const Surface& result, const Options& given) {
+  const bool is_open = given.surface == SurfaceMode::Open;
   const std::size_t certain = result.filledOpenings();
   std::size_t count = 0;
   std::size_t points = 0;
@@ -136,9 +142,9 @@ std::optional<Finding> filledOf(const Surface& result, const Options& options) {
   const std::string of = " of " + counted(points, "point") + ", filled";
   const std::string kind = certain > 0 ? "opening" : "possible opening";
   const std::string text = count == 1 ? kind + of : counted(count, kind) + ", the largest" + of;
-  const bool is_fault = certain > 0 && options.fill_holes == 0 && options.fill_holes_area == 0.0;
+  const bool is_fault = certain > 0 && given.fill_holes == 0 && given.fill_holes_area == 0.0;
   return certain > 0 && !is_open
-             ? shown(text, options, "surface", "open", is_fault)
+             ? shown(text, given, "surface", "open", is_fault)
              : Finding{text, is_open ? "" : "surface", is_open ? "" : "open", is_fault};
 }
 
@@ -165,17 +171,16 @@ void addOfEmbedding(const Options& options, const Surface& result, std::vector<F
 
 }  // namespace
 
-std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
+std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::vector<Finding> findings;
   const std::size_t outliers = result.outliers.size();
   if (outliers > 0)
-    findings.push_back(shown(grouped(outliers) + (outliers == 1 ? " point looks like an outlier"
-                                                                : " points look like outliers"),
-                             options, "outliers", "auto", false));
+    findings.push_back(
+        shown(counted(outliers, "stray point") + " in the mesh", given, "outliers", "auto", false));
   if (!diagnosis.bridges.empty())
-    findings.push_back(partsOf(diagnosis.bridges, options));
-  if (const std::optional<Finding> filled = filledOf(result, options))
+    findings.push_back(partsOf(diagnosis.bridges, given));
+  if (const std::optional<Finding> filled = filledOf(result, given))
     findings.push_back(*filled);
   if (isRough(result) && !result.isFolded())
     findings.push_back({"the points are noisy", "consolidation", "auto", false});
@@ -184,26 +189,26 @@ std::vector<Finding> findingsOf(const Options& options, const Surface& result) {
   else if (diagnosis.is_on_lines)
     findings.push_back(
         {"the points lie along lines, and the surface between these is a guess", "", "", false});
-  if (const std::optional<Finding> handles = handlesOf(result, options))
+  if (const std::optional<Finding> handles = handlesOf(result, given))
     findings.push_back(*handles);
   if (const std::optional<Finding> failed = failedHandlesOf(result))
     findings.push_back(*failed);
   if (diagnosis.is_one_sided)
     findings.push_back(
         {"the surface has only one side, like a Moebius strip: the mesh is torn", "", "", true});
-  if (isFolded(options, result)) {
+  if (isFolded(given, result)) {
     Finding fold{"the mesh is folded: " + percent(diagnosis.edges_outside_graph) +
                      " of its edges join points that are far apart in the cloud",
                  "", "", true};
-    if (isRaw(options))
+    if (isRaw(given))
       std::tie(fold.option, fold.value) = std::pair("method", "default");
     else if (isRough(result))
       std::tie(fold.option, fold.value) = std::pair("consolidation", "auto");
-    else if (result.is_noisy && result.consolidated.cols() > 0 && options.smoothing == 0)
+    else if (result.is_noisy && result.consolidated.cols() > 0 && given.smoothing == 0)
       std::tie(fold.option, fold.value) = std::pair("smoothing", "5");
     findings.push_back(fold);
   }
-  addOfEmbedding(options, result, findings);
+  addOfEmbedding(given, result, findings);
   if (result.is_out_of_time)
     findings.push_back(
         {"the time limit ended the work early: this is the best mesh so far", "", "", false});
@@ -294,12 +299,14 @@ void summarize(std::size_t parts_in_all, Result& result) {
         of = grouped(parts[i].size()) + " parts";
       result.findings[i].text.insert(0, of + ": ");
     }
-    const auto open = static_cast<std::size_t>(
-        std::count_if(surfaces.begin(), surfaces.end(),
-                      [](const Surface& surface) { return !surface.isClosed(); }));
+    const auto count = [&](const std::string& of, const auto& has) {
+      const auto found = std::count_if(surfaces.begin(), surfaces.end(), has);
+      return found == 0 ? "" : grouped(static_cast<std::size_t>(found)) + of;
+    };
     result.verdict = grouped(surfaces.size()) + " surfaces, " +
-                     (open == 0 ? "" : grouped(open) + " with openings, ") +
-                     (faulty == 0 ? "all sound." : grouped(faulty) + " of them with faults.");
+                     count(" with openings, ", [](const Surface& s) { return !s.isClosed(); }) +
+                     count(" with handles, ", [](const Surface& s) { return s.genus() > 0; }) +
+                     (faulty == 0 ? "all sound." : grouped(faulty) + " with faults.");
   }
   LeftOut stray = result.left_out;
   stray.not_finite.clear();

@@ -10,7 +10,7 @@
 namespace spherical_param::internal {
 
 /// The findings of a result, causes before their consequences.
-std::vector<Finding> findingsOf(const Options& options, const Surface& result);
+std::vector<Finding> findingsOf(const Options& given, const Surface& result);
 
 /// Message for parts that cannot be meshed.
 ///

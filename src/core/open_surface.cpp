@@ -46,13 +46,12 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings f
   }
   if (!open.openings.empty())
     places_.emplace(points, graph, open);
-  found_ = found.openings;
   embedded_ = std::move(found);
 }
 
 std::vector<Opening> OpenSurface::found(const Positions& points, const Graph& graph,
                                         const Triangles& triangles) const {
-  std::vector<Opening> all = found_;
+  std::vector<Opening> all = embedded_.openings;
   Openings filled;
   filled.spacing = embedded_.spacing;
   std::vector<std::size_t> number;

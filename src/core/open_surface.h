@@ -44,7 +44,6 @@ public:
                      const Execution& execution) const;
 
 private:
-  std::vector<Opening> found_;
   Openings embedded_;  ///< filled by virtual nodes
   std::optional<OpenPlaces> places_;
 };

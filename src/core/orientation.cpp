@@ -49,7 +49,7 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
   mirror(embedding);
 }
 
-FacedBy orient(const Positions& points, const Facing& facing, const Triangles& surface,
+FacedBy orient(const Positions& points, const CloudInfo& info, const Triangles& surface,
                Triangles& triangles, Embedding& embedding) {
   const bool is_open = surface.cols() > 0;
   const Triangles& seen = is_open ? surface : triangles;
@@ -62,10 +62,10 @@ FacedBy orient(const Positions& points, const Facing& facing, const Triangles& s
   };
   // On three quarters of the area.
   constexpr double min_of_normals = 0.5;
-  if (facing.normals.cols() > 0) {
+  if (info.normals.cols() > 0) {
     const auto side = [&](const auto& corners, const Eigen::Vector3d& normal) {
-      return signOf(normal.dot(facing.normals.col(corners[0]) + facing.normals.col(corners[1]) +
-                               facing.normals.col(corners[2])));
+      return signOf(normal.dot(info.normals.col(corners[0]) + info.normals.col(corners[1]) +
+                               info.normals.col(corners[2])));
     };
     if (decides(meanOver(points, seen, side), min_of_normals))
       return FacedBy::Normals;
@@ -75,13 +75,13 @@ FacedBy orient(const Positions& points, const Facing& facing, const Triangles& s
     return FacedBy::Outward;
   }
   double seen_by_sensor = 0.0;
-  if (facing.viewpoint)
+  if (info.viewpoint)
     seen_by_sensor =
         meanOver(points, seen, [&](const auto& corners, const Eigen::Vector3d& normal) {
-          return normal.dot((*facing.viewpoint - points.col(corners[0])).normalized());
+          return normal.dot((*info.viewpoint - points.col(corners[0])).normalized());
         });
-  // The means of cosines: a terrain is seen at a low angle from beside, an object from in front;
-  // a hemisphere is 0.5 up.
+  // The means of cosines: a wall that a camera of 60 degrees sees from in front has 0.9, a terrain
+  // of five times its height seen from below its middle 0.4; a hemisphere is 0.5 up, a terrain 0.9.
   constexpr double min_seen = 0.5;
   constexpr double min_up = 0.7;
   constexpr double min_hardly_seen = 0.05;
@@ -98,12 +98,14 @@ FacedBy orient(const Positions& points, const Facing& facing, const Triangles& s
 
 }  // namespace internal
 
-bool isWithinBox(const Positions& points, const Eigen::Vector3d& place) {
+std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen::Vector3d& sensor,
+                                           bool has_rows) {
   Eigen::AlignedBox3d box;
   for (const auto& point : points.colwise())
     if (point.allFinite())
       box.extend(Eigen::Vector3d(point));
-  return box.contains(place);
+  const bool is_known = has_rows || !sensor.isZero(0.0) || !box.contains(sensor);
+  return is_known && sensor.allFinite() ? std::optional<Eigen::Vector3d>(sensor) : std::nullopt;
 }
 
 }  // namespace spherical_param

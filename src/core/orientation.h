@@ -14,16 +14,16 @@ void mirror(Embedding& embedding);
 /// of a closed mesh face outward.
 void orientOutward(const Positions& points, Triangles& triangles, Embedding& embedding);
 
-/// Turns sphere and triangles so that the surface faces as the normals do; else an open one the
-/// viewpoint, or up if it is low; else outward. Normals and viewpoint decide if they agree on most
-/// of the area.
+/// Turns sphere and triangles so that the surface faces as the normals do, if these agree on most
+/// of the area; else an open one the viewpoint that looks at it, up if it is low, or the viewpoint
+/// that hardly sees it; else outward.
 ///
 /// \param points    3 x n.
-/// \param facing    with normals of these points, and a viewpoint in their unit.
+/// \param info      with normals of these points, and a viewpoint in their unit.
 /// \param surface   the triangles that are not over openings; empty: all, as the mesh is closed.
 /// \param triangles of the closed mesh.
 /// \return what decided.
-FacedBy orient(const Positions& points, const Facing& facing, const Triangles& surface,
+FacedBy orient(const Positions& points, const CloudInfo& info, const Triangles& surface,
                Triangles& triangles, Embedding& embedding);
 
 }  // namespace spherical_param::internal

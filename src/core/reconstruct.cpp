@@ -130,7 +130,7 @@ SurfaceTopology findTopology(const Positions& points, const Graph& graph, int ex
 ///
 /// \param is_flat all points are in one plane.
 Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology topology,
-                  bool is_flat, const Facing& facing, const Options& options, StageClock& clock) {
+                  bool is_flat, const CloudInfo& info, const Options& options, StageClock& clock) {
   const OpenSurface& openings = topology.openings;
   if (is_flat && !openings.isOpen())
     refuseFlat(options);
@@ -141,7 +141,7 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
   if (options.smoothing > 0)
     smooth(points, openings, options, clock, mesh);
   const FacedBy faced_by = internal::orient(
-      points, facing,
+      points, info,
       openings.isOpen() ? surfaceOf(openMesh(points, mesh.triangles(), *openings.places()))
                         : Triangles(),
       mesh.triangles(), mesh.embedding);
@@ -151,13 +151,13 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
   return surface;
 }
 
-/// What the nodes of a part face. \param facing of the points of the part.
-Facing facingOf(const internal::OrderedPoints& nodes, Facing facing) {
-  if (facing.normals.cols() > 0)
-    facing.normals = Positions(facing.normals(Eigen::all, nodes.input_of_node));
-  if (facing.viewpoint)
-    facing.viewpoint = internal::timesPowerOfTwo(*facing.viewpoint, -nodes.exponent);
-  return facing;
+/// What is known of the nodes of a part. \param info of its points.
+CloudInfo infoOf(const internal::OrderedPoints& nodes, CloudInfo info) {
+  if (info.normals.cols() > 0)
+    info.normals = Positions(info.normals(Eigen::all, nodes.input_of_node));
+  if (info.viewpoint)
+    info.viewpoint = internal::timesPowerOfTwo(*info.viewpoint, -nodes.exponent);
+  return info;
 }
 
 /// Meshes the points of a part as they are, with those that were left out and belong to it.
@@ -176,7 +176,7 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
     if (selection.complete(part, nodes, topology.openings.embeddedOpenings().openings))
       continue;
     Surface surface = meshGraph(nodes.points, std::move(graph), std::move(topology), is_flat,
-                                facingOf(nodes, selection.facingOf(part)), options, clock);
+                                infoOf(nodes, selection.infoOf(part)), options, clock);
     if (is_flat && surface.isClosed())
       refuseFlat(options);
     internal::toInput(nodes, surface);
@@ -185,23 +185,23 @@ Surface meshAsIs(Selection& selection, std::size_t part, const Options& options,
 }
 
 /// Moves the points of a part to the surface that they sample, and meshes them.
-Surface meshConsolidated(const Positions& points, const Facing& facing, const Options& options,
+Surface meshConsolidated(const Positions& points, const CloudInfo& info, const Options& options,
                          StageClock& clock) {
   clock.begin("consolidation");
   Consolidation consolidation = consolidate(points, clock.execution());
-  Facing merged;
-  merged.viewpoint = facing.viewpoint;
-  if (facing.normals.cols() > 0)
+  CloudInfo merged;
+  merged.viewpoint = info.viewpoint;
+  if (info.normals.cols() > 0)
     merged.normals = Positions::Zero(3, consolidation.points.cols());
-  for (Eigen::Index i = 0; i < facing.normals.cols(); ++i)
+  for (Eigen::Index i = 0; i < info.normals.cols(); ++i)
     merged.normals.col(consolidation.point_of_input[static_cast<std::size_t>(i)]) +=
-        facing.normals.col(i);
+        info.normals.col(i);
   Options as_is = options;
   as_is.outliers = OutlierMode::None;
   as_is.parts = PartsMode::All;
   LeftOut none;
   const NeighborSearchFactory by_tree;
-  Selection selection(consolidation.points, as_is, false, by_tree, merged, clock, none);
+  Selection selection(consolidation.points, as_is, by_tree, merged, clock, none);
   Surface surface = meshAsIs(selection, 0, options, clock);
   internal::toInput(consolidation, surface);
   return surface;
@@ -211,15 +211,13 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
   Surface surface =
       options.consolidation == ConsolidationMode::Auto
-          ? meshConsolidated(selection.pointsOf(part), selection.facingOf(part), options, clock)
+          ? meshConsolidated(selection.pointsOf(part), selection.infoOf(part), options, clock)
           : meshAsIs(selection, part, options, clock);
   if (!isAsPromised(surface))
     throw ComputeError(
         "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
         "as a defect of the library");
   internal::toCloud(selection.parts()[part], surface);
-  surface.findings = internal::findingsOf(options, surface);
-  surface.verdict = internal::verdictOf(options, surface);
   return surface;
 }
 
@@ -290,7 +288,7 @@ std::vector<std::vector<Index>> select(const Positions& points, Options options,
   options = withTopology(options);
   StageClock clock(options);
   std::vector<std::vector<Index>> selected = explained(
-      left_out, [&] { return Selection(points, options, false, {}, {}, clock, left_out).parts(); });
+      left_out, [&] { return Selection(points, options, {}, {}, clock, left_out).parts(); });
   clock.take();
   return selected;
 }
@@ -298,21 +296,24 @@ std::vector<std::vector<Index>> select(const Positions& points, Options options,
 }  // namespace
 
 Result reconstruct(const Positions& points, const Options& given,
-                   const NeighborSearchFactory& search_of, const Facing& facing) {
+                   const NeighborSearchFactory& search_of, const CloudInfo& info) {
   checkOptions(given);
-  if (facing.normals.cols() > 0 && facing.normals.cols() != points.cols())
-    throw InvalidInput("reconstruct: " + std::to_string(facing.normals.cols()) + " normals of " +
+  if (info.normals.cols() > 0 && info.normals.cols() != points.cols())
+    throw InvalidInput("reconstruct: " + std::to_string(info.normals.cols()) + " normals of " +
                        std::to_string(points.cols()) + " points; give one for each, or none");
   const Options options = withTopology(given);
   StageClock clock(options);
   Result result;
   const std::size_t parts = explained(result.left_out, [&] {
-    Selection selection(points, options, given.parts != PartsMode::Each, search_of, facing, clock,
-                        result.left_out);
+    Selection selection(points, given, search_of, info, clock, result.left_out);
     meshParts(selection, options, clock, result);
     return selection.parts().size();
   });
   result.stages = clock.take();
+  for (Surface& surface : result.surfaces) {
+    surface.findings = internal::findingsOf(given, surface);
+    surface.verdict = internal::verdictOf(options, surface);
+  }
   internal::summarize(parts, result);
   return result;
 }

@@ -23,26 +23,29 @@ std::vector<Index> without(const std::vector<Index>& points, const std::vector<I
 
 }  // namespace
 
-Selection::Selection(const Positions& points, const Options& options, bool is_never_empty,
-                     const NeighborSearchFactory& search_of, const Facing& facing,
+Selection::Selection(const Positions& points, const Options& given,
+                     const NeighborSearchFactory& search_of, const CloudInfo& info,
                      StageClock& clock, LeftOut& left_out)
-    : points_(points), options_(options), search_of_(search_of), facing_(facing), clock_(clock),
-      left_out_(left_out) {
+    : points_(points), options_(withTopology(given)), search_of_(search_of), info_(info),
+      clock_(clock), left_out_(left_out) {
+  left_out.unused = info.unused;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     (points.col(i).allFinite() ? inputs_ : left_out.not_finite).push_back(static_cast<Index>(i));
-  if (options.outliers != OutlierMode::None || options.parts != PartsMode::All) {
+  inputs_ = without(inputs_, info.unused);
+  left_out.not_finite = without(left_out.not_finite, info.unused);
+  if (options_.outliers != OutlierMode::None || options_.parts != PartsMode::All) {
     clock.begin("neighbors");
     cloud_ =
-        std::make_unique<Neighborhoods>(points, inputs_, options, search_of, clock.execution());
+        std::make_unique<Neighborhoods>(points, inputs_, options_, search_of, clock.execution());
     clock.begin("graph");
     cloud_->findStars(clock.execution());
   }
-  if (options.outliers != OutlierMode::None)
+  if (options_.outliers != OutlierMode::None)
     leaveOutOutliers();
-  if (options.parts == PartsMode::All)
+  if (options_.parts == PartsMode::All)
     parts_.push_back(inputs_);
   else
-    takeApart(is_never_empty);
+    takeApart(given.parts == PartsMode::AsTopology);
 }
 
 void Selection::leaveOutOutliers() {
@@ -69,7 +72,10 @@ void Selection::takeApart(bool is_never_empty) {
   reportFraction(report, 0.5);
   parts_ = cloud_->groupInputs(part_of);
   if (parts_.empty()) {
-    if (is_never_empty)
+    // The largest part of a few points is all of them.
+    const bool are_few = options_.parts == PartsMode::Largest &&
+                         inputs_.size() < static_cast<std::size_t>(options_.min_points);
+    if (is_never_empty || are_few)
       parts_.push_back(inputs_);
     return;
   }
@@ -89,12 +95,14 @@ Positions Selection::pointsOf(std::size_t part) const {
              : Positions(points_(Eigen::all, inputs));
 }
 
-Facing Selection::facingOf(std::size_t part) const {
-  Facing facing;
-  facing.viewpoint = facing_.viewpoint;
-  if (facing_.normals.cols() > 0)
-    facing.normals = facing_.normals(Eigen::all, parts_[part]);
-  return facing;
+CloudInfo Selection::infoOf(std::size_t part) const {
+  CloudInfo info;
+  info.viewpoint = info_.viewpoint;
+  if (info_.normals.cols() > 0) {
+    info.normals = info_.normals(Eigen::all, parts_[part]);
+    info.normals = info.normals.array().isFinite().select(info.normals, 0.0).eval();
+  }
+  return info;
 }
 
 Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
@@ -114,6 +122,8 @@ Neighborhoods& Selection::neighborhoodsOf(std::size_t part) {
 bool Selection::complete(std::size_t part, const OrderedPoints& nodes,
                          const std::vector<Opening>& openings) {
   std::vector<Index> added;
+  if (openings.empty())
+    return false;
   const auto take = [&](std::vector<Index>& left_out) {
     std::vector<Index> taken;
     for (const Index i : pointsInOpenings(

@@ -17,21 +17,24 @@ class Selection {
 public:
   /// \param points    3 x n. All arguments must outlive this.
   /// \param search_of makes the search for neighbours; may be empty.
-  /// \param is_never_empty all points are one part if each part is too small.
-  /// \param facing    of the points.
+  /// \param given     options; where they say AsTopology, all points are one part if each is too
+  ///                  small.
+  /// \param info      of the points.
   /// \param left_out  receives the points that are not meshed.
   /// \throw InvalidInput if too few points are left.
-  Selection(const Positions& points, const Options& options, bool is_never_empty,
-            const NeighborSearchFactory& search_of, const Facing& facing, StageClock& clock,
-            LeftOut& left_out);
+  Selection(const Positions& points, const Options& given, const NeighborSearchFactory& search_of,
+            const CloudInfo& info, StageClock& clock, LeftOut& left_out);
 
   /// The points of each part, the largest part first. Empty if all are too small.
   const std::vector<std::vector<Index>>& parts() const { return parts_; }
   /// The points of a part, 3 x m.
   Positions pointsOf(std::size_t part) const;
-  Facing facingOf(std::size_t part) const;
+  /// Normals that are not finite are 0.
+  CloudInfo infoOf(std::size_t part) const;
   /// The neighbours of the points of a part, valid until the next call.
   Neighborhoods& neighborhoodsOf(std::size_t part);
+  /// Frees the neighbours.
+  void release() { cloud_.reset(); }
   /// Adds points that were left out, and are in openings of a part, to this part: the surface there
   /// is sampled by a few.
   ///
@@ -44,9 +47,9 @@ private:
   void takeApart(bool is_never_empty);
 
   const Positions& points_;
-  const Options& options_;
+  Options options_;
   const NeighborSearchFactory& search_of_;
-  const Facing& facing_;
+  const CloudInfo& info_;
   StageClock& clock_;
   LeftOut& left_out_;
   std::vector<Index> inputs_;             ///< all finite points without outliers

@@ -58,14 +58,17 @@ Triangles toTriangles(const IndexArray& array) {
   return toMatrix<Triangles>(array);
 }
 
-Facing toFacing(const std::optional<DoubleArray>& normals,
-                const std::optional<std::array<double, 3>>& viewpoint) {
-  Facing facing;
+CloudInfo toCloudInfo(const std::optional<DoubleArray>& normals,
+                      const std::optional<std::array<double, 3>>& viewpoint,
+                      const std::optional<IndexArray>& unused) {
+  CloudInfo info;
   if (normals)
-    facing.normals = toPositions(*normals);
+    info.normals = toPositions(*normals);
   if (viewpoint)
-    facing.viewpoint = Eigen::Map<const Eigen::Vector3d>(viewpoint->data());
-  return facing;
+    info.viewpoint = Eigen::Map<const Eigen::Vector3d>(viewpoint->data());
+  if (unused)
+    info.unused.assign(unused->data(), unused->data() + unused->size());
+  return info;
 }
 
 DoubleArray toArray(const Positions& positions) {

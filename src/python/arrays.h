@@ -22,8 +22,9 @@ using IndexArray = pybind11::array_t<Index, pybind11::array::c_style>;
 /// \throw InvalidInput for another shape than (n, 3): the package in Python has checked it before.
 Positions toPositions(const DoubleArray& array);
 Triangles toTriangles(const IndexArray& array);
-Facing toFacing(const std::optional<DoubleArray>& normals,
-                const std::optional<std::array<double, 3>>& viewpoint);
+CloudInfo toCloudInfo(const std::optional<DoubleArray>& normals,
+                      const std::optional<std::array<double, 3>>& viewpoint,
+                      const std::optional<IndexArray>& unused);
 
 DoubleArray toArray(const Positions& positions);                          ///< (n, 3)
 DoubleArray toArray(const Eigen::Matrix<double, 2, Eigen::Dynamic>& m);   ///< (n, 2)

@@ -51,15 +51,16 @@ std::string withoutFunctionName(const std::string& message) {
 
 py::dict reconstructPoints(const DoubleArray& array, const py::dict& values,
                            const std::optional<DoubleArray>& normals,
-                           const std::optional<std::array<double, 3>>& viewpoint, bool details,
+                           const std::optional<std::array<double, 3>>& viewpoint,
+                           const std::optional<IndexArray>& unused, bool details,
                            const py::object& progress) {
   Options options = toOptions(values);
   options.details = details;
   Listener listener(progress);
   static_cast<Execution&>(options) = listener.execution(options.threads, options.time_limit);
   const Positions points = toPositions(array);
-  const Facing facing = toFacing(normals, viewpoint);
-  return toDict(listener.run([&] { return reconstruct(points, options, {}, facing); }));
+  const CloudInfo info = toCloudInfo(normals, viewpoint, unused);
+  return toDict(listener.run([&] { return reconstruct(points, options, {}, info); }));
 }
 
 IndexArray findOutlierPoints(const DoubleArray& array, const py::dict& values,
@@ -343,12 +344,12 @@ PYBIND11_MODULE(_core, module) {
   module.def("result_table", &resultTable);
   module.attr("has_report") = hasReportPage();
   module.def("reconstruct", &reconstructPoints, points, "options"_a, py::kw_only(), "normals"_a,
-             "viewpoint"_a, "details"_a, "progress"_a);
+             "viewpoint"_a, "unused"_a, "details"_a, "progress"_a);
   module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "progress"_a);
   module.def("write_mesh", &writeMeshFile, "path"_a, points, triangles, "normals"_a, "colors"_a);
   module.def("write_report", &writeReportFile, "path"_a, points, "colors"_a, "options"_a,
-             py::kw_only(), "normals"_a, "viewpoint"_a, "part"_a, "input"_a, "command"_a,
-             "progress"_a);
+             py::kw_only(), "normals"_a, "viewpoint"_a, "unused"_a, "part"_a, "input"_a,
+             "command"_a, "progress"_a);
   module.def("morph", &morphMeshes, "first"_a, "second"_a, py::kw_only(), "pairs"_a, "align"_a,
              "connectivity"_a, "samples"_a, "fit"_a, "threads"_a, "progress"_a);
   module.def("find_outliers", &findOutlierPoints, points, "options"_a, py::kw_only(), "progress"_a);

@@ -90,7 +90,8 @@ bool hasReportPage() {
 void writeReportFile(const std::string& path, const DoubleArray& points,
                      const std::optional<ByteArray>& colors, const py::dict& values,
                      const std::optional<DoubleArray>& normals,
-                     const std::optional<std::array<double, 3>>& viewpoint, std::size_t part,
+                     const std::optional<std::array<double, 3>>& viewpoint,
+                     const std::optional<IndexArray>& unused, std::size_t part,
                      const std::string& input, const std::string& command,
                      const py::object& progress) {
   Listener listener(progress);
@@ -102,9 +103,9 @@ void writeReportFile(const std::string& path, const DoubleArray& points,
   tools::CloudReconstruction cloud;
   cloud.data = std::make_shared<tools::PointData>(toPointData(points, std::nullopt, colors));
   const Positions positions = toPositions(points);
-  const Facing facing = toFacing(normals, viewpoint);
+  const CloudInfo info = toCloudInfo(normals, viewpoint, unused);
   listener.run([&] {
-    cloud.result = reconstruct(positions, settings.options, {}, facing);
+    cloud.result = reconstruct(positions, settings.options, {}, info);
     cloud.stages = cloud.result.stages;
     const Surface& surface = cloud.result.surfaces.at(part);
     tools::OutputFile file(path);

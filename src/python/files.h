@@ -32,7 +32,8 @@ bool hasReportPage();
 void writeReportFile(const std::string& path, const DoubleArray& points,
                      const std::optional<ByteArray>& colors, const pybind11::dict& values,
                      const std::optional<DoubleArray>& normals,
-                     const std::optional<std::array<double, 3>>& viewpoint, std::size_t part,
+                     const std::optional<std::array<double, 3>>& viewpoint,
+                     const std::optional<IndexArray>& unused, std::size_t part,
                      const std::string& input, const std::string& command,
                      const pybind11::object& progress);
 

@@ -125,20 +125,18 @@ Positions vectorsOf(const pcl::PCLPointCloud2& cloud, const Axes& axes) {
   return points;
 }
 
-/// The normals, if there are any, and the sensor: it is at the origin of a cloud with rows, and of
-/// others without the origin among the points.
-spherical_param::Facing facingOf(const pcl::PCLPointCloud2& cloud, const Positions& points) {
-  spherical_param::Facing facing;
-  if (cloud.height > 1 || !spherical_param::isWithinBox(points, Eigen::Vector3d::Zero()))
-    facing.viewpoint = Eigen::Vector3d::Zero();
+/// The normals, if there are any, and the sensor, which is at the origin.
+spherical_param::CloudInfo infoOf(const pcl::PCLPointCloud2& cloud, const Positions& points) {
+  spherical_param::CloudInfo info;
+  info.viewpoint = spherical_param::viewpointOf(points, Eigen::Vector3d::Zero(), cloud.height > 1);
   const Axes axes = {findField(cloud, "normal_x"), findField(cloud, "normal_y"),
                      findField(cloud, "normal_z")};
   if (std::all_of(axes.begin(), axes.end(), [&](const pcl::PCLPointField* field) {
         return field && sizeOf(field->datatype) > 0 &&
                std::uint64_t{field->offset} + sizeOf(field->datatype) <= cloud.point_step;
       }))
-    facing.normals = vectorsOf(cloud, axes);
-  return facing;
+    info.normals = vectorsOf(cloud, axes);
+  return info;
 }
 
 /// PCL packs colours as blue, green, red, alpha, in an integer or in the bits of a float.
@@ -235,8 +233,7 @@ void reconstruct(const pcl::PCLPointCloud2& cloud, const Settings& settings,
   spherical_param::Options options = settings.options;
   options.progress = [&](const spherical_param::Progress&) { return !is_wanted || is_wanted(); };
   const Positions points = vectorsOf(cloud, axesOf(cloud));
-  const Result result =
-      spherical_param::reconstruct(points, options, {}, facingOf(cloud, points));
+  const Result result = spherical_param::reconstruct(points, options, {}, infoOf(cloud, points));
   describe(result, outcome);
   outcome.mesh = makeMesh(cloud, result.surfaces);
   outcome.status = Status::Done;

@@ -98,32 +98,54 @@ int gravityOf(const Positions& points, const Options& options, std::vector<Findi
   }
 }
 
-TEST(EveryFinding, OfEveryCloudHelpsOrDoesNoHarmAndNoneRepeatsAnOption) {
-  for (const auto& [name, points] : clouds())
-    for (const TopologyMode topology : {TopologyMode::Scan, TopologyMode::Sphere}) {
-      std::vector<std::pair<Options, int>> todo(1);  // what was asked, and the gravity before
-      todo[0].first.topology = topology;
-      todo[0].second = 4;
-      for (std::size_t i = 0; i < todo.size(); ++i) {
-        const auto [options, before] = todo[i];
-        std::vector<Finding> findings;
-        const int gravity = gravityOf(points, options, findings);
-        EXPECT_LE(gravity, before) << name;
-        for (const Finding& finding : findings) {
-          if (finding.option.empty())
-            continue;
-          SCOPED_TRACE(name + ": " + finding.text + ": " + finding.option + " " + finding.value);
-          const OptionRow& row = findOption(finding.option);
-          ASSERT_NE(textOf(row.get(withTopology(options))), finding.value);
-          Options with = options;
-          setOption(with, finding.option,
-                    row.choices.empty() ? OptionValue(std::int64_t{std::stoi(finding.value)})
-                                        : OptionValue(finding.value));
-          ASSERT_LT(todo.size(), 20U) << "they lead in circles";
-          todo.emplace_back(with, gravity);
-        }
-      }
+/// Applies all findings of a cloud, and those after that.
+void expectHelp(const std::string& name, const Options& start) {
+  const Positions& points = clouds().at(name);
+  std::vector<std::pair<Options, int>> todo{{start, 4}};  // and the gravity before
+  for (std::size_t i = 0; i < todo.size(); ++i) {
+    const auto [options, before] = todo[i];
+    std::vector<Finding> findings;
+    const int gravity = gravityOf(points, options, findings);
+    EXPECT_LE(gravity, before) << name;
+    for (const Finding& finding : findings) {
+      if (finding.option.empty())
+        continue;
+      SCOPED_TRACE(name + ": " + finding.text + ": " + finding.option + " " + finding.value);
+      const OptionRow& row = findOption(finding.option);
+      ASSERT_NE(textOf(row.get(withTopology(options))), finding.value);
+      Options with = options;
+      setOption(with, finding.option,
+                row.choices.empty() ? OptionValue(std::int64_t{std::stoi(finding.value)})
+                                    : OptionValue(finding.value));
+      ASSERT_LT(todo.size(), 20U) << "they lead in circles";
+      todo.emplace_back(with, gravity);
     }
+  }
+}
+
+TEST(EveryFinding, OfEveryCloudHelpsOrDoesNoHarmAndNoneRepeatsAnOption) {
+  for (const auto& [name, points] : clouds()) {
+    expectHelp(name, Options());
+    expectHelp(name, test::sphere());
+  }
+}
+
+TEST(EveryFinding, OfWhatAnOptionForbidsNamesThatOption) {
+  const auto named = [](const std::string& name, const Options& options) {
+    expectHelp(name, options);
+    return reconstruct(clouds().at(name), options).findings.at(0).option;
+  };
+  for (Options options : {Options(), test::sphere()}) {
+    options.surface = SurfaceMode::Closed;
+    EXPECT_EQ(named("bowl", options), "surface");
+    options.parts = PartsMode::All;
+    EXPECT_EQ(named("two", options), "parts");
+    EXPECT_EQ(named("two too small", options), "");
+    options.handles = HandleMode::None;
+    EXPECT_EQ(named("torus", options), "handles");
+    options.outliers = OutlierMode::None;
+    EXPECT_EQ(named("strays outside", options), "outliers");
+  }
 }
 
 TEST(EveryFinding, TellsVolumesLinesAndGridsFromNoise) {

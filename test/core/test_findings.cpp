@@ -65,13 +65,13 @@ TEST(Findings, EachNamesTheOptionThatDealsWithIt) {
       {{}, [](Surface& r) { r.embedding.barrier = EmbeddingBarrier::Everywhere; }},
       {{}, [](Surface& r) { r.openings.resize(2); }},
       {{}, [](Surface& r) { r.diagnosis.edges_outside_graph = 0.05; }},
-      {{"1 point looks like an outlier", "outliers", "auto", false},
+      {{"1 stray point in the mesh", "outliers", "auto", false},
        [](Surface& r) { r.outliers = {3}; }},
-      {{"2,000 points look like outliers", "outliers", "auto", false},
+      {{"2,000 stray points in the mesh", "outliers", "auto", false},
        [](Surface& r) { r.outliers.resize(2000); }},
-      {{"2 separate parts (395 and 5,633 points)", "parts", "each", true},
-       [](Surface& r) { addBridge(r, 395, 5633); }},
-      {{"3 separate parts (two of them of 1 and 4 points)", "parts", "each", true},
+      {{"2 separate parts (39 and 40 points)", "min_points", "39", true},
+       [](Surface& r) { addBridge(r, 39, 40); }},
+      {{"3 separate parts (two of them of 1 and 4 points)", "", "", true},
        [](Surface& r) {
          addBridge(r, 1, 4);
          addBridge(r, 1, 3);
@@ -153,7 +153,7 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
     texts.push_back(finding.text);
   EXPECT_EQ(result.failures[0], "part 4 of 4 (1,200 points) cannot be meshed: it is flat");
   EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
-  EXPECT_EQ(result.verdict, "3 surfaces, 1 of them with faults. 1 part cannot be meshed.");
+  EXPECT_EQ(result.verdict, "3 surfaces, 1 with faults. 1 part cannot be meshed.");
   result = {};
   result.surfaces.resize(1, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};

@@ -79,7 +79,8 @@ TEST(Topology, OfAScanIsWhatTheCloudShowsAndASphereHasEveryPoint) {
   points = horizontally(points, Eigen::Vector3d(0.0, 9.0, 0.0));
   Options options;
   const Result scan = reconstruct(points, options);
-  EXPECT_EQ(scan.verdict, "3 surfaces, 1 with openings, all sound; 1 stray point left out.");
+  EXPECT_EQ(scan.verdict,
+            "3 surfaces, 1 with openings, 1 with handles, all sound; 1 stray point left out.");
   EXPECT_EQ(scan.surface().genus(), 1U);
   options.surface = SurfaceMode::Closed;
   options.parts = PartsMode::Largest;

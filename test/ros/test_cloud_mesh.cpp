@@ -177,7 +177,7 @@ TEST(RosCloudMesh, OutliersAreLeftOutAndTheWorkEndsWhenItIsNoLongerWanted) {
   setPoint(cloud, 100, 20.0, 0.0, 0.0);
   Settings settings;
   settings.options.topology = spherical_param::TopologyMode::Sphere;
-  EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 point looks like an outlier"),
+  EXPECT_NE(meshed(cloud, settings).warnings.front().find("1 stray point in the mesh"),
             std::string::npos);
   for (const char* outliers : {"auto", "4"}) {
     setParameter(settings, "outliers", std::string(outliers));

@@ -1,5 +1,6 @@
 // -parts and -min-points, used as a user does.
 
+#include "handle_shapes.h"
 #include "tool_test.h"
 
 #include <gtest/gtest.h>
@@ -77,6 +78,28 @@ TEST_F(PartsOption, EachMeshesAllPartsToOneFileAndNamesThoseThatItCannotMesh) {
       1);
   tool({"three.xyz", "open.ply"});
   EXPECT_EQ(mesh("open.ply").points().cols(), 560);
+}
+
+TEST_F(PartsOption, OneSphereAndOnePageAreThoseOfTheLargest) {
+  for (const std::string output : {"out.ply", "out_%03d.ply"}) {
+    const RunResult result = tool({"two.xyz", output, "-sphere", "s.ply", "-json", "r.json"});
+    EXPECT_NE(result.output.find("s.ply (the largest)"), std::string::npos) << result.output;
+    EXPECT_EQ(mesh("s.ply").vertexCount(), 300U);
+    EXPECT_EQ(json::parse(content("r.json"))["parts"].size(), 2U);
+  }
+  const std::string torus = linesOf(spherical_param::test::torusCloud(24, 10, 0.8, 0.3));
+  write("with_torus.xyz", torus + linesOf(large));
+  tool({"with_torus.xyz", "out_%03d.ply", "-sphere", "s.ply"});  // the torus has none
+  EXPECT_EQ(mesh("s.ply").vertexCount(), 300U);
+}
+
+TEST_F(PartsOption, ToolsThatMakeOneSurfaceTakeTheLargestOrAll) {
+  for (const std::string program : {REMESH_TOOL, TEXTURE_TOOL}) {
+    expectSuccess(program, {"two.xyz", "out.ply", "-topology", "scan", "-json", "r.json"});
+    EXPECT_EQ(json::parse(content("r.json"))["vertices"], 300) << program;
+    run(program, {"two.xyz", "out.ply", "-topology", "sphere", "-json", "r.json"});
+    EXPECT_EQ(json::parse(content("r.json"))["vertices"], 500) << program;
+  }
 }
 
 TEST_F(PartsOption, EightPartsShareOneTimeLimit) {

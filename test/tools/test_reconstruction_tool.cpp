@@ -306,7 +306,7 @@ TEST_F(ReconstructionTool, PrintsSixLinesAndWarningsApart) {
             std::string::npos);
   for (const Words& words : {Words{}, Words{"-json", "-"}}) {
     EXPECT_EQ(tool(tool_test::with({"noisy.xyz", "out.ply", "-topology", "sphere"}, words)).errors,
-              "warning: 1 point looks like an outlier: try -topology scan\n");
+              "warning: 1 stray point in the mesh: try -topology scan\n");
   }
   EXPECT_EQ(tool({"noisy.xyz", "out.ply", "-quiet"}).errors, "");
 }

@@ -9,18 +9,19 @@
 namespace spherical_param::tools {
 namespace {
 
-Facing facingOf(const PointData& data) {
-  Facing facing;
-  facing.normals.resize(3, static_cast<Eigen::Index>(data.normals.size()));
-  for (Eigen::Index i = 0; i < facing.normals.cols(); ++i) {
-    facing.normals.col(i) =
+CloudInfo infoOf(const PointData& data) {
+  CloudInfo info;
+  info.normals.resize(3, static_cast<Eigen::Index>(data.normals.size()));
+  for (Eigen::Index i = 0; i < info.normals.cols(); ++i) {
+    info.normals.col(i) =
         Eigen::Map<const Eigen::Vector3f>(data.normals[static_cast<std::size_t>(i)].data())
             .cast<double>();
   }
   if (data.viewpoint) {
-    facing.viewpoint = Eigen::Map<const Eigen::Vector3d>(data.viewpoint->data());
+    info.viewpoint = Eigen::Map<const Eigen::Vector3d>(data.viewpoint->data());
   }
-  return facing;
+  info.unused = data.unused;
+  return info;
 }
 
 /// Progress of the library on the console: each stage begins when the one before ends.
@@ -70,16 +71,9 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
   Options options = settings.options;
   options.progress = [&progress](const Progress& reported) { return progress(reported); };
   runLibrary("cannot mesh " + inQuotes(path), "check that the file is the right cloud", [&] {
-    cloud.result = reconstruct(positionsOf(*cloud.data), options, {}, facingOf(*cloud.data));
+    cloud.result = reconstruct(positionsOf(*cloud.data), options, {}, infoOf(*cloud.data));
   });
   progress.finish();
-  LeftOut& left_out = cloud.result.left_out;
-  left_out.unused = cloud.data->unused;
-  std::vector<Index> not_finite;
-  std::set_difference(left_out.not_finite.begin(), left_out.not_finite.end(),
-                      left_out.unused.begin(), left_out.unused.end(),
-                      std::back_inserter(not_finite));
-  left_out.not_finite = std::move(not_finite);
   cloud.stages = cloud.result.stages;
   cloud.stages.insert(cloud.stages.begin(), {"read", seconds});
 }

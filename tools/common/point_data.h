@@ -40,7 +40,7 @@ struct PointData {
   std::vector<Point> points;       ///< finite or not
   std::vector<Normal> normals;     ///< one per point, or none at all
   std::vector<Color> colors;       ///< one per point, or none at all
-  std::vector<Index> unused;       ///< points that are in no face of the file; they are not finite
+  std::vector<Index> unused;       ///< points that are in no face of the file
   std::optional<Point> viewpoint;  ///< of the sensor, if the file says it
   bool has_alpha = false;          ///< the alpha of the colours comes from a file; else it is 255
 

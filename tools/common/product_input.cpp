@@ -49,11 +49,9 @@ std::vector<Color> vertexColors(const CloudReconstruction& cloud,
 
 }  // namespace
 
-ProductDefaults::ProductDefaults(HandlesOnSphere handles, SphereMapOptions of_map)
-    : map(std::move(of_map)) {
-  if (handles == HandlesOnSphere::Cut) {
-    reconstruction.parts = PartsMode::Largest;
-  } else {
+ProductDefaults::ProductDefaults(HandlesOnSphere on_sphere, SphereMapOptions of_map)
+    : handles(on_sphere), map(std::move(of_map)) {
+  if (handles == HandlesOnSphere::Refused) {
     reconstruction.topology = TopologyMode::Sphere;
   }
 }
@@ -74,11 +72,18 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
   ProductSettings settings;
   settings.map = defaults.map;
   settings.reconstruction = parseReconstructionOptions(command_line, defaults.reconstruction);
-  if (withTopology(settings.reconstruction.options).parts == PartsMode::Each) {
+  Options& options = settings.reconstruction.options;
+  if (options.topology == TopologyMode::Scan && options.parts == PartsMode::AsTopology) {
+    options.parts = PartsMode::Largest;
+  }
+  if (defaults.handles == HandlesOnSphere::Refused && options.handles == HandleMode::AsTopology) {
+    options.handles = HandleMode::None;
+  }
+  if (options.parts == PartsMode::Each) {
     throw UsageError("option -parts: this tool makes one surface",
                      "give -parts largest, or write each part to its own file first");
   }
-  settings.map.threads = settings.reconstruction.options.threads;
+  settings.map.threads = options.threads;
   if (command_line.has("area-weight")) {
     settings.map.area_weight =
         parseReal("area-weight", command_line.value("area-weight", ""), {0.0, 1.0, true});

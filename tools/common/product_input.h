@@ -25,9 +25,10 @@ enum class HandlesOnSphere { Cut, Refused };
 
 /// The defaults of a tool that makes one surface.
 struct ProductDefaults {
-  explicit ProductDefaults(HandlesOnSphere handles, SphereMapOptions map = {});
+  explicit ProductDefaults(HandlesOnSphere on_sphere, SphereMapOptions of_map = {});
 
-  Options reconstruction;  ///< one sphere, or the largest part with its handles
+  HandlesOnSphere handles;
+  Options reconstruction;  ///< one sphere if handles are refused
   SphereMapOptions map;
 };
 

@@ -42,7 +42,7 @@ struct RecordLayout {
   std::size_t columns = 0;        ///< numbers on a line of text
   std::uint64_t packed_size = 0;  ///< bytes of the file, if they are packed
   std::vector<RecordField> fields;
-  std::array<double, 3> viewpoint{};   ///< of the sensor
+  std::array<double, 3> sensor{};      ///< its place
   bool has_rows = false;               ///< it has seen them in rows
   std::vector<SkippedElement> before;  ///< the points
   std::vector<SkippedElement> after;   ///< the points, up to their faces; the rest is not read

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -178,7 +177,7 @@ public:
       unpack();
     }
     PointData data = readPoints();
-    leaveOutUnused(data);
+    noteUnused(data);
     return data;
   }
 
@@ -293,7 +292,7 @@ private:
 
   void skipBytes(const SkippedElement& element) {
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      if (!visitBytes(element, {})) {
+      if (!visitBytes(element, [](std::uint64_t) {})) {
         failBroken(path_);
       }
     }
@@ -310,17 +309,15 @@ private:
     return bytes != nullptr;
   }
 
-  using Visit = std::function<void(std::uint64_t)>;
-
   /// Passes a record by, and calls a function for each corner. \return false if the file ends
+  template <typename Visit>
   bool visitBytes(const SkippedElement& element, const Visit& visit) {
     for (const SkippedElement::Property& property : element.properties) {
       std::uint64_t values = 1;
       if (property.length_size > 0 && !takeInteger(property.length_size, values)) {
         return false;
       }
-      const bool is_visited = visit && property.are_corners;
-      for (std::uint64_t corner = 0; is_visited && values > 0; --values) {
+      for (std::uint64_t corner = 0; property.are_corners && values > 0; --values) {
         if (!takeInteger(property.size, corner)) {
           return false;
         }
@@ -333,6 +330,7 @@ private:
     return true;
   }
 
+  template <typename Visit>
   bool visitWords(const SkippedElement& element, const Visit& visit) {
     if (!nextWords()) {
       return false;
@@ -355,28 +353,28 @@ private:
     return true;
   }
 
-  /// Of a mesh, points that no face uses are not finite any more. Faces that cannot be read, or
-  /// have other points, say nothing.
-  void leaveOutUnused(PointData& data) {
+  /// Notes points of a mesh that no face uses. Faces that cannot be read, or have other points, say
+  /// nothing.
+  void noteUnused(PointData& data) {
     std::vector<bool> used(data.points.size(), false);
     bool is_mesh = false;
-    bool is_readable = true;
-    const Visit visit = [&](std::uint64_t corner) {
+    bool is_sound = true;
+    const auto visit = [&](std::uint64_t corner) {
       is_mesh = true;
-      is_readable = is_readable && corner < used.size();
-      if (is_readable) {
+      is_sound = is_sound && corner < used.size();
+      if (is_sound) {
         used[corner] = true;
       }
     };
     for (const SkippedElement& element : layout_.after) {
-      for (std::uint64_t i = 0; is_readable && i < element.count; ++i) {
-        is_readable = isText() ? visitWords(element, visit) : visitBytes(element, visit);
+      for (std::uint64_t i = 0; is_sound && i < element.count; ++i) {
+        const bool is_there = isText() ? visitWords(element, visit) : visitBytes(element, visit);
+        is_sound = is_sound && is_there;
       }
     }
-    for (std::size_t i = 0; is_mesh && is_readable && i < used.size(); ++i) {
+    for (std::size_t i = 0; is_mesh && is_sound && i < used.size(); ++i) {
       if (!used[i]) {
         data.unused.push_back(static_cast<Index>(i));
-        data.points[i].fill(std::numeric_limits<double>::quiet_NaN());
       }
     }
   }

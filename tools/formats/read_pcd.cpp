@@ -100,12 +100,12 @@ std::int64_t pointCount(const std::string& path, Entries& entries) {
 }
 
 /// Where the sensor was.
-Point viewpointOf(Entries& entries) {
-  Point viewpoint{};
+Point sensorOf(Entries& entries) {
+  Point sensor{};
   for (std::size_t axis = 0; axis < std::min<std::size_t>(3, entries["VIEWPOINT"].size()); ++axis) {
-    viewpoint[axis] = toReal(entries["VIEWPOINT"][axis]).value_or(0.0);
+    sensor[axis] = toReal(entries["VIEWPOINT"][axis]).value_or(0.0);
   }
-  return viewpoint;
+  return sensor;
 }
 
 /// Checks the two sizes before compressed data. \return the compressed one.
@@ -166,7 +166,7 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   layout.body += lines.position();
   layout.body_line = lines.number();
   layout.points = static_cast<std::uint64_t>(points);
-  layout.viewpoint = viewpointOf(entries);
+  layout.sensor = sensorOf(entries);
   layout.has_rows = entries["HEIGHT"][0] != "1";
   return layout;
 }
@@ -176,10 +176,9 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
 PointData readPcd(const std::string& path, const FileProgress& progress) {
   const RecordLayout layout = checkPcdHeader(path, checkInputFile(path));
   PointData data = readRecords(path, layout, progress);
-  // The origin is what everybody writes.
-  if (layout.has_rows || layout.viewpoint != Point{} ||
-      !isWithinBox(positionsOf(data), Eigen::Vector3d::Zero())) {
-    data.viewpoint = layout.viewpoint;
+  const Eigen::Map<const Eigen::Vector3d> sensor(layout.sensor.data());
+  if (viewpointOf(positionsOf(data), sensor, layout.has_rows)) {
+    data.viewpoint = layout.sensor;
   }
   return data;
 }

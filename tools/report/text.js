@@ -99,7 +99,7 @@ function showTables(data) {
     ['Points read', report.points],
     ['Points not finite', report.left_out?.not_finite?.length || undefined],
     ['Duplicates', report.duplicates],
-    ['Outliers left out', report.left_out?.outliers?.length || undefined],
+    ['Stray points left out', report.left_out?.outliers?.length || undefined],
     ['Outliers in the mesh', report.outliers?.length || undefined],
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],

@@ -132,9 +132,10 @@ public:
 
   /** \brief Set whether the mesh has the handles of the surface.
    * \param[in] mode Auto: it has those that are certain. None: it has none and is one sphere, or
-   * one with openings. Default: as setTopology() says. \note A mesh with handles has no map to one
-   * sphere: getSphereCoordinates() is empty. Set None for remeshing and morphing. getResult() has
-   * the loops of the handles. */
+   * one with openings. Default: as setTopology() says.
+   *
+   * A mesh with handles has no map to one sphere: getSphereCoordinates() is empty. Set None for
+   * remeshing and morphing. getResult() has the loops of the handles. */
   inline void setHandles(HandleMode mode) { options_.handles = mode; }
   /** \brief Get whether the mesh has the handles of the surface.
    * \return the mode */
@@ -408,8 +409,8 @@ private:
   spherical_param::Positions collectPoints(pcl::Indices& used_indices);
 
   /** \brief Collects the normals of these points, and the sensor. */
-  spherical_param::Facing facingOf(const spherical_param::Positions& points,
-                                   const pcl::Indices& used_indices) const;
+  spherical_param::CloudInfo infoOf(const spherical_param::Positions& points,
+                                    const pcl::Indices& used_indices) const;
 
   spherical_param::Options options_;
   spherical_param::Result result_;

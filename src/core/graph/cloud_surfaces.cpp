@@ -142,7 +142,7 @@ Indexed<char> pointsOf(const Indexed<Index>& piece, const Indexed<char>& is_surf
   return on_surface;
 }
 
-/// Joins small components to large ones beside them: a base, the tip of an ear.
+/// Joins small components to the nearest large one beside them: a base, the tip of an ear.
 void joinSmall(const Positions& points, const Graph& agreed, UnionFind& components) {
   // Small is up to this fraction of the large one's points, beside is up to this number of spacings
   // of the coarser one.
@@ -153,12 +153,21 @@ void joinSmall(const Positions& points, const Graph& agreed, UnionFind& componen
   Indexed<char> is_surface(agreed.size(), 0);
   markSheets(agreed, component, sizes, is_surface);
   UnionFind all = components;
-  for (const auto& [from, to, length] : shortestBridges(points, all, 1)) {
-    const auto [less, more] = std::minmax(sizes[component[from]], sizes[component[to]]);
-    if (is_surface[component[from]] != 0 && is_surface[component[to]] != 0 &&
-        static_cast<double>(less) <= max_fraction * static_cast<double>(more) &&
-        length < max_gap * std::max(nodeSpacing(agreed, from), nodeSpacing(agreed, to)))
-      components.unite(from, to);
+  std::vector<Bridge> bridges = shortestBridges(points, all, 1);
+  std::stable_sort(bridges.begin(), bridges.end(),
+                   [](const Bridge& a, const Bridge& b) { return a.length < b.length; });
+  // Each joins one: two large ones beside a small one stay apart.
+  Indexed<char> is_joined(agreed.size(), 0);
+  for (const Bridge& bridge : bridges) {
+    const auto [small, large] = std::minmax(component[bridge.from], component[bridge.to],
+                                            [&](Index a, Index b) { return sizes[a] < sizes[b]; });
+    if (is_surface[small] != 0 && is_surface[large] != 0 && is_joined[small] == 0 &&
+        static_cast<double>(sizes[small]) <= max_fraction * static_cast<double>(sizes[large]) &&
+        bridge.length <
+            max_gap * std::max(nodeSpacing(agreed, bridge.from), nodeSpacing(agreed, bridge.to))) {
+      components.unite(bridge.from, bridge.to);
+      is_joined[small] = 1;
+    }
   }
 }
 

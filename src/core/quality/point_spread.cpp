@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -40,7 +41,7 @@ bool fillVolume(const Positions& points) {
     Eigen::VectorXd distances = (others.colwise() - center).colwise().norm();
     const double far = nth(distances, distances.size() / 8);
     const double near = nth(distances, distances.size() / 64);
-    dimensions.push_back(near > 0.0 ? std::log(8.0) / std::log(far / near) : 0.0);
+    dimensions.push_back(near > 0.0 && far > near ? std::log(8.0) / std::log(far / near) : 0.0);
   }
   return medianOf(dimensions) > min_dimension;
 }
@@ -50,6 +51,7 @@ bool areOnLines(const Positions& points, const Graph& graph) {
   // of surfaces, 0.001 of contours five times as far apart as the points on them.
   constexpr double max_ratio = 0.02;
   constexpr std::size_t neighbors = 4;
+  constexpr std::size_t min_points = 100;
   std::vector<double> ratios;
   const auto step = static_cast<Index>(graph.size() / 1000 + 1);
   for (Index v = 0; v < points.cols(); v += step) {
@@ -71,18 +73,20 @@ bool areOnLines(const Positions& points, const Graph& graph) {
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(offsets * offsets.transpose()).eigenvalues();
     ratios.push_back(squares[2] > 0.0 ? squares[1] / squares[2] : 1.0);
   }
-  return !ratios.empty() && medianOf(ratios) < max_ratio;
+  return ratios.size() >= min_points && medianOf(ratios) < max_ratio;
 }
 
 bool areOnGrid(const Positions& points) {
-  const auto n = static_cast<double>(points.cols());
-  int few = 0;
+  // Of the points of the grid that are seen along the third axis.
+  constexpr double min_taken = 0.5;
+  std::array<double, 3> counts{};
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values(points.row(axis).begin(), points.row(axis).end());
     sortUnique(values);
-    few += static_cast<double>(values.size()) <= 2.0 * std::sqrt(n) ? 1 : 0;
+    counts[static_cast<std::size_t>(axis)] = static_cast<double>(values.size());
   }
-  return few >= 2;
+  std::sort(counts.begin(), counts.end());
+  return min_taken * counts[0] * counts[1] <= static_cast<double>(points.cols());
 }
 
 }  // namespace spherical_param::internal

@@ -14,11 +14,11 @@ namespace spherical_param::internal {
 bool fillVolume(const Positions& points);
 
 /// Whether points lie along lines which are farther apart: the nearest neighbours of most points
-/// are in line with them. \param graph of the points.
+/// are in line with them. False of fewer than 100 points. \param graph of the points.
 bool areOnLines(const Positions& points, const Graph& graph);
 
-/// Whether points are on a grid, like those of an elevation model or of voxels: along two axes they
-/// have few coordinates. Cost: O(n log n).
+/// Whether points are on a grid, like those of an elevation model or of voxels: as many as half of
+/// the pairs of coordinates along two axes. Cost: O(n log n).
 bool areOnGrid(const Positions& points);
 
 }  // namespace spherical_param::internal

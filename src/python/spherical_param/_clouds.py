@@ -43,7 +43,7 @@ class Cloud:
     colors: Optional[ByteArray]  #: (n, 3)
     name: Optional[str] = None  #: of the file
     viewpoint: Optional[list[float]] = None  #: of the sensor, if the file says it
-    unused: Optional[IndexArray] = None  #: rows in no face of the file, which are not finite
+    unused: Optional[IndexArray] = None  #: rows in no face of the file
 
 
 def read(name: str, value: Any, progress: Optional[ProgressFunction] = None) -> Cloud:

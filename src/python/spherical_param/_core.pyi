@@ -16,6 +16,7 @@ def reconstruct(
     *,
     normals: Optional[NDArray[np.float64]],
     viewpoint: Optional[list[float]],
+    unused: Optional[NDArray[np.int32]],
     details: bool,
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
@@ -39,6 +40,7 @@ def write_report(
     *,
     normals: Optional[NDArray[np.float64]],
     viewpoint: Optional[list[float]],
+    unused: Optional[NDArray[np.int32]],
     part: int,
     input: str,
     command: str,

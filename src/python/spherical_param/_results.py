@@ -136,6 +136,7 @@ class Result(Surface, MeshExport):
                 {**source.options, "threads": threads},
                 normals=source.cloud.normals,
                 viewpoint=source.cloud.viewpoint,
+                unused=source.cloud.unused,
                 part=source.part,
                 input=source.cloud.name or "points",
                 command=source.command,
@@ -190,7 +191,8 @@ class Results(tuple[Result, ...], MeshExport):
     def triangles(self) -> IndexArray:  # type: ignore[override]
         """(t, 3) of all surfaces, into ``vertices``."""
         first = np.cumsum([0] + [len(each.vertices) for each in self])
-        return np.concatenate([each.triangles + at for each, at in zip(self, first)], dtype=np.int32)
+        moved = [each.triangles + at for each, at in zip(self, first)]
+        return np.concatenate(moved, dtype=np.int32)
 
     @property
     def input_of_vertex(self) -> IndexArray:
@@ -234,11 +236,7 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
     ``vertex_of_input`` of a surface is about its own points, that of a result about the whole
     cloud.
     """
-    rows = fields["left_out"]
-    if cloud.unused is not None:
-        finite = np.setdiff1d(rows["not_finite"], cloud.unused)
-        rows.update(unused=cloud.unused, not_finite=finite)
-    left_out = LeftOut(**rows)
+    left_out = LeftOut(**fields["left_out"])
     results = []
     for part, surface in enumerate(fields["surfaces"]):
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)

@@ -89,7 +89,7 @@ TEST(StrayPoints, ThatAreNotLeftOutAreVerticesAndReported) {
   EXPECT_EQ(result.outliers, (std::vector<Index>{0, 1, 2, 3, 4}));
   EXPECT_EQ(result.vertexCount(), 805U);
   ASSERT_FALSE(result.findings.empty());
-  EXPECT_EQ(result.findings[0].text, "5 points look like outliers");
+  EXPECT_EQ(result.findings[0].text, "5 stray points in the mesh");
 }
 
 }  // namespace

@@ -142,8 +142,7 @@ void SphericalParamReconstruction<PointInT>::meshPoints() {
     };
   spherical_param::Options options = options_;
   options.progress = detail::guardProgress(options_.progress);
-  result_ =
-      spherical_param::reconstruct(points, options, search_of, facingOf(points, used_indices));
+  result_ = spherical_param::reconstruct(points, options, search_of, infoOf(points, used_indices));
   for (const std::string& failure : result_.failures)
     PCL_WARN("[pcl::SphericalParamReconstruction::reconstruct] %s\n", failure.c_str());
   const auto indices_of = [&](const std::vector<spherical_param::Index>& inputs) {
@@ -212,22 +211,22 @@ void SphericalParamReconstruction<PointInT>::checkInput() const {
 }
 
 template <typename PointInT>
-spherical_param::Facing
-SphericalParamReconstruction<PointInT>::facingOf(const spherical_param::Positions& points,
-                                                 const pcl::Indices& used_indices) const {
-  spherical_param::Facing facing;
-  const Eigen::Vector3d sensor = input_->sensor_origin_.template head<3>().template cast<double>();
-  if (input_->height > 1 || !sensor.isZero(0.0) || !spherical_param::isWithinBox(points, sensor))
-    facing.viewpoint = sensor;
+spherical_param::CloudInfo
+SphericalParamReconstruction<PointInT>::infoOf(const spherical_param::Positions& points,
+                                               const pcl::Indices& used_indices) const {
+  spherical_param::CloudInfo info;
+  info.viewpoint = spherical_param::viewpointOf(
+      points, input_->sensor_origin_.template head<3>().template cast<double>(),
+      input_->height > 1);
   if constexpr (pcl::traits::has_normal<PointInT>::value) {
-    facing.normals.resize(3, static_cast<Eigen::Index>(used_indices.size()));
+    info.normals.resize(3, static_cast<Eigen::Index>(used_indices.size()));
     for (std::size_t i = 0; i < used_indices.size(); ++i)
-      facing.normals.col(static_cast<Eigen::Index>(i)) =
+      info.normals.col(static_cast<Eigen::Index>(i)) =
           (*input_)[static_cast<std::size_t>(used_indices[i])]
               .getNormalVector3fMap()
               .template cast<double>();
   }
-  return facing;
+  return info;
 }
 
 template <typename PointInT>
