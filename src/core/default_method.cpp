@@ -70,7 +70,8 @@ public:
     clock_.begin("optimization");
     candidate.optimization = optimizeMesh(
         points_, candidate.triangles, graph_,
-        OptimizationOptions{openings_.places(), !is_smoothed, options_.seed}, execution);
+        OptimizationOptions{openings_.places(), !is_smoothed, options_.seed, clock_.share()},
+        execution);
   }
 
   /// Whether no mesh with all handles could be made.

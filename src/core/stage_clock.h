@@ -67,6 +67,8 @@ public:
     part_left_ = TimeLeft(limit);
   }
 
+  /// The part's share of the points of all parts.
+  double share() const { return fraction_; }
   /// Time left for the part [s], minus a reserve for the check of the mesh: half of the time until
   /// the embedding, more than it takes.
   std::optional<double> remaining() const {

@@ -22,6 +22,7 @@ struct OptimizationOptions {
   /// there are too many intersections.
   bool finish_on_points = true;
   std::uint32_t seed = 1;  ///< of the random choice of parts
+  double share = 1.0;      ///< of the points of a cloud that is meshed in parts, and of the work
 };
 
 /// Report of an optimisation.
