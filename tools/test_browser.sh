@@ -19,13 +19,12 @@ make_reports() {
       "$bin/pcl_spherical_param_reconstruction" "$evil" mesh.ply -report sound.html &&
       "$bin/pcl_spherical_param_scan" bowl bowl.xyz -points 3000 &&
       printf '%s\n' '3 0 1' '-2 1 0' >>bowl.xyz &&
-      "$bin/pcl_spherical_param_reconstruction" bowl.xyz mesh.ply -smoothing 3 -outliers 4 \
-        -report open.html &&
+      "$bin/pcl_spherical_param_reconstruction" bowl.xyz mesh.ply -topology sphere \
+        -outliers 4 -smoothing 3 -report open.html &&
       "$bin/pcl_spherical_param_scan" sphere ball.xyz -points 3000 &&
       awk '{ z = $3 + 3; if ($1 * $1 + $2 * $2 + $3 * z < 0) print $1, $2, z }' ball.xyz \
         >seen.xyz &&
-      "$bin/pcl_spherical_param_reconstruction" seen.xyz mesh.ply -surface open \
-        -report camera.html &&
+      "$bin/pcl_spherical_param_reconstruction" seen.xyz mesh.ply -report camera.html &&
       "$bin/pcl_spherical_param_scan" double_torus double.xyz -points 3000 &&
       "$bin/pcl_spherical_param_reconstruction" double.xyz mesh.ply -report handles.html
   )

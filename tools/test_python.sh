@@ -24,7 +24,7 @@ wrong_use_is_found() {
 import spherical_param
 
 spherical_param.reconstruct([[0.0, 0.0, 0.0]], graph="voronoi")
-mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]])
+mesh = spherical_param.reconstruct([[0.0, 0.0, 0.0]], topology="sphere")
 mesh.polygons
 text: str = mesh.measures.volume
 both = spherical_param.reconstruct("scan.ply", parts="each")

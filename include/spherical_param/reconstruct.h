@@ -25,6 +25,7 @@ struct CloudInfo {
 /// \param points   3 x n, finite or not.
 /// \param sensor   as file or message say.
 /// \param has_rows the sensor has seen the points in rows.
+/// \return the sensor; unset if it is unknown.
 std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen::Vector3d& sensor,
                                            bool has_rows);
 

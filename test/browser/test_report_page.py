@@ -190,9 +190,10 @@ class ReportPage(unittest.TestCase):
         for row in ("Vertices", "Triangles", "Volume", "Area", "Mean edge length", "Residual"):
             self.assertIn(row, self.text("numbers"))
         self.open(OPEN)
-        self.assertEqual(self.text("verdict-words"), "A sound mesh, but it fills 1 opening.")
+        self.assertEqual(self.text("verdict-words"),
+                         "A sound mesh, but it fills 1 opening; 2 stray points left out.")
         self.assertIn("opening", self.text("warnings"))
-        self.assertIn("outlier", self.text("cloud-note"))
+        self.assertIn("stray point", self.text("cloud-note"))
 
     def test_each_view_shows_its_object(self):
         for page, name in ((SOUND, "sound"), (OPEN, "open"), (CAMERA, "camera")):

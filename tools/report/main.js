@@ -262,7 +262,7 @@ function showViews(data, arrays, context) {
   if (data.outliers > 0) {
     byId('cloud-note').replaceChildren(
       make('span', { class: 'swatch', style: { background: outlier_color } }),
-      `${counted(data.outliers, 'outlier')} left out`);
+      `${counted(data.outliers, 'stray point')} left out`);
   }
 
   let seek = () => {};

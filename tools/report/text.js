@@ -100,7 +100,7 @@ function showTables(data) {
     ['Points not finite', report.left_out?.not_finite?.length || undefined],
     ['Duplicates', report.duplicates],
     ['Stray points left out', report.left_out?.outliers?.length || undefined],
-    ['Outliers in the mesh', report.outliers?.length || undefined],
+    ['Stray points in the mesh', report.outliers?.length || undefined],
     ['Vertices', report.vertices],
     ['Triangles', report.triangles],
     ['Openings left open', report.boundary?.length || undefined],
