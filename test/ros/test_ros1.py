@@ -304,7 +304,7 @@ class Ros1(unittest.TestCase):
     def test_diagnostics_tell_state_and_result_though_simulated_time_stands_still(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
-        self.run_node()
+        self.run_node("_topology:=sphere")
         watch, reconstruct, good = Watch(self), self.service(), bumpy(2000)
         for number, (cloud, level, summary, result) in enumerate((
                 (message_of(good), 0, "idle", "done"),
