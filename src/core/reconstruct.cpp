@@ -209,6 +209,8 @@ Surface meshConsolidated(const Positions& points, const CloudInfo& info, const O
 
 Surface meshPart(Selection& selection, std::size_t part, const Options& options,
                  StageClock& clock) {
+  if (options.consolidation == ConsolidationMode::Auto)
+    selection.release();
   Surface surface =
       options.consolidation == ConsolidationMode::Auto
           ? meshConsolidated(selection.pointsOf(part), selection.infoOf(part), options, clock)
