@@ -78,8 +78,9 @@ const std::vector<OptionInfo> own_options = {
     {"match", "", "move and scale the second object to the place and the area of the first"},
     {"check", "", "count the self-intersections of all frames"},
 };
-const std::vector<OptionInfo> option_table = joined(
-    {own_options, productOptions(ProductDefaults(HandlesOnSphere::Refused)), outputOptions()});
+const ProductDefaults product_defaults(HandlesOnSphere::Refused);
+const std::vector<OptionInfo> option_table =
+    joined({own_options, productOptions(product_defaults), outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -222,7 +223,7 @@ Settings parseSettings(const CommandLine& command_line) {
   settings.match = command_line.has("match");
   settings.check = command_line.has("check");
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line, ProductDefaults(HandlesOnSphere::Refused));
+  settings.product = parseProductOptions(command_line, product_defaults);
   return settings;
 }
 
@@ -545,8 +546,7 @@ void run(const std::vector<std::string>& words) {
   std::array<MappedCloud, 2> clouds;
   Morph morph;
   for (std::size_t side = 0; side < 2; ++side) {
-    mapCloud(settings.inputs[side], settings.product, HandlesOnSphere::Refused, console,
-             clouds[side]);
+    mapCloud(settings.inputs[side], settings.product, console, clouds[side]);
   }
   if (!settings.pairs.empty()) {
     morph.pairs = readPointPairs(settings.pairs, clouds[0].cloud, clouds[1].cloud);

@@ -85,11 +85,10 @@ const std::vector<OptionInfo> own_options = {
     {"series", "", "output the surface of that series"},
     {"degree", "L", "degree of the series, up to 512 (32)"},
 };
+const ProductDefaults product_defaults(HandlesOnSphere::Refused,
+                                       spherical_param::mapOptionsForResampling());
 const std::vector<OptionInfo> option_table =
-    joined({own_options,
-            productOptions(ProductDefaults(HandlesOnSphere::Refused,
-                                           spherical_param::mapOptionsForResampling())),
-            outputOptions()});
+    joined({own_options, productOptions(product_defaults), outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -242,9 +241,7 @@ Settings parseSettings(const CommandLine& command_line) {
         static_cast<int>(parseInteger("degree", command_line.value("degree", ""), {0, 512}));
   }
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(
-      command_line,
-      ProductDefaults(HandlesOnSphere::Refused, spherical_param::mapOptionsForResampling()));
+  settings.product = parseProductOptions(command_line, product_defaults);
   checkCombination(command_line, settings);
   if (settings.writes_image) {
     settings.sampling = Sampling::Octahedral;
@@ -422,7 +419,7 @@ void verify(const Settings& settings, const MappedCloud& mapped, Output& output,
 
 void makeFromCloud(const Settings& settings, MappedCloud& mapped, Output& output,
                    Console& console) {
-  mapCloud(settings.input, settings.product, HandlesOnSphere::Refused, console, mapped);
+  mapCloud(settings.input, settings.product, console, mapped);
   console.begin("surface");
   const SphereSurface surface(mapped.mesh.points, mapped.mesh.triangles, mapped.map.sphere,
                               {settings.fit, settings.threads(), mapped.map.caps});

@@ -67,8 +67,9 @@ const std::vector<OptionInfo> own_options = {
     {"checker", "N", "checkerboard of N squares a quarter circle instead of colours"},
     {"image", "FILE", "image beside .obj and .ply, .png (as the output)"},
 };
+const ProductDefaults product_defaults(HandlesOnSphere::Cut);
 const std::vector<OptionInfo> option_table =
-    joined({own_options, productOptions(ProductDefaults(HandlesOnSphere::Cut)), outputOptions()});
+    joined({own_options, productOptions(product_defaults), outputOptions()});
 
 /// What each does, and the words after the tool's name.
 const std::vector<std::pair<std::string, std::string>> example_table = {
@@ -184,7 +185,7 @@ Settings parseSettings(const CommandLine& command_line) {
     settings.cells = integer("checker", usual_cells, {1, 4096});
   }
   settings.report = parseOutputOptions(command_line);
-  settings.product = parseProductOptions(command_line, ProductDefaults(HandlesOnSphere::Cut));
+  settings.product = parseProductOptions(command_line, product_defaults);
   if (command_line.has("ascii") && settings.format != TextureFormat::Ply) {
     throw UsageError("option -ascii does nothing with " + nameOf(settings.format, format_names),
                      "leave -ascii out, or write .ply");
@@ -258,7 +259,7 @@ struct Output {
 };
 
 void make(const Settings& settings, MappedCloud& mapped, Output& output, Console& console) {
-  mapCloud(settings.input, settings.product, HandlesOnSphere::Cut, console, mapped);
+  mapCloud(settings.input, settings.product, console, mapped);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
   output.atlas =

@@ -76,10 +76,11 @@ Finding partsOf(const std::vector<PartBridge>& bridges, const Options& given) {
   const std::string text = counted(bridges.size() + 1, "separate part") + " (" +
                            (bridges.size() > 1 ? "two of them of " : "") + grouped(bridge.points) +
                            " and " + counted(bridge.other_points, "point") + ")";
+  const bool is_each = withTopology(given).parts == PartsMode::Each;
   const bool are_small = bridge.other_points < static_cast<std::size_t>(given.min_points);
-  if (withTopology(given).parts == PartsMode::Each && bridge.points >= 4)
+  if (is_each && bridge.points >= 4)
     return {text, "min_points", std::to_string(bridge.points), true};
-  if (withTopology(given).parts == PartsMode::Each || (given.parts == PartsMode::All && are_small))
+  if (is_each || (given.parts == PartsMode::All && are_small))
     return {text, "", "", true};
   return shown(text, given, "parts", "each", true);
 }

@@ -71,6 +71,7 @@ ProductSettings parseProductOptions(const CommandLine& command_line,
                                     const ProductDefaults& defaults) {
   ProductSettings settings;
   settings.map = defaults.map;
+  settings.handles = defaults.handles;
   settings.reconstruction = parseReconstructionOptions(command_line, defaults.reconstruction);
   Options& options = settings.reconstruction.options;
   if (options.topology == TopologyMode::Scan && options.parts == PartsMode::AsTopology) {
@@ -115,10 +116,10 @@ Json productOptionsToJson(const ProductSettings& settings) {
   return json;
 }
 
-void mapCloud(const std::string& path, const ProductSettings& settings, HandlesOnSphere handles,
-              Console& console, MappedCloud& mapped) {
+void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
+              MappedCloud& mapped) {
   reconstructCloud(path, settings.reconstruction, console, mapped.cloud);
-  if (handles == HandlesOnSphere::Refused) {
+  if (settings.handles == HandlesOnSphere::Refused) {
     requireSpheres(path, mapped.cloud, true);
   }
   const Surface& surface = mapped.cloud.surface();

@@ -14,14 +14,15 @@
 
 namespace spherical_param::tools {
 
+/// Whether a mesh with handles is cut so that it has a map to one sphere, or refused.
+enum class HandlesOnSphere { Cut, Refused };
+
 /// What the tools that use the map to the sphere have in common: how they come to it.
 struct ProductSettings {
   ReconstructionSettings reconstruction;
   SphereMapOptions map;  ///< without `progress`; with the threads of the reconstruction
+  HandlesOnSphere handles = HandlesOnSphere::Refused;
 };
-
-/// Whether a mesh with handles is cut so that it has a map to one sphere, or refused.
-enum class HandlesOnSphere { Cut, Refused };
 
 /// The defaults of a tool that makes one surface.
 struct ProductDefaults {
@@ -55,8 +56,8 @@ struct MappedCloud {
 
 /// Reads a cloud, meshes it and maps the mesh to the sphere, with all stages on the console.
 /// \throw UsageError, Failure
-void mapCloud(const std::string& path, const ProductSettings& settings, HandlesOnSphere handles,
-              Console& console, MappedCloud& mapped);
+void mapCloud(const std::string& path, const ProductSettings& settings, Console& console,
+              MappedCloud& mapped);
 
 /// What the library found, with options that tools of one surface take.
 std::vector<Finding> findingsOf(const MappedCloud& mapped);

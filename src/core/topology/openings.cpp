@@ -207,8 +207,7 @@ std::vector<Index> pointsInOpenings(const Positions& points, const std::vector<O
         }))
       found.insert(found.end(), near.begin(), near.end());
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
+  sortUnique(found);
   return found;
 }
 
