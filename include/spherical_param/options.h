@@ -104,13 +104,22 @@ enum class HandleMode {
   Auto,  ///< those that are certain; long tubes are cut into several spheres while they are meshed
 };
 
+/// What happens to triangles that still intersect at the end.
+enum class IntersectionMode {
+  AsTopology,  ///< Remove for TopologyMode::Scan, else Keep
+  /// They are taken apart: by other triangles, by openings, last by leaving out up to 0.2 % of the
+  /// points of a surface.
+  Remove,
+  Keep,  ///< they are counted; every point is in the mesh
+};
+
 /// Parameters of reconstruct(). The defaults need no tuning. optionTable() lists the options of
 /// tools, Python and ROS with their ranges.
 struct Options : Execution {
   Method method = Method::Default;  ///< how the cloud is meshed
   PaperOptions paper;               ///< of Method::Paper
-  /// The topology of the mesh, of which `outliers`, `parts`, `surface` and `handles` override a
-  /// part each.
+  /// The topology of the mesh, of which `outliers`, `parts`, `surface`, `handles` and
+  /// `intersections` override a part each.
   TopologyMode topology = TopologyMode::Scan;
   OutlierMode outliers = OutlierMode::AsTopology;  ///< which points are left out first
   /// OutlierMode::Deviation: outliers deviate by more than the mean and this number of standard
@@ -139,6 +148,9 @@ struct Options : Execution {
 
   /// Whether the mesh has the handles of the surface. Only Method::Default finds them.
   HandleMode handles = HandleMode::AsTopology;
+
+  /// What happens to triangles that intersect. No effect with Method::Paper.
+  IntersectionMode intersections = IntersectionMode::AsTopology;
 
   std::uint32_t seed = 1;  ///< of all random choices
   /// Fill Surface::vertex_residuals and SurfaceDiagnosis::triangle_marks.

@@ -353,6 +353,7 @@ struct LeftOut {
   std::vector<Index> unused;       ///< of a file with faces, in none of these
   std::vector<Index> outliers;     ///< found by Options::outliers
   std::vector<Index> other_parts;  ///< of parts that were not meshed, or of no part
+  std::vector<Index> unmeshed;     ///< triangles through them would intersect
 
   /// In words. \return e.g. "2 points that are not finite, 3 stray points"; empty if nothing was
   /// left out

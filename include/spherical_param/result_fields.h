@@ -405,6 +405,8 @@ void visitFields(const LeftOut*, const Visit& visit) {
   visit({"outliers", "found by the option outliers", 0, FieldKind::Inputs}, &Of::outliers);
   visit({"other_parts", "of parts that were not meshed, or of no part", 0, FieldKind::Inputs},
         &Of::other_parts);
+  visit({"unmeshed", "triangles through them would intersect", 0, FieldKind::Inputs},
+        &Of::unmeshed);
 }
 
 constexpr ResultField describe(const Result*) {

@@ -3,11 +3,13 @@
 #include "embedding.h"
 #include "energy_mesh.h"
 #include "exact_predicates.h"
+#include "face_mesh.h"
 #include "glued_spheres.h"
 #include "graph_building.h"
 #include "mesh_optimization.h"
 #include "orientation.h"
 #include "spherical_param/mesh_topology.h"
+#include "spherical_param/self_intersection.h"
 #include "spherical_param/sphere_triangulation.h"
 
 #include <algorithm>
@@ -22,10 +24,21 @@ namespace {
 /// A mesh before the optimisation, and perhaps after.
 struct Candidate {
   std::vector<CutLoop> handles;
+  std::vector<CutLoop> found;  ///< all handles, if no mesh with them could be made
   Embedding embedding;
   Triangles triangles;
   std::optional<MeshOptimization> optimization;
 };
+
+/// Whether more triangles intersect than one of some number.
+bool isTangle(const Candidate& candidate, std::size_t of = 1000) {
+  return of * countTriangles(candidate.optimization->intersecting.pairs) >
+         columnCount(candidate.triangles);
+}
+
+bool isBetter(const Candidate& candidate, const Candidate& than) {
+  return candidate.optimization->intersecting.areFewerThan(than.optimization->intersecting);
+}
 
 class Mesher {
 public:
@@ -72,6 +85,32 @@ public:
         points_, candidate.triangles, graph_,
         OptimizationOptions{openings_.places(), !is_smoothed, options_.seed, clock_.share()},
         execution);
+  }
+
+  /// Takes the mesh of the faces of the graph if the best one is a tangle and that one is less.
+  void untangle(Candidate& best) {
+    // So many intersections cost more than handles that are cut.
+    constexpr std::size_t unusable_of = 100;
+    if (!isTangle(best) || clock_.remaining() == 0.0)
+      return;
+    clock_.begin("openings");
+    std::optional<Triangles> of_faces =
+        meshFaces(points_, graph_, best.handles.size(), clock_.execution());
+    if (!of_faces)
+      return;
+    Candidate other;
+    other.embedding = best.embedding;
+    other.triangles = std::move(*of_faces);
+    if (other.triangles.cols() == best.triangles.cols())
+      other.handles = best.handles;
+    else if (!isTangle(best, unusable_of))
+      return;
+    orientOutward(points_, other.triangles, other.embedding);
+    optimize(other);
+    if (!isBetter(other, best))
+      return;
+    has_failed_ = has_failed_ || other.handles.size() < best.handles.size();
+    best = std::move(other);
   }
 
   /// Whether no mesh with all handles could be made.
@@ -189,13 +228,36 @@ std::vector<HandleLoop> handlesOf(const Positions& points, const std::vector<Cut
 
 MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
                           const Options& options, StageClock& clock) {
+  const auto mesh_as = [&](SurfaceTopology& found, bool has_last_resort, const Options& as) {
+    Mesher mesher(points, graph.graph, found, as, clock);
+    Candidate best = mesher.best();
+    mesher.optimize(best);
+    if (has_last_resort)
+      mesher.untangle(best);
+    if (mesher.hasFailed())
+      best.found = found.handles;
+    return best;
+  };
+  const bool removes = options.intersections == IntersectionMode::Remove;
+  const bool may_open =
+      removes && options.surface == SurfaceMode::Auto && topology.openings.fillsPossible();
+  Candidate best = mesh_as(topology, removes && !may_open, options);
+  if (may_open && isTangle(best)) {
+    // Over a possible opening the surface may be wrong.
+    Options open = options;
+    open.surface = SurfaceMode::Open;
+    clock.begin("openings");
+    SurfaceTopology other = findTopology(points, graph.graph, false, topology.openings.unit(), open,
+                                         clock.execution());
+    Candidate with_openings = mesh_as(other, true, open);
+    if (isBetter(with_openings, best)) {
+      best = std::move(with_openings);
+      topology = std::move(other);
+    }
+  }
   MeshedCloud mesh;
-  Mesher mesher(points, graph.graph, topology, options, clock);
-  Candidate best = mesher.best();
-  mesher.optimize(best);
   mesh.graph = std::move(graph);
-  mesh.handles =
-      handlesOf(points, mesher.hasFailed() ? topology.handles : best.handles, best.handles);
+  mesh.handles = handlesOf(points, best.found.empty() ? best.handles : best.found, best.handles);
   mesh.embedding = std::move(best.embedding);
   mesh.optimization = std::move(*best.optimization);
   return mesh;

@@ -334,6 +334,7 @@ std::string LeftOut::text() const {
   add(unused.size(), "point in no face", "points in no face");
   add(outliers.size(), "stray point", "stray points");
   add(other_parts.size(), "point in other parts", "points in other parts");
+  add(unmeshed.size(), "point that cannot be meshed", "points that cannot be meshed");
   return text;
 }
 

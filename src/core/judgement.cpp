@@ -1,7 +1,6 @@
 #include "judgement.h"
 
 #include "boundary_loops.h"
-#include "open_mesh.h"
 #include "point_spread.h"
 #include "progress.h"
 #include "spherical_param/self_intersection.h"
@@ -13,22 +12,6 @@
 namespace spherical_param::internal {
 
 namespace {
-
-/// Moves the triangles of a mesh that are not over openings to the result, with the pairs of them
-/// that intersect.
-void takeSurface(const Positions& points, const OpenSurface& openings, MeshedCloud& mesh,
-                 const Execution& execution, Surface& result) {
-  if (openings.isOpen())
-    result.triangles = surfaceOf(openMesh(points, mesh.triangles(), *openings.places()));
-  else
-    result.triangles = std::move(mesh.triangles());
-  IntersectingPairs found = openings.isOpen() || mesh.isSmoothed()
-                                ? findPairsUpTo(mostOfUsable(columnCount(result.triangles)), points,
-                                                result.triangles, execution)
-                                : std::move(mesh.optimization.intersecting);
-  result.self_intersections = std::move(found.pairs);
-  result.intersections_are_sampled = found.is_sample || mesh.smoothed.is_sample;
-}
 
 /// Diagnoses the cloud by its mesh, its graph and their openings.
 SurfaceDiagnosis diagnose(const Positions& points, const Surface& result, const MeshedCloud& mesh,
@@ -43,13 +26,21 @@ SurfaceDiagnosis diagnose(const Positions& points, const Surface& result, const 
 
 }  // namespace
 
-Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& openings,
-              const Options& options, const Execution& execution) {
+Surface judge(const Positions& points, MeshedCloud mesh, Triangles triangles, bool is_clean,
+              const OpenSurface& openings, const Options& options, const Execution& execution) {
   const FractionReport report = reportOf(execution, "quality");
   Surface result;
-  takeSurface(points, openings, mesh, execution, result);
+  result.triangles = std::move(triangles);
+  IntersectingPairs found;
+  if (!is_clean || mesh.isSmoothed())
+    found = findPairsUpTo(mostOfUsable(columnCount(result.triangles)), points, result.triangles,
+                          execution);
+  result.self_intersections = std::move(found.pairs);
+  result.intersections_are_sampled = found.is_sample || mesh.smoothed.is_sample;
   result.openings = openings.found(points, mesh.graph.graph, result.triangles);
-  if (openings.isOpen())
+  result.topology =
+      checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
+  if (!result.topology.closed)
     result.boundary = boundaryLoops(result.triangles, static_cast<std::size_t>(points.cols()));
   result.handles = std::move(mesh.handles);
   result.diagnosis = diagnose(points, result, mesh, options);
@@ -63,8 +54,6 @@ Surface judge(const Positions& points, MeshedCloud mesh, const OpenSurface& open
   reportFraction(report, 0.5);
   result.measures = measureMesh(points, result.triangles, options.threads);
   reportFraction(report, 0.6);
-  result.topology =
-      checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
   reportFraction(report, 0.8);
   if (options.details && mesh.embedding.directions.cols() > 0)
     result.vertex_residuals = tangentialLaplacianLengths(

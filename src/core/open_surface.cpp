@@ -47,6 +47,12 @@ OpenSurface::OpenSurface(const Positions& points, const Graph& graph, Openings f
   if (!open.openings.empty())
     places_.emplace(points, graph, open);
   embedded_ = std::move(found);
+  unit_ = unit;
+}
+
+bool OpenSurface::fillsPossible() const {
+  return std::any_of(embedded_.openings.begin(), embedded_.openings.end(),
+                     [](const Opening& opening) { return opening.is_filled; });
 }
 
 std::vector<Opening> OpenSurface::found(const Positions& points, const Graph& graph,

@@ -30,6 +30,9 @@ public:
   /// nullptr: the mesh is closed.
   const OpenPlaces* places() const { return places_ ? &*places_ : nullptr; }
   bool isOneSided() const { return embedded_.is_one_sided; }
+  /// Whether the mesh fills openings that may as well stay open.
+  bool fillsPossible() const;
+  double unit() const { return unit_; }
   /// The openings that virtual nodes fill while the surface is embedded.
   const Openings& embeddedOpenings() const { return embedded_; }
   /// All openings, with the triangles over filled ones.
@@ -46,6 +49,7 @@ public:
 private:
   Openings embedded_;  ///< filled by virtual nodes
   std::optional<OpenPlaces> places_;
+  double unit_ = 1.0;
 };
 
 }  // namespace spherical_param::internal

@@ -253,6 +253,14 @@ std::vector<OptionRow> surfaceRows() {
            {"none", HandleMode::None},
            {"auto", HandleMode::Auto}},
           memberOf(&Options::handles))),
+      byDefault(choice<IntersectionMode>(
+          "intersections", "intersections",
+          "triangles that intersect are taken apart, at last with up to 0.2 % of the points, or kept",
+          Everybody,
+          {{"topology", IntersectionMode::AsTopology},
+           {"remove", IntersectionMode::Remove},
+           {"keep", IntersectionMode::Keep}},
+          memberOf(&Options::intersections))),
   };
 }
 
@@ -371,6 +379,8 @@ Options withTopology(Options options) {
     options.surface = is_scan ? SurfaceMode::Auto : SurfaceMode::Closed;
   if (options.handles == HandleMode::AsTopology)
     options.handles = is_scan ? HandleMode::Auto : HandleMode::None;
+  if (options.intersections == IntersectionMode::AsTopology)
+    options.intersections = is_scan ? IntersectionMode::Remove : IntersectionMode::Keep;
   return options;
 }
 

@@ -49,10 +49,11 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
   mirror(embedding);
 }
 
-FacedBy orient(const Positions& points, const CloudInfo& info, const Triangles& surface,
-               Triangles& triangles, Embedding& embedding) {
-  const bool is_open = surface.cols() > 0;
-  const Triangles& seen = is_open ? surface : triangles;
+FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
+               Embedding& embedding) {
+  Triangles& triangles = mesh.triangles;
+  const Triangles seen = surfaceOf(mesh);
+  const bool is_open = seen.cols() < triangles.cols();
   const auto decides = [&](double agreement, double least) {
     if (agreement <= -least) {
       flipOrientation(triangles);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "embedding.h"
+#include "open_mesh.h"
 #include "spherical_param/reconstruct.h"
 #include "spherical_param/result.h"
 #include "spherical_param/types.h"
@@ -20,10 +21,9 @@ void orientOutward(const Positions& points, Triangles& triangles, Embedding& emb
 ///
 /// \param points    3 x n.
 /// \param info      with normals of these points, and a viewpoint in their unit.
-/// \param surface   the triangles that are not over openings; empty: all, as the mesh is closed.
-/// \param triangles of the closed mesh.
+/// \param mesh      closed, with its openings.
 /// \return what decided.
-FacedBy orient(const Positions& points, const CloudInfo& info, const Triangles& surface,
-               Triangles& triangles, Embedding& embedding);
+FacedBy orient(const Positions& points, const CloudInfo& info, OpenMesh& mesh,
+               Embedding& embedding);
 
 }  // namespace spherical_param::internal

@@ -5,6 +5,7 @@
 #include "default_method.h"
 #include "embedding_history.h"
 #include "findings.h"
+#include "intersection_removal.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
 #include "open_mesh.h"
@@ -126,6 +127,40 @@ SurfaceTopology findTopology(const Positions& points, const Graph& graph, int ex
                                 clock.execution());
 }
 
+internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
+                              const OpenSurface& openings) {
+  Triangles& triangles = mesh.triangles();
+  if (openings.isOpen())
+    return openMesh(points, triangles, *openings.places());
+  internal::OpenMesh closed;
+  closed.is_open.resize(internal::columnCount(triangles), 0);
+  closed.triangles = std::move(triangles);
+  return closed;
+}
+
+/// Removes the intersections of a mesh, if the options say so. Returns whether it has none.
+bool clean(const Positions& points, MeshedCloud& mesh, const Options& options,
+           const Execution& execution, internal::OpenMesh& open) {
+  // More of a surface is no spot, but a tangle.
+  constexpr std::size_t vertices_of = 500;
+  constexpr std::size_t triangles_of = 100;
+  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
+  const Triangles surface = surfaceOf(open);
+  if (internal::findPairsUpTo(1, positions, surface, execution).pairs.empty())
+    return true;
+  const bool may_open = options.surface != SurfaceMode::Closed;
+  const internal::RemovalLimits limits{
+      internal::columnCount(points) / vertices_of,
+      may_open ? internal::columnCount(surface) / triangles_of : 0};
+  if (options.intersections != IntersectionMode::Remove ||
+      !removeIntersections(positions, limits, open))
+    return false;
+  mesh.smoothed.intersecting_triangles = 0;
+  mesh.smoothed.is_sample = false;
+  mesh.smoothed.report.self_intersections = 0;
+  return true;
+}
+
 /// Meshes a graph of points, and judges the mesh.
 ///
 /// \param is_flat all points are in one plane.
@@ -140,13 +175,12 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
           : internal::meshByDefault(points, std::move(graph), topology, options, clock);
   if (options.smoothing > 0)
     smooth(points, openings, options, clock, mesh);
-  const FacedBy faced_by = internal::orient(
-      points, info,
-      openings.isOpen() ? surfaceOf(openMesh(points, mesh.triangles(), *openings.places()))
-                        : Triangles(),
-      mesh.triangles(), mesh.embedding);
   clock.begin("quality");
-  Surface surface = internal::judge(points, std::move(mesh), openings, options, clock.execution());
+  internal::OpenMesh open = openMeshOf(points, mesh, openings);
+  const bool is_clean = clean(points, mesh, options, clock.execution(), open);
+  const FacedBy faced_by = internal::orient(points, info, open, mesh.embedding);
+  Surface surface = internal::judge(points, std::move(mesh), surfaceOf(open), is_clean, openings,
+                                    options, clock.execution());
   surface.faced_by = faced_by;
   return surface;
 }
@@ -207,8 +241,8 @@ Surface meshConsolidated(const Positions& points, const CloudInfo& info, const O
   return surface;
 }
 
-Surface meshPart(Selection& selection, std::size_t part, const Options& options,
-                 StageClock& clock) {
+Surface meshPart(Selection& selection, std::size_t part, const Options& options, StageClock& clock,
+                 LeftOut& left_out) {
   if (options.consolidation == ConsolidationMode::Auto)
     selection.release();
   Surface surface =
@@ -219,7 +253,7 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
     throw ComputeError(
         "reconstruct: the mesh is not the manifold that was promised; please report this cloud "
         "as a defect of the library");
-  internal::toCloud(selection.parts()[part], surface);
+  internal::toCloud(selection.parts()[part], surface, left_out.unmeshed);
   return surface;
 }
 
@@ -249,7 +283,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
         failed.insert(failed.end(), parts[i].begin(), parts[i].end());
     };
     try {
-      result.surfaces.push_back(meshPart(selection, part, options, clock));
+      result.surfaces.push_back(meshPart(selection, part, options, clock, result.left_out));
     } catch (const InvalidInput& error) {
       leave_out(error, part + 1);
     } catch (const internal::OutOfTime& error) {
@@ -264,6 +298,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   std::vector<Index>& left_out = result.left_out.other_parts;
   left_out.insert(left_out.end(), failed.begin(), failed.end());
   std::sort(left_out.begin(), left_out.end());
+  std::sort(result.left_out.unmeshed.begin(), result.left_out.unmeshed.end());
 }
 
 /// Says what was left out in the message of a failure: it may be the cause.

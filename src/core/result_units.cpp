@@ -31,15 +31,43 @@ struct Scaling {
   }
 };
 
-/// Gives indices other numbers: number i is the i-th of `numbers`.
+/// Gives indices other numbers: number i is the i-th of `numbers`; -1 stays.
 void renumber(const std::vector<Index>& numbers, std::vector<Index>& indices) {
   for (Index& index : indices)
-    index = numbers[static_cast<std::size_t>(index)];
+    index = index < 0 ? index : numbers[static_cast<std::size_t>(index)];
+}
+
+/// Leaves the nodes without triangles out of the vertices.
+void dropUnused(OrderedPoints& nodes, Surface& surface) {
+  const std::vector<Index> unused = std::exchange(surface.topology.unused_vertices, {});
+  if (unused.empty())
+    return;
+  DistinctPoints& distinct = nodes.distinct;
+  Indexed<Index> number(distinct.input_of_vertex.size(), 0);
+  for (const Index node : unused)
+    number[nodes.vertex_of_node[node]] = -1;
+  Indexed<Index> input_of_vertex;
+  for (const Index v : indicesOf(number))
+    if (number[v] == 0) {
+      number[v] = input_of_vertex.count();
+      input_of_vertex.push_back(distinct.input_of_vertex[v]);
+    }
+  distinct.input_of_vertex = std::move(input_of_vertex);
+  renumber(number, distinct.vertex_of_input);
+  renumber(number, nodes.vertex_of_node);
+  std::vector<Eigen::Index> kept;
+  const std::vector<Index>& recorded = surface.history.vertices;
+  for (std::size_t i = 0; i < recorded.size(); ++i)
+    if (nodes.vertex_of_node[recorded[i]] >= 0)
+      kept.push_back(static_cast<Eigen::Index>(i));
+  for (HistoryFrame& frame : surface.history.frames)
+    frame.sphere = Positions(frame.sphere(Eigen::all, kept));
 }
 
 /// Gives indices and arrays that were computed on nodes the numbers of the vertices.
 struct Renumbering {
-  const Indexed<Index>& vertex_of_node;
+  const Indexed<Index>& vertex_of_node;  ///< -1: the node is no vertex
+  std::size_t vertices;
 
   template <typename Value>
   void operator()(const ResultField&, Value&) const {}
@@ -51,18 +79,24 @@ struct Renumbering {
   void operator()(const ResultField& field, Positions& columns) const {
     if (field.kind != FieldKind::PerVertex)
       return;
-    Positions of_vertices(3, columns.cols());
+    if (columns.cols() == 0)
+      return;
+    Positions of_vertices(3, static_cast<Eigen::Index>(vertices));
     for (Eigen::Index node = 0; node < columns.cols(); ++node)
-      of_vertices.col(vertex_of_node[node]) = columns.col(node);
+      if (vertex_of_node[node] >= 0)
+        of_vertices.col(vertex_of_node[node]) = columns.col(node);
     columns = std::move(of_vertices);
   }
 
   void operator()(const ResultField& field, std::vector<double>& values) const {
     if (field.kind != FieldKind::PerVertex)
       return;
-    Indexed<double> of_vertices(values.size());
+    if (values.empty())
+      return;
+    Indexed<double> of_vertices(vertices);
     for (std::size_t node = 0; node < values.size(); ++node)
-      of_vertices[vertex_of_node[node]] = values[node];
+      if (vertex_of_node[node] >= 0)
+        of_vertices[vertex_of_node[node]] = values[node];
     values = std::move(of_vertices);
   }
 
@@ -72,6 +106,7 @@ struct Renumbering {
     if (!is_loop && !is_set && field.kind != FieldKind::VertexList)
       return;
     renumber(vertex_of_node, nodes);
+    nodes.erase(std::remove(nodes.begin(), nodes.end(), -1), nodes.end());
     if (is_loop)
       std::rotate(nodes.begin(), std::min_element(nodes.begin(), nodes.end()), nodes.end());
     else if (is_set)
@@ -90,7 +125,8 @@ struct Renumbering {
 }  // namespace
 
 void toInput(OrderedPoints& nodes, Surface& result) {
-  const Renumbering renumbering{nodes.vertex_of_node};
+  dropUnused(nodes, result);
+  const Renumbering renumbering{nodes.vertex_of_node, nodes.distinct.input_of_vertex.size()};
   visitValues(result, Scaling{nodes.exponent});
   visitValues(result, renumbering);
   renumbering({"outliers", "", 0, FieldKind::Vertices}, result.outliers);
@@ -103,7 +139,10 @@ void toInput(Consolidation& consolidation, Surface& result) {
   // Those that came to one place are one vertex.
   result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);
   result.consolidation = consolidation.report;
-  result.consolidation.merged += result.vertex_of_input.size() - result.input_of_vertex.size();
+  const auto vertices_of = std::count_if(result.vertex_of_input.begin(),
+                                         result.vertex_of_input.end(), [](Index v) { return v >= 0; });
+  result.consolidation.merged +=
+      static_cast<std::size_t>(vertices_of) - result.input_of_vertex.size();
   Indexed<Index> first_of_point(result.vertex_of_input.size(), -1);
   Index input = 0;
   for (const Index point : consolidation.point_of_input) {
@@ -117,10 +156,18 @@ void toInput(Consolidation& consolidation, Surface& result) {
   result.vertex_of_input = std::move(consolidation.point_of_input);
 }
 
-void toCloud(const std::vector<Index>& inputs, Surface& surface) {
+void toCloud(const std::vector<Index>& inputs, Surface& surface, std::vector<Index>& unmeshed) {
   renumber(inputs, surface.input_of_vertex);
   renumber(inputs, surface.outliers);
-  surface.inputs = inputs;
+  std::vector<Index> vertices;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if (surface.vertex_of_input[i] >= 0) {
+      surface.inputs.push_back(inputs[i]);
+      vertices.push_back(surface.vertex_of_input[i]);
+    } else {
+      unmeshed.push_back(inputs[i]);
+    }
+  surface.vertex_of_input = std::move(vertices);
 }
 
 }  // namespace spherical_param::internal

@@ -9,7 +9,7 @@
 namespace spherical_param::internal {
 
 /// Translates a result from nodes to vertices: to the unit of the input and the indices of
-/// vertices.
+/// vertices. Nodes without triangles are no vertices; inputs there get vertex -1.
 void toInput(OrderedPoints& nodes, Surface& result);
 
 /// Translates a result from consolidated points to the points before.
@@ -17,7 +17,8 @@ void toInput(Consolidation& consolidation, Surface& result);
 
 /// Translates a surface of some points to the indices of the whole cloud.
 ///
-/// \param inputs the indices of these points in the cloud, ascending.
-void toCloud(const std::vector<Index>& inputs, Surface& surface);
+/// \param inputs   the indices of these points in the cloud, ascending.
+/// \param unmeshed receives those without a vertex.
+void toCloud(const std::vector<Index>& inputs, Surface& surface, std::vector<Index>& unmeshed);
 
 }  // namespace spherical_param::internal

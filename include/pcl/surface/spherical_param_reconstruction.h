@@ -84,6 +84,8 @@ public:
   using SurfaceMode = spherical_param::SurfaceMode;
   /** \brief Whether the mesh has the handles of the surface. */
   using HandleMode = spherical_param::HandleMode;
+  /** \brief What happens to triangles that intersect. */
+  using IntersectionMode = spherical_param::IntersectionMode;
   /** \brief Which points are left out. */
   using OutlierMode = spherical_param::OutlierMode;
   /** \brief Which parts of the cloud are meshed. */
@@ -97,7 +99,7 @@ public:
   /** \brief Set the topology of the mesh.
    * \param[in] mode default TopologyMode::Scan: what the cloud shows. Sphere: one closed surface of
    * genus 0 through every point.
-   * \note setParts(), setSurface(), setHandles() and setOutliers() override a part each. */
+   * \note setParts(), setSurface(), setHandles(), setIntersections() and setOutliers() override a part each. */
   inline void setTopology(TopologyMode mode) { options_.topology = mode; }
   /** \brief Get the topology of the mesh.
    * \return the mode */
@@ -140,6 +142,15 @@ public:
   /** \brief Get whether the mesh has the handles of the surface.
    * \return the mode */
   inline HandleMode getHandles() const { return options_.handles; }
+
+  /** \brief Set what happens to triangles that still intersect at the end.
+   * \param[in] mode Remove: they are taken apart, if need be by leaving out up to 0.2 % of the
+   * points of a surface. Keep: they are counted. Default: as setTopology() says.
+   * \note getResult().left_out.unmeshed has the points. */
+  inline void setIntersections(IntersectionMode mode) { options_.intersections = mode; }
+  /** \brief Get what happens to triangles that intersect.
+   * \return the mode */
+  inline IntersectionMode getIntersections() const { return options_.intersections; }
 
   /** \brief Set which points are left out first because they belong to no surface.
    * \param[in] mode Auto: stray points, small clusters and isolated points near a surface.

@@ -5,7 +5,7 @@
 namespace spherical_param::internal {
 
 OpenPlaces::OpenPlaces(const Positions& points, const Graph& graph, const Openings& openings)
-    : points_(points), nearest_(graph.size(), -1), is_in_loop_(graph.size(), 0),
+    : points_(&points), nearest_(graph.size(), -1), is_in_loop_(graph.size(), 0),
       spacing_(openings.spacing.begin(), openings.spacing.end()) {
   std::vector<Index> ring;
   const auto add = [&](Index v, Index opening) {
@@ -42,7 +42,7 @@ std::optional<std::size_t> OpenPlaces::openingOver(Index a, Index b, Index c) co
 
 bool OpenPlaces::isLong(Index a, Index b) const {
   const double longest = 1.6 * std::max(spacing_[a], spacing_[b]);
-  return (points_.col(a) - points_.col(b)).squaredNorm() > longest * longest;
+  return (points_->col(a) - points_->col(b)).squaredNorm() > longest * longest;
 }
 
 bool OpenPlaces::close(const std::vector<Index>& vertices) {

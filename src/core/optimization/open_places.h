@@ -41,7 +41,7 @@ public:
 private:
   bool isLong(Index a, Index b) const;
 
-  const Positions& points_;
+  const Positions* points_;
   Indexed<Index> nearest_;  ///< opening of the nearest loop; -1: excluded, or not within two steps
   Indexed<std::uint8_t> is_in_loop_;
   Indexed<double> spacing_;

@@ -111,11 +111,14 @@ private:
       found.triangles.push_back(t);
       found.outside_graph += a < b ? 1 : 0;
     });
+    // Vertices that were taken out are not torn apart.
+    if (ring.empty())
+      return;
     const auto is_around = [&](Index v) {
       return std::find(ring.begin(), ring.end(), v) != ring.end();
     };
     for (const Index b : graph_.row(a)) {
-      bool is_near = b < a || is_around(b);
+      bool is_near = b < a || is_around(b) || corners_.countAt(b) == 0;
       // Nearly all others are the other diagonal of two triangles.
       if (!is_near)
         forEachTriangle(b, [&](Index, Index next, Index) {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "open_mesh.h"
+#include "spherical_param/types.h"
+
+#include <cstddef>
+
+namespace spherical_param::internal {
+
+/// How much of a mesh may be taken out.
+struct RemovalLimits {
+  std::size_t vertices;
+  std::size_t triangles;
+};
+
+/// Takes apart for good the few triangles of a mesh that still intersect. For each of them, the
+/// first of these that helps:
+///
+/// 1. a triangulation of the triangles within two steps that has fewer intersections, of up to 100;
+/// 2. if the mesh is closed, one of its vertices, or of a triangle that it intersects, is taken out
+///    by flips and a 3-to-1 merge, which keeps the topology;
+/// 3. it is left out, or one that it intersects, if the others stay a manifold;
+/// 4. a vertex is taken out even if as many intersections are left.
+///
+/// \param points 3 x n.
+/// \param mesh   changed only if no triangles intersect afterwards.
+/// \return whether no triangles intersect.
+bool removeIntersections(const Positions& points, const RemovalLimits& limits, OpenMesh& mesh);
+
+}  // namespace spherical_param::internal

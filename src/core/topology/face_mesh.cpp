@@ -1,0 +1,431 @@
+#include "face_mesh.h"
+
+#include "boundary_loops.h"
+#include "corner_table.h"
+#include "progress.h"
+#include "rotation_system.h"
+#include "sphere_mesh.h"
+#include "union_find.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <queue>
+#include <tuple>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::internal {
+namespace {
+
+using TriangleList = std::vector<std::array<Index, 3>>;
+
+Triangles matrixOf(const TriangleList& list) {
+  Triangles triangles(3, static_cast<Eigen::Index>(list.size()));
+  for (std::size_t t = 0; t < list.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      triangles(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(t)) = list[t][k];
+  return triangles;
+}
+
+/// Edges of a mesh.
+class EdgeSet {
+public:
+  bool insert(Index v, Index w) { return edges_.insert(keyOf(v, w)).second; }
+  void erase(Index v, Index w) { edges_.erase(keyOf(v, w)); }
+
+private:
+  static std::uint64_t keyOf(Index v, Index w) {
+    const auto [low, high] = std::minmax(v, w);
+    return static_cast<std::uint64_t>(low) << 32U | static_cast<std::uint64_t>(high);
+  }
+  std::unordered_set<std::uint64_t> edges_;
+};
+
+/// Cuts a polygon into triangles, ear by ear, the shortest new edge first, none of which is there
+/// already.
+///
+/// \param loop of the polygon, counter-clockwise, each vertex once.
+/// \param edges of the mesh; receives the new ones.
+/// \return whether that was possible. If not, nothing has changed.
+bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, EdgeSet& edges,
+                      TriangleList& triangles) {
+  const std::size_t count = loop.size();
+  std::vector<std::size_t> next(count);
+  std::vector<std::size_t> previous(count);
+  std::vector<char> is_cut(count, 0);
+  using Ear = std::tuple<double, std::size_t, std::size_t, std::size_t>;  // length, tip, ends
+  std::priority_queue<Ear, std::vector<Ear>, std::greater<>> ears;
+  const auto add = [&](std::size_t i) {
+    const double length = (points.col(loop[next[i]]) - points.col(loop[previous[i]])).norm();
+    ears.emplace(length, i, previous[i], next[i]);
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    next[i] = i + 1 < count ? i + 1 : 0;
+    previous[i] = i > 0 ? i - 1 : count - 1;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    add(i);
+  TriangleList found;
+  while (!ears.empty() && found.size() + 2 < count) {
+    const auto [length, tip, before, after] = ears.top();
+    ears.pop();
+    if (is_cut[tip] != 0 || previous[tip] != before || next[tip] != after)
+      continue;
+    const bool is_last = found.size() + 3 == count;
+    if (!is_last && !edges.insert(loop[before], loop[after]))
+      continue;
+    found.push_back({loop[before], loop[tip], loop[after]});
+    is_cut[tip] = 1;
+    next[before] = after;
+    previous[after] = before;
+    add(before);
+    add(after);
+  }
+  if (found.size() + 2 < count) {
+    for (const auto& [before, tip, after] : found)
+      edges.erase(before, after);
+    return false;
+  }
+  triangles.insert(triangles.end(), found.begin(), found.end());
+  return true;
+}
+
+/// The triangles of the faces.
+TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation) {
+  // Larger faces are cut only if nothing is left of what is around them.
+  constexpr std::size_t max_corners = 12;
+  TriangleList triangles;
+  EdgeSet edges;
+  const NeighborRows& graph = rotation.edges();
+  for (const Index v : graph.nodes())
+    for (const Index w : graph.row(v))
+      if (v < w)
+        edges.insert(v, w);
+  const NeighborRows faces = rotation.faces(3, 0.0);
+  for (const Index i : faces.nodes()) {
+    const std::vector<Index> face(faces.row(i).begin(), faces.row(i).end());
+    std::vector<Index> nodes = face;
+    sortUnique(nodes);
+    if (face.size() <= max_corners && nodes.size() == face.size())
+      cutIntoTriangles(points, face, edges, triangles);
+  }
+  return triangles;
+}
+
+/// The triangles around a vertex that follow each other, in fans.
+std::vector<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable& corners,
+                                       Index v) {
+  std::vector<std::array<Index, 3>> sides;  // first, last neighbour, triangle
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    sides.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
+  });
+  std::vector<std::vector<Index>> fans;
+  std::vector<char> is_seen(sides.size(), 0);
+  const auto find = [&](int end, Index w) {
+    for (std::size_t i = 0; i < sides.size(); ++i)
+      if (is_seen[i] == 0 && sides[i][static_cast<std::size_t>(end)] == w)
+        return i;
+    return sides.size();
+  };
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (is_seen[i] != 0)
+      continue;
+    is_seen[i] = 1;
+    std::vector<Index>& fan = fans.emplace_back(1, sides[i][2]);
+    for (std::size_t j = find(0, sides[i][1]); j < sides.size(); j = find(0, sides[j][1])) {
+      is_seen[j] = 1;
+      fan.push_back(sides[j][2]);
+    }
+    for (std::size_t j = find(1, sides[i][0]); j < sides.size(); j = find(1, sides[j][0])) {
+      is_seen[j] = 1;
+      fan.push_back(sides[j][2]);
+    }
+  }
+  return fans;
+}
+
+/// Leaves the triangles that meet a condition.
+template <typename Condition>
+Triangles filtered(const Triangles& triangles, const Condition& stays) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    if (stays(t))
+      kept.push_back(t);
+  return triangles(Eigen::all, kept);
+}
+
+/// Leaves the largest fan of each vertex.
+Triangles withoutPinches(Triangles triangles, std::size_t vertices) {
+  for (;;) {
+    const CornerTable corners(triangles, vertices, 1);
+    Indexed<char> drops(columnCount(triangles), 0);
+    bool has_pinch = false;
+    for (Index v = 0; v < static_cast<Index>(vertices); ++v) {
+      const std::vector<std::vector<Index>> fans = fansAt(triangles, corners, v);
+      if (fans.size() < 2)
+        continue;
+      has_pinch = true;
+      const auto largest =
+          std::max_element(fans.begin(), fans.end(),
+                           [](const auto& a, const auto& b) { return a.size() < b.size(); });
+      for (auto fan = fans.begin(); fan != fans.end(); ++fan)
+        for (const Index t : *fan)
+          drops[t] = drops[t] != 0 || fan != largest ? 1 : 0;
+    }
+    if (!has_pinch)
+      return triangles;
+    triangles = filtered(triangles, [&](Eigen::Index t) { return drops[t] == 0; });
+  }
+}
+
+/// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
+Triangles closed(const Positions& points, const Triangles& open) {
+  const std::size_t vertices = columnCount(points);
+  UnionFind pieces(vertices);
+  EdgeSet edges;
+  for (const auto& t : open.colwise())
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      pieces.unite(t[k], t[(k + 1) % 3]);
+      edges.insert(t[k], t[(k + 1) % 3]);
+    }
+  TriangleList fillings;
+  Indexed<char> is_left_out(vertices, 0);
+  for (std::vector<Index>& loop : boundaryLoops(open, vertices)) {
+    std::reverse(loop.begin(), loop.end());
+    if (!cutIntoTriangles(points, loop, edges, fillings))
+      is_left_out[pieces.find(loop.front())] = 1;
+  }
+  TriangleList triangles;
+  const auto add = [&](const auto& t) {
+    if (is_left_out[pieces.find(t[0])] == 0)
+      triangles.push_back({t[0], t[1], t[2]});
+  };
+  for (const auto& t : open.colwise())
+    add(t);
+  for (const auto& t : fillings)
+    add(t);
+  return matrixOf(triangles);
+}
+
+/// Joins closed pieces by tubes, each between triangles at the ends of an edge of the graph, short
+/// edges first. Returns the piece with the most vertices.
+Triangles joined(const Positions& points, const Graph& graph, const Triangles& spheres) {
+  UnionFind pieces(graph.size());
+  for (const auto& t : spheres.colwise()) {
+    pieces.unite(t[0], t[1]);
+    pieces.unite(t[0], t[2]);
+  }
+  const CornerTable corners(spheres, graph.size(), 1);
+  std::vector<std::tuple<double, Index, Index>> edges;
+  for (const Index v : graph.nodes())
+    for (const std::size_t e : graph.entries(v)) {
+      const Index w = graph.neighbors[e];
+      if (v < w && corners.countAt(v) > 0 && corners.countAt(w) > 0 &&
+          pieces.find(v) != pieces.find(w))
+        edges.emplace_back(graph.lengths[e], v, w);
+    }
+  std::sort(edges.begin(), edges.end());
+  Indexed<char> is_taken(columnCount(spheres), 0);
+  TriangleList triangles;
+  for (const auto& [length, v, w] : edges) {
+    if (pieces.find(v) == pieces.find(w))
+      continue;
+    double least = std::numeric_limits<double>::infinity();
+    std::array<Index, 6> best{};
+    std::array<Index, 2> ends{-1, -1};
+    corners.forEachCorner(v, [&](Index t, Index k) {
+      corners.forEachCorner(w, [&](Index u, Index l) {
+        if (is_taken[t] != 0 || is_taken[u] != 0)
+          return;
+        const std::array<Index, 6> tube{
+            spheres(k, t), spheres(nextCorner(k), t), spheres(previousCorner(k), t),
+            spheres(l, u), spheres(previousCorner(l), u), spheres(nextCorner(l), u)};
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 3; ++i)
+          sum += (points.col(tube[i]) - points.col(tube[i + 3])).norm() +
+                 (points.col(tube[i]) - points.col(tube[(i + 1) % 3 + 3])).norm();
+        if (sum < least) {
+          least = sum;
+          best = tube;
+          ends = {t, u};
+        }
+      });
+    });
+    if (ends[0] < 0)
+      continue;
+    is_taken[ends[0]] = is_taken[ends[1]] = 1;
+    pieces.unite(v, w);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      triangles.push_back({best[i], best[j], best[j + 3]});
+      triangles.push_back({best[i], best[j + 3], best[i + 3]});
+    }
+  }
+  Indexed<Index> sizes(graph.size(), 0);
+  for (const auto& t : spheres.colwise())
+    ++sizes[pieces.find(t[0])];
+  const auto largest =
+      static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  for (Eigen::Index t = 0; t < spheres.cols(); ++t)
+    if (is_taken[t] == 0)
+      triangles.push_back({spheres(0, t), spheres(1, t), spheres(2, t)});
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(),
+                                 [&](const auto& t) { return pieces.find(t[0]) != largest; }),
+                  triangles.end());
+  return matrixOf(triangles);
+}
+
+/// \param closed a closed manifold in one piece.
+std::size_t genusOf(const Triangles& closed, std::size_t vertices) {
+  Indexed<char> is_used(vertices, 0);
+  for (const Index v : closed.reshaped())
+    is_used[v] = 1;
+  const auto used = std::count(is_used.begin(), is_used.end(), char{1});
+  return static_cast<std::size_t>(1 + (closed.cols() / 2 - used) / 2);
+}
+
+/// A region of a closed mesh that grows triangle by triangle, those with short sides first, and
+/// keeps genus 0.
+class PlanarRegion {
+public:
+  PlanarRegion(const Positions& points, const SphereMesh& mesh)
+      : points_(points), mesh_(mesh), is_in_(mesh.slotCount(), 0), is_on_(columnCount(points), 0) {}
+
+  bool contains(Eigen::Index t) const { return is_in_[t] != 0; }
+
+  void grow(Index first) {
+    add(first);
+    std::vector<Index> touching;  // they would join the region to itself
+    while (!due_.empty() || !touching.empty()) {
+      while (!due_.empty()) {
+        const Index t = due_.top().second;
+        due_.pop();
+        if (contains(t))
+          continue;
+        if (touches(t))
+          touching.push_back(t);
+        else
+          add(t);
+      }
+      for (const Index t : std::exchange(touching, {}))
+        if (!contains(t) && (!touches(t) || isAcrossOneLoop(t)))
+          add(t);
+    }
+  }
+
+private:
+  void add(Index t) {
+    is_in_[t] = 1;
+    for (int k = 0; k < 3; ++k) {
+      is_on_[mesh_.vertex(t, k)] = 1;
+      const Index next = mesh_.neighbor(t, k);
+      if (!contains(next))
+        due_.emplace(longestSide(next), next);
+    }
+  }
+
+  double longestSide(Index t) const {
+    const auto& [a, b, c] = mesh_.vertices(t);
+    const auto length = [&](Index v, Index w) { return (points_.col(v) - points_.col(w)).norm(); };
+    return std::max({length(a, b), length(b, c), length(c, a)});
+  }
+
+  /// The corner opposite to the only side that is in the region; -1: there are more.
+  int tipOf(Index t) const {
+    int tip = -1;
+    int sides = 0;
+    for (int k = 0; k < 3; ++k)
+      if (contains(mesh_.neighbor(t, k))) {
+        tip = k;
+        ++sides;
+      }
+    return sides == 1 ? tip : -1;
+  }
+
+  bool touches(Index t) const {
+    const int tip = tipOf(t);
+    return tip >= 0 && is_on_[mesh_.vertex(t, tip)] != 0;
+  }
+
+  /// Whether the boundary of the region leads from the side of a triangle to its tip.
+  bool isAcrossOneLoop(Index t) const {
+    const int tip = tipOf(t);
+    Index at = t;
+    int corner = tip;
+    do {
+      // To the next side around the end of this one.
+      corner = (corner + 1) % 3;
+      while (!contains(mesh_.neighbor(at, corner))) {
+        const int opposite = mesh_.oppositeCorner(at, corner);
+        at = mesh_.neighbor(at, corner);
+        corner = (opposite + 1) % 3;
+        if (at == t && (corner + 2) % 3 == tip)
+          return true;
+      }
+    } while (at != t || corner != tip);
+    return false;
+  }
+
+  const Positions& points_;
+  const SphereMesh& mesh_;
+  Indexed<char> is_in_;  ///< of each triangle
+  Indexed<char> is_on_;  ///< of each vertex
+  using Due = std::pair<double, Index>;
+  std::priority_queue<Due, std::vector<Due>, std::greater<>> due_;
+};
+
+/// Puts a node into the nearest triangle around its neighbours. Returns whether it has some in the
+/// mesh.
+bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& mesh) {
+  Index nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Index w : graph.row(v))
+    if (mesh.triangleAt(w) >= 0)
+      mesh.forEachAround(w, [&](Index t, int) {
+        double distance = 0.0;
+        for (const Index x : mesh.vertices(t))
+          distance += (points.col(v) - points.col(x)).norm();
+        if (distance < least) {
+          least = distance;
+          nearest = t;
+        }
+      });
+  if (nearest >= 0)
+    mesh.split(nearest, v);
+  return nearest >= 0;
+}
+
+}  // namespace
+
+std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph,
+                                   std::size_t genus, const Execution& execution) {
+  RotationSystem rotation(points, graph, nodeSpacings(graph, execution.threads), execution.threads);
+  if (rotation.hasOpposite(graph))
+    rotation.separateOpposite();
+  reportFraction(reportOf(execution, "openings"), 0.5);
+  Triangles faces = matrixOf(trianglesOf(points, rotation));
+  Triangles spheres;
+  for (bool is_cut = true; std::exchange(is_cut, false);) {
+    spheres = joined(points, graph, closed(points, withoutPinches(std::move(faces), graph.size())));
+    if (spheres.cols() == 0)
+      return std::nullopt;
+    if (genusOf(spheres, graph.size()) == genus)
+      break;
+    const SphereMesh mesh(spheres, graph.size());
+    PlanarRegion region(points, mesh);
+    region.grow(0);
+    faces = filtered(spheres, [&](Eigen::Index t) { return region.contains(t); });
+    is_cut = faces.cols() < spheres.cols();
+  }
+  SphereMesh mesh(spheres, graph.size());
+  for (bool has_changed = true; std::exchange(has_changed, false);)
+    for (const Index v : graph.nodes())
+      if (mesh.triangleAt(v) < 0 && insert(points, graph, v, mesh))
+        has_changed = true;
+  return mesh.triangles();
+}
+
+}  // namespace spherical_param::internal
