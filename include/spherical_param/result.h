@@ -296,6 +296,9 @@ struct Surface {
   /// The search for intersections ended early, as more than 1 % of the triangles intersect: there
   /// may be more pairs, and more such triangles.
   bool intersections_are_sampled = false;
+  /// Triangles that were left out because they would intersect others: each leaves an opening, or
+  /// widens one.
+  std::size_t left_out_triangles = 0;
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< remarks and remedies; empty if all is well
 

@@ -347,6 +347,8 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"intersections_are_sampled",
          "more than 1 % of the triangles intersect, and the search ended: there may be more"},
         &Of::intersections_are_sampled);
+  visit({"left_out_triangles", "triangles that were left out because they would intersect others"},
+        &Of::left_out_triangles);
   visit({"self_intersections",
          "pairs of triangles that intersect (exact), ascending: all, or a sample", 0,
          FieldKind::TriangleList},

@@ -247,8 +247,8 @@ MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceT
     Options open = options;
     open.surface = SurfaceMode::Open;
     clock.begin("openings");
-    SurfaceTopology other = findTopology(points, graph.graph, false, topology.openings.unit(), open,
-                                         clock.execution());
+    SurfaceTopology other =
+        findTopology(points, graph.graph, false, topology.openings.unit(), open, clock.execution());
     Candidate with_openings = mesh_as(other, true, open);
     if (isBetter(with_openings, best)) {
       best = std::move(with_openings);

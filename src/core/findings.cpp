@@ -213,6 +213,10 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
   if (result.is_out_of_time)
     findings.push_back(
         {"the time limit ended the work early: this is the best mesh so far", "", "", false});
+  if (result.left_out_triangles > 0)
+    findings.push_back({counted(result.left_out_triangles, "triangle") +
+                            " left out that would intersect others: small openings",
+                        "", "", false});
   if (result.intersecting_triangles > 0)
     findings.push_back({"self-intersections", "", "", true});
   const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {

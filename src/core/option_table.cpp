@@ -253,14 +253,14 @@ std::vector<OptionRow> surfaceRows() {
            {"none", HandleMode::None},
            {"auto", HandleMode::Auto}},
           memberOf(&Options::handles))),
-      byDefault(choice<IntersectionMode>(
-          "intersections", "intersections",
-          "triangles that intersect are taken apart, at last with up to 0.2 % of the points, or kept",
-          Everybody,
-          {{"topology", IntersectionMode::AsTopology},
-           {"remove", IntersectionMode::Remove},
-           {"keep", IntersectionMode::Keep}},
-          memberOf(&Options::intersections))),
+      byDefault(choice<IntersectionMode>("intersections", "intersections",
+                                         "triangles that intersect are taken apart, at last with "
+                                         "up to 0.2 % of the points, or kept",
+                                         Everybody,
+                                         {{"topology", IntersectionMode::AsTopology},
+                                          {"remove", IntersectionMode::Remove},
+                                          {"keep", IntersectionMode::Keep}},
+                                         memberOf(&Options::intersections))),
   };
 }
 

@@ -25,6 +25,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -140,7 +141,7 @@ internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
 
 /// Removes the intersections of a mesh, if the options say so. Returns whether it has none.
 bool clean(const Positions& points, MeshedCloud& mesh, const Options& options,
-           const Execution& execution, internal::OpenMesh& open) {
+           const Execution& execution, internal::OpenMesh& open, std::size_t& left_out_triangles) {
   // More of a surface is no spot, but a tangle.
   constexpr std::size_t vertices_of = 500;
   constexpr std::size_t triangles_of = 100;
@@ -149,12 +150,14 @@ bool clean(const Positions& points, MeshedCloud& mesh, const Options& options,
   if (internal::findPairsUpTo(1, positions, surface, execution).pairs.empty())
     return true;
   const bool may_open = options.surface != SurfaceMode::Closed;
-  const internal::RemovalLimits limits{
-      internal::columnCount(points) / vertices_of,
-      may_open ? internal::columnCount(surface) / triangles_of : 0};
-  if (options.intersections != IntersectionMode::Remove ||
-      !removeIntersections(positions, limits, open))
+  const internal::Removal most{internal::columnCount(points) / vertices_of,
+                               may_open ? internal::columnCount(surface) / triangles_of : 0};
+  if (options.intersections != IntersectionMode::Remove)
     return false;
+  const std::optional<internal::Removal> removal = clearIntersections(positions, most, open);
+  if (!removal)
+    return false;
+  left_out_triangles = removal->triangles;
   mesh.smoothed.intersecting_triangles = 0;
   mesh.smoothed.is_sample = false;
   mesh.smoothed.report.self_intersections = 0;
@@ -177,11 +180,13 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
     smooth(points, openings, options, clock, mesh);
   clock.begin("quality");
   internal::OpenMesh open = openMeshOf(points, mesh, openings);
-  const bool is_clean = clean(points, mesh, options, clock.execution(), open);
+  std::size_t left_out_triangles = 0;
+  const bool is_clean = clean(points, mesh, options, clock.execution(), open, left_out_triangles);
   const FacedBy faced_by = internal::orient(points, info, open, mesh.embedding);
   Surface surface = internal::judge(points, std::move(mesh), surfaceOf(open), is_clean, openings,
                                     options, clock.execution());
   surface.faced_by = faced_by;
+  surface.left_out_triangles = left_out_triangles;
   return surface;
 }
 

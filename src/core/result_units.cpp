@@ -139,8 +139,8 @@ void toInput(Consolidation& consolidation, Surface& result) {
   // Those that came to one place are one vertex.
   result.consolidated = consolidation.points(Eigen::all, result.input_of_vertex);
   result.consolidation = consolidation.report;
-  const auto vertices_of = std::count_if(result.vertex_of_input.begin(),
-                                         result.vertex_of_input.end(), [](Index v) { return v >= 0; });
+  const auto vertices_of = std::count_if(
+      result.vertex_of_input.begin(), result.vertex_of_input.end(), [](Index v) { return v >= 0; });
   result.consolidation.merged +=
       static_cast<std::size_t>(vertices_of) - result.input_of_vertex.size();
   Indexed<Index> first_of_point(result.vertex_of_input.size(), -1);

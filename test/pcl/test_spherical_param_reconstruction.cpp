@@ -337,6 +337,7 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
       SETTER("surface", "open", Surface, spherical_param::SurfaceMode::Open),
       SETTER("fill_holes", Integer{12}, FillHoles, 12),
       SETTER("handles", "none", Handles, spherical_param::HandleMode::None),
+      SETTER("intersections", "keep", Intersections, spherical_param::IntersectionMode::Keep),
       SETTER("seed", Integer{4294967295}, Seed, 4294967295U),
       SETTER("time_limit", 1.5, TimeLimit, 1.5),
       SETTER("threads", Integer{3}, NumberOfThreads, 3U),

@@ -99,7 +99,8 @@ public:
   /** \brief Set the topology of the mesh.
    * \param[in] mode default TopologyMode::Scan: what the cloud shows. Sphere: one closed surface of
    * genus 0 through every point.
-   * \note setParts(), setSurface(), setHandles(), setIntersections() and setOutliers() override a part each. */
+   * \note setParts(), setSurface(), setHandles(), setIntersections() and setOutliers() override a
+   * part each. */
   inline void setTopology(TopologyMode mode) { options_.topology = mode; }
   /** \brief Get the topology of the mesh.
    * \return the mode */

@@ -35,24 +35,26 @@ public:
     surface_.begin(is_open_.size(), std::move(faces));
   }
 
-  bool run(const RemovalLimits& limits) {
+  bool run(const Removal& most) {
     for (Index t = 0; t < mesh_.size(); ++t)
       if (intersects(t))
         due_.push_back(t);
-    if (due_.size() > limits.triangles + kMostOfVertex * limits.vertices)
+    if (due_.size() > most.triangles + kMostOfVertex * most.vertices)
       return false;
     const bool is_closed = std::count(is_open_.begin(), is_open_.end(), std::uint8_t{1}) == 0;
     for (std::size_t i = 0; i < due_.size(); ++i)
       while (intersects(due_[i])) {
         const Index t = due_[i];
-        const bool may_take = report_.vertices < limits.vertices;
-        const bool may_leave = report_.triangles < limits.triangles;
+        const bool may_take = removal_.vertices < most.vertices;
+        const bool may_leave = removal_.triangles < most.triangles;
         if (!retriangulate(t) && !(is_closed && may_take && takeOutNear(t, -1)) &&
             !(may_leave && leaveOut(t)) && !(may_take && takeOutNear(t, kMostOfVertex)))
           return false;
       }
     return true;
   }
+
+  const Removal& removal() const { return removal_; }
 
   OpenMesh mesh() const {
     OpenMesh result;
@@ -233,7 +235,7 @@ private:
       const auto& corners = mesh_.vertices(u);
       if (std::all_of(corners.begin(), corners.end(), [&](Index v) { return isOneFan(v); })) {
         surface_.remove(u);
-        ++report_.triangles;
+        ++removal_.triangles;
         return true;
       }
       is_open_[u] = 0;
@@ -270,7 +272,7 @@ private:
     double added = 0.0;
     takeOut(best, added);
     commit();
-    ++report_.vertices;
+    ++removal_.vertices;
     return true;
   }
 
@@ -352,17 +354,18 @@ private:
   std::vector<std::pair<Index, std::uint8_t>> before_;  ///< what has changed, and was open
   std::vector<Index> due_;                              ///< triangles that may intersect
   int triangulations_ = 0;
-  RemovalLimits report_{0, 0};  ///< what was taken out
+  Removal removal_;
 };
 
 }  // namespace
 
-bool removeIntersections(const Positions& points, const RemovalLimits& limits, OpenMesh& mesh) {
+std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
+                                          OpenMesh& mesh) {
   Remover remover(points, mesh);
-  const bool is_clean = remover.run(limits);
-  if (is_clean)
-    mesh = remover.mesh();
-  return is_clean;
+  if (!remover.run(most))
+    return std::nullopt;
+  mesh = remover.mesh();
+  return remover.removal();
 }
 
 }  // namespace spherical_param::internal

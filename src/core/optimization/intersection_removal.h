@@ -4,13 +4,14 @@
 #include "spherical_param/types.h"
 
 #include <cstddef>
+#include <optional>
 
 namespace spherical_param::internal {
 
-/// How much of a mesh may be taken out.
-struct RemovalLimits {
-  std::size_t vertices;
-  std::size_t triangles;
+/// How much of a mesh is taken out.
+struct Removal {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;  ///< without those around the vertices
 };
 
 /// Takes apart for good the few triangles of a mesh that still intersect. For each of them, the
@@ -23,8 +24,10 @@ struct RemovalLimits {
 /// 4. a vertex is taken out even if as many intersections are left.
 ///
 /// \param points 3 x n.
+/// \param most   that may be taken out.
 /// \param mesh   changed only if no triangles intersect afterwards.
-/// \return whether no triangles intersect.
-bool removeIntersections(const Positions& points, const RemovalLimits& limits, OpenMesh& mesh);
+/// \return what was taken out; nothing if triangles still intersect.
+std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
+                                          OpenMesh& mesh);
 
 }  // namespace spherical_param::internal

@@ -241,7 +241,7 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
         if (is_taken[t] != 0 || is_taken[u] != 0)
           return;
         const std::array<Index, 6> tube{
-            spheres(k, t), spheres(nextCorner(k), t), spheres(previousCorner(k), t),
+            spheres(k, t), spheres(nextCorner(k), t),     spheres(previousCorner(k), t),
             spheres(l, u), spheres(previousCorner(l), u), spheres(nextCorner(l), u)};
         double sum = 0.0;
         for (std::size_t i = 0; i < 3; ++i)
@@ -400,8 +400,8 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
 
 }  // namespace
 
-std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph,
-                                   std::size_t genus, const Execution& execution) {
+std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
+                                   const Execution& execution) {
   RotationSystem rotation(points, graph, nodeSpacings(graph, execution.threads), execution.threads);
   if (rotation.hasOpposite(graph))
     rotation.separateOpposite();

@@ -9,8 +9,8 @@
 
 namespace spherical_param::internal {
 
-/// A closed mesh of the faces of the rotation system of a graph. Where a few edges of a graph are false, the
-/// embedding of all is folded, but all faces elsewhere are right.
+/// A closed mesh of the faces of the rotation system of a graph. Where a few edges of a graph are
+/// false, the embedding of all is folded, but all faces elsewhere are right.
 ///
 /// 1. Triangles, and faces of up to 12 nodes, cut into triangles, are a mesh with openings. Where
 ///    several fans meet in a node, the largest stays.
@@ -25,7 +25,7 @@ namespace spherical_param::internal {
 /// \param genus  that is kept; another one becomes 0.
 /// \return a closed, oriented manifold in one piece over all nodes; nothing if the graph has no
 ///         faces. Cost: O(n log n).
-std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph,
-                                   std::size_t genus, const Execution& execution);
+std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
+                                   const Execution& execution);
 
 }  // namespace spherical_param::internal
