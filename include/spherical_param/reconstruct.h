@@ -52,12 +52,12 @@ std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen:
 ///
 /// Guaranteed: each mesh is manifold, consistently oriented, in one piece, and closed unless
 /// openings stay open. It has the handles that are listed; with HandleMode::None it is a sphere.
-/// Every distinct (or consolidated) point of its part is a vertex. The same input and options give
-/// the same result, bit by bit, for any number of threads, unless a time limit ends the work.
-/// Reentrant.
+/// Every distinct (or consolidated) point of its part is a vertex, but for LeftOut::unmeshed, which
+/// IntersectionMode::Keep leaves empty. The same input and options give the same result, bit by
+/// bit, for any number of threads, unless a time limit ends the work. Reentrant.
 ///
-/// Not guaranteed: a mesh free of self-intersections, near the sampled surface, or of its genus;
-/// `verdict`, `findings` and `diagnosis` say how far to trust it.
+/// Not guaranteed: a mesh free of self-intersections where these are kept or too many, near the
+/// sampled surface, or of its genus; `verdict`, `findings` and `diagnosis` say how far to trust it.
 /// Cost: O(n log n), typically; Method::Paper adds iterations * O(n k). Memory: below 1 KB a point.
 Result reconstruct(const Positions& points, const Options& options = {},
                    const NeighborSearchFactory& search_of = {}, const CloudInfo& info = {});

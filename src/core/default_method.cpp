@@ -202,6 +202,23 @@ private:
   bool has_failed_ = false;
 };
 
+/// The mesh with all openings open, from that with filled ones; or that one if it is better.
+Candidate meshWithOpenings(const Positions& points, const Graph& graph, SurfaceTopology& topology,
+                           const Options& options, StageClock& clock, const Candidate& filled) {
+  // If so many triangles intersect, it is the embedding that is wrong.
+  constexpr std::size_t folded_of = 10;
+  Mesher mesher(points, graph, topology, options, clock);
+  Candidate best = filled;
+  if (!isTangle(filled, folded_of)) {
+    best = mesher.best();
+    mesher.optimize(best);
+  }
+  mesher.untangle(best);
+  if (mesher.hasFailed())
+    best.found = topology.handles;
+  return best;
+}
+
 /// \param found all handles; \param kept those of the mesh, some of them in their order.
 std::vector<HandleLoop> handlesOf(const Positions& points, const std::vector<CutLoop>& found,
                                   const std::vector<CutLoop>& kept) {
@@ -228,20 +245,16 @@ std::vector<HandleLoop> handlesOf(const Positions& points, const std::vector<Cut
 
 MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
                           const Options& options, StageClock& clock) {
-  const auto mesh_as = [&](SurfaceTopology& found, bool has_last_resort, const Options& as) {
-    Mesher mesher(points, graph.graph, found, as, clock);
-    Candidate best = mesher.best();
-    mesher.optimize(best);
-    if (has_last_resort)
-      mesher.untangle(best);
-    if (mesher.hasFailed())
-      best.found = found.handles;
-    return best;
-  };
   const bool removes = options.intersections == IntersectionMode::Remove;
   const bool may_open =
       removes && options.surface == SurfaceMode::Auto && topology.openings.fillsPossible();
-  Candidate best = mesh_as(topology, removes && !may_open, options);
+  Mesher mesher(points, graph.graph, topology, options, clock);
+  Candidate best = mesher.best();
+  mesher.optimize(best);
+  if (removes && !may_open)
+    mesher.untangle(best);
+  if (mesher.hasFailed())
+    best.found = topology.handles;
   if (may_open && isTangle(best)) {
     // Over a possible opening the surface may be wrong.
     Options open = options;
@@ -249,7 +262,7 @@ MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceT
     clock.begin("openings");
     SurfaceTopology other =
         findTopology(points, graph.graph, false, topology.openings.unit(), open, clock.execution());
-    Candidate with_openings = mesh_as(other, true, open);
+    Candidate with_openings = meshWithOpenings(points, graph.graph, other, open, clock, best);
     if (isBetter(with_openings, best)) {
       best = std::move(with_openings);
       topology = std::move(other);

@@ -40,6 +40,11 @@ std::size_t missingHandles(const Surface& result) {
   return in_graph > result.genus() ? in_graph - result.genus() : 0;
 }
 
+/// Whether more triangles are left out than may intersect in a usable mesh.
+bool hasTangle(const Surface& result) {
+  return 100 * result.left_out_triangles > static_cast<std::size_t>(result.triangles.cols());
+}
+
 /// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
   return result.is_noisy && result.moved().cols() == 0 && result.outliers.empty() &&
@@ -215,8 +220,8 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
         {"the time limit ended the work early: this is the best mesh so far", "", "", false});
   if (result.left_out_triangles > 0)
     findings.push_back({counted(result.left_out_triangles, "triangle") +
-                            " left out that would intersect others: small openings",
-                        "", "", false});
+                            " that would intersect others, left out: small openings",
+                        "", "", hasTangle(result)});
   if (result.intersecting_triangles > 0)
     findings.push_back({"self-intersections", "", "", true});
   const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
@@ -253,6 +258,9 @@ std::string verdictOf(const Options& options, const Surface& result) {
     doubts.emplace_back("may cut a handle");
   if (isFolded(options, result))
     doubts.emplace_back("is folded");
+  if (hasTangle(result))
+    doubts.emplace_back("leaves out " + counted(result.left_out_triangles, "triangle") +
+                        " that would intersect");
   for (std::size_t i = 0; i < doubts.size(); ++i)
     text += (i == 0 ? ", but it " : i + 1 < doubts.size() ? ", " : " and ") + doubts[i];
   return text + ".";

@@ -145,6 +145,7 @@ bool clean(const Positions& points, MeshedCloud& mesh, const Options& options,
   // More of a surface is no spot, but a tangle.
   constexpr std::size_t vertices_of = 500;
   constexpr std::size_t triangles_of = 100;
+  constexpr std::size_t tangle_of = 10;
   const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
   const Triangles surface = surfaceOf(open);
   if (internal::findPairsUpTo(1, positions, surface, execution).pairs.empty())
@@ -152,11 +153,18 @@ bool clean(const Positions& points, MeshedCloud& mesh, const Options& options,
   const bool may_open = options.surface != SurfaceMode::Closed;
   const internal::Removal most{internal::columnCount(points) / vertices_of,
                                may_open ? internal::columnCount(surface) / triangles_of : 0};
-  if (options.intersections != IntersectionMode::Remove)
+  if (options.intersections != IntersectionMode::Remove || mesh.optimization.report.is_out_of_time)
     return false;
-  const std::optional<internal::Removal> removal = clearIntersections(positions, most, open);
-  if (!removal)
+  std::optional<internal::Removal> removal = clearIntersections(positions, most, open);
+  if (!removal && !may_open)
     return false;
+  if (!removal) {
+    internal::OpenMesh rest = open;
+    removal = leaveOutTangles(positions, rest);
+    if (tangle_of * removal->triangles > internal::columnCount(surface))
+      return false;
+    open = std::move(rest);
+  }
   left_out_triangles = removal->triangles;
   mesh.smoothed.intersecting_triangles = 0;
   mesh.smoothed.is_sample = false;

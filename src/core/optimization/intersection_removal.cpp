@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <unordered_set>
@@ -42,16 +43,33 @@ public:
     if (due_.size() > most.triangles + kMostOfVertex * most.vertices)
       return false;
     const bool is_closed = std::count(is_open_.begin(), is_open_.end(), std::uint8_t{1}) == 0;
-    for (std::size_t i = 0; i < due_.size(); ++i)
-      while (intersects(due_[i])) {
-        const Index t = due_[i];
-        const bool may_take = removal_.vertices < most.vertices;
-        const bool may_leave = removal_.triangles < most.triangles;
-        if (!retriangulate(t) && !(is_closed && may_take && takeOutNear(t, -1)) &&
-            !(may_leave && leaveOut(t)) && !(may_take && takeOutNear(t, kMostOfVertex)))
-          return false;
-      }
+    std::size_t next = 0;
+    while (next < due_.size()) {
+      const Index t = due_[next];
+      const bool may_take = removal_.vertices < most.vertices;
+      const bool may_leave = removal_.triangles < most.triangles;
+      if (!intersects(t))
+        ++next;
+      else if (!retriangulate(t) && !(is_closed && may_take && takeOutNear(t, -1)) &&
+               !(may_leave && leaveOut(t)) && !(may_take && takeOutNear(t, kMostOfVertex)))
+        return false;
+    }
     return true;
+  }
+
+  /// Leaves out what intersects, those with the most intersections first, the smaller fans where
+  /// several are left at a vertex, and all pieces but the largest.
+  void openAll() {
+    std::vector<std::pair<int, Index>> order;
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (intersects(t))
+        order.emplace_back(-surface_.count(surface_.face(t), t), t);
+    std::sort(order.begin(), order.end());
+    for (const auto& [count, t] : order)
+      if (intersects(t))
+        open(t);
+    leaveOneFan();
+    leaveLargestPiece();
   }
 
   const Removal& removal() const { return removal_; }
@@ -227,6 +245,7 @@ private:
     std::vector<Index> triangles{t};
     surface_.appendIntersecting(surface_.face(t), triangles);
     std::vector<std::pair<int, Index>> order;
+    order.reserve(triangles.size());
     for (const Index u : triangles)
       order.emplace_back(-surface_.count(surface_.face(u), u), u);
     std::sort(order.begin(), order.end());
@@ -234,13 +253,77 @@ private:
       is_open_[u] = 1;
       const auto& corners = mesh_.vertices(u);
       if (std::all_of(corners.begin(), corners.end(), [&](Index v) { return isOneFan(v); })) {
-        surface_.remove(u);
-        ++removal_.triangles;
+        open(u);
         return true;
       }
       is_open_[u] = 0;
     }
     return false;
+  }
+
+  void open(Index t) {
+    is_open_[t] = 1;
+    surface_.remove(t);
+    ++removal_.triangles;
+  }
+
+  void leaveOneFan() {
+    std::vector<Index> due(columnCount(points_));
+    std::iota(due.begin(), due.end(), Index{0});
+    while (!due.empty()) {
+      const Index v = due.back();
+      due.pop_back();
+      for (const std::vector<Index>& fan : smallerFans(v))
+        for (const Index t : fan) {
+          open(t);
+          due.insert(due.end(), mesh_.vertices(t).begin(), mesh_.vertices(t).end());
+        }
+    }
+  }
+
+  /// The fans of the surface around a vertex, without the largest.
+  std::vector<std::vector<Index>> smallerFans(Index v) const {
+    std::vector<std::vector<Index>> fans;
+    if (mesh_.triangleAt(v) < 0)
+      return fans;
+    std::vector<Index> around;
+    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+    const auto is_open = [&](Index t) { return isOpen(t); };
+    std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_open), around.end());
+    bool continues = false;
+    for (const Index t : around) {
+      if (!isOpen(t) && !continues)
+        fans.emplace_back();
+      if (!isOpen(t))
+        fans.back().push_back(t);
+      continues = !isOpen(t);
+    }
+    if (!fans.empty())
+      fans.erase(std::max_element(fans.begin(), fans.end(), [](const auto& a, const auto& b) {
+        return a.size() < b.size();
+      }));
+    return fans;
+  }
+
+  void leaveLargestPiece() {
+    std::vector<Index> largest;
+    IndexSet seen(is_open_.size());
+    for (Index first = 0; first < mesh_.size(); ++first) {
+      if (!surface_.contains(first) || !seen.insert(first))
+        continue;
+      std::vector<Index> piece{first};
+      for (std::size_t head = 0; head < piece.size(); ++head)
+        for (int k = 0; k < 3; ++k)
+          if (const Index next = mesh_.neighbor(piece[head], k);
+              surface_.contains(next) && seen.insert(next))
+            piece.push_back(next);
+      if (piece.size() > largest.size())
+        largest = std::move(piece);
+    }
+    std::sort(largest.begin(), largest.end());
+    for (Index t = 0; t < mesh_.size(); ++t)
+      if (surface_.contains(t) && !std::binary_search(largest.begin(), largest.end(), t))
+        open(t);
   }
 
   // --- 3. Vertices taken out
@@ -358,6 +441,13 @@ private:
 };
 
 }  // namespace
+
+Removal leaveOutTangles(const Positions& points, OpenMesh& mesh) {
+  Remover remover(points, mesh);
+  remover.openAll();
+  mesh = remover.mesh();
+  return remover.removal();
+}
 
 std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
                                           OpenMesh& mesh) {

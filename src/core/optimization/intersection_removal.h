@@ -30,4 +30,13 @@ struct Removal {
 std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
                                           OpenMesh& mesh);
 
+/// Leaves out all triangles that intersect, those with the most intersections first; then the
+/// smaller fans at a vertex that has several, and all pieces but the largest. Vertices may be left
+/// without triangles.
+///
+/// \param points 3 x n.
+/// \param mesh   with at least one triangle that intersects none.
+/// \return the number of triangles that were left out.
+Removal leaveOutTangles(const Positions& points, OpenMesh& mesh);
+
 }  // namespace spherical_param::internal

@@ -210,6 +210,38 @@ Triangles closed(const Positions& points, const Triangles& open) {
   return matrixOf(triangles);
 }
 
+/// A tube between two triangles.
+struct Tube {
+  Index first = -1;  ///< -1: there is none
+  Index last = -1;
+  std::array<Index, 6> rims{};  ///< the corners of the first one, and those across from them
+};
+
+/// The shortest tube between triangles at two vertices that are not taken.
+Tube shortestTube(const Positions& points, const Triangles& spheres, const CornerTable& corners,
+                  const Indexed<char>& is_taken, Index v, Index w) {
+  Tube best;
+  double least = std::numeric_limits<double>::infinity();
+  corners.forEachCorner(v, [&](Index t, Index k) {
+    corners.forEachCorner(w, [&](Index u, Index l) {
+      if (is_taken[t] != 0 || is_taken[u] != 0)
+        return;
+      const std::array<Index, 6> rims{
+          spheres(k, t), spheres(nextCorner(k), t),     spheres(previousCorner(k), t),
+          spheres(l, u), spheres(previousCorner(l), u), spheres(nextCorner(l), u)};
+      double sum = 0.0;
+      for (std::size_t i = 0; i < 3; ++i)
+        sum += (points.col(rims[i]) - points.col(rims[i + 3])).norm() +
+               (points.col(rims[i]) - points.col(rims[(i + 1) % 3 + 3])).norm();
+      if (sum < least) {
+        least = sum;
+        best = {t, u, rims};
+      }
+    });
+  });
+  return best;
+}
+
 /// Joins closed pieces by tubes, each between triangles at the ends of an edge of the graph, short
 /// edges first. Returns the piece with the most vertices.
 Triangles joined(const Positions& points, const Graph& graph, const Triangles& spheres) {
@@ -230,38 +262,20 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
   std::sort(edges.begin(), edges.end());
   Indexed<char> is_taken(columnCount(spheres), 0);
   TriangleList triangles;
-  for (const auto& [length, v, w] : edges) {
+  for (const auto& edge : edges) {
+    const Index v = std::get<1>(edge);
+    const Index w = std::get<2>(edge);
     if (pieces.find(v) == pieces.find(w))
       continue;
-    double least = std::numeric_limits<double>::infinity();
-    std::array<Index, 6> best{};
-    std::array<Index, 2> ends{-1, -1};
-    corners.forEachCorner(v, [&](Index t, Index k) {
-      corners.forEachCorner(w, [&](Index u, Index l) {
-        if (is_taken[t] != 0 || is_taken[u] != 0)
-          return;
-        const std::array<Index, 6> tube{
-            spheres(k, t), spheres(nextCorner(k), t),     spheres(previousCorner(k), t),
-            spheres(l, u), spheres(previousCorner(l), u), spheres(nextCorner(l), u)};
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 3; ++i)
-          sum += (points.col(tube[i]) - points.col(tube[i + 3])).norm() +
-                 (points.col(tube[i]) - points.col(tube[(i + 1) % 3 + 3])).norm();
-        if (sum < least) {
-          least = sum;
-          best = tube;
-          ends = {t, u};
-        }
-      });
-    });
-    if (ends[0] < 0)
+    const Tube tube = shortestTube(points, spheres, corners, is_taken, v, w);
+    if (tube.first < 0)
       continue;
-    is_taken[ends[0]] = is_taken[ends[1]] = 1;
+    is_taken[tube.first] = is_taken[tube.last] = 1;
     pieces.unite(v, w);
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
-      triangles.push_back({best[i], best[j], best[j + 3]});
-      triangles.push_back({best[i], best[j + 3], best[i + 3]});
+      triangles.push_back({tube.rims[i], tube.rims[j], tube.rims[j + 3]});
+      triangles.push_back({tube.rims[i], tube.rims[j + 3], tube.rims[i + 3]});
     }
   }
   Indexed<Index> sizes(graph.size(), 0);

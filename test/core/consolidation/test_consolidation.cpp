@@ -183,6 +183,7 @@ TEST(Consolidation, TheMeshIsThatOfTheConsolidatedPoints) {
 TEST(Consolidation, AnyPointsHaveAClosedMesh) {
   Options options;
   options.consolidation = ConsolidationMode::Auto;
+  options.intersections = IntersectionMode::Keep;
   for (const Index n : {4, 19, 20, 25, 100, 400}) {
     const Positions blob = withNoise(Positions::Zero(3, n), 1.0, static_cast<std::uint64_t>(n));
     EXPECT_TRUE(test::surfaceOf(blob, options).topology.isSphere()) << n;

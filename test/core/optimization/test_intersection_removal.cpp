@@ -1,0 +1,92 @@
+#include "intersection_removal.h"
+
+#include "optimization_cases.h"
+#include "spherical_param/mesh_topology.h"
+#include "spherical_param/self_intersection.h"
+
+#include <gtest/gtest.h>
+
+namespace spherical_param {
+namespace {
+
+using internal::clearIntersections;
+using internal::OpenMesh;
+using internal::Removal;
+
+OpenMesh closedMesh(const Triangles& triangles) {
+  return {triangles, internal::Indexed<std::uint8_t>(internal::columnCount(triangles), 0)};
+}
+
+/// A sphere with a vertex that was pulled through its middle, and out on the other side.
+struct Pierced {
+  Pierced() : mesh(closedMesh(triangulateSphere(points))) { points.col(200) *= -1.5; }
+
+  std::size_t intersections() const {
+    return findSelfIntersections(points, internal::surfaceOf(mesh)).size();
+  }
+  MeshTopology topology() const { return checkTopology(internal::surfaceOf(mesh), 400); }
+
+  Positions points = test::spiralSphere(400);
+  OpenMesh mesh;
+};
+
+TEST(IntersectionRemoval, OtherTrianglesKeepEveryVertex) {
+  test::Case of = test::ellipsoid(300, 0.8, 0.3);
+  of.triangles = test::scrambled(of.triangles, 300, 100, 2);
+  ASSERT_FALSE(findSelfIntersections(of.points, of.triangles).empty());
+  OpenMesh mesh = closedMesh(of.triangles);
+  const std::optional<Removal> removal = clearIntersections(of.points, {20, 0}, mesh);
+  ASSERT_TRUE(removal);
+  EXPECT_EQ(removal->vertices + removal->triangles, 0U);
+  EXPECT_TRUE(test::isSphereOverAll(mesh.triangles, 300));
+  EXPECT_TRUE(findSelfIntersections(of.points, mesh.triangles).empty());
+}
+
+TEST(IntersectionRemoval, TakesOutAVertexOfAClosedMesh) {
+  Pierced sphere;
+  ASSERT_GT(sphere.intersections(), 0U);
+  const std::optional<Removal> removal = clearIntersections(sphere.points, {1, 0}, sphere.mesh);
+  ASSERT_TRUE(removal);
+  EXPECT_EQ(removal->vertices, 1U);
+  EXPECT_EQ(sphere.intersections(), 0U);
+  const MeshTopology topology = sphere.topology();
+  EXPECT_EQ(topology.unused_vertices, (std::vector<Index>{200}));
+  EXPECT_TRUE(topology.closed && topology.manifold() && topology.oriented);
+  EXPECT_EQ(topology.genus, 0);
+}
+
+TEST(IntersectionRemoval, LeavesTrianglesOutWhereNoVertexMayBe) {
+  Pierced sphere;
+  const std::optional<Removal> removal = clearIntersections(sphere.points, {0, 20}, sphere.mesh);
+  ASSERT_TRUE(removal);
+  EXPECT_GT(removal->triangles, 0U);
+  EXPECT_EQ(sphere.intersections(), 0U);
+  const MeshTopology topology = sphere.topology();
+  EXPECT_TRUE(topology.isOpenSurface());
+  EXPECT_EQ(topology.triangles + removal->triangles, 796U);
+}
+
+TEST(IntersectionRemoval, ChangesNothingBeyondItsLimits) {
+  Pierced sphere;
+  const Triangles before = sphere.mesh.triangles;
+  EXPECT_FALSE(clearIntersections(sphere.points, {0, 0}, sphere.mesh));
+  EXPECT_EQ(sphere.mesh.triangles, before);
+}
+
+TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
+  // A third of the vertices are anywhere.
+  Positions points = test::spiralSphere(600);
+  points.rightCols(200) = test::randomCube(200, 1) * 0.2;
+  OpenMesh mesh = closedMesh(triangulateSphere(test::spiralSphere(600)));
+  const Removal removal = internal::leaveOutTangles(points, mesh);
+  const Triangles surface = internal::surfaceOf(mesh);
+  EXPECT_EQ(removal.triangles + internal::columnCount(surface), 1196U);
+  EXPECT_TRUE(findSelfIntersections(points, surface).empty());
+  const MeshTopology topology = checkTopology(surface, 600);
+  EXPECT_TRUE(topology.manifold() && topology.oriented);
+  EXPECT_EQ(topology.components, 1U);
+  EXPECT_GT(surface.cols(), 700);
+}
+
+}  // namespace
+}  // namespace spherical_param

@@ -1,0 +1,101 @@
+#include "face_mesh.h"
+
+#include "graph_building.h"
+#include "graphs.h"
+#include "handle_shapes.h"
+#include "spherical_param/self_intersection.h"
+
+#include <set>
+
+namespace spherical_param {
+namespace {
+
+using internal::meshFaces;
+
+Graph delaunayGraph(const Positions& points) {
+  return test::localDelaunayGraph(points).graph;
+}
+
+/// The edges of a mesh, {lower, higher}.
+std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
+  std::set<std::pair<Index, Index>> edges;
+  for (const auto& t : triangles.colwise())
+    for (Eigen::Index k = 0; k < 3; ++k)
+      edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+  return edges;
+}
+
+TEST(FaceMesh, OfASphereAndOfATorusIsTheirSurface) {
+  const Positions sphere = test::spiralSphere(500);
+  const auto of_sphere = meshFaces(sphere, delaunayGraph(sphere), 0, {});
+  ASSERT_TRUE(of_sphere);
+  EXPECT_TRUE(test::isSphereOverAll(*of_sphere, 500));
+  EXPECT_TRUE(findSelfIntersections(sphere, *of_sphere).empty());
+  const Positions torus = test::torusCloud(40, 16, 1.0, 0.4);
+  const auto of_torus = meshFaces(torus, delaunayGraph(torus), 1, {});
+  ASSERT_TRUE(of_torus);
+  EXPECT_TRUE(test::isSurfaceOverAll(*of_torus, static_cast<Index>(torus.cols()), 1));
+  EXPECT_TRUE(findSelfIntersections(torus, *of_torus).empty());
+}
+
+TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
+  const Positions torus = test::torusCloud(40, 16, 1.0, 0.4);
+  const Graph graph = delaunayGraph(torus);
+  const auto cut = meshFaces(torus, graph, 0, {});
+  ASSERT_TRUE(cut);
+  EXPECT_TRUE(test::isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
+  // It is cut across the tube, of 16 points, or along it, of 40.
+  const auto of_cut = edgesOf(*cut);
+  std::size_t lost = 0;
+  for (const auto& edge : edgesOf(*meshFaces(torus, graph, 1, {})))
+    lost += of_cut.count(edge) == 0 ? 1 : 0;
+  EXPECT_LE(lost, 4U * 40U);
+}
+
+TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
+  // Two sheets that nearly touch, and false edges between them at a few points.
+  const Positions sphere = test::spiralSphere(1500);
+  Positions thin = sphere;
+  thin.row(2) *= 0.1;
+  const Graph graph = delaunayGraph(thin);
+  const auto right = meshFaces(thin, graph, 0, {});
+  ASSERT_TRUE(right);
+  std::vector<Bridge> bridges;
+  for (Index v = 0; v < 1500; v += 100)
+    for (Index w = 0; w < 1500; ++w) {
+      const double distance = (thin.col(v) - thin.col(w)).norm();
+      if (thin(2, v) * thin(2, w) < 0.0 && thin.col(v).head<2>().norm() < 0.8 && distance < 0.25)
+        bridges.push_back({v, w, distance});
+    }
+  ASSERT_GT(bridges.size(), 20U);
+  const auto mesh = meshFaces(thin, internal::withEdges(graph, bridges), 0, {});
+  ASSERT_TRUE(mesh);
+  EXPECT_TRUE(test::isSphereOverAll(*mesh, 1500));
+  const auto found = edgesOf(*mesh);
+  std::size_t lost = 0;
+  for (const auto& edge : edgesOf(*right))
+    lost += found.count(edge) == 0 ? 1 : 0;
+  EXPECT_LT(lost, 450U);  // of 4,494
+}
+
+TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
+  // Two spheres, and a line of points that sticks out of one of them.
+  Positions points(3, 605);
+  points << test::spiralSphere(300), test::spiralSphere(300).colwise() + Eigen::Vector3d(2.5, 0, 0),
+      Positions::Zero(3, 5);
+  for (Eigen::Index i = 0; i < 5; ++i)
+    points(1, 600 + i) = 1.2 + 0.2 * static_cast<double>(i);
+  const auto mesh = meshFaces(points, delaunayGraph(points), 0, {});
+  ASSERT_TRUE(mesh);
+  EXPECT_TRUE(test::isSphereOverAll(*mesh, 605));
+}
+
+TEST(FaceMesh, IsNoneWithoutFaces) {
+  Positions line = Positions::Zero(3, 20);
+  for (Eigen::Index i = 0; i < 20; ++i)
+    line(0, i) = static_cast<double>(i);
+  EXPECT_FALSE(meshFaces(line, delaunayGraph(line), 0, {}));
+}
+
+}  // namespace
+}  // namespace spherical_param
