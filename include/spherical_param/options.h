@@ -97,6 +97,13 @@ enum class SurfaceMode {
   Auto,        ///< certain openings stay open, others are filled
 };
 
+/// How openings are filled.
+enum class FillMode {
+  Flat,  ///< without further vertices
+  /// Vertices are added, as densely as around, and go on as the surface around does.
+  Smooth,
+};
+
 /// Whether the mesh has the handles of the sampled surface.
 enum class HandleMode {
   AsTopology,  ///< Auto for TopologyMode::Scan, else None
@@ -145,6 +152,9 @@ struct Options : Execution {
   int fill_holes = 0;
   /// Openings of up to this area are filled in any case [squared unit of the input]; [0, 1e15].
   double fill_holes_area = 0.0;
+
+  /// How openings are filled, if they are. With vertices added, a surface has no `sphere`.
+  FillMode fill = FillMode::Flat;
 
   /// Whether the mesh has the handles of the surface. Only Method::Default finds them.
   HandleMode handles = HandleMode::AsTopology;

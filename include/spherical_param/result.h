@@ -256,13 +256,15 @@ struct Surface {
   std::vector<Opening> openings;
   /// Handles found in the surface, those of the mesh first.
   std::vector<HandleLoop> handles;
-  /// 3 x v, unit vectors: the embedding of each vertex; empty if the mesh has handles, or tubes so
-  /// long that one sphere would squeeze them beyond the range of double.
+  /// 3 x v, unit vectors: the embedding of each vertex; empty if the mesh has handles, added
+  /// vertices, or tubes so long that one sphere would squeeze them beyond the range of double.
   Positions sphere;
 
   std::vector<Index> inputs;           ///< n entries: the input points of the surface, ascending
   std::vector<Index> vertex_of_input;  ///< n entries: vertex of each entry of `inputs`
-  std::vector<Index> input_of_vertex;  ///< v entries: first input point at that position
+  /// v entries: first input point at that position; of an added vertex the nearest one around,
+  /// whose colour it has.
+  std::vector<Index> input_of_vertex;
 
   /// Pairs of triangles that intersect, ascending: all, or a sample. \see findSelfIntersections
   std::vector<std::array<Index, 2>> self_intersections;
@@ -271,6 +273,11 @@ struct Surface {
   /// 3 x v, the points after consolidation, before smoothing; empty without consolidation [unit of
   /// the input]. All but `smoothed` refers to them.
   Positions consolidated;
+  /// 3 x v, the vertices with those that were added, which come last; empty if none were. All but
+  /// `embedding` refers to them [unit of the input].
+  Positions filled;
+  std::size_t added_vertices = 0;   ///< in filled openings, by FillMode::Smooth
+  std::size_t smoothly_filled = 0;  ///< openings that have them
   /// How the embedding unfolded to `sphere`; empty without EmbeddingOptions::history_vertices.
   EmbeddingHistory history;
   /// v entries: length of the tangential Laplacian of `sphere` [radius]; empty without
@@ -312,11 +319,13 @@ struct Surface {
                ? -1
                : vertex_of_input[static_cast<std::size_t>(found - inputs.begin())];
   }
-  /// Number of distinct points. \return v
+  /// Number of distinct points and added vertices. \return v
   std::size_t vertexCount() const { return input_of_vertex.size(); }
-  /// The moved vertices. \return `smoothed`, or `consolidated` without smoothing; empty if the
-  /// vertices are input points
-  const Positions& moved() const { return smoothed.cols() > 0 ? smoothed : consolidated; }
+  /// The moved vertices. \return `filled`, `smoothed` or `consolidated`, the first that is not
+  /// empty; empty if the vertices are input points
+  const Positions& moved() const {
+    return filled.cols() > 0 ? filled : smoothed.cols() > 0 ? smoothed : consolidated;
+  }
   /// Number of certain openings that the mesh fills. \return the number
   std::size_t filledOpenings() const {
     return static_cast<std::size_t>(
@@ -346,7 +355,7 @@ struct Surface {
   /// Number of points that repeat an earlier one. \return n - v, minus the points that
   /// consolidation merged
   std::size_t duplicates() const {
-    return vertex_of_input.size() - input_of_vertex.size() - consolidation.merged;
+    return vertex_of_input.size() + added_vertices - input_of_vertex.size() - consolidation.merged;
   }
 };
 

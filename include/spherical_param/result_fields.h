@@ -341,6 +341,8 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"is_noisy", "the points look noisy"}, &Of::is_noisy);
   visit({"is_out_of_time", "the time limit ended the optimisation early"}, &Of::is_out_of_time);
   visit({"duplicates", "points that repeat an earlier one"}, &Of::duplicates);
+  visit({"added_vertices", "number of vertices added in filled openings"}, &Of::added_vertices);
+  visit({"smoothly_filled", "number of openings that have them"}, &Of::smoothly_filled);
   visit({"topology", "checked on the triangles"}, &Of::topology);
   visit({"intersecting_triangles", "number of triangles that intersect others, after smoothing"},
         &Of::intersecting_triangles);
@@ -382,6 +384,9 @@ void visitFields(const Surface*, const Visit& visit) {
   visit(
       {"consolidated", "the points after consolidation, before smoothing", 1, FieldKind::PerVertex},
       unlessEmpty(&Of::consolidated));
+  visit({"filled", "the vertices with those that were added, which come last", 1,
+         FieldKind::PerVertex},
+        unlessEmpty(&Of::filled));
   visit({"vertex_residuals", "length of the tangential Laplacian of the sphere [radius]", 0,
          FieldKind::PerVertex},
         unlessEmpty(&Of::vertex_residuals));

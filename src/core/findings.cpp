@@ -24,8 +24,8 @@ std::string grouped(std::size_t number) {
   return text;
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return grouped(count) + " " + noun + (count == 1 ? "" : "s");
+std::string counted(std::size_t count, const std::string& noun, const std::string& plural = {}) {
+  return grouped(count) + " " + (count == 1 ? noun : plural.empty() ? noun + "s" : plural);
 }
 
 std::string percent(double fraction) {
@@ -47,9 +47,10 @@ bool hasTangle(const Surface& result) {
 
 /// Whether the mesh is rough and only noise explains it.
 bool isRough(const Surface& result) {
-  return result.is_noisy && result.moved().cols() == 0 && result.outliers.empty() &&
-         result.diagnosis.bridges.empty() && missingHandles(result) == 0 &&
-         !result.diagnosis.is_on_lines && !result.diagnosis.fills_volume;
+  return result.is_noisy && result.consolidated.cols() + result.smoothed.cols() == 0 &&
+         result.outliers.empty() && result.diagnosis.bridges.empty() &&
+         missingHandles(result) == 0 && !result.diagnosis.is_on_lines &&
+         !result.diagnosis.fills_volume;
 }
 
 /// A finding with the option that lets the mesh have what the cloud shows: the topology, if a
@@ -263,6 +264,9 @@ std::string verdictOf(const Options& options, const Surface& result) {
                         " that would intersect");
   for (std::size_t i = 0; i < doubts.size(); ++i)
     text += (i == 0 ? ", but it " : i + 1 < doubts.size() ? ", " : " and ") + doubts[i];
+  if (result.added_vertices > 0)
+    text += "; " + counted(result.added_vertices, "vertex", "vertices") + " added in " +
+            counted(result.smoothly_filled, "filled opening");
   return text + ".";
 }
 

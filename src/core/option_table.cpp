@@ -245,6 +245,11 @@ std::vector<OptionRow> surfaceRows() {
       byDefault(number("fill_holes_area", "fill_holes_area",
                        "openings of up to this area are filled", Expert, 0, 1e15,
                        memberOf(&Options::fill_holes_area))),
+      byDefault(choice<FillMode>(
+          "fill", "fill",
+          "smooth: vertices are added in filled openings, which go on as the surface around does",
+          Everybody, {{"flat", FillMode::Flat}, {"smooth", FillMode::Smooth}},
+          memberOf(&Options::fill))),
       byDefault(choice<HandleMode>(
           "handles", "handles",
           "handles of the surface that the mesh has: those that are certain (auto), or none",

@@ -16,6 +16,7 @@
 #include "power_of_two.h"
 #include "result_units.h"
 #include "selection.h"
+#include "smooth_fill.h"
 #include "spherical_param/errors.h"
 #include "stage_clock.h"
 #include "surface_topology.h"
@@ -359,6 +360,9 @@ Result reconstruct(const Positions& points, const Options& given,
     meshParts(selection, options, clock, result);
     return selection.parts().size();
   });
+  if (options.fill == FillMode::Smooth)
+    for (Surface& surface : result.surfaces)
+      internal::fillSmoothly(points, options, surface);
   result.stages = clock.take();
   for (Surface& surface : result.surfaces) {
     surface.findings = internal::findingsOf(given, surface);

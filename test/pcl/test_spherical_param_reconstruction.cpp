@@ -336,6 +336,7 @@ TEST_F(SphericalParamReconstruction, EachSetterSetsItsOptionAndNoOther) {
       SETTER("smoothing", Integer{8}, Smoothing, 8),
       SETTER("surface", "open", Surface, spherical_param::SurfaceMode::Open),
       SETTER("fill_holes", Integer{12}, FillHoles, 12),
+      SETTER("fill", "smooth", Fill, spherical_param::FillMode::Smooth),
       SETTER("handles", "none", Handles, spherical_param::HandleMode::None),
       SETTER("intersections", "keep", Intersections, spherical_param::IntersectionMode::Keep),
       SETTER("seed", Integer{4294967295}, Seed, 4294967295U),

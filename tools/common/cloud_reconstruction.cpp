@@ -84,6 +84,10 @@ void requireSpheres(const std::string& path, const CloudReconstruction& cloud, b
     if (surfaces[i].sphere.cols() > 0) {
       continue;
     }
+    if (surfaces[i].added_vertices > 0) {
+      throw Failure(inQuotes(path) + " has no map to one sphere: vertices were added",
+                    "give -fill flat, which adds none");
+    }
     const std::string part = surfaces.size() > 1 ? "part " + std::to_string(i + 1) + " of " : "";
     const std::string mesh = surfaces[i].genus() > 0
                                  ? "its mesh has " + counted(surfaces[i].genus(), "handle")
@@ -139,10 +143,14 @@ JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
   Eigen::Index places = 0;
   for (const Surface& surface : cloud.result.surfaces) {
     triangles += surface.triangles.cols();
-    places += surface.moved().cols();
+    places += surface.moved().cols() > 0 ? 1 : 0;
   }
   triangles_.resize(3, triangles);
-  places_.resize(3, places);
+  std::size_t vertices = 0;
+  for (const Surface& surface : cloud.result.surfaces) {
+    vertices += places > 0 ? surface.vertexCount() : 0;
+  }
+  places_.resize(3, static_cast<Eigen::Index>(vertices));
   triangles = 0;
   for (const Surface& surface : cloud.result.surfaces) {
     const auto first = static_cast<Eigen::Index>(point_of_vertex_.size());
@@ -150,7 +158,8 @@ JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
         surface.triangles.array() + static_cast<Index>(first);
     triangles += surface.triangles.cols();
     if (places > 0) {
-      places_.middleCols(first, surface.moved().cols()) = surface.moved();
+      places_.middleCols(first, static_cast<Eigen::Index>(surface.vertexCount())) =
+          vertexPositions(cloud, surface);
     }
     point_of_vertex_.insert(point_of_vertex_.end(), surface.input_of_vertex.begin(),
                             surface.input_of_vertex.end());

@@ -106,7 +106,7 @@ std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
   if (result.smoothing.self_intersections > 0) {
     Execution execution;
     execution.threads = threads;
-    for (const auto& pair : findSelfIntersections(result.smoothed, result.triangles, execution)) {
+    for (const auto& pair : findSelfIntersections(result.moved(), result.triangles, execution)) {
       for (const Index t : pair) {
         marks[at(t)] = static_cast<std::uint8_t>(marks[at(t)] | triangle_mark::self_intersection);
       }

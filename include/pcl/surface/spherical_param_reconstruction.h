@@ -82,6 +82,8 @@ public:
   using TopologyMode = spherical_param::TopologyMode;
   /** \brief Whether openings of the surface are filled. */
   using SurfaceMode = spherical_param::SurfaceMode;
+  /** \brief How openings are filled. */
+  using FillMode = spherical_param::FillMode;
   /** \brief Whether the mesh has the handles of the surface. */
   using HandleMode = spherical_param::HandleMode;
   /** \brief What happens to triangles that intersect. */
@@ -143,6 +145,16 @@ public:
   /** \brief Get whether the mesh has the handles of the surface.
    * \return the mode */
   inline HandleMode getHandles() const { return options_.handles; }
+
+  /** \brief Set how openings are filled, if they are.
+   * \param[in] mode Smooth: points are added, which go on as the surface around does. Default:
+   * Flat. \note reconstruct(pcl::PolygonMesh&) appends the added points to the cloud, with the
+   * other fields of the nearest vertex. The other overloads fill flat: their polygons index the
+   * input. */
+  inline void setFill(FillMode mode) { options_.fill = mode; }
+  /** \brief Get how openings are filled.
+   * \return the mode */
+  inline FillMode getFill() const { return options_.fill; }
 
   /** \brief Set what happens to triangles that still intersect at the end.
    * \param[in] mode Remove: they are taken apart, if need be by leaving out up to 0.2 % of the
@@ -404,7 +416,7 @@ private:
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloudOf(Places places) const;
 
   /** \brief Fills the results. */
-  void meshPoints();
+  void meshPoints(FillMode fill);
 
   /** \brief Clears the results, does the work and, if that fails, clears results and output and
    * says why. */

@@ -74,7 +74,8 @@ class Result(Surface, MeshExport):
     shown by its report.
     """
 
-    vertices: FloatArray  #: (v, 3) the points[input_of_vertex] [unit of the input]
+    #: (v, 3) the points[input_of_vertex], then ``added_vertices`` others [unit of the input]
+    vertices: FloatArray
     vertex_of_input: IndexArray  #: (n,) vertex of each point of the cloud; -1: left out
     left_out: LeftOut  #: rows of the cloud in no surface, by reason
     stages: dict[str, float]  #: wall time of each stage, in the order of the work [s]
@@ -125,7 +126,10 @@ class Result(Surface, MeshExport):
                 "it again"
             )
         source = self._source
-        if not np.array_equal(source.cloud.points[self.input_of_vertex], self.vertices):
+        given = len(self.vertices) - self.added_vertices
+        if not np.array_equal(
+            source.cloud.points[self.input_of_vertex[:given]], self.vertices[:given]
+        ):
             raise InvalidInput("the points were changed since; give reconstruct() a copy of them")
         threads = arguments.thread_count(source.options.get("threads", 0))
         with listening(progress) as listener:
@@ -154,8 +158,10 @@ class Result(Surface, MeshExport):
         return f'<iframe srcdoc="{text}" width="100%" height="700" style="border: 0"></iframe>'
 
     def _export_points(self) -> FloatArray:
-        moved = self.consolidated if self.smoothed is None else self.smoothed
-        return self.vertices if moved is None else moved
+        for moved in (self.filled, self.smoothed, self.consolidated):
+            if moved is not None:
+                return moved
+        return self.vertices
 
     def __repr__(self) -> str:
         volume = self.measures.volume
@@ -242,12 +248,16 @@ def make_results(fields: dict[str, Any], cloud: Cloud, options: dict[str, Any]) 
         vertex_of_input = np.full(len(cloud.points), -1, np.int32)
         vertex_of_input[surface["inputs"]] = surface["vertex_of_input"]
         vertices = surface["input_of_vertex"]
+        positions = cloud.points[vertices]
+        if surface["filled"] is not None:
+            given = len(vertices) - surface["added_vertices"]
+            positions[given:] = surface["filled"][given:]
         figures = make("Surface", surface)
         figures["vertex_of_input"] = vertex_of_input
         results.append(
             Result(
                 **figures,
-                vertices=cloud.points[vertices],
+                vertices=positions,
                 left_out=left_out,
                 stages=fields["stages"],
                 colors=None if cloud.colors is None else cloud.colors[vertices],

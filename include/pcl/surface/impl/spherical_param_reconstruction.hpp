@@ -75,7 +75,7 @@ void SphericalParamReconstruction<PointInT>::reconstruct(std::vector<pcl::Vertic
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::reconstruct() {
-  const auto work = [&] { meshPoints(); };
+  const auto work = [&] { meshPoints(FillMode::Flat); };
   run(std::cref(work), [] {});
 }
 
@@ -117,21 +117,36 @@ SphericalParamReconstruction<PointInT>::cloudOf(Places places) const {
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonMesh& output) {
-  performReconstruction(output.polygons);
-  pcl::toPCLPointCloud2(*input_, output.cloud);
+  output.polygons.clear();
+  meshPoints(options_.fill);
+  PointCloudIn cloud = *input_;
+  for (std::size_t part = 0; part < result_.surfaces.size(); ++part) {
+    const spherical_param::Surface& surface = result_.surfaces[part];
+    pcl::Indices vertex_indices = parts_[part].vertex_indices;
+    for (std::size_t v = surface.vertexCount() - surface.added_vertices; v < surface.vertexCount();
+         ++v) {
+      PointInT point = (*input_)[static_cast<std::size_t>(vertex_indices[v])];
+      point.getVector3fMap() =
+          surface.filled.col(static_cast<Eigen::Index>(v)).template cast<float>();
+      vertex_indices[v] = static_cast<pcl::index_t>(cloud.size());
+      cloud.push_back(point);
+    }
+    detail::appendPolygons(surface.triangles, vertex_indices, output.polygons);
+  }
+  pcl::toPCLPointCloud2(cloud, output.cloud);
 }
 
 template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(
     std::vector<pcl::Vertices>& polygons) {
-  meshPoints();
+  meshPoints(FillMode::Flat);
   polygons.clear();
   for (std::size_t part = 0; part < result_.surfaces.size(); ++part)
     detail::appendPolygons(result_.surfaces[part].triangles, parts_[part].vertex_indices, polygons);
 }
 
 template <typename PointInT>
-void SphericalParamReconstruction<PointInT>::meshPoints() {
+void SphericalParamReconstruction<PointInT>::meshPoints(FillMode fill) {
   pcl::Indices used_indices;
   const spherical_param::Positions points = collectPoints(used_indices);
   input_size_ = input_->size();
@@ -141,6 +156,7 @@ void SphericalParamReconstruction<PointInT>::meshPoints() {
       return detail::useSearch<PointInT>(*tree_, input_, used_indices, searched);
     };
   spherical_param::Options options = options_;
+  options.fill = fill;
   options.progress = detail::guardProgress(options_.progress);
   result_ = spherical_param::reconstruct(points, options, search_of, infoOf(points, used_indices));
   for (const std::string& failure : result_.failures)

@@ -1,0 +1,516 @@
+#include "smooth_fill.h"
+
+#include "corner_table.h"
+#include "indexed.h"
+#include "pi.h"
+#include "spherical_param/self_intersection.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace spherical_param::internal {
+namespace {
+
+using Corners = std::array<Index, 3>;
+using Edge = std::pair<Index, Index>;
+using Edges = std::set<Edge>;
+using Places = Indexed<Eigen::Vector3d>;
+
+Edge undirected(Index a, Index b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// How far a patch bends: the first that does not intersect more than before is taken.
+enum Bend { ThinPlate, Membrane, Half, Quarter, AsGiven };
+
+/// A disc of triangles over an opening. Its vertices have numbers of their own: `given` first, then
+/// the added ones.
+struct FillPatch {
+  Index opening = 0;
+  std::vector<Index> at;          // its triangles in the mesh
+  Indexed<Index> given;           // in the mesh: the vertices of the patch, then those around it
+  Index own = 0;                  // number of those of the patch
+  std::vector<Corners> ring;      // triangles around it
+  Indexed<Corners> triangles;     // of the patch
+  std::map<Edge, Index> left_of;  // the triangle of each directed edge of the patch
+  Indexed<double> spacing;        // wanted at each vertex
+  Places flat;                    // added vertices are on the given triangles
+  Places plate;
+  Places membrane;
+  Bend bend = ThinPlate;
+
+  Index added() const { return flat.count() - given.count(); }
+
+  void put(Index t, const Corners& corners) {
+    triangles[t] = corners;
+    for (std::size_t k = 0; k < 3; ++k)
+      left_of[{corners[k], corners[(k + 1) % 3]}] = t;
+  }
+
+  Eigen::Vector3d place(Index v) const {
+    if (bend == Half || bend == Quarter)
+      return flat[v] + (bend == Half ? 0.5 : 0.25) * (plate[v] - flat[v]);
+    return bend == Membrane ? membrane[v] : plate[v];
+  }
+};
+
+/// Whether the triangles of a patch form a disc with a simple boundary.
+bool isDisc(const FillPatch& patch) {
+  std::map<Index, Index> next;
+  for (const auto& [edge, t] : patch.left_of)
+    if (patch.left_of.count({edge.second, edge.first}) == 0 && !next.insert(edge).second)
+      return false;
+  if (next.empty())
+    return false;
+  std::size_t steps = 0;
+  Index v = next.begin()->first;
+  do {
+    const auto found = next.find(v);
+    if (found == next.end() || ++steps > next.size())
+      return false;
+    v = found->second;
+  } while (v != next.begin()->first);
+  const std::size_t edges = (patch.left_of.size() + next.size()) / 2;
+  return steps == next.size() &&
+         static_cast<std::size_t>(patch.own) + patch.triangles.size() == edges + 1;
+}
+
+Eigen::Vector3d normalOf(const Places& x, Index a, Index b, Index c) {
+  return (x[b] - x[a]).cross(x[c] - x[a]);
+}
+
+/// Whether an edge ab of the triangles abc and bad should be cd: the angles at c and d exceed pi.
+bool shouldFlip(const Places& x, Index a, Index b, Index c, Index d) {
+  const auto angle = [&](Index at) {
+    const Eigen::Vector3d u = x[a] - x[at];
+    const Eigen::Vector3d v = x[b] - x[at];
+    return std::atan2(u.cross(v).norm(), u.dot(v));
+  };
+  const Eigen::Vector3d normal = normalOf(x, a, b, c) + normalOf(x, b, a, d);
+  return angle(c) + angle(d) > kPi + 1e-9 && normalOf(x, a, d, c).dot(normal) > 0.0 &&
+         normalOf(x, d, b, c).dot(normal) > 0.0;
+}
+
+/// Flips edges towards a Delaunay mesh. \param taken edges of the mesh between given vertices; one
+/// that was flipped away stays taken, as the patch may return to it.
+void relax(FillPatch& patch, Edges& taken) {
+  constexpr int max_sweeps = 50;  // it ends before, but for edges that flip back and forth
+  bool has_flipped = true;
+  for (int sweep = 0; has_flipped && sweep < max_sweeps; ++sweep) {
+    has_flipped = false;
+    for (Index t = 0; t < patch.triangles.count(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [a, b, c] = Corners{patch.triangles[t][k], patch.triangles[t][(k + 1) % 3],
+                                       patch.triangles[t][(k + 2) % 3]};
+        const auto found = patch.left_of.find({b, a});
+        if (found == patch.left_of.end())
+          continue;
+        const Index other = found->second;
+        const Corners& across = patch.triangles[other];
+        const Index d = std::accumulate(across.begin(), across.end(), Index{0}) - a - b;
+        if (!shouldFlip(patch.plate, a, b, c, d) || patch.left_of.count({c, d}) > 0 ||
+            patch.left_of.count({d, c}) > 0)
+          continue;
+        if (std::max(c, d) < patch.own &&
+            !taken.insert(undirected(patch.given[c], patch.given[d])).second)
+          continue;
+        patch.left_of.erase({a, b});
+        patch.left_of.erase({b, a});
+        patch.put(t, {a, d, c});
+        patch.put(other, {d, b, c});
+        has_flipped = true;
+        break;
+      }
+  }
+}
+
+/// Splits triangles at their centroids where they are wider than the spacing wanted (Liepa 2003,
+/// section 4). \return whether any was split
+bool split(FillPatch& patch, Index max_added) {
+  const Index count = patch.triangles.count();
+  for (Index t = 0; t < count && patch.added() < max_added; ++t) {
+    const Corners corners = patch.triangles[t];
+    const auto mean = [&](const auto& values) {
+      return ((values[corners[0]] + values[corners[1]] + values[corners[2]]) / 3.0);
+    };
+    const Eigen::Vector3d center = mean(patch.plate);
+    const double spacing = mean(patch.spacing);
+    if (!std::all_of(corners.begin(), corners.end(), [&](Index v) {
+          const double reach = std::sqrt(2.0) * (center - patch.plate[v]).norm();
+          return reach > spacing && reach > patch.spacing[v];
+        }))
+      continue;
+    const Index v = patch.plate.count();
+    const Eigen::Vector3d flat = mean(patch.flat);
+    patch.plate.push_back(center);
+    patch.flat.push_back(flat);
+    patch.spacing.push_back(spacing);
+    patch.put(t, {corners[0], corners[1], v});
+    for (std::size_t k = 1; k < 3; ++k) {
+      patch.triangles.push_back({});
+      patch.put(patch.triangles.count() - 1, {corners[k], corners[(k + 1) % 3], v});
+    }
+  }
+  return patch.triangles.count() > count;
+}
+
+void refine(FillPatch& patch, Index max_added, Edges& taken) {
+  do
+    relax(patch, taken);
+  while (split(patch, max_added));
+}
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// The cotangent Laplacian at the vertices of a patch, divided by the roots of their areas if it is
+/// for a thin plate. Rows of vertices at an opening of the mesh are empty.
+Sparse laplacianOf(const FillPatch& patch, const Places& x, bool is_plate) {
+  std::vector<Corners> triangles(patch.ring);
+  triangles.insert(triangles.end(), patch.triangles.begin(), patch.triangles.end());
+  Indexed<double> area(x.size(), 0.0);
+  Indexed<long long> open(x.size(), 0);  // 0: each neighbour is once the next, once the previous
+  for (const Corners& corners : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      area[corners[k]] += normalOf(x, corners[0], corners[1], corners[2]).norm() / 6.0;
+      open[corners[k]] += corners[(k + 1) % 3] - corners[(k + 2) % 3];
+    }
+  const double least = 1e-9 * *std::max_element(area.begin(), area.end());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Corners& corners : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b, c] = Corners{corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]};
+      const Eigen::Vector3d u = x[a] - x[c];
+      const Eigen::Vector3d v = x[b] - x[c];
+      const double sine = u.cross(v).norm();
+      const double cotangent = u.dot(v) / std::max(sine, 1e-3 * u.norm() * v.norm() + 1e-300);
+      for (const auto& [row, column] : {Edge{a, b}, Edge{b, a}}) {
+        if (open[row] != 0 || (row >= patch.own && row < patch.given.count()))
+          continue;
+        const double weight = cotangent / (is_plate ? std::sqrt(std::max(area[row], least)) : 1.0);
+        entries.emplace_back(row, row, weight);
+        entries.emplace_back(row, column, -weight);
+      }
+    }
+  Sparse laplacian(x.count(), x.count());
+  laplacian.setFromTriplets(entries.begin(), entries.end());
+  return laplacian;
+}
+
+/// Moves the added vertices to the least thin-plate energy, with the slope of the surface around,
+/// or to that of a membrane.
+void fair(const FillPatch& patch, bool is_plate, Places& x) {
+  const Sparse laplacian = laplacianOf(patch, x, is_plate);
+  const Index given = patch.given.count();
+  const Index added = patch.added();
+  const Sparse to_added = laplacian.rightCols(added);
+  Eigen::MatrixXd fixed(given, 3);
+  for (Index v = 0; v < given; ++v)
+    fixed.row(v) = x[v];
+  const Eigen::MatrixXd of_fixed = laplacian.leftCols(given) * fixed;
+  const Sparse matrix = is_plate ? Sparse(to_added.transpose() * to_added)
+                                 : Sparse(Sparse(to_added.transpose()).rightCols(added));
+  const Eigen::MatrixXd right =
+      is_plate ? Eigen::MatrixXd(to_added.transpose() * of_fixed) : of_fixed.bottomRows(added);
+  const Eigen::SimplicialLDLT<Sparse> solver(matrix);
+  if (solver.info() != Eigen::Success)
+    return;
+  const Eigen::MatrixXd solved = -solver.solve(right);
+  if (solved.allFinite())
+    for (Index i = 0; i < added; ++i)
+      x[given + i] = solved.row(i);
+}
+
+/// Makes the patches of a mesh.
+class SmoothFiller {
+public:
+  SmoothFiller(const Positions& points, const Triangles& triangles,
+               const std::vector<std::vector<Index>>& openings, int threads)
+      : points_(points), triangles_(triangles),
+        corners_(triangles, columnCount(points), threadCount(threads, columnCount(points))),
+        opening_of_(columnCount(triangles), -1), spacing_(columnCount(points), 0.0) {
+    for (std::size_t i = 0; i < openings.size(); ++i)
+      for (const Index t : openings[i])
+        opening_of_[t] = static_cast<Index>(i);
+    measureSpacing();
+    Indexed<Index> opening_left = opening_of_;
+    for (const std::vector<Index>& opening : openings)
+      for (const Index first : opening)
+        if (opening_left[first] >= 0)
+          addPatch(first, opening_left);
+    Indexed<char> is_own(columnCount(points), 0);
+    for (const FillPatch& patch : patches_)
+      for (Index v = 0; v < patch.own; ++v)
+        is_own[patch.given[v]] = 1;
+    for (const auto& triangle : triangles.colwise())
+      for (Index k = 0; k < 3; ++k)
+        if (is_own[triangle[k]] != 0 && is_own[triangle[nextCorner(k)]] != 0)
+          taken_.insert(undirected(triangle[k], triangle[nextCorner(k)]));
+  }
+
+  /// Refines and fairs all patches; leaves out those that need no vertices.
+  void run() {
+    // Wide openings between sparse points take no more vertices than the cloud has.
+    Index left = static_cast<Index>(points_.cols()) + 1000;
+    for (FillPatch& patch : patches_) {
+      for (int round = 0; round < 5; ++round) {  // the bent patch is larger, and bends on
+        if (round < 3)
+          refine(patch, left, taken_);
+        if (patch.added() > 0)
+          fair(patch, true, patch.plate);
+      }
+      patch.membrane = patch.flat;
+      if (patch.added() > 0)
+        fair(patch, false, patch.membrane);
+      left -= patch.added();
+    }
+    patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
+                                  [](const FillPatch& patch) { return patch.added() == 0; }),
+                   patches_.end());
+  }
+
+  std::vector<FillPatch>& patches() { return patches_; }
+  SmoothFill assembled() const;
+
+private:
+  void measureSpacing();
+  void addPatch(Index first, Indexed<Index>& opening_left);
+  void addRing(FillPatch& patch, std::map<Index, Index>& number) const;
+
+  const Positions& points_;
+  const Triangles& triangles_;
+  CornerTable corners_;
+  Indexed<Index> opening_of_;  // of each triangle; -1: none
+  Indexed<double> spacing_;    // of each vertex
+  std::vector<FillPatch> patches_;
+  Edges taken_;
+};
+
+/// The mean length of the edges at a vertex that are not over openings; elsewhere the mean of all.
+void SmoothFiller::measureSpacing() {
+  double sum = 0.0;
+  double all = 0.0;
+  Indexed<double> count(spacing_.size(), 0.0);
+  for (Index t = 0; t < triangles_.cols(); ++t)
+    for (Index k = 0; opening_of_[t] < 0 && k < 3; ++k) {
+      const Index a = triangles_(k, t);
+      const Index b = triangles_(nextCorner(k), t);
+      const double length = (points_.col(a) - points_.col(b)).norm();
+      for (const Index v : {a, b}) {
+        spacing_[v] += length;
+        count[v] += 1.0;
+      }
+      sum += length;
+      all += 1.0;
+    }
+  for (const Index v : indicesOf(spacing_))
+    spacing_[v] = count[v] > 0.0 ? spacing_[v] / count[v] : sum / std::max(all, 1.0);
+}
+
+/// Adds the connected triangles over an opening from one on, if they form a disc.
+void SmoothFiller::addPatch(Index first, Indexed<Index>& opening_left) {
+  FillPatch patch;
+  patch.opening = std::exchange(opening_left[first], -1);
+  patch.at = {first};
+  std::map<Index, Index> number;
+  for (std::size_t i = 0; i < patch.at.size(); ++i) {
+    Corners corners{};
+    for (Index k = 0; k < 3; ++k) {
+      const Index v = triangles_(k, patch.at[i]);
+      const auto [place, is_new] = number.emplace(v, patch.given.count());
+      if (is_new)
+        patch.given.push_back(v);
+      corners[static_cast<std::size_t>(k)] = place->second;
+      const Index next = triangles_(nextCorner(k), patch.at[i]);
+      corners_.forEachCorner(next, [&](Index t, Index at) {
+        if (opening_left[t] == patch.opening && triangles_(nextCorner(at), t) == v) {
+          opening_left[t] = -1;
+          patch.at.push_back(t);
+        }
+      });
+    }
+    patch.triangles.push_back({});
+    patch.put(static_cast<Index>(i), corners);
+  }
+  patch.own = patch.given.count();
+  if (!isDisc(patch))
+    return;
+  addRing(patch, number);
+  for (const Index v : patch.given) {
+    patch.flat.push_back(points_.col(v));
+    patch.spacing.push_back(spacing_[v]);
+  }
+  patch.plate = patch.flat;
+  patches_.push_back(std::move(patch));
+}
+
+void SmoothFiller::addRing(FillPatch& patch, std::map<Index, Index>& number) const {
+  std::set<Index> seen(patch.at.begin(), patch.at.end());
+  for (Index own = 0; own < patch.own; ++own)
+    corners_.forEachCorner(patch.given[own], [&](Index t, Index) {
+      if (!seen.insert(t).second)
+        return;
+      Corners corners{};
+      for (Index k = 0; k < 3; ++k) {
+        const auto [place, is_new] = number.emplace(triangles_(k, t), patch.given.count());
+        if (is_new)
+          patch.given.push_back(triangles_(k, t));
+        corners[static_cast<std::size_t>(k)] = place->second;
+      }
+      patch.ring.push_back(corners);
+    });
+}
+
+/// The mesh with the patches as they bend now.
+SmoothFill SmoothFiller::assembled() const {
+  SmoothFill fill;
+  std::vector<Eigen::Vector3d> added;
+  std::vector<Corners> more;
+  fill.triangles = triangles_;
+  for (const FillPatch& patch : patches_) {
+    if (patch.bend == AsGiven)
+      continue;
+    const Index first = static_cast<Index>(points_.cols()) + static_cast<Index>(added.size());
+    for (Index t = 0; t < patch.triangles.count(); ++t) {
+      Corners corners = patch.triangles[t];
+      for (Index& v : corners)
+        v = v < patch.given.count() ? patch.given[v] : first + v - patch.given.count();
+      if (static_cast<std::size_t>(t) < patch.at.size()) {
+        fill.triangles.col(patch.at[static_cast<std::size_t>(t)]) << corners[0], corners[1],
+            corners[2];
+      } else {
+        more.push_back(corners);
+        fill.opening_of.push_back(patch.opening);
+      }
+    }
+    for (Index v = patch.given.count(); v < patch.flat.count(); ++v) {
+      added.push_back(patch.place(v));
+      const auto distance = [&](Index other) {
+        return (points_.col(other) - added.back()).squaredNorm();
+      };
+      fill.nearest.push_back(*std::min_element(
+          patch.given.begin(), patch.given.begin() + patch.own,
+          [&](Index one, Index other) { return distance(one) < distance(other); }));
+    }
+    if (fill.filled.empty() || fill.filled.back() != patch.opening)
+      fill.filled.push_back(patch.opening);
+  }
+  fill.points = points_;
+  fill.points.conservativeResize(3, points_.cols() + static_cast<Eigen::Index>(added.size()));
+  for (std::size_t i = 0; i < added.size(); ++i)
+    fill.points.col(points_.cols() + static_cast<Eigen::Index>(i)) = added[i];
+  const Eigen::Index m = triangles_.cols();
+  fill.triangles.conservativeResize(3, m + static_cast<Eigen::Index>(more.size()));
+  for (std::size_t i = 0; i < more.size(); ++i)
+    fill.triangles.col(m + static_cast<Eigen::Index>(i)) << more[i][0], more[i][1], more[i][2];
+  return fill;
+}
+
+}  // namespace
+
+SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
+                        const std::vector<std::vector<Index>>& openings,
+                        const Execution& execution) {
+  Execution quiet;
+  quiet.threads = execution.threads;
+  const auto given = findSelfIntersections(points, triangles, quiet);
+  SmoothFiller filler(points, triangles, openings, execution.threads);
+  filler.run();
+  std::vector<FillPatch>& patches = filler.patches();
+  for (;;) {
+    SmoothFill fill = filler.assembled();
+    fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, quiet);
+    // For each patch, the pairs now, and those before.
+    Indexed<Index> patch_of(columnCount(fill.triangles), -1);
+    Index next = static_cast<Index>(triangles.cols());
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      for (const Index t : patches[i].at)
+        patch_of[t] = static_cast<Index>(i);
+      for (std::size_t t = patches[i].at.size();
+           patches[i].bend != AsGiven && t < patches[i].triangles.size(); ++t)
+        patch_of[next++] = static_cast<Index>(i);
+    }
+    Indexed<Index> more(patches.size(), 0);
+    const auto count = [&](const auto& pairs, Index by) {
+      for (const auto& pair : pairs)
+        for (const Index t : pair)
+          if (patch_of[t] >= 0)
+            more[patch_of[t]] += by;
+    };
+    count(fill.self_intersections, 1);
+    count(given, -1);
+    bool has_changed = false;
+    const bool has_more = fill.self_intersections.size() > given.size();
+    for (const Index i : indicesOf(more)) {
+      FillPatch& patch = patches[static_cast<std::size_t>(i)];
+      if (more[i] <= 0 || patch.bend == AsGiven)
+        continue;
+      patch.bend = static_cast<Bend>(patch.bend + 1);
+      has_changed = true;
+    }
+    if (!has_changed && !has_more)
+      return fill;
+    for (FillPatch& patch : patches)
+      patch.bend = has_changed ? patch.bend : AsGiven;
+  }
+}
+
+void fillSmoothly(const Positions& cloud, const Options& options, Surface& surface) {
+  std::vector<std::vector<Index>> openings;
+  for (const Opening& opening : surface.openings)
+    openings.push_back(opening.is_filled ? opening.triangles : std::vector<Index>());
+  if (surface.intersections_are_sampled ||
+      std::all_of(openings.begin(), openings.end(), [](const auto& of) { return of.empty(); }))
+    return;
+  const Positions given = surface.moved().cols() > 0
+                              ? surface.moved()
+                              : Positions(cloud(Eigen::all, surface.input_of_vertex));
+  SmoothFill fill = fillSmoothly(given, surface.triangles, openings, options);
+  surface.added_vertices = fill.nearest.size();
+  if (fill.nearest.empty())
+    return;
+  surface.smoothly_filled = fill.filled.size();
+  const Eigen::Index before = surface.triangles.cols();
+  surface.triangles = std::move(fill.triangles);
+  std::vector<std::uint8_t>& marks = surface.diagnosis.triangle_marks;
+  for (std::size_t i = 0; i < fill.opening_of.size(); ++i) {
+    Opening& opening = surface.openings[static_cast<std::size_t>(fill.opening_of[i])];
+    opening.triangles.push_back(static_cast<Index>(before) + static_cast<Index>(i));
+    if (options.details)
+      marks.push_back(opening.isCertain() ? triangle_mark::filled_hole : std::uint8_t{0});
+  }
+  for (const Index v : fill.nearest)
+    surface.input_of_vertex.push_back(surface.input_of_vertex[static_cast<std::size_t>(v)]);
+  surface.filled = std::move(fill.points);
+  for (Positions* moved : {&surface.consolidated, &surface.smoothed})
+    if (moved->cols() > 0) {
+      moved->conservativeResize(3, surface.filled.cols());
+      moved->rightCols(surface.filled.cols() - given.cols()) =
+          surface.filled.rightCols(surface.filled.cols() - given.cols());
+    }
+  // Added vertices have no place on the sphere.
+  surface.sphere.resize(3, 0);
+  surface.history = {};
+  surface.vertex_residuals.clear();
+  surface.topology = checkTopology(surface.triangles, surface.vertexCount(), options.threads);
+  surface.measures = measureMesh(surface.filled, surface.triangles, options.threads);
+  surface.self_intersections = std::move(fill.self_intersections);
+  surface.intersecting_triangles = countTriangles(surface.self_intersections);
+  if (surface.smoothed.cols() > 0)
+    surface.smoothing.self_intersections = surface.self_intersections.size();
+  for (std::uint8_t& mark : marks)
+    mark &= static_cast<std::uint8_t>(~triangle_mark::self_intersection);
+  for (const auto& pair : surface.self_intersections)
+    for (const Index t : pair)
+      if (options.details)
+        marks[static_cast<std::size_t>(t)] |= triangle_mark::self_intersection;
+}
+
+}  // namespace spherical_param::internal

@@ -1,0 +1,124 @@
+#include "smooth_fill.h"
+
+#include "core/reconstructions.h"
+#include "open_shapes.h"
+#include "pi.h"
+#include "spherical_param/self_intersection.h"
+
+namespace spherical_param {
+namespace {
+
+Options filled(FillMode fill) {
+  Options options;
+  options.surface = SurfaceMode::Closed;
+  options.fill = fill;
+  return options;
+}
+
+TEST(SmoothFill, OfASphereWithoutCapsIsNearlyTheSphere) {
+  const Positions points = test::pointsWhere(
+      test::spiralSphere(3000), [](const Eigen::Vector3d& p) { return std::abs(p.z()) < 0.8; });
+  const Surface flat = test::surfaceOf(points, filled(FillMode::Flat));
+  const Surface smooth = test::surfaceOf(points, filled(FillMode::Smooth));
+  ASSERT_EQ(flat.added_vertices, 0U);
+  EXPECT_EQ(flat.filled.cols(), 0);
+  const Eigen::Index n = points.cols();
+  ASSERT_EQ(smooth.filled.cols(), static_cast<Eigen::Index>(smooth.vertexCount()));
+  EXPECT_EQ(smooth.filled.leftCols(n), points);
+  const auto added = static_cast<std::size_t>(smooth.filled.cols() - n);
+  EXPECT_EQ(smooth.added_vertices, added);
+  // The caps have a fifth of the sphere's area, and so of its points.
+  EXPECT_GT(added, 200U);
+  EXPECT_LT(added, 1200U);
+  const double error =
+      (smooth.filled.rightCols(smooth.filled.cols() - n).colwise().norm().array() - 1.0)
+          .abs()
+          .maxCoeff();
+  EXPECT_LT(error, 0.04);  // 0.2 if flat: the height of the caps
+  const MeshTopology topology = checkTopology(smooth.triangles, smooth.vertexCount());
+  EXPECT_TRUE(topology.isSphere());
+  EXPECT_TRUE(findSelfIntersections(smooth.filled, smooth.triangles).empty());
+  EXPECT_EQ(smooth.verdict.substr(smooth.verdict.find(';')),
+            "; " + std::to_string(added) + " vertices added in 2 filled openings.");
+  // All triangles at added vertices are over openings.
+  std::vector<char> is_over(internal::columnCount(smooth.triangles), 0);
+  for (const Opening& opening : smooth.openings)
+    for (const Index t : opening.triangles)
+      is_over.at(static_cast<std::size_t>(t)) = 1;
+  for (Index t = 0; t < smooth.triangles.cols(); ++t)
+    EXPECT_TRUE(smooth.triangles.col(t).maxCoeff() < n || is_over[static_cast<std::size_t>(t)]);
+  EXPECT_NEAR(smooth.measures.volume, 4.0 / 3.0 * internal::kPi, 0.07);  // 0.24 if flat
+  EXPECT_EQ(smooth.duplicates(), 0U);
+}
+
+/// Rings of 40 vertices in the plane z = 0 around an opening, over which a fan has the triangles.
+struct Plate {
+  Positions points{3, 120};
+  Triangles triangles{3, 198};
+  std::vector<std::vector<Index>> openings{{}};
+
+  Plate() {
+    for (Index i = 0; i < 120; ++i) {
+      const double angle = 2.0 * internal::kPi * (i % 40) / 40.0;
+      const double radius = 1.0 + 0.15 * (i / 40);
+      points.col(i) << radius * std::cos(angle), radius * std::sin(angle), 0.0;
+    }
+    for (Index i = 0; i < 80; ++i) {
+      const Index next = i % 40 == 39 ? i - 39 : i + 1;
+      triangles.col(2 * i) << i, i + 40, next + 40;
+      triangles.col(2 * i + 1) << i, next + 40, next;
+    }
+    for (Index i = 0; i < 38; ++i) {
+      triangles.col(160 + i) << 0, i + 1, i + 2;
+      openings[0].push_back(160 + i);
+    }
+  }
+};
+
+TEST(SmoothFill, OfAPlateIsFlatAndAsDenseAsThePlate) {
+  const Plate plate;
+  const internal::SmoothFill fill =
+      internal::fillSmoothly(plate.points, plate.triangles, plate.openings, {});
+  EXPECT_EQ(fill.points.leftCols(120), plate.points);
+  EXPECT_LT(fill.points.row(2).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_TRUE(findSelfIntersections(fill.points, fill.triangles).empty());
+  EXPECT_NEAR(surfaceArea(fill.points, fill.triangles), surfaceArea(plate.points, plate.triangles),
+              1e-9);
+  const MeshTopology topology =
+      checkTopology(fill.triangles, static_cast<std::size_t>(fill.points.cols()));
+  EXPECT_TRUE(topology.manifold() && topology.oriented && topology.unused_vertices.empty());
+  EXPECT_EQ(topology.euler_characteristic, 1);
+  double sum = 0.0;
+  double count = 0.0;
+  for (Index t = 160; t < fill.triangles.cols(); ++t)
+    for (Index k = 0; k < 3; ++k, ++count)
+      sum +=
+          (fill.points.col(fill.triangles(k, t)) - fill.points.col(fill.triangles((k + 1) % 3, t)))
+              .norm();
+  EXPECT_GT(sum / count, 0.5 * 0.16);  // edges of the rim
+  EXPECT_LT(sum / count, 2.0 * 0.16);
+}
+
+TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
+  // A sheet close above the plate, whose rim rises: the bent fill would pass through it.
+  Plate plate;
+  for (Index i = 0; i < 120; ++i)
+    plate.points(2, i) = -0.3 * (i / 40);
+  const Positions below = plate.points;
+  plate.points.conservativeResize(3, 123);
+  plate.points.rightCols(3) << -3, 3, 0, -3, -3, 3, 0.02, 0.02, 0.02;
+  plate.triangles.conservativeResize(3, 199);
+  plate.triangles.col(198) << 120, 121, 122;
+  const auto fill = internal::fillSmoothly(plate.points, plate.triangles, plate.openings, {});
+  EXPECT_GT(fill.points.cols(), 123);
+  EXPECT_TRUE(fill.self_intersections.empty());
+  EXPECT_TRUE(findSelfIntersections(fill.points, fill.triangles).empty());
+  const auto free =
+      internal::fillSmoothly(below, plate.triangles.leftCols(198), plate.openings, {});
+  EXPECT_GT(free.points.row(2).maxCoeff(), 0.1);
+  const auto none = internal::fillSmoothly(below, plate.triangles.leftCols(198), {{}}, {});
+  EXPECT_EQ(none.triangles, plate.triangles.leftCols(198));
+}
+
+}  // namespace
+}  // namespace spherical_param
