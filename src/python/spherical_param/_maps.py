@@ -89,6 +89,11 @@ def _distortion(fields: dict[str, Any]) -> Distortion:
 
 
 def _sphere(mesh: Result) -> FloatArray:
+    if mesh.added_vertices:
+        raise InvalidInput(
+            "the mesh has no map to one sphere: vertices were added; give reconstruct() "
+            'fill="flat", which adds none'
+        )
     if mesh.sphere is None:
         count = mesh.topology.genus or 0
         what = f"has {count} handle{'s' * (count > 1)}" if count else "was glued from several"

@@ -126,8 +126,10 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonM
     for (std::size_t v = surface.vertexCount() - surface.added_vertices; v < surface.vertexCount();
          ++v) {
       PointInT point = (*input_)[static_cast<std::size_t>(vertex_indices[v])];
-      point.getVector3fMap() =
-          surface.filled.col(static_cast<Eigen::Index>(v)).template cast<float>();
+      const auto place = surface.filled.col(static_cast<Eigen::Index>(v));
+      point.x = static_cast<float>(place.x());
+      point.y = static_cast<float>(place.y());
+      point.z = static_cast<float>(place.z());
       vertex_indices[v] = static_cast<pcl::index_t>(cloud.size());
       cloud.push_back(point);
     }
