@@ -3,7 +3,9 @@
 
 #include <pcl/search/kdtree.h>
 
+#include <cmath>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -268,6 +270,34 @@ TEST_F(SphericalParamReconstruction, FailureIsPrintedOnceAndSuccessPrintsNothing
           << errors;
     }
   }
+}
+
+TEST_F(SphericalParamReconstruction, SmoothFillsAppendPointsToThePolygonMesh) {
+  const auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (int i = 0; i < 2000; ++i) {
+    // A spiral on a sphere, without the caps.
+    const float z = 1.0F - (static_cast<float>(i) + 0.5F) / 1000.0F;
+    const float radius = std::sqrt(1.0F - z * z);
+    const float angle = 2.3999632F * static_cast<float>(i);
+    if (std::abs(z) < 0.8F)
+      cloud->emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+  }
+  Reconstruction reconstruction;
+  reconstruction.setInputCloud(cloud);
+  reconstruction.setSurface(spherical_param::SurfaceMode::Closed);
+  reconstruction.setFill(spherical_param::FillMode::Smooth);
+  pcl::PolygonMesh mesh;
+  reconstruction.reconstruct(mesh);
+  const std::size_t added = reconstruction.getResult().surface().added_vertices;
+  EXPECT_GT(added, 0U);
+  EXPECT_EQ(mesh.cloud.width * mesh.cloud.height, cloud->size() + added);
+  // Polygons alone are those of the input.
+  std::vector<pcl::Vertices> polygons;
+  reconstruction.reconstruct(polygons);
+  EXPECT_LT(polygons.size(), mesh.polygons.size());
+  for (const pcl::Vertices& polygon : polygons)
+    for (const auto v : polygon.vertices)
+      EXPECT_LT(static_cast<std::size_t>(v), cloud->size());
 }
 
 TEST_F(SphericalParamReconstruction, SphereAndMovedPointsFitTheCloudAndOutliveIt) {

@@ -79,6 +79,19 @@ class Mesh(unittest.TestCase):
             written = sp.reconstruct(path).vertices
         np.testing.assert_allclose(written, mesh.consolidated, atol=1e-6)
 
+    def test_smooth_fills_add_vertices_at_the_end(self):
+        whole = shapes.directions(2000)
+        points = whole[np.abs(whole[:, 2]) < 0.8]
+        mesh = sp.reconstruct(points, surface="closed", fill="smooth")
+        self.assertGreater(mesh.added_vertices, 0)
+        self.assertEqual(len(mesh.vertices), len(points) + mesh.added_vertices)
+        np.testing.assert_array_equal(mesh.vertices[: len(points)], points)
+        np.testing.assert_array_equal(mesh.filled, mesh.vertices)
+        self.assertEqual(mesh.triangles.max(), len(mesh.vertices) - 1)
+        self.assertIsNone(mesh.sphere)
+        with self.assertRaisesRegex(sp.InvalidInput, 'fill="flat"'):
+            sp.sphere_map(mesh)
+
     def test_results_own_their_memory_and_the_input_is_left_alone(self):
         points = shapes.ellipsoid(100)
         before = points.copy()

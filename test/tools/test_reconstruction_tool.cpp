@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <sstream>
 #include <string>
@@ -68,6 +69,33 @@ TEST_F(ReconstructionTool, MeshAndSphereHaveTheSameTrianglesAndKeepWhatThePoints
   EXPECT_LT((sphere.points().colwise().norm().array() - 1.0).abs().maxCoeff(), 2e-7);
   expectSuccess(RECONSTRUCTION_TOOL, {"in.ply", "text.ply", "-ascii"});
   EXPECT_NE(content("text.ply").find("format ascii"), std::string::npos);
+}
+
+TEST_F(ReconstructionTool, SmoothFillsAddVerticesWithColoursAtTheEnd) {
+  // Without the caps of a sphere.
+  const Positions whole = ellipsoid(2000, {1.0, 1.0, 1.0});
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < whole.cols(); ++i)
+    if (std::abs(whole(2, i)) < 0.8)
+      kept.push_back(i);
+  const Positions open = whole(Eigen::all, kept);
+  write("open.ply", plyOf(open, open, (127.0 * open.array() + 128.0).round().matrix()));
+  const Words closed{"open.ply", "out.ply", "-surface", "closed", "-fill", "smooth"};
+  const json report = reportOf(closed);
+  const MeshFile out = mesh("out.ply");
+  const Eigen::Index added = out.points().cols() - open.cols();
+  EXPECT_GT(added, 0);
+  EXPECT_EQ(report["added_vertices"], added);
+  EXPECT_EQ(out.points().leftCols(open.cols()), open);
+  EXPECT_EQ(out.colors().cols(), out.points().cols());
+  EXPECT_TRUE(out.isSphere());
+  EXPECT_LT((out.points().colwise().norm().array() - 1.0).abs().maxCoeff(), 0.05);
+  EXPECT_TRUE(selfIntersections(out.points(), out.triangles).empty());
+  Words with_sphere = closed;
+  with_sphere.insert(with_sphere.end(), {"-sphere", "sphere.ply"});
+  const RunResult refused = tool(with_sphere);
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.errors.find("give -fill flat"), std::string::npos);
 }
 
 TEST_F(ReconstructionTool, DuplicatesAndPointsThatAreNotFiniteAreLeftOutAndCounted) {

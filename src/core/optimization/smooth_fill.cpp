@@ -29,7 +29,7 @@ Edge undirected(Index a, Index b) {
 }
 
 /// How far a patch bends: the first that does not intersect more than before is taken.
-enum Bend { ThinPlate, Membrane, Half, Quarter, AsGiven };
+enum Bend { ThinPlate, Membrane, AsGiven };
 
 /// A disc of triangles over an opening. Its vertices have numbers of their own: `given` first, then
 /// the added ones.
@@ -55,11 +55,7 @@ struct FillPatch {
       left_of[{corners[k], corners[(k + 1) % 3]}] = t;
   }
 
-  Eigen::Vector3d place(Index v) const {
-    if (bend == Half || bend == Quarter)
-      return flat[v] + (bend == Half ? 0.5 : 0.25) * (plate[v] - flat[v]);
-    return bend == Membrane ? membrane[v] : plate[v];
-  }
+  Eigen::Vector3d place(Index v) const { return bend == Membrane ? membrane[v] : plate[v]; }
 };
 
 /// Whether the triangles of a patch form a disc with a simple boundary.
