@@ -362,7 +362,7 @@ Result reconstruct(const Positions& points, const Options& given,
   });
   if (options.fill == FillMode::Smooth)
     for (Surface& surface : result.surfaces)
-      internal::fillSmoothly(points, options, surface);
+      internal::fillSmoothly(points, options, clock.execution(), surface);
   result.stages = clock.take();
   for (Surface& surface : result.surfaces) {
     surface.findings = internal::findingsOf(given, surface);

@@ -3,6 +3,7 @@
 #include "corner_table.h"
 #include "indexed.h"
 #include "pi.h"
+#include "progress.h"
 #include "spherical_param/self_intersection.h"
 
 #include <Eigen/Geometry>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -158,10 +160,12 @@ bool split(FillPatch& patch, Index max_added) {
   return patch.triangles.count() > count;
 }
 
-void refine(FillPatch& patch, Index max_added, Edges& taken) {
-  do
+/// \param poll throws if the work is cancelled.
+void refine(FillPatch& patch, Index max_added, Edges& taken, const std::function<void()>& poll) {
+  do {
+    poll();
     relax(patch, taken);
-  while (split(patch, max_added));
+  } while (split(patch, max_added));
 }
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -252,13 +256,16 @@ public:
   }
 
   /// Refines and fairs all patches; leaves out those that need no vertices.
-  void run() {
+  void run(const FractionReport& report) {
+    double done = 0.0;
+    const auto poll = [&] { reportFraction(report, done); };
     // Wide openings between sparse points take no more vertices than the cloud has.
     Index left = static_cast<Index>(points_.cols()) + 1000;
     for (FillPatch& patch : patches_) {
       for (int round = 0; round < 5; ++round) {  // the bent patch is larger, and bends on
         if (round < 3)
-          refine(patch, left, taken_);
+          refine(patch, left, taken_, poll);
+        poll();
         if (patch.added() > 0)
           fair(patch, true, patch.plate);
       }
@@ -266,6 +273,7 @@ public:
       if (patch.added() > 0)
         fair(patch, false, patch.membrane);
       left -= patch.added();
+      done += 1.0 / static_cast<double>(patches_.size());
     }
     patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
                                   [](const FillPatch& patch) { return patch.added() == 0; }),
@@ -414,15 +422,13 @@ SmoothFill SmoothFiller::assembled() const {
 SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
                         const std::vector<std::vector<Index>>& openings,
                         const Execution& execution) {
-  Execution quiet;
-  quiet.threads = execution.threads;
-  const auto given = findSelfIntersections(points, triangles, quiet);
+  const auto given = findSelfIntersections(points, triangles, execution);
   SmoothFiller filler(points, triangles, openings, execution.threads);
-  filler.run();
+  filler.run(reportOf(execution, "filling"));
   std::vector<FillPatch>& patches = filler.patches();
   for (;;) {
     SmoothFill fill = filler.assembled();
-    fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, quiet);
+    fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, execution);
     // For each patch, the pairs now, and those before.
     Indexed<Index> patch_of(columnCount(fill.triangles), -1);
     Index next = static_cast<Index>(triangles.cols());
@@ -458,7 +464,8 @@ SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
   }
 }
 
-void fillSmoothly(const Positions& cloud, const Options& options, Surface& surface) {
+void fillSmoothly(const Positions& cloud, const Options& options, const Execution& execution,
+                  Surface& surface) {
   std::vector<std::vector<Index>> openings;
   for (const Opening& opening : surface.openings)
     openings.push_back(opening.is_filled ? opening.triangles : std::vector<Index>());
@@ -468,7 +475,7 @@ void fillSmoothly(const Positions& cloud, const Options& options, Surface& surfa
   const Positions given = surface.moved().cols() > 0
                               ? surface.moved()
                               : Positions(cloud(Eigen::all, surface.input_of_vertex));
-  SmoothFill fill = fillSmoothly(given, surface.triangles, openings, options);
+  SmoothFill fill = fillSmoothly(given, surface.triangles, openings, execution);
   surface.added_vertices = fill.nearest.size();
   if (fill.nearest.empty())
     return;

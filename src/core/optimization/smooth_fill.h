@@ -26,7 +26,7 @@ struct SmoothFill {
 ///
 /// \param points 3 x n; \param triangles 3 x m, manifold, oriented.
 /// \param openings for each its triangles, in one opening only. Those that form no disc stay.
-/// \param execution threads
+/// \param execution threads, progress and cancellation.
 /// \return the mesh, of the same topology; the same, bit by bit, for any number of threads.
 SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
                         const std::vector<std::vector<Index>>& openings,
@@ -35,8 +35,10 @@ SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
 /// The same for a finished surface, whose figures follow. One with more intersections than were
 /// listed stays.
 ///
-/// \param cloud 3 x n, the input; \param options threads.
+/// \param cloud 3 x n, the input; \param options threads and details.
+/// \param execution threads, progress and cancellation.
 /// \param surface in the unit and the numbers of the input, changed in place.
-void fillSmoothly(const Positions& cloud, const Options& options, Surface& surface);
+void fillSmoothly(const Positions& cloud, const Options& options, const Execution& execution,
+                  Surface& surface);
 
 }  // namespace spherical_param::internal

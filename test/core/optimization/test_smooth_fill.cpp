@@ -3,6 +3,7 @@
 #include "core/reconstructions.h"
 #include "open_shapes.h"
 #include "pi.h"
+#include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
 
 namespace spherical_param {
@@ -118,6 +119,21 @@ TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
   EXPECT_GT(free.points.row(2).maxCoeff(), 0.1);
   const auto none = internal::fillSmoothly(below, plate.triangles.leftCols(198), {{}}, {});
   EXPECT_EQ(none.triangles, plate.triangles.leftCols(198));
+}
+
+TEST(SmoothFill, CanBeCancelled) {
+  const Plate plate;
+  const auto reports = [&](int last) {
+    int seen = 0;
+    Execution execution;
+    execution.progress = [&](const Progress&) { return ++seen != last; };
+    internal::fillSmoothly(plate.points, plate.triangles, plate.openings, execution);
+    return seen;
+  };
+  const int all = reports(-1);
+  ASSERT_GT(all, 1);
+  for (const int last : {1, all})
+    EXPECT_THROW(reports(last), Cancelled) << last;
 }
 
 }  // namespace
