@@ -174,7 +174,8 @@ inline std::string faultOfLists(const Positions& points, const spherical_param::
   };
   for (const spherical_param::Surface& surface : result.surfaces)
     count(surface.inputs);
-  for (const auto& list : {left_out.not_finite, left_out.outliers, left_out.other_parts})
+  for (const auto& list :
+       {left_out.not_finite, left_out.outliers, left_out.other_parts, left_out.unmeshed})
     count(list);
   if (!is_ascending || std::any_of(times.begin(), times.end(), [](int t) { return t != 1; }))
     return "not every point is in one list, or a list is not ascending";
@@ -219,6 +220,7 @@ inline std::string bytesOf(const spherical_param::Result& result) {
   }
   add(result.left_out.outliers);
   add(result.left_out.other_parts);
+  add(result.left_out.unmeshed);
   add(result.verdict);
   for (const spherical_param::Finding& finding : result.findings)
     add(finding.text);
