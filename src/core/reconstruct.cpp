@@ -140,37 +140,43 @@ internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
   return closed;
 }
 
-/// Removes the intersections of a mesh, if the options say so. Returns whether it has none.
-bool clean(const Positions& points, MeshedCloud& mesh, const Options& options,
-           const Execution& execution, internal::OpenMesh& open, std::size_t& left_out_triangles) {
+/// Removes the intersections of a mesh, if the options say so. Returns the number of triangles that
+/// were left out for that; nothing if some still intersect.
+std::optional<std::size_t> clean(const Positions& points, MeshedCloud& mesh, bool is_open,
+                                 const Options& options, const Execution& execution,
+                                 internal::OpenMesh& open) {
   // More of a surface is no spot, but a tangle.
   constexpr std::size_t vertices_of = 500;
   constexpr std::size_t triangles_of = 100;
   constexpr std::size_t tangle_of = 10;
   const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
   const Triangles surface = surfaceOf(open);
-  if (internal::findPairsUpTo(1, positions, surface, execution).pairs.empty())
-    return true;
+  // The optimisation has left the intersections of a closed mesh on its points.
+  const bool intersects =
+      is_open || mesh.isSmoothed()
+          ? !internal::findPairsUpTo(1, positions, surface, execution).pairs.empty()
+          : !mesh.optimization.intersecting.pairs.empty();
+  if (!intersects)
+    return std::size_t{0};
+  if (options.intersections != IntersectionMode::Remove || mesh.optimization.report.is_out_of_time)
+    return std::nullopt;
   const bool may_open = options.surface != SurfaceMode::Closed;
   const internal::Removal most{internal::columnCount(points) / vertices_of,
                                may_open ? internal::columnCount(surface) / triangles_of : 0};
-  if (options.intersections != IntersectionMode::Remove || mesh.optimization.report.is_out_of_time)
-    return false;
   std::optional<internal::Removal> removal = clearIntersections(positions, most, open);
   if (!removal && !may_open)
-    return false;
+    return std::nullopt;
   if (!removal) {
     internal::OpenMesh rest = open;
     removal = leaveOutTangles(positions, rest);
     if (tangle_of * removal->triangles > internal::columnCount(surface))
-      return false;
+      return std::nullopt;
     open = std::move(rest);
   }
-  left_out_triangles = removal->triangles;
   mesh.smoothed.intersecting_triangles = 0;
   mesh.smoothed.is_sample = false;
   mesh.smoothed.report.self_intersections = 0;
-  return true;
+  return removal->triangles;
 }
 
 /// Meshes a graph of points, and judges the mesh.
@@ -189,13 +195,13 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
     smooth(points, openings, options, clock, mesh);
   clock.begin("quality");
   internal::OpenMesh open = openMeshOf(points, mesh, openings);
-  std::size_t left_out_triangles = 0;
-  const bool is_clean = clean(points, mesh, options, clock.execution(), open, left_out_triangles);
+  const std::optional<std::size_t> left_out =
+      clean(points, mesh, openings.isOpen(), options, clock.execution(), open);
   const FacedBy faced_by = internal::orient(points, info, open, mesh.embedding);
-  Surface surface = internal::judge(points, std::move(mesh), surfaceOf(open), is_clean, openings,
-                                    options, clock.execution());
+  Surface surface = internal::judge(points, std::move(mesh), surfaceOf(open), left_out.has_value(),
+                                    openings, options, clock.execution());
   surface.faced_by = faced_by;
-  surface.left_out_triangles = left_out_triangles;
+  surface.left_out_triangles = left_out.value_or(0);
   return surface;
 }
 
