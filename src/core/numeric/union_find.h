@@ -1,6 +1,7 @@
 #pragma once
 
 #include "indexed.h"
+#include "spherical_param/types.h"
 
 #include <cstddef>
 #include <numeric>
@@ -39,5 +40,15 @@ public:
 private:
   Indexed<Index> parent_;
 };
+
+/// The vertices of the pieces of a mesh; one in no triangle is a piece by itself.
+inline UnionFind piecesOf(const Triangles& triangles, std::size_t vertices) {
+  UnionFind pieces(vertices);
+  for (const auto& t : triangles.colwise()) {
+    pieces.unite(t[0], t[1]);
+    pieces.unite(t[0], t[2]);
+  }
+  return pieces;
+}
 
 }  // namespace spherical_param::internal

@@ -395,15 +395,7 @@ private:
   }
 
   /// Whether the surface around a vertex is one fan.
-  bool isOneFan(Index v) const {
-    bool has_surface = false;
-    int changes = 0;
-    mesh_.forEachAround(v, [&](Index t, int corner) {
-      has_surface = has_surface || !isOpen(t);
-      changes += isOpen(t) != isOpen(mesh_.neighbor(t, (corner + 1) % 3)) ? 1 : 0;
-    });
-    return has_surface && changes <= 2;
-  }
+  bool isOneFan(Index v) const { return fansOfSurface(mesh_, is_open_, v) == 1; }
 
   /// The triangle and corner of the side of a vertex to flip next: fewest intersections, then the
   /// shortest new side; -1 of none.

@@ -132,18 +132,10 @@ private:
   }
 
   /// Whether no triangle of a vertex is on the surface.
-  bool isBare(Index v) const {
-    return !mesh_.anyAround(v, [&](Index t, int) { return !isOpen(t); });
-  }
+  bool isBare(Index v) const { return fansOfSurface(mesh_, is_open_, v) == 0; }
 
   /// Whether the surface around a vertex is more than one fan.
-  bool isPinched(Index v) const {
-    Index changes = 0;
-    mesh_.forEachAround(v, [&](Index t, int corner) {
-      changes += isOpen(t) != isOpen(mesh_.neighbor(t, (corner + 1) % 3)) ? 1 : 0;
-    });
-    return changes > 2;
-  }
+  bool isPinched(Index v) const { return fansOfSurface(mesh_, is_open_, v) > 1; }
 
   /// Joins a bare vertex by one triangle to an edge of the boundary, or puts it into a triangle of
   /// the surface: the nearest place where that intersects nothing, edges first.
@@ -333,6 +325,15 @@ std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces
       found.insert(found.end(), piece.begin(), piece.end());
   }
   return found;
+}
+
+int fansOfSurface(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v) {
+  int changes = 0;
+  mesh.forEachAround(v, [&](Index t, int corner) {
+    changes += is_open[t] != is_open[mesh.neighbor(t, (corner + 1) % 3)] ? 1 : 0;
+  });
+  const bool is_inside = changes == 0 && is_open[mesh.triangleAt(v)] == 0;
+  return is_inside ? 1 : changes / 2;
 }
 
 OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings) {

@@ -13,6 +13,11 @@ namespace spherical_param::internal {
 /// Open triangles that others do not connect to a loop: they are part of the surface.
 std::vector<Index> trianglesWithoutLoop(const SphereMesh& mesh, const OpenPlaces& openings);
 
+/// Number of fans that the triangles around a vertex form which are not over openings.
+///
+/// \param is_open for each triangle, 1 if it is over an opening.
+int fansOfSurface(const SphereMesh& mesh, const Indexed<std::uint8_t>& is_open, Index v);
+
 /// A closed mesh with openings.
 struct OpenMesh {
   Triangles triangles;            ///< the closed mesh, changed at the openings

@@ -95,7 +95,7 @@ bool cutIntoTriangles(const Positions& points, const std::vector<Index>& loop, E
 
 /// The triangles of the faces.
 TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation) {
-  // Larger faces are cut only if nothing is left of what is around them.
+  // Larger faces may be openings, or beside a false edge: they stay loops at first.
   constexpr std::size_t max_corners = 12;
   TriangleList triangles;
   EdgeSet edges;
@@ -184,13 +184,11 @@ Triangles withoutPinches(Triangles triangles, std::size_t vertices) {
 /// Fills the loops of a mesh; pieces with loops that cannot be filled are left out.
 Triangles closed(const Positions& points, const Triangles& open) {
   const std::size_t vertices = columnCount(points);
-  UnionFind pieces(vertices);
+  UnionFind pieces = piecesOf(open, vertices);
   EdgeSet edges;
   for (const auto& t : open.colwise())
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      pieces.unite(t[k], t[(k + 1) % 3]);
+    for (Eigen::Index k = 0; k < 3; ++k)
       edges.insert(t[k], t[(k + 1) % 3]);
-    }
   TriangleList fillings;
   Indexed<char> is_left_out(vertices, 0);
   for (std::vector<Index>& loop : boundaryLoops(open, vertices)) {
@@ -245,11 +243,7 @@ Tube shortestTube(const Positions& points, const Triangles& spheres, const Corne
 /// Joins closed pieces by tubes, each between triangles at the ends of an edge of the graph, short
 /// edges first. Returns the piece with the most vertices.
 Triangles joined(const Positions& points, const Graph& graph, const Triangles& spheres) {
-  UnionFind pieces(graph.size());
-  for (const auto& t : spheres.colwise()) {
-    pieces.unite(t[0], t[1]);
-    pieces.unite(t[0], t[2]);
-  }
+  UnionFind pieces = piecesOf(spheres, graph.size());
   const CornerTable corners(spheres, graph.size(), 1);
   std::vector<std::tuple<double, Index, Index>> edges;
   for (const Index v : graph.nodes())

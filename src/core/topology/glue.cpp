@@ -44,11 +44,7 @@ struct Rims {
 /// Turns the spheres most of whose virtual nodes are on the left of their rims.
 void turn(const Rims& rims, Index vertices, Triangles& spheres) {
   const auto count = static_cast<std::size_t>(vertices);
-  UnionFind sets(count);
-  for (const auto& t : spheres.colwise()) {
-    sets.unite(t[0], t[1]);
-    sets.unite(t[0], t[2]);
-  }
+  UnionFind sets = piecesOf(spheres, count);
   Indexed<Index> votes(count, 0);
   for (const auto& t : spheres.colwise())
     for (Index k = 0; k < 3; ++k) {
