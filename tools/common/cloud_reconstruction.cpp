@@ -140,24 +140,22 @@ MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface) {
 
 JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
   Eigen::Index triangles = 0;
-  Eigen::Index places = 0;
+  std::size_t vertices = 0;
+  bool has_moved = false;
   for (const Surface& surface : cloud.result.surfaces) {
     triangles += surface.triangles.cols();
-    places += surface.moved().cols() > 0 ? 1 : 0;
+    vertices += surface.vertexCount();
+    has_moved = has_moved || surface.moved().cols() > 0;
   }
   triangles_.resize(3, triangles);
-  std::size_t vertices = 0;
-  for (const Surface& surface : cloud.result.surfaces) {
-    vertices += places > 0 ? surface.vertexCount() : 0;
-  }
-  places_.resize(3, static_cast<Eigen::Index>(vertices));
+  places_.resize(3, has_moved ? static_cast<Eigen::Index>(vertices) : 0);
   triangles = 0;
   for (const Surface& surface : cloud.result.surfaces) {
     const auto first = static_cast<Eigen::Index>(point_of_vertex_.size());
     triangles_.middleCols(triangles, surface.triangles.cols()) =
         surface.triangles.array() + static_cast<Index>(first);
     triangles += surface.triangles.cols();
-    if (places > 0) {
+    if (has_moved) {
       places_.middleCols(first, static_cast<Eigen::Index>(surface.vertexCount())) =
           vertexPositions(cloud, surface);
     }

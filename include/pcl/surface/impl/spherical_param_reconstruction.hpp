@@ -119,7 +119,7 @@ template <typename PointInT>
 void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonMesh& output) {
   output.polygons.clear();
   meshPoints(options_.fill);
-  PointCloudIn cloud = *input_;
+  PointCloudIn added;
   for (std::size_t part = 0; part < result_.surfaces.size(); ++part) {
     const spherical_param::Surface& surface = result_.surfaces[part];
     pcl::Indices vertex_indices = parts_[part].vertex_indices;
@@ -130,12 +130,18 @@ void SphericalParamReconstruction<PointInT>::performReconstruction(pcl::PolygonM
       point.x = static_cast<float>(place.x());
       point.y = static_cast<float>(place.y());
       point.z = static_cast<float>(place.z());
-      vertex_indices[v] = static_cast<pcl::index_t>(cloud.size());
-      cloud.push_back(point);
+      vertex_indices[v] = static_cast<pcl::index_t>(input_->size() + added.size());
+      added.push_back(point);
     }
     detail::appendPolygons(surface.triangles, vertex_indices, output.polygons);
   }
-  pcl::toPCLPointCloud2(cloud, output.cloud);
+  if (added.empty()) {
+    pcl::toPCLPointCloud2(*input_, output.cloud);
+  } else {
+    PointCloudIn cloud = *input_;
+    cloud += added;
+    pcl::toPCLPointCloud2(cloud, output.cloud);
+  }
 }
 
 template <typename PointInT>
