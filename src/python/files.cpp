@@ -72,14 +72,17 @@ py::dict readCloudFile(const std::string& path, const py::object& progress) {
 
 void writeMeshFile(const std::string& path, const DoubleArray& points, const IndexArray& triangles,
                    const std::optional<DoubleArray>& normals,
-                   const std::optional<ByteArray>& colors) {
+                   const std::optional<ByteArray>& colors, const std::optional<ByteArray>& added) {
   const Triangles faces = toTriangles(triangles);
   const tools::FileFormat format = tools::requireFormat(
       path, faces.cols() > 0 ? tools::FileUse::WriteMesh : tools::FileUse::WriteCloud);
   const tools::PointData data = toPointData(points, normals, colors);
+  tools::MeshView mesh(data, faces);
+  if (added)
+    mesh.markAdded({added->data(), added->data() + added->size()});
   const py::gil_scoped_release others_may_run;
   tools::OutputFile file(path);
-  tools::writeMesh(file, tools::MeshView(data, faces), format, tools::Encoding::Binary, {});
+  tools::writeMesh(file, mesh, format, tools::Encoding::Binary, {});
   file.commit();
 }
 

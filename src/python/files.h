@@ -15,10 +15,10 @@ namespace spherical_param::python {
 /// `points` (n, 3), `normals` (n, 3) or None, `colors` (n, 3) or None.
 pybind11::dict readCloudFile(const std::string& path, const pybind11::object& progress);
 
-/// A mesh, or a plain cloud without triangles.
+/// A mesh, or a plain cloud without triangles. \param added a mark of each vertex, or None
 void writeMeshFile(const std::string& path, const DoubleArray& points, const IndexArray& triangles,
                    const std::optional<DoubleArray>& normals,
-                   const std::optional<ByteArray>& colors);
+                   const std::optional<ByteArray>& colors, const std::optional<ByteArray>& added);
 
 /// Whether the module was built with the page.
 bool hasReportPage();

@@ -89,6 +89,21 @@ class Mesh(unittest.TestCase):
         np.testing.assert_array_equal(mesh.filled, mesh.vertices)
         self.assertEqual(mesh.triangles.max(), len(mesh.vertices) - 1)
         self.assertIsNone(mesh.sphere)
+        record = np.dtype([("floats", "<f4", 6), ("added", "u1")])  # with normals
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "mesh.ply")
+            mesh.write(path)
+            header, _, body = path.read_bytes().partition(b"end_header\n")
+        self.assertIn(b"\nproperty uchar added\n", header)
+        marks = np.frombuffer(body, record, len(mesh.vertices))["added"]
+        np.testing.assert_array_equal(marks, np.arange(len(marks)) >= len(points))
+        other = sp.reconstruct(points[:100], parts="each")
+        both = type(other)([mesh, *other])._export_added()
+        np.testing.assert_array_equal(both, np.concatenate([marks, np.zeros(100)]))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "mesh.ply")
+            other.write(path)
+            self.assertNotIn(b"added", path.read_bytes())
         with self.assertRaisesRegex(sp.InvalidInput, 'fill="flat"'):
             sp.sphere_map(mesh)
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
@@ -71,14 +72,21 @@ TEST_F(ReconstructionTool, MeshAndSphereHaveTheSameTrianglesAndKeepWhatThePoints
   EXPECT_NE(content("text.ply").find("format ascii"), std::string::npos);
 }
 
+/// Unit spheres without caps, with these coordinates x of their centres.
+Positions spheresWithoutCaps(int n, const std::vector<double>& centers) {
+  std::vector<Eigen::Vector3d> kept;
+  for (const double x : centers) {
+    const Positions whole = ellipsoid(n, {1.0, 1.0, 1.0}, {x, 0.0, 0.0});
+    std::copy_if(whole.colwise().begin(), whole.colwise().end(), std::back_inserter(kept),
+                 [](const Eigen::Vector3d& point) { return std::abs(point.z()) < 0.8; });
+  }
+  Positions points(3, static_cast<Eigen::Index>(kept.size()));
+  std::copy(kept.begin(), kept.end(), points.colwise().begin());
+  return points;
+}
+
 TEST_F(ReconstructionTool, SmoothFillsAddVerticesWithColoursAtTheEnd) {
-  // Without the caps of a sphere.
-  const Positions whole = ellipsoid(2000, {1.0, 1.0, 1.0});
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index i = 0; i < whole.cols(); ++i)
-    if (std::abs(whole(2, i)) < 0.8)
-      kept.push_back(i);
-  const Positions open = whole(Eigen::all, kept);
+  const Positions open = spheresWithoutCaps(2000, {0.0});
   write("open.ply", plyOf(open, open, (127.0 * open.array() + 128.0).round().matrix()));
   const Words closed{"open.ply", "out.ply", "-surface", "closed", "-fill", "smooth"};
   const json report = reportOf(closed);
@@ -96,6 +104,39 @@ TEST_F(ReconstructionTool, SmoothFillsAddVerticesWithColoursAtTheEnd) {
   const RunResult refused = tool(with_sphere);
   EXPECT_NE(refused.exit_code, 0);
   EXPECT_NE(refused.errors.find("give -fill flat"), std::string::npos);
+}
+
+TEST_F(ReconstructionTool, APlyFileMarksTheVerticesThatWereAddedToEachSurface) {
+  const Positions given = spheresWithoutCaps(600, {0.0, 5.0});
+  write("two.ply", plyOf(given, given, given * 0.0));
+  const Words smooth{"two.ply", "out.ply", "-surface", "closed", "-fill", "smooth"};
+  const auto expect_marks = [&](const MeshFile& out) {
+    const std::vector<double>& added = out.properties.at("added");
+    for (Eigen::Index v = 0; v < out.points().cols(); ++v) {
+      const bool is_given =
+          (given.colwise() - out.points().col(v)).colwise().norm().minCoeff() == 0;
+      EXPECT_EQ(added[static_cast<std::size_t>(v)], is_given ? 0.0 : 1.0) << v;
+    }
+    return std::count(added.begin(), added.end(), 1.0);
+  };
+  expectSuccess(RECONSTRUCTION_TOOL, smooth);
+  const auto marked = expect_marks(mesh("out.ply"));
+  EXPECT_GT(marked, 0);
+  Words ascii = smooth;
+  ascii.push_back("-ascii");
+  expectSuccess(RECONSTRUCTION_TOOL, ascii);
+  EXPECT_NE(content("out.ply").find("\nproperty uchar added\n"), std::string::npos);
+  std::istringstream lines(content("out.ply"));
+  Eigen::Index vertices = 0;
+  for (std::string line; std::getline(lines, line);)
+    vertices += line.size() > 8 && line.substr(line.size() - 8) == " 0 0 0 1" ? 1 : 0;
+  EXPECT_EQ(vertices, marked);
+  Words numbered = smooth;
+  numbered[1] = "out_%03d.ply";
+  expectSuccess(RECONSTRUCTION_TOOL, numbered);
+  EXPECT_EQ(expect_marks(mesh("out_000.ply")) + expect_marks(mesh("out_001.ply")), marked);
+  expectSuccess(RECONSTRUCTION_TOOL, {"two.ply", "out.ply", "-surface", "closed"});
+  EXPECT_EQ(mesh("out.ply").properties.count("added"), 0U);
 }
 
 TEST_F(ReconstructionTool, DuplicatesAndPointsThatAreNotFiniteAreLeftOutAndCounted) {

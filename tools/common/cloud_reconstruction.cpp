@@ -135,6 +135,11 @@ MeshView meshOf(const CloudReconstruction& cloud, const Surface& surface) {
   if (surface.moved().cols() > 0) {
     mesh.moveTo(surface.moved());
   }
+  if (surface.added_vertices > 0) {
+    std::vector<std::uint8_t> added(surface.vertexCount() - surface.added_vertices, 0);
+    added.resize(surface.vertexCount(), 1);
+    mesh.markAdded(std::move(added));
+  }
   return mesh;
 }
 
@@ -142,10 +147,12 @@ JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
   Eigen::Index triangles = 0;
   std::size_t vertices = 0;
   bool has_moved = false;
+  bool has_added = false;
   for (const Surface& surface : cloud.result.surfaces) {
     triangles += surface.triangles.cols();
     vertices += surface.vertexCount();
     has_moved = has_moved || surface.moved().cols() > 0;
+    has_added = has_added || surface.added_vertices > 0;
   }
   triangles_.resize(3, triangles);
   places_.resize(3, has_moved ? static_cast<Eigen::Index>(vertices) : 0);
@@ -161,6 +168,10 @@ JoinedMesh::JoinedMesh(const CloudReconstruction& cloud) : data_(cloud.data) {
     }
     point_of_vertex_.insert(point_of_vertex_.end(), surface.input_of_vertex.begin(),
                             surface.input_of_vertex.end());
+    if (has_added) {
+      added_.resize(point_of_vertex_.size() - surface.added_vertices, 0);
+      added_.resize(point_of_vertex_.size(), 1);
+    }
   }
 }
 
@@ -169,6 +180,7 @@ MeshView JoinedMesh::view() const {
   if (places_.cols() > 0) {
     mesh.moveTo(places_);
   }
+  mesh.markAdded(added_);
   return mesh;
 }
 

@@ -7,6 +7,7 @@
 #include "spherical_param/reconstruct.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,7 +54,8 @@ private:
   std::shared_ptr<const PointData> data_;
   std::vector<Index> point_of_vertex_;
   Triangles triangles_;
-  Positions places_;  ///< empty if no points were moved
+  Positions places_;                 ///< empty if no points were moved
+  std::vector<std::uint8_t> added_;  ///< marks of vertices; empty if none was added
 };
 
 /// The vertices on a sphere, 3 x v: that of the surface, or another that outlives the view. They

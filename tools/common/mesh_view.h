@@ -6,13 +6,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
 
 using Triangle = std::array<std::int32_t, 3>;  ///< counter-clockwise from outside
 
-/// A mesh to be written. Nothing is copied: all that it was made of must outlive it.
+/// A mesh to be written. Points and triangles are not copied: they must outlive it.
 class MeshView {
 public:
   /// A mesh as it is.
@@ -41,12 +42,17 @@ public:
   /// \param places 3 x vertices.
   void moveTo(const Positions& places) { places_ = &places; }
   void leaveOutNormals() { has_normals_ = false; }
+  /// Marks vertices that are not points of the cloud.
+  ///
+  /// \param marks 1 for each that was added, else 0; empty if none was.
+  void markAdded(std::vector<std::uint8_t> marks) { added_ = std::move(marks); }
 
   std::size_t vertexCount() const { return vertex_count_; }
   std::size_t triangleCount() const { return triangle_count_; }
   bool hasNormals() const { return has_normals_; }
   bool hasColors() const { return !data_->colors.empty(); }
   bool hasAlpha() const { return data_->has_alpha; }
+  bool hasAdded() const { return !added_.empty(); }
 
   Point point(std::size_t vertex) const {
     if (places_ == nullptr) {
@@ -57,6 +63,7 @@ public:
   }
   const Normal& normal(std::size_t vertex) const { return data_->normals[index(vertex)]; }
   const Color& color(std::size_t vertex) const { return data_->colors[index(vertex)]; }
+  std::uint8_t added(std::size_t vertex) const { return added_[vertex]; }
   Triangle triangle(std::size_t t) const {
     const std::int32_t* const corners = corners_ + 3 * t;
     return {corners[0], corners[1], corners[2]};
@@ -74,6 +81,7 @@ private:
   std::size_t triangle_count_;
   const std::int32_t* corners_;
   bool has_normals_;
+  std::vector<std::uint8_t> added_;
 };
 
 }  // namespace spherical_param::tools

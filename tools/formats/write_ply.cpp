@@ -25,6 +25,9 @@ void writePlyHeader(RecordWriter& writer, const MeshView& mesh, Encoding encodin
   for (std::size_t c = 0; c < writtenChannels(mesh); ++c) {
     writer.line(std::string("property uchar ") + channels[c]);
   }
+  if (mesh.hasAdded()) {
+    writer.line("property uchar added");
+  }
   if (mesh.triangleCount() > 0) {
     writer.line("element face " + std::to_string(mesh.triangleCount()));
     writer.line("property list uchar int vertex_indices");
@@ -40,6 +43,9 @@ void writeBinaryVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i
   for (std::size_t c = 0; c < writtenChannels(mesh); ++c) {
     writer.byte(mesh.color(i)[c]);
   }
+  if (mesh.hasAdded()) {
+    writer.byte(mesh.added(i));
+  }
   writer.endRecord();
 }
 
@@ -52,6 +58,9 @@ void writeTextVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i) 
   for (std::size_t c = 0; c < writtenChannels(mesh); ++c) {
     writer.text(" ");
     writer.number(std::int64_t{mesh.color(i)[c]});
+  }
+  if (mesh.hasAdded()) {
+    writer.text(mesh.added(i) != 0 ? " 1" : " 0");
   }
   writer.endLine();
 }

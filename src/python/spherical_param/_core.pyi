@@ -31,6 +31,7 @@ def write_mesh(
     triangles: NDArray[np.int32],
     normals: Optional[NDArray[np.float64]],
     colors: Optional[NDArray[np.uint8]],
+    added: Optional[NDArray[np.uint8]],
 ) -> None: ...
 def write_report(
     path: bytes,

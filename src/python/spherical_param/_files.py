@@ -47,6 +47,10 @@ class MeshExport:
     def _export_colors(self) -> Optional[ByteArray]:
         raise NotImplementedError
 
+    def _export_added(self) -> Optional[ByteArray]:
+        """(v,) 1 for each vertex that was added to the points, else 0; None if none can be."""
+        return None
+
     def to_trimesh(self) -> Any:
         """The mesh as a ``trimesh.Trimesh``, vertices and triangles as they are.
 
@@ -93,7 +97,8 @@ class MeshExport:
 
         Points without triangles go to .pcd, .ply, .obj, .vtk, .xyz or .txt. Coordinates are in
         single precision, or in double where that would move points by more than a millionth of
-        their extent (but for .stl). Under the given name the file is whole, or not there.
+        their extent (but for .stl). A property ``added`` of .ply files marks added vertices. Under
+        the given name the file is whole, or not there.
 
         Raises
         ------
@@ -102,12 +107,14 @@ class MeshExport:
         OSError
             The file cannot be written.
         """
+        added = self._export_added()
         _core.write_mesh(
             os.fsencode(path),
             np.ascontiguousarray(self._export_points()),
             np.ascontiguousarray(self.triangles),
             np.ascontiguousarray(self._export_normals()),
             self._export_colors(),
+            added if added is not None and added.any() else None,
         )
 
     def show(self) -> None:

@@ -163,6 +163,11 @@ class Result(Surface, MeshExport):
                 return moved
         return self.vertices
 
+    def _export_added(self) -> ByteArray:
+        marks = np.zeros(len(self.vertices), np.uint8)
+        marks[len(marks) - self.added_vertices :] = 1
+        return marks
+
     def __repr__(self) -> str:
         volume = self.measures.volume
         enclosed = "" if volume is None else f", volume {volume:.6g}"
@@ -228,6 +233,9 @@ class Results(tuple[Result, ...], MeshExport):
 
     def _export_colors(self) -> Optional[ByteArray]:
         return self.colors
+
+    def _export_added(self) -> ByteArray:
+        return np.concatenate([each._export_added() for each in self])
 
     def _repr_html_(self) -> Optional[str]:
         return self[0]._repr_html_()
