@@ -13,6 +13,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,14 +52,14 @@ Positions positionsOf(const pcl::PCLPointCloud2& cloud) {
   return positions;
 }
 
-/// The outcome has the core's mesh of these points, to the bit; smoothed ones in their precision.
+/// The outcome has the core's mesh of these points, to the bit; moved ones in their precision.
 template <typename Scalar>
 void expectCoresMesh(const Outcome& outcome, const Positions& points, const Settings& settings) {
   const auto whole = spherical_param::reconstruct(points, settings.options);
   const spherical_param::Surface& result = whole.surface();
   Positions vertices = points(Eigen::all, result.input_of_vertex);
-  if (result.smoothed.cols() > 0)
-    vertices = result.smoothed.cast<Scalar>().template cast<double>();
+  if (result.moved().cols() > 0)
+    vertices = result.moved().cast<Scalar>().template cast<double>();
   const Mesh& mesh = *outcome.mesh;
   ASSERT_EQ(mesh.vertices.size(), static_cast<std::size_t>(vertices.cols()));
   ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(result.triangles.cols()));
@@ -279,6 +280,28 @@ TEST(RosCloudMesh, AnOpenSurfaceIsNoFaultUnlessItsOpeningsAreFilled) {
   const Outcome outcome = meshed(bowl, settings);
   EXPECT_FALSE(outcome.has_faults);
   expectCoresMesh<float>(outcome, positionsOf<float>(bowl), settings);
+}
+
+TEST(RosCloudMesh, SmoothFillsAddRecordsAtTheEnd) {
+  const pcl::PCLPointCloud2 bowl = some(ellipsoid(1500), 500, 1000);
+  Settings settings;
+  setParameter(settings, "surface", std::string("closed"));
+  setParameter(settings, "fill", std::string("smooth"));
+  const Outcome outcome = meshed(bowl, settings);
+  expectCoresMesh<float>(outcome, positionsOf<float>(bowl), settings);
+  const Mesh& mesh = *outcome.mesh;
+  ASSERT_GT(mesh.vertices.size(), 1000U);
+  EXPECT_EQ(mesh.colors.size(), mesh.vertices.size());
+  EXPECT_EQ(some(mesh.cloud, 0, 1000).data, bowl.data);
+  std::set<Record> fields;
+  const auto fields_of = [](Record of) {
+    of.erase(of.begin(), of.begin() + 12);
+    return of;
+  };
+  for (std::size_t i = 0; i < 1000; ++i)
+    fields.insert(fields_of(record(bowl, i)));
+  for (std::size_t i = 1000; i < mesh.vertices.size(); ++i)
+    EXPECT_EQ(fields.count(fields_of(record(mesh.cloud, i))), 1U);
 }
 
 TEST(RosCloudMesh, BadCloudsAreAnsweredWithCauseAndRemedy) {
