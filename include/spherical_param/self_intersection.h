@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace spherical_param {
@@ -53,6 +54,13 @@ std::vector<std::array<Index, 2>> findSelfIntersectionsOf(const Positions& point
 /// \param pairs in any order.
 /// \return the number.
 std::size_t countTriangles(const std::vector<std::array<Index, 2>>& pairs);
+
+/// Sets triangle_mark::self_intersection for the triangles in some pairs, and clears it for others.
+///
+/// \param pairs in any order.
+/// \param marks of each triangle; none if they are not wanted.
+void markSelfIntersections(const std::vector<std::array<Index, 2>>& pairs,
+                           std::vector<std::uint8_t>& marks);
 
 /// @}
 

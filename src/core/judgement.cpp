@@ -59,11 +59,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, Triangles triangles, bo
     result.vertex_residuals = tangentialLaplacianLengths(
         mesh.graph.graph, mesh.embedding.directions,
         options.method == Method::Paper ? options.paper.weights : EdgeWeights::Adaptive);
-  if (options.details)
-    for (const auto& pair : result.self_intersections)
-      for (const Index t : pair)
-        result.diagnosis.triangle_marks[static_cast<std::size_t>(t)] |=
-            triangle_mark::self_intersection;
+  markSelfIntersections(result.self_intersections, result.diagnosis.triangle_marks);
   result.intersecting_triangles = mesh.isSmoothed() ? mesh.smoothed.intersecting_triangles
                                                     : countTriangles(result.self_intersections);
   result.smoothing = mesh.smoothed.report;

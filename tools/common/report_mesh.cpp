@@ -100,18 +100,13 @@ std::vector<std::uint8_t> marksOf(const Surface& result, int threads) {
     return marks;
   }
   // The self-intersections of the result are those of the points of the input.
-  for (std::uint8_t& mark : marks) {
-    mark = static_cast<std::uint8_t>(mark & ~triangle_mark::self_intersection);
-  }
+  std::vector<std::array<Index, 2>> pairs;
   if (result.smoothing.self_intersections > 0) {
     Execution execution;
     execution.threads = threads;
-    for (const auto& pair : findSelfIntersections(result.moved(), result.triangles, execution)) {
-      for (const Index t : pair) {
-        marks[at(t)] = static_cast<std::uint8_t>(marks[at(t)] | triangle_mark::self_intersection);
-      }
-    }
+    pairs = findSelfIntersections(result.moved(), result.triangles, execution);
   }
+  markSelfIntersections(pairs, marks);
   return marks;
 }
 

@@ -508,12 +508,7 @@ void fillSmoothly(const Positions& cloud, const Options& options, const Executio
   surface.intersecting_triangles = countTriangles(surface.self_intersections);
   if (surface.smoothed.cols() > 0)
     surface.smoothing.self_intersections = surface.self_intersections.size();
-  for (std::uint8_t& mark : marks)
-    mark &= static_cast<std::uint8_t>(~triangle_mark::self_intersection);
-  for (const auto& pair : surface.self_intersections)
-    for (const Index t : pair)
-      if (options.details)
-        marks[static_cast<std::size_t>(t)] |= triangle_mark::self_intersection;
+  markSelfIntersections(surface.self_intersections, marks);
 }
 
 }  // namespace spherical_param::internal

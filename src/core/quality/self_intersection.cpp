@@ -9,6 +9,7 @@
 #include "rows.h"
 #include "space_filling_curve.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/result.h"
 #include "triangle_pair.h"
 
 #include <algorithm>
@@ -296,6 +297,15 @@ std::size_t countTriangles(const Pairs& pairs) {
     triangles.insert(triangles.end(), pair.begin(), pair.end());
   internal::sortUnique(triangles);
   return triangles.size();
+}
+
+void markSelfIntersections(const Pairs& pairs, std::vector<std::uint8_t>& marks) {
+  for (std::uint8_t& mark : marks)
+    mark &= static_cast<std::uint8_t>(~triangle_mark::self_intersection);
+  for (const auto& pair : pairs)
+    for (const Index t : pair)
+      if (!marks.empty())
+        marks[static_cast<std::size_t>(t)] |= triangle_mark::self_intersection;
 }
 
 }  // namespace spherical_param
