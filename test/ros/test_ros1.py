@@ -286,6 +286,9 @@ class Ros1(unittest.TestCase):
         client.update_configuration({"smoothing": 0})
         self.assertEqual(rospy.get_param("/spherical_param/smoothing"), 0)
         assert_mesh(self, reconstruct(cloud).mesh, cloud, points)
+        client.update_configuration({"surface": "closed", "fill": "smooth"})
+        bowl = points[points["z"] < 0.5]
+        self.assertGreater(reconstruct(message_of(bowl)).mesh.cloud.width, len(bowl))  # vertices are added
         for name, value in (("method", "simplex"), ("outliers", "many"), ("damping", 2.0), ("k", 2)):  # refused
             client.update_configuration({name: value})
             self.assertNotEqual(client.get_configuration(TIMEOUT)[name], value)
