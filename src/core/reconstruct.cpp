@@ -18,12 +18,14 @@
 #include "selection.h"
 #include "smooth_fill.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
 #include "stage_clock.h"
 #include "surface_topology.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -140,6 +142,26 @@ internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
   return closed;
 }
 
+/// Pairs of triangles of a mesh that intersect: all, or some if there are any.
+internal::IntersectingTriangles intersectionsOf(const Positions& positions, const MeshedCloud& mesh,
+                                                bool is_open, bool all,
+                                                const internal::OpenMesh& open,
+                                                const Execution& execution) {
+  // The optimisation has left those of a closed mesh on its points.
+  const internal::IntersectingPairs& left = mesh.optimization.intersecting;
+  if (!is_open && !mesh.isSmoothed() && !(all && left.is_sample))
+    return left.pairs;
+  const Triangles surface = surfaceOf(open);
+  internal::IntersectingTriangles pairs =
+      all ? findSelfIntersections(positions, surface, execution)
+          : internal::findPairsUpTo(1, positions, surface, execution).pairs;
+  const std::vector<Index> triangles = trianglesOfSurface(open);
+  for (auto& pair : pairs)
+    for (Index& t : pair)
+      t = triangles[static_cast<std::size_t>(t)];
+  return pairs;
+}
+
 /// Removes the intersections of a mesh, if the options say so. Returns the number of triangles that
 /// were left out for that; nothing if some still intersect.
 std::optional<std::size_t> clean(const Positions& points, MeshedCloud& mesh, bool is_open,
@@ -149,34 +171,36 @@ std::optional<std::size_t> clean(const Positions& points, MeshedCloud& mesh, boo
   constexpr std::size_t vertices_of = 500;
   constexpr std::size_t triangles_of = 100;
   constexpr std::size_t tangle_of = 10;
-  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
-  const Triangles surface = surfaceOf(open);
-  // The optimisation has left the intersections of a closed mesh on its points.
-  const bool intersects =
-      is_open || mesh.isSmoothed()
-          ? !internal::findPairsUpTo(1, positions, surface, execution).pairs.empty()
-          : !mesh.optimization.intersecting.pairs.empty();
-  if (!intersects)
-    return std::size_t{0};
-  if (options.intersections != IntersectionMode::Remove || mesh.optimization.report.is_out_of_time)
-    return std::nullopt;
   const bool may_open = options.surface != SurfaceMode::Closed;
-  const internal::Removal most{internal::columnCount(points) / vertices_of,
-                               may_open ? internal::columnCount(surface) / triangles_of : 0};
-  std::optional<internal::Removal> removal = clearIntersections(positions, most, open);
-  if (!removal && !may_open)
+  const bool removes =
+      options.intersections == IntersectionMode::Remove && !mesh.optimization.report.is_out_of_time;
+  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
+  const internal::IntersectingTriangles pairs =
+      intersectionsOf(positions, mesh, is_open, removes, open, execution);
+  if (pairs.empty())
+    return std::size_t{0};
+  if (!removes)
     return std::nullopt;
-  if (!removal) {
+  const auto triangles = static_cast<std::size_t>(
+      std::count(open.is_open.begin(), open.is_open.end(), std::uint8_t{0}));
+  const internal::Removal most{internal::columnCount(points) / vertices_of,
+                               may_open ? triangles / triangles_of : 0};
+  std::size_t left_out = 0;
+  if (const auto removal = clearIntersections(positions, pairs, most, open)) {
+    left_out = removal->triangles;
+  } else if (may_open) {
     internal::OpenMesh rest = open;
-    removal = leaveOutTangles(positions, rest);
-    if (tangle_of * removal->triangles > internal::columnCount(surface))
+    left_out = leaveOutTangles(internal::columnCount(points), pairs, rest);
+    if (tangle_of * left_out > triangles)
       return std::nullopt;
     open = std::move(rest);
+  } else {
+    return std::nullopt;
   }
   mesh.smoothed.intersecting_triangles = 0;
   mesh.smoothed.is_sample = false;
   mesh.smoothed.report.self_intersections = 0;
-  return removal->triangles;
+  return left_out;
 }
 
 /// Meshes a graph of points, and judges the mesh.

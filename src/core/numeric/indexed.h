@@ -41,6 +41,16 @@ void sortUnique(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+/// Leaves out the longest list, the first of those.
+///
+/// \param lists not empty.
+template <typename T>
+std::vector<std::vector<T>> withoutLargest(std::vector<std::vector<T>> lists) {
+  lists.erase(std::max_element(lists.begin(), lists.end(),
+                               [](const auto& a, const auto& b) { return a.size() < b.size(); }));
+  return lists;
+}
+
 /// The median; the upper one of two. Changes the order of the values.
 ///
 /// \param values not empty.

@@ -3,6 +3,7 @@
 #include "indexed.h"
 #include "spherical_param/types.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -49,6 +50,14 @@ inline UnionFind piecesOf(const Triangles& triangles, std::size_t vertices) {
     pieces.unite(t[0], t[2]);
   }
   return pieces;
+}
+
+/// The piece with the most triangles, by its lowest vertex.
+inline Index largestPiece(const Triangles& triangles, std::size_t vertices, UnionFind& pieces) {
+  Indexed<Index> sizes(vertices, 0);
+  for (const auto& t : triangles.colwise())
+    ++sizes[pieces.find(t[0])];
+  return static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
 }
 
 }  // namespace spherical_param::internal

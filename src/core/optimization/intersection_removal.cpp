@@ -1,17 +1,17 @@
 #include "intersection_removal.h"
 
-#include "bit_mixing.h"
 #include "local_intersections.h"
 #include "power_of_two.h"
 #include "sphere_mesh.h"
+#include "union_find.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <optional>
-#include <tuple>
-#include <unordered_set>
+#include <set>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -23,12 +23,15 @@ constexpr int kMostOfVertex = 12;
 /// All triangulations that are tried: some 20 us each.
 constexpr int kMostTriangulations = 100000;
 
+/// What a change costs: by how many pairs their number grows, and the length of the new sides.
+using Cost = std::pair<int, double>;
+
 /// A closed mesh with openings, whose changes can be undone, and what intersects in it.
 class Remover {
 public:
-  Remover(const Positions& points, const OpenMesh& mesh)
+  Remover(const Positions& points, const OpenMesh& mesh, std::vector<Index> intersecting)
       : points_(points), mesh_(mesh.triangles, columnCount(points)), is_open_(mesh.is_open),
-        scale_(scaleToUnit(points.cwiseAbs().maxCoeff())) {
+        scale_(scaleToUnit(points.cwiseAbs().maxCoeff())), due_(std::move(intersecting)) {
     Indexed<Face> faces;
     for (Index t = 0; t < mesh_.size(); ++t)
       if (!isOpen(t))
@@ -37,14 +40,8 @@ public:
   }
 
   bool run(const Removal& most) {
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (intersects(t))
-        due_.push_back(t);
-    if (due_.size() > most.triangles + kMostOfVertex * most.vertices)
-      return false;
     const bool is_closed = std::count(is_open_.begin(), is_open_.end(), std::uint8_t{1}) == 0;
-    std::size_t next = 0;
-    while (next < due_.size()) {
+    for (std::size_t next = 0; next < due_.size();) {
       const Index t = due_[next];
       const bool may_take = removal_.vertices < most.vertices;
       const bool may_leave = removal_.triangles < most.triangles;
@@ -57,35 +54,13 @@ public:
     return true;
   }
 
-  /// Leaves out what intersects, those with the most intersections first, the smaller fans where
-  /// several are left at a vertex, and all pieces but the largest.
-  void openAll() {
-    std::vector<std::pair<int, Index>> order;
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (intersects(t))
-        order.emplace_back(-surface_.count(surface_.face(t), t), t);
-    std::sort(order.begin(), order.end());
-    for (const auto& [count, t] : order)
-      if (intersects(t))
-        open(t);
-    leaveOneFan();
-    leaveLargestPiece();
-  }
-
   const Removal& removal() const { return removal_; }
 
   OpenMesh mesh() const {
-    OpenMesh result;
-    std::vector<Index> used;
+    OpenMesh result{mesh_.triangles(), {}};
     for (Index t = 0; t < mesh_.size(); ++t)
       if (isUsed(t))
-        used.push_back(t);
-    result.triangles.resize(3, static_cast<Eigen::Index>(used.size()));
-    for (std::size_t i = 0; i < used.size(); ++i)
-      for (int k = 0; k < 3; ++k)
-        result.triangles(k, static_cast<Eigen::Index>(i)) = mesh_.vertex(used[i], k);
-    for (const Index t : used)
-      result.is_open.push_back(is_open_[t]);
+        result.is_open.push_back(is_open_[t]);
     return result;
   }
 
@@ -117,16 +92,16 @@ private:
       update(change->first);
     }
   }
-  /// To be called before a triangle changes.
-  void touch(Index t) { before_.emplace_back(t, is_open_[t]); }
   void update(Index t) {
     if (isUsed(t) && !isOpen(t))
       surface_.set(face(t));
     else if (surface_.contains(t))
       surface_.remove(t);
   }
-  /// Takes a triangle out of the surface; returns the number of others that it intersects.
+  /// Takes a triangle that changes out of the surface; returns the number of others that it
+  /// intersects.
   int lift(Index t) {
+    before_.emplace_back(t, is_open_[t]);
     if (!surface_.contains(t))
       return 0;
     const int count = surface_.count(surface_.face(t), t);
@@ -146,9 +121,8 @@ private:
     const Index o = mesh_.neighbor(t, corner);
     if (isOpen(t) != isOpen(o) || !isFree(mesh_, mesh_.diamond(t, corner)))
       return std::nullopt;
-    touch(t);
-    touch(o);
-    int change = -lift(t) - lift(o);
+    int change = -lift(t);
+    change -= lift(o);
     mesh_.flipFree(t, corner);
     change += lower(t);
     change += lower(o);
@@ -157,8 +131,13 @@ private:
 
   // --- 1. Other triangulations
 
-  /// Flips that lead to a triangulation, by the ends of the sides.
-  using Flips = std::vector<std::array<Index, 2>>;
+  using Sides = std::vector<std::array<Index, 2>>;  ///< by their ends
+
+  /// A triangulation of a region.
+  struct Triangulation {
+    Sides flipped;  ///< one after the other, from the first triangulation on
+    Sides sides;    ///< within the region
+  };
 
   /// Takes the first triangulation of the triangles within two steps that has fewer intersections.
   bool retriangulate(Index t) {
@@ -166,6 +145,34 @@ private:
       return false;
     // Those that help are among the first 51.
     constexpr std::size_t most_triangulations = 100;
+    const std::vector<Index> region = regionAround(t);
+    std::set<Triples> seen{trianglesOf(region)};
+    std::vector<Triangulation> due{{{}, sidesIn(region)}};
+    for (std::size_t i = 0; i < due.size(); ++i) {
+      const Triangulation from = due[i];
+      for (const auto& [v, w] : from.sides) {
+        ++triangulations_;
+        begin();
+        int change = 0;
+        for (const auto& [a, b] : from.flipped)
+          change += flipSide(region, a, b).value_or(0);
+        const std::optional<int> last = flipSide(region, v, w);
+        if (last && change + *last < 0) {
+          commit();
+          return true;
+        }
+        if (last && due.size() < most_triangulations && seen.insert(trianglesOf(region)).second) {
+          due.push_back({from.flipped, sidesIn(region)});
+          due.back().flipped.push_back({v, w});
+        }
+        rollBack();
+      }
+    }
+    return false;
+  }
+
+  /// The triangles of the surface within two steps of one.
+  std::vector<Index> regionAround(Index t) const {
     std::vector<Index> region{t};
     std::size_t begin_of_step = 0;
     for (int step = 0; step < 2; ++step)
@@ -175,57 +182,29 @@ private:
           if (!isOpen(next) && std::find(region.begin(), region.end(), next) == region.end())
             region.push_back(next);
         }
-    std::unordered_set<std::uint64_t> seen{keyOf(region)};
-    std::vector<Flips> due{{}};
-    for (std::size_t i = 0; i < due.size(); ++i) {
-      const Flips flips = due[i];
-      for (const auto& [v, w] : sidesIn(region, flips)) {
-        ++triangulations_;
-        begin();
-        int change = 0;
-        for (const auto& [a, b] : flips)
-          change += flipSide(region, a, b).value_or(0);
-        const std::optional<int> last = flipSide(region, v, w);
-        if (last && change + *last < 0) {
-          commit();
-          return true;
-        }
-        if (last && due.size() < most_triangulations && seen.insert(keyOf(region)).second) {
-          due.push_back(flips);
-          due.back().push_back({v, w});
-        }
-        rollBack();
-      }
-    }
-    return false;
+    return region;
   }
 
-  /// A number of a triangulation.
-  std::uint64_t keyOf(const std::vector<Index>& region) const {
-    std::uint64_t key = 0;
+  using Triples = std::vector<std::array<Index, 3>>;
+
+  /// The corners of the triangles of a region, whatever their order.
+  Triples trianglesOf(const std::vector<Index>& region) const {
+    Triples triangles;
     for (const Index t : region) {
-      std::array<Index, 3> corners = mesh_.vertices(t);
-      std::sort(corners.begin(), corners.end());
-      std::uint64_t of_triangle = 0;
-      for (const Index v : corners)
-        of_triangle = splitmix64(of_triangle ^ static_cast<std::uint64_t>(v));
-      key += of_triangle;
+      triangles.push_back(mesh_.vertices(t));
+      std::sort(triangles.back().begin(), triangles.back().end());
     }
-    return key;
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
   }
 
-  /// The sides within a region after some flips.
-  std::vector<std::array<Index, 2>> sidesIn(const std::vector<Index>& region, const Flips& flips) {
-    begin();
-    for (const auto& [a, b] : flips)
-      flipSide(region, a, b);
-    std::vector<std::array<Index, 2>> sides;
+  Sides sidesIn(const std::vector<Index>& region) const {
+    Sides sides;
     for (const Index t : region)
       for (int k = 0; k < 3; ++k)
         if (const Index o = mesh_.neighbor(t, k);
             t < o && std::find(region.begin(), region.end(), o) != region.end())
           sides.push_back({mesh_.vertex(t, (k + 1) % 3), mesh_.vertex(t, (k + 2) % 3)});
-    rollBack();
     return sides;
   }
 
@@ -242,18 +221,16 @@ private:
   /// Leaves a triangle out, or one that it intersects, if the others stay a manifold; the one that
   /// intersects most first.
   bool leaveOut(Index t) {
-    std::vector<Index> triangles{t};
-    surface_.appendIntersecting(surface_.face(t), triangles);
     std::vector<std::pair<int, Index>> order;
-    order.reserve(triangles.size());
-    for (const Index u : triangles)
+    for (const Index u : withIntersecting(t))
       order.emplace_back(-surface_.count(surface_.face(u), u), u);
     std::sort(order.begin(), order.end());
     for (const auto& [count, u] : order) {
       is_open_[u] = 1;
       const auto& corners = mesh_.vertices(u);
       if (std::all_of(corners.begin(), corners.end(), [&](Index v) { return isOneFan(v); })) {
-        open(u);
+        surface_.remove(u);
+        ++removal_.triangles;
         return true;
       }
       is_open_[u] = 0;
@@ -261,69 +238,11 @@ private:
     return false;
   }
 
-  void open(Index t) {
-    is_open_[t] = 1;
-    surface_.remove(t);
-    ++removal_.triangles;
-  }
-
-  void leaveOneFan() {
-    std::vector<Index> due(columnCount(points_));
-    std::iota(due.begin(), due.end(), Index{0});
-    while (!due.empty()) {
-      const Index v = due.back();
-      due.pop_back();
-      for (const std::vector<Index>& fan : smallerFans(v))
-        for (const Index t : fan) {
-          open(t);
-          due.insert(due.end(), mesh_.vertices(t).begin(), mesh_.vertices(t).end());
-        }
-    }
-  }
-
-  /// The fans of the surface around a vertex, without the largest.
-  std::vector<std::vector<Index>> smallerFans(Index v) const {
-    std::vector<std::vector<Index>> fans;
-    if (mesh_.triangleAt(v) < 0)
-      return fans;
-    std::vector<Index> around;
-    mesh_.forEachAround(v, [&](Index t, int) { around.push_back(t); });
-    const auto is_open = [&](Index t) { return isOpen(t); };
-    std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_open), around.end());
-    bool continues = false;
-    for (const Index t : around) {
-      if (!isOpen(t) && !continues)
-        fans.emplace_back();
-      if (!isOpen(t))
-        fans.back().push_back(t);
-      continues = !isOpen(t);
-    }
-    if (!fans.empty())
-      fans.erase(std::max_element(fans.begin(), fans.end(), [](const auto& a, const auto& b) {
-        return a.size() < b.size();
-      }));
-    return fans;
-  }
-
-  void leaveLargestPiece() {
-    std::vector<Index> largest;
-    IndexSet seen(is_open_.size());
-    for (Index first = 0; first < mesh_.size(); ++first) {
-      if (!surface_.contains(first) || !seen.insert(first))
-        continue;
-      std::vector<Index> piece{first};
-      for (std::size_t head = 0; head < piece.size(); ++head)
-        for (int k = 0; k < 3; ++k)
-          if (const Index next = mesh_.neighbor(piece[head], k);
-              surface_.contains(next) && seen.insert(next))
-            piece.push_back(next);
-      if (piece.size() > largest.size())
-        largest = std::move(piece);
-    }
-    std::sort(largest.begin(), largest.end());
-    for (Index t = 0; t < mesh_.size(); ++t)
-      if (surface_.contains(t) && !std::binary_search(largest.begin(), largest.end(), t))
-        open(t);
+  /// A triangle, and those that it intersects.
+  std::vector<Index> withIntersecting(Index t) const {
+    std::vector<Index> triangles{t};
+    surface_.appendIntersecting(surface_.face(t), triangles);
+    return triangles;
   }
 
   // --- 3. Vertices taken out
@@ -331,45 +250,35 @@ private:
   /// Takes out the vertex of a triangle, or of those that it intersects, that leaves the fewest
   /// intersections. Returns whether one changes their number by at most `most`.
   bool takeOutNear(Index t, int most) {
-    std::vector<Index> triangles{t};
-    surface_.appendIntersecting(surface_.face(t), triangles);
     std::vector<Index> vertices;
-    for (const Index u : triangles)
+    for (const Index u : withIntersecting(t))
       vertices.insert(vertices.end(), mesh_.vertices(u).begin(), mesh_.vertices(u).end());
     sortUnique(vertices);
-    Index best = -1;
-    std::tuple<int, double> least{0, 0.0};
+    std::optional<std::pair<Cost, Index>> best;
     for (const Index v : vertices) {
       begin();
-      double added = 0.0;
-      const std::optional<int> change = takeOut(v, added);
-      if (change && *change <= most && (best < 0 || std::tuple(*change, added) < least)) {
-        best = v;
-        least = {*change, added};
-      }
+      const std::optional<Cost> cost = takeOut(v);
+      if (cost && cost->first <= most && (!best || *cost < best->first))
+        best.emplace(*cost, v);
       rollBack();
     }
-    if (best < 0)
+    if (!best)
       return false;
     begin();
-    double added = 0.0;
-    takeOut(best, added);
+    takeOut(best->second);
     commit();
     ++removal_.vertices;
     return true;
   }
 
-  /// Flips the sides of a vertex away, and merges its last three triangles. Returns by how many
-  /// pairs the number changes; nothing if that is impossible.
-  ///
-  /// \param added receives the length of the new sides.
-  std::optional<int> takeOut(Index v, double& added) {
+  /// Flips the sides of a vertex away, and merges its last three triangles. Returns what that
+  /// costs; nothing if it is impossible.
+  std::optional<Cost> takeOut(Index v) {
+    Cost cost{0, 0.0};
     std::vector<Index> ring;
-    int change = 0;
     mesh_.forEachAround(v, [&](Index t, int corner) {
       ring.push_back(mesh_.vertex(t, (corner + 1) % 3));
-      touch(t);
-      change -= lift(t);
+      cost.first -= lift(t);
     });
     while (mesh_.degree(v) > 3) {
       const auto [ear, corner] = bestEar(v);
@@ -377,20 +286,19 @@ private:
         return std::nullopt;
       const Index o = mesh_.neighbor(ear, corner);
       const auto at = mesh_.diamond(ear, corner);
-      added += length(at.c, at.d);
+      cost.second += length(at.c, at.d);
       mesh_.flipFree(ear, corner);
       const auto& corners = mesh_.vertices(ear);
-      change += lower(std::find(corners.begin(), corners.end(), v) == corners.end() ? ear : o);
+      cost.first += lower(std::find(corners.begin(), corners.end(), v) == corners.end() ? ear : o);
     }
-    bool is_open = false;
-    mesh_.forEachAround(v, [&](Index t, int) { is_open = is_open || isOpen(t); });
+    const bool is_open = mesh_.anyAround(v, [&](Index t, int) { return isOpen(t); });
     const Index merged = mesh_.merge(v);
     if (merged < 0)
       return std::nullopt;
     is_open_[merged] = is_open ? 1 : 0;
-    change += lower(merged);
+    cost.first += lower(merged);
     return std::all_of(ring.begin(), ring.end(), [&](Index w) { return isOneFan(w); })
-               ? std::optional(change)
+               ? std::optional(cost)
                : std::nullopt;
   }
 
@@ -401,7 +309,7 @@ private:
   /// shortest new side; -1 of none.
   std::pair<Index, int> bestEar(Index v) const {
     std::pair<Index, int> best{-1, 0};
-    std::tuple<int, double> least{};
+    Cost least;
     mesh_.forEachAround(v, [&](Index t, int corner) {
       const int side = (corner + 1) % 3;
       const Index o = mesh_.neighbor(t, side);
@@ -412,7 +320,7 @@ private:
       const Index w = at.a == v ? at.b : at.a;
       const int count =
           isOpen(t) ? 0 : surface_.count(faceOf(points_, scale_, {at.c, w, at.d}, t), t);
-      const std::tuple<int, double> cost{count, length(at.c, at.d)};
+      const Cost cost{count, length(at.c, at.d)};
       if (best.first < 0 || cost < least) {
         best = {t, side};
         least = cost;
@@ -432,22 +340,89 @@ private:
   Removal removal_;
 };
 
-}  // namespace
-
-Removal leaveOutTangles(const Positions& points, OpenMesh& mesh) {
-  Remover remover(points, mesh);
-  remover.openAll();
-  mesh = remover.mesh();
-  return remover.removal();
+/// Leaves out what intersects, those with the most intersections first.
+void leaveOutIntersecting(const IntersectingTriangles& pairs, OpenMesh& mesh) {
+  std::map<Index, std::vector<Index>> others;
+  for (const auto& [t, u] : pairs) {
+    others[t].push_back(u);
+    others[u].push_back(t);
+  }
+  std::vector<std::pair<int, Index>> order;
+  for (const auto& [t, of] : others)
+    order.emplace_back(-static_cast<int>(of.size()), t);
+  std::sort(order.begin(), order.end());
+  for (const auto& [count, t] : order)
+    for (const Index u : others[t])
+      if (mesh.is_open[u] == 0)
+        mesh.is_open[t] = 1;
 }
 
-std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
+/// Leaves out the smaller fans of the surface at each vertex.
+void leaveOneFan(std::size_t vertices, OpenMesh& mesh) {
+  const SphereMesh closed(mesh.triangles, vertices);
+  std::vector<Index> due(vertices);
+  std::iota(due.begin(), due.end(), Index{0});
+  while (!due.empty()) {
+    const Index v = due.back();
+    due.pop_back();
+    if (closed.triangleAt(v) < 0)
+      continue;
+    std::vector<Index> around;
+    closed.forEachAround(v, [&](Index t, int) { around.push_back(t); });
+    const auto is_open = [&](Index t) { return mesh.is_open[t] != 0; };
+    std::rotate(around.begin(), std::find_if(around.begin(), around.end(), is_open), around.end());
+    std::vector<std::vector<Index>> fans(1);
+    for (const Index t : around)
+      if (!is_open(t))
+        fans.back().push_back(t);
+      else if (!fans.back().empty())
+        fans.emplace_back();
+    for (const std::vector<Index>& fan : withoutLargest(std::move(fans)))
+      for (const Index t : fan) {
+        mesh.is_open[t] = 1;
+        due.insert(due.end(), closed.vertices(t).begin(), closed.vertices(t).end());
+      }
+  }
+}
+
+/// Leaves out all pieces of the surface but that with the most triangles.
+void leaveLargestPiece(std::size_t vertices, OpenMesh& mesh) {
+  const Triangles surface = surfaceOf(mesh);
+  UnionFind pieces = piecesOf(surface, vertices);
+  const Index largest = largestPiece(surface, vertices, pieces);
+  for (Index t = 0; t < mesh.is_open.count(); ++t)
+    if (pieces.find(mesh.triangles(0, t)) != largest)
+      mesh.is_open[t] = 1;
+}
+
+}  // namespace
+
+std::optional<Removal> clearIntersections(const Positions& points,
+                                          const IntersectingTriangles& pairs, const Removal& most,
                                           OpenMesh& mesh) {
-  Remover remover(points, mesh);
+  std::vector<Index> triangles;
+  for (const auto& pair : pairs)
+    triangles.insert(triangles.end(), pair.begin(), pair.end());
+  sortUnique(triangles);
+  if (triangles.size() > most.triangles + kMostOfVertex * most.vertices)
+    return std::nullopt;
+  Remover remover(points, mesh, std::move(triangles));
   if (!remover.run(most))
     return std::nullopt;
   mesh = remover.mesh();
   return remover.removal();
+}
+
+std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
+                            OpenMesh& mesh) {
+  const auto open = [&] {
+    return std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{1});
+  };
+  const auto before = open();
+  leaveOutIntersecting(pairs, mesh);
+  leaveOneFan(vertices, mesh);
+  leaveLargestPiece(vertices, mesh);
+  return static_cast<std::size_t>(open() - before);
 }
 
 }  // namespace spherical_param::internal

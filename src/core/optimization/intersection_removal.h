@@ -3,10 +3,14 @@
 #include "open_mesh.h"
 #include "spherical_param/types.h"
 
+#include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace spherical_param::internal {
+
+using IntersectingTriangles = std::vector<std::array<Index, 2>>;
 
 /// How much of a mesh is taken out.
 struct Removal {
@@ -24,19 +28,22 @@ struct Removal {
 /// 4. a vertex is taken out even if as many intersections are left.
 ///
 /// \param points 3 x n.
+/// \param pairs  all that intersect, of the triangles of `mesh`.
 /// \param most   that may be taken out.
 /// \param mesh   changed only if no triangles intersect afterwards.
 /// \return what was taken out; nothing if triangles still intersect.
-std::optional<Removal> clearIntersections(const Positions& points, const Removal& most,
+std::optional<Removal> clearIntersections(const Positions& points,
+                                          const IntersectingTriangles& pairs, const Removal& most,
                                           OpenMesh& mesh);
 
 /// Leaves out all triangles that intersect, those with the most intersections first; then the
 /// smaller fans at a vertex that has several, and all pieces but the largest. Vertices may be left
 /// without triangles.
 ///
-/// \param points 3 x n.
+/// \param pairs  all that intersect, of the triangles of `mesh`.
 /// \param mesh   with at least one triangle that intersects none.
 /// \return the number of triangles that were left out.
-Removal leaveOutTangles(const Positions& points, OpenMesh& mesh);
+std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
+                            OpenMesh& mesh);
 
 }  // namespace spherical_param::internal

@@ -340,13 +340,16 @@ OpenMesh openMesh(const Positions& points, const Triangles& triangles, const Ope
   return Opener(points, triangles, openings).run();
 }
 
-Triangles surfaceOf(const OpenMesh& mesh) {
-  Triangles surface(3, std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{0}));
-  Eigen::Index next = 0;
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+std::vector<Index> trianglesOfSurface(const OpenMesh& mesh) {
+  std::vector<Index> surface;
+  for (Index t = 0; t < mesh.is_open.count(); ++t)
     if (mesh.is_open[t] == 0)
-      surface.col(next++) = mesh.triangles.col(t);
+      surface.push_back(t);
   return surface;
+}
+
+Triangles surfaceOf(const OpenMesh& mesh) {
+  return mesh.triangles(Eigen::all, trianglesOfSurface(mesh));
 }
 
 }  // namespace spherical_param::internal

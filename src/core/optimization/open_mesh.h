@@ -35,7 +35,10 @@ struct OpenMesh {
 /// \param openings  of the surface.
 OpenMesh openMesh(const Positions& points, const Triangles& triangles, const OpenPlaces& openings);
 
-/// The triangles of an open mesh that are on the surface, in their order.
+/// The triangles of an open mesh that are on the surface, ascending.
+std::vector<Index> trianglesOfSurface(const OpenMesh& mesh);
+
+/// Their corners.
 Triangles surfaceOf(const OpenMesh& mesh);
 
 }  // namespace spherical_param::internal

@@ -163,18 +163,13 @@ Triangles withoutPinches(Triangles triangles, std::size_t vertices) {
     const CornerTable corners(triangles, vertices, 1);
     Indexed<char> drops(columnCount(triangles), 0);
     bool has_pinch = false;
-    for (Index v = 0; v < static_cast<Index>(vertices); ++v) {
-      const std::vector<std::vector<Index>> fans = fansAt(triangles, corners, v);
-      if (fans.size() < 2)
-        continue;
-      has_pinch = true;
-      const auto largest =
-          std::max_element(fans.begin(), fans.end(),
-                           [](const auto& a, const auto& b) { return a.size() < b.size(); });
-      for (auto fan = fans.begin(); fan != fans.end(); ++fan)
-        for (const Index t : *fan)
-          drops[t] = drops[t] != 0 || fan != largest ? 1 : 0;
-    }
+    for (Index v = 0; v < static_cast<Index>(vertices); ++v)
+      if (corners.countAt(v) > 0)
+        for (const std::vector<Index>& fan : withoutLargest(fansAt(triangles, corners, v)))
+          for (const Index t : fan) {
+            drops[t] = 1;
+            has_pinch = true;
+          }
     if (!has_pinch)
       return triangles;
     triangles = filtered(triangles, [&](Eigen::Index t) { return drops[t] == 0; });
@@ -272,11 +267,7 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
       triangles.push_back({tube.rims[i], tube.rims[j + 3], tube.rims[i + 3]});
     }
   }
-  Indexed<Index> sizes(graph.size(), 0);
-  for (const auto& t : spheres.colwise())
-    ++sizes[pieces.find(t[0])];
-  const auto largest =
-      static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  const Index largest = largestPiece(spheres, graph.size(), pieces);
   for (Eigen::Index t = 0; t < spheres.cols(); ++t)
     if (is_taken[t] == 0)
       triangles.push_back({spheres(0, t), spheres(1, t), spheres(2, t)});
