@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -39,6 +38,7 @@ struct FillPatch {
   Index opening = 0;
   std::vector<Index> at;          // its triangles in the mesh
   Indexed<Index> given;           // in the mesh: the vertices of the patch, then those around it
+  std::map<Index, Index> number;  // of each given one
   Index own = 0;                  // number of those of the patch
   std::vector<Corners> ring;      // triangles around it
   Indexed<Corners> triangles;     // of the patch
@@ -51,33 +51,24 @@ struct FillPatch {
 
   Index added() const { return flat.count() - given.count(); }
 
+  /// Changes a triangle, or adds the next one.
   void put(Index t, const Corners& corners) {
+    triangles.resize(std::max(triangles.size(), static_cast<std::size_t>(t) + 1));
     triangles[t] = corners;
     for (std::size_t k = 0; k < 3; ++k)
       left_of[{corners[k], corners[(k + 1) % 3]}] = t;
   }
-
-  Eigen::Vector3d place(Index v) const { return bend == Membrane ? membrane[v] : plate[v]; }
 };
 
-/// Whether the triangles of a patch form a disc with a simple boundary.
+/// Whether the connected triangles of a patch form a disc: no vertex is twice on its boundary, and
+/// its Euler characteristic is 1.
 bool isDisc(const FillPatch& patch) {
-  std::map<Index, Index> next;
+  std::set<Index> boundary;
   for (const auto& [edge, t] : patch.left_of)
-    if (patch.left_of.count({edge.second, edge.first}) == 0 && !next.insert(edge).second)
+    if (patch.left_of.count({edge.second, edge.first}) == 0 && !boundary.insert(edge.first).second)
       return false;
-  if (next.empty())
-    return false;
-  std::size_t steps = 0;
-  Index v = next.begin()->first;
-  do {
-    const auto found = next.find(v);
-    if (found == next.end() || ++steps > next.size())
-      return false;
-    v = found->second;
-  } while (v != next.begin()->first);
-  const std::size_t edges = (patch.left_of.size() + next.size()) / 2;
-  return steps == next.size() &&
+  const std::size_t edges = (patch.left_of.size() + boundary.size()) / 2;
+  return !boundary.empty() &&
          static_cast<std::size_t>(patch.own) + patch.triangles.size() == edges + 1;
 }
 
@@ -114,11 +105,10 @@ void relax(FillPatch& patch, Edges& taken) {
         const Index other = found->second;
         const Corners& across = patch.triangles[other];
         const Index d = std::accumulate(across.begin(), across.end(), Index{0}) - a - b;
+        const bool is_given = std::max(c, d) < patch.own;
         if (!shouldFlip(patch.plate, a, b, c, d) || patch.left_of.count({c, d}) > 0 ||
-            patch.left_of.count({d, c}) > 0)
-          continue;
-        if (std::max(c, d) < patch.own &&
-            !taken.insert(undirected(patch.given[c], patch.given[d])).second)
+            patch.left_of.count({d, c}) > 0 ||
+            (is_given && !taken.insert(undirected(patch.given[c], patch.given[d])).second))
           continue;
         patch.left_of.erase({a, b});
         patch.left_of.erase({b, a});
@@ -152,20 +142,10 @@ bool split(FillPatch& patch, Index max_added) {
     patch.flat.push_back(flat);
     patch.spacing.push_back(spacing);
     patch.put(t, {corners[0], corners[1], v});
-    for (std::size_t k = 1; k < 3; ++k) {
-      patch.triangles.push_back({});
-      patch.put(patch.triangles.count() - 1, {corners[k], corners[(k + 1) % 3], v});
-    }
+    for (std::size_t k = 1; k < 3; ++k)
+      patch.put(patch.triangles.count(), {corners[k], corners[(k + 1) % 3], v});
   }
   return patch.triangles.count() > count;
-}
-
-/// \param poll throws if the work is cancelled.
-void refine(FillPatch& patch, Index max_added, Edges& taken, const std::function<void()>& poll) {
-  do {
-    poll();
-    relax(patch, taken);
-  } while (split(patch, max_added));
 }
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -207,9 +187,11 @@ Sparse laplacianOf(const FillPatch& patch, const Places& x, bool is_plate) {
 /// Moves the added vertices to the least thin-plate energy, with the slope of the surface around,
 /// or to that of a membrane.
 void fair(const FillPatch& patch, bool is_plate, Places& x) {
-  const Sparse laplacian = laplacianOf(patch, x, is_plate);
   const Index given = patch.given.count();
   const Index added = patch.added();
+  if (added == 0)
+    return;
+  const Sparse laplacian = laplacianOf(patch, x, is_plate);
   const Sparse to_added = laplacian.rightCols(added);
   Eigen::MatrixXd fixed(given, 3);
   for (Index v = 0; v < given; ++v)
@@ -240,61 +222,28 @@ public:
       for (const Index t : openings[i])
         opening_of_[t] = static_cast<Index>(i);
     measureSpacing();
-    Indexed<Index> opening_left = opening_of_;
     for (const std::vector<Index>& opening : openings)
       for (const Index first : opening)
-        if (opening_left[first] >= 0)
-          addPatch(first, opening_left);
-    Indexed<char> is_own(columnCount(points), 0);
-    for (const FillPatch& patch : patches_)
-      for (Index v = 0; v < patch.own; ++v)
-        is_own[patch.given[v]] = 1;
-    for (const auto& triangle : triangles.colwise())
-      for (Index k = 0; k < 3; ++k)
-        if (is_own[triangle[k]] != 0 && is_own[triangle[nextCorner(k)]] != 0)
-          taken_.insert(undirected(triangle[k], triangle[nextCorner(k)]));
+        if (opening_of_[first] >= 0)
+          addPatch(first);
   }
 
-  /// Refines and fairs all patches; leaves out those that need no vertices.
-  void run(const FractionReport& report) {
-    double done = 0.0;
-    const auto poll = [&] { reportFraction(report, done); };
-    // Wide openings between sparse points take no more vertices than the cloud has.
-    Index left = static_cast<Index>(points_.cols()) + 1000;
-    for (FillPatch& patch : patches_) {
-      for (int round = 0; round < 5; ++round) {  // the bent patch is larger, and bends on
-        if (round < 3)
-          refine(patch, left, taken_, poll);
-        poll();
-        if (patch.added() > 0)
-          fair(patch, true, patch.plate);
-      }
-      patch.membrane = patch.flat;
-      if (patch.added() > 0)
-        fair(patch, false, patch.membrane);
-      left -= patch.added();
-      done += 1.0 / static_cast<double>(patches_.size());
-    }
-    patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
-                                  [](const FillPatch& patch) { return patch.added() == 0; }),
-                   patches_.end());
-  }
-
-  std::vector<FillPatch>& patches() { return patches_; }
-  SmoothFill assembled() const;
+  void bend(const FractionReport& report);
+  SmoothFill withoutIntersections(const Execution& execution);
 
 private:
   void measureSpacing();
-  void addPatch(Index first, Indexed<Index>& opening_left);
-  void addRing(FillPatch& patch, std::map<Index, Index>& number) const;
+  void addPatch(Index first);
+  Corners cornersIn(FillPatch& patch, Index t) const;
+  SmoothFill assembled(Indexed<Index>& patch_of) const;
 
   const Positions& points_;
   const Triangles& triangles_;
   CornerTable corners_;
-  Indexed<Index> opening_of_;  // of each triangle; -1: none
+  Indexed<Index> opening_of_;  // of each triangle; -1: none, or it has been seen
   Indexed<double> spacing_;    // of each vertex
-  std::vector<FillPatch> patches_;
-  Edges taken_;
+  Indexed<FillPatch> patches_;
+  Edges taken_;  // of the mesh, at the vertices of patches
 };
 
 /// The mean length of the edges at a vertex that are not over openings; elsewhere the mean of all.
@@ -318,35 +267,49 @@ void SmoothFiller::measureSpacing() {
     spacing_[v] = count[v] > 0.0 ? spacing_[v] / count[v] : sum / std::max(all, 1.0);
 }
 
+/// The corners of a triangle of the mesh in a patch, which gets those that it lacks.
+Corners SmoothFiller::cornersIn(FillPatch& patch, Index t) const {
+  Corners corners{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Index v = triangles_(static_cast<Index>(k), t);
+    const auto [place, is_new] = patch.number.emplace(v, patch.given.count());
+    if (is_new)
+      patch.given.push_back(v);
+    corners[k] = place->second;
+  }
+  return corners;
+}
+
 /// Adds the connected triangles over an opening from one on, if they form a disc.
-void SmoothFiller::addPatch(Index first, Indexed<Index>& opening_left) {
+void SmoothFiller::addPatch(Index first) {
   FillPatch patch;
-  patch.opening = std::exchange(opening_left[first], -1);
+  patch.opening = std::exchange(opening_of_[first], -1);
   patch.at = {first};
-  std::map<Index, Index> number;
   for (std::size_t i = 0; i < patch.at.size(); ++i) {
-    Corners corners{};
+    patch.put(static_cast<Index>(i), cornersIn(patch, patch.at[i]));
     for (Index k = 0; k < 3; ++k) {
       const Index v = triangles_(k, patch.at[i]);
-      const auto [place, is_new] = number.emplace(v, patch.given.count());
-      if (is_new)
-        patch.given.push_back(v);
-      corners[static_cast<std::size_t>(k)] = place->second;
       const Index next = triangles_(nextCorner(k), patch.at[i]);
       corners_.forEachCorner(next, [&](Index t, Index at) {
-        if (opening_left[t] == patch.opening && triangles_(nextCorner(at), t) == v) {
-          opening_left[t] = -1;
+        if (opening_of_[t] == patch.opening && triangles_(nextCorner(at), t) == v) {
+          opening_of_[t] = -1;
           patch.at.push_back(t);
         }
       });
     }
-    patch.triangles.push_back({});
-    patch.put(static_cast<Index>(i), corners);
   }
   patch.own = patch.given.count();
   if (!isDisc(patch))
     return;
-  addRing(patch, number);
+  std::set<Index> seen(patch.at.begin(), patch.at.end());
+  for (Index own = 0; own < patch.own; ++own)
+    corners_.forEachCorner(patch.given[own], [&](Index t, Index) {
+      if (seen.insert(t).second)
+        patch.ring.push_back(cornersIn(patch, t));
+    });
+  for (const Index t : seen)
+    for (Index k = 0; k < 3; ++k)
+      taken_.insert(undirected(triangles_(k, t), triangles_(nextCorner(k), t)));
   for (const Index v : patch.given) {
     patch.flat.push_back(points_.col(v));
     patch.spacing.push_back(spacing_[v]);
@@ -355,47 +318,61 @@ void SmoothFiller::addPatch(Index first, Indexed<Index>& opening_left) {
   patches_.push_back(std::move(patch));
 }
 
-void SmoothFiller::addRing(FillPatch& patch, std::map<Index, Index>& number) const {
-  std::set<Index> seen(patch.at.begin(), patch.at.end());
-  for (Index own = 0; own < patch.own; ++own)
-    corners_.forEachCorner(patch.given[own], [&](Index t, Index) {
-      if (!seen.insert(t).second)
-        return;
-      Corners corners{};
-      for (Index k = 0; k < 3; ++k) {
-        const auto [place, is_new] = number.emplace(triangles_(k, t), patch.given.count());
-        if (is_new)
-          patch.given.push_back(triangles_(k, t));
-        corners[static_cast<std::size_t>(k)] = place->second;
+/// Refines and fairs all patches; leaves out those that need no vertices.
+void SmoothFiller::bend(const FractionReport& report) {
+  double done = 0.0;
+  // Wide openings between sparse points take no more vertices than the cloud has.
+  Index left = static_cast<Index>(points_.cols()) + 1000;
+  for (FillPatch& patch : patches_) {
+    for (int round = 0; round < 5; ++round) {  // the bent patch is larger, and bends on
+      for (bool is_coarse = round < 3; is_coarse; is_coarse = split(patch, left)) {
+        reportFraction(report, done);
+        relax(patch, taken_);
       }
-      patch.ring.push_back(corners);
-    });
+      reportFraction(report, done);
+      fair(patch, true, patch.plate);
+    }
+    patch.membrane = patch.flat;
+    fair(patch, false, patch.membrane);
+    left -= patch.added();
+    done += 1.0 / static_cast<double>(patches_.size());
+  }
+  patches_.erase(std::remove_if(patches_.begin(), patches_.end(),
+                                [](const FillPatch& patch) { return patch.added() == 0; }),
+                 patches_.end());
 }
 
-/// The mesh with the patches as they bend now.
-SmoothFill SmoothFiller::assembled() const {
+/// The mesh with the patches as they bend now. \param patch_of of each triangle; -1: none
+SmoothFill SmoothFiller::assembled(Indexed<Index>& patch_of) const {
+  using Triangle = Eigen::Matrix<Index, 3, 1>;
   SmoothFill fill;
   std::vector<Eigen::Vector3d> added;
-  std::vector<Corners> more;
+  std::vector<Triangle> more;
+  fill.points = points_;
   fill.triangles = triangles_;
-  for (const FillPatch& patch : patches_) {
+  patch_of.assign(columnCount(triangles_), -1);
+  for (Index i = 0; i < patches_.count(); ++i) {
+    const FillPatch& patch = patches_[i];
+    for (const Index t : patch.at)
+      patch_of[t] = i;
     if (patch.bend == AsGiven)
       continue;
     const Index first = static_cast<Index>(points_.cols()) + static_cast<Index>(added.size());
-    for (Index t = 0; t < patch.triangles.count(); ++t) {
-      Corners corners = patch.triangles[t];
-      for (Index& v : corners)
+    for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+      Triangle triangle(patch.triangles[t].data());
+      for (Index& v : triangle)
         v = v < patch.given.count() ? patch.given[v] : first + v - patch.given.count();
-      if (static_cast<std::size_t>(t) < patch.at.size()) {
-        fill.triangles.col(patch.at[static_cast<std::size_t>(t)]) << corners[0], corners[1],
-            corners[2];
+      if (t < patch.at.size()) {
+        fill.triangles.col(patch.at[t]) = triangle;
       } else {
-        more.push_back(corners);
+        more.push_back(triangle);
         fill.opening_of.push_back(patch.opening);
+        patch_of.push_back(i);
       }
     }
-    for (Index v = patch.given.count(); v < patch.flat.count(); ++v) {
-      added.push_back(patch.place(v));
+    const Places& places = patch.bend == Membrane ? patch.membrane : patch.plate;
+    for (Index v = patch.given.count(); v < places.count(); ++v) {
+      added.push_back(places[v]);
       const auto distance = [&](Index other) {
         return (points_.col(other) - added.back()).squaredNorm();
       };
@@ -406,40 +383,25 @@ SmoothFill SmoothFiller::assembled() const {
     if (fill.filled.empty() || fill.filled.back() != patch.opening)
       fill.filled.push_back(patch.opening);
   }
-  fill.points = points_;
-  fill.points.conservativeResize(3, points_.cols() + static_cast<Eigen::Index>(added.size()));
-  for (std::size_t i = 0; i < added.size(); ++i)
-    fill.points.col(points_.cols() + static_cast<Eigen::Index>(i)) = added[i];
-  const Eigen::Index m = triangles_.cols();
-  fill.triangles.conservativeResize(3, m + static_cast<Eigen::Index>(more.size()));
-  for (std::size_t i = 0; i < more.size(); ++i)
-    fill.triangles.col(m + static_cast<Eigen::Index>(i)) << more[i][0], more[i][1], more[i][2];
+  const auto append = [](const auto& columns, auto& matrix) {
+    const Eigen::Index before = matrix.cols();
+    matrix.conservativeResize(3, before + static_cast<Eigen::Index>(columns.size()));
+    std::copy(columns.begin(), columns.end(), matrix.colwise().begin() + before);
+  };
+  append(added, fill.points);
+  append(more, fill.triangles);
   return fill;
 }
 
-}  // namespace
-
-SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
-                        const std::vector<std::vector<Index>>& openings,
-                        const Execution& execution) {
-  const auto given = findSelfIntersections(points, triangles, execution);
-  SmoothFiller filler(points, triangles, openings, execution.threads);
-  filler.run(reportOf(execution, "filling"));
-  std::vector<FillPatch>& patches = filler.patches();
+/// The mesh with patches that bend as far as they do not intersect more than the given ones.
+SmoothFill SmoothFiller::withoutIntersections(const Execution& execution) {
+  const auto given = findSelfIntersections(points_, triangles_, execution);
   for (;;) {
-    SmoothFill fill = filler.assembled();
+    Indexed<Index> patch_of;
+    SmoothFill fill = assembled(patch_of);
     fill.self_intersections = findSelfIntersections(fill.points, fill.triangles, execution);
-    // For each patch, the pairs now, and those before.
-    Indexed<Index> patch_of(columnCount(fill.triangles), -1);
-    Index next = static_cast<Index>(triangles.cols());
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      for (const Index t : patches[i].at)
-        patch_of[t] = static_cast<Index>(i);
-      for (std::size_t t = patches[i].at.size();
-           patches[i].bend != AsGiven && t < patches[i].triangles.size(); ++t)
-        patch_of[next++] = static_cast<Index>(i);
-    }
-    Indexed<Index> more(patches.size(), 0);
+    // For each patch, the pairs now without those before.
+    Indexed<Index> more(patches_.size(), 0);
     const auto count = [&](const auto& pairs, Index by) {
       for (const auto& pair : pairs)
         for (const Index t : pair)
@@ -449,19 +411,26 @@ SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
     count(fill.self_intersections, 1);
     count(given, -1);
     bool has_changed = false;
-    const bool has_more = fill.self_intersections.size() > given.size();
-    for (const Index i : indicesOf(more)) {
-      FillPatch& patch = patches[static_cast<std::size_t>(i)];
-      if (more[i] <= 0 || patch.bend == AsGiven)
-        continue;
-      patch.bend = static_cast<Bend>(patch.bend + 1);
-      has_changed = true;
-    }
-    if (!has_changed && !has_more)
+    for (const Index i : indicesOf(more))
+      if (more[i] > 0 && patches_[i].bend != AsGiven) {
+        patches_[i].bend = static_cast<Bend>(patches_[i].bend + 1);
+        has_changed = true;
+      }
+    if (!has_changed && fill.self_intersections.size() <= given.size())
       return fill;
-    for (FillPatch& patch : patches)
+    for (FillPatch& patch : patches_)
       patch.bend = has_changed ? patch.bend : AsGiven;
   }
+}
+
+}  // namespace
+
+SmoothFill fillSmoothly(const Positions& points, const Triangles& triangles,
+                        const std::vector<std::vector<Index>>& openings,
+                        const Execution& execution) {
+  SmoothFiller filler(points, triangles, openings, execution.threads);
+  filler.bend(reportOf(execution, "filling"));
+  return filler.withoutIntersections(execution);
 }
 
 void fillSmoothly(const Positions& cloud, const Options& options, const Execution& execution,

@@ -6,6 +6,8 @@
 #include "spherical_param/errors.h"
 #include "spherical_param/self_intersection.h"
 
+#include <numeric>
+
 namespace spherical_param {
 namespace {
 
@@ -119,6 +121,21 @@ TEST(SmoothFill, IntersectsNoMoreThanTheFlatOneAndLeavesOtherOpenings) {
   EXPECT_GT(free.points.row(2).maxCoeff(), 0.1);
   const auto none = internal::fillSmoothly(below, plate.triangles.leftCols(198), {{}}, {});
   EXPECT_EQ(none.triangles, plate.triangles.leftCols(198));
+}
+
+TEST(SmoothFill, WhatIsNoDiscStays) {
+  // The outer ring is over an opening, and wide.
+  Plate plate;
+  plate.points.rightCols(40) *= 3.0;
+  std::vector<Index> ring(80);
+  std::iota(ring.begin(), ring.end(), Index{80});
+  const auto fill = internal::fillSmoothly(plate.points, plate.triangles, {ring}, {});
+  EXPECT_EQ(fill.points, plate.points);
+  EXPECT_EQ(fill.triangles, plate.triangles);
+  // Without two triangles it is a disc.
+  ring.resize(78);
+  const auto disc = internal::fillSmoothly(plate.points, plate.triangles, {ring}, {});
+  EXPECT_GT(disc.points.cols(), 120);
 }
 
 TEST(SmoothFill, CanBeCancelled) {
