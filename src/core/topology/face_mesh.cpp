@@ -118,30 +118,24 @@ TriangleList trianglesOf(const Positions& points, const RotationSystem& rotation
 /// The triangles around a vertex that follow each other, in fans.
 std::vector<std::vector<Index>> fansAt(const Triangles& triangles, const CornerTable& corners,
                                        Index v) {
-  std::vector<std::array<Index, 3>> sides;  // first, last neighbour, triangle
+  using Wedge = std::array<Index, 3>;  // first neighbour, last one, triangle
+  std::vector<Wedge> left;
   corners.forEachCorner(v, [&](Index t, Index k) {
-    sides.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
+    left.push_back({triangles(nextCorner(k), t), triangles(previousCorner(k), t), t});
   });
   std::vector<std::vector<Index>> fans;
-  std::vector<char> is_seen(sides.size(), 0);
-  const auto find = [&](int end, Index w) {
-    for (std::size_t i = 0; i < sides.size(); ++i)
-      if (is_seen[i] == 0 && sides[i][static_cast<std::size_t>(end)] == w)
-        return i;
-    return sides.size();
-  };
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (is_seen[i] != 0)
-      continue;
-    is_seen[i] = 1;
-    std::vector<Index>& fan = fans.emplace_back(1, sides[i][2]);
-    for (std::size_t j = find(0, sides[i][1]); j < sides.size(); j = find(0, sides[j][1])) {
-      is_seen[j] = 1;
-      fan.push_back(sides[j][2]);
-    }
-    for (std::size_t j = find(1, sides[i][0]); j < sides.size(); j = find(1, sides[j][0])) {
-      is_seen[j] = 1;
-      fan.push_back(sides[j][2]);
+  while (!left.empty()) {
+    std::vector<Wedge> fan{left.front()};
+    left.erase(left.begin());
+    fans.emplace_back();
+    for (std::size_t i = 0; i < fan.size(); ++i) {
+      const Wedge at = fan[i];
+      fans.back().push_back(at[2]);
+      const auto next = std::stable_partition(left.begin(), left.end(), [&](const Wedge& other) {
+        return other[0] != at[1] && other[1] != at[0];
+      });
+      fan.insert(fan.end(), next, left.end());
+      left.erase(next, left.end());
     }
   }
   return fans;
