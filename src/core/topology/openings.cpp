@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -26,6 +27,25 @@ namespace {
 constexpr std::size_t kMinSteps = 7;
 constexpr double kMinWidth = 3.0;
 constexpr double kMinCorner = 0.65 * kPi;
+
+/// The least area of triangles over a loop (Barequet and Sharir 1995); of a long loop, over vertices
+/// at equal steps of it.
+double leastArea(const Positions& points, const std::vector<Index>& loop) {
+  constexpr std::size_t max_corners = 96;
+  const std::size_t n = std::min(loop.size(), max_corners);
+  const auto corner = [&](std::size_t i) { return points.col(loop[i * loop.size() / n]); };
+  Eigen::MatrixXd least = Eigen::MatrixXd::Zero(n, n);  // over the corners from one to another
+  for (std::size_t steps = 2; steps < n; ++steps)
+    for (std::size_t i = 0; i + steps < n; ++i) {
+      const std::size_t j = i + steps;
+      least(i, j) = std::numeric_limits<double>::max();
+      const Eigen::Vector3d edge = corner(j) - corner(i);
+      for (std::size_t k = i + 1; k < j; ++k)
+        least(i, j) = std::min(least(i, j), least(i, k) + least(k, j) +
+                                                edge.cross(corner(k) - corner(i)).norm() / 2.0);
+    }
+  return least(0, n - 1);
+}
 
 }  // namespace
 
@@ -47,7 +67,8 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
     area += p.cross(q) / 2.0;
     moments += p * p.transpose() / m;
   }
-  opening.area = area.norm();
+  // The vector area of a loop that curls is small, the opening is not.
+  opening.area = std::max(area.norm(), leastArea(points, opening.loop));
   opening.width =
       std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
