@@ -48,7 +48,7 @@ struct Opening {
   /// Vertices around it, in order; a vertex that the face passes twice is listed twice.
   std::vector<Index> loop;
   double boundary_length = 0.0;  ///< of the loop [unit of the input]
-  double area = 0.0;             ///< length of the vector area of the loop [unit squared]
+  double area = 0.0;             ///< least area of triangles over the loop [unit squared]
   double spacing = 0.0;          ///< mean point spacing at the loop [unit of the input]
   /// min(4 area / boundary_length, boundary_length / pi), the diameter of a disc [unit of the
   /// input].
@@ -306,6 +306,9 @@ struct Surface {
   /// Triangles that were left out because they would intersect others: each leaves an opening, or
   /// widens one.
   std::size_t left_out_triangles = 0;
+  /// The sphere is a tangle: the mesh has the triangles only of which the graph is certain, and
+  /// `sphere` is empty.
+  bool has_certain_triangles_only = false;
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< remarks and remedies; empty if all is well
 

@@ -170,7 +170,7 @@ void visitFields(const Opening*, const Visit& visit) {
   visit({"center", "mean of the loop", 1}, &Of::center);
   visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
   visit({"spacing", "mean point spacing at the loop", 1}, &Of::spacing);
-  visit({"area", "length of the vector area of the loop", 2}, &Of::area);
+  visit({"area", "least area of triangles over the loop", 2}, &Of::area);
   visit({"boundary_length", "of the loop", 1}, &Of::boundary_length);
   visit({"loop", "vertices around it, in order; may list a vertex twice", 0, FieldKind::Loops},
         &Of::loop);
@@ -351,6 +351,9 @@ void visitFields(const Surface*, const Visit& visit) {
         &Of::intersections_are_sampled);
   visit({"left_out_triangles", "triangles that were left out because they would intersect others"},
         &Of::left_out_triangles);
+  visit({"has_certain_triangles_only",
+         "the sphere is a tangle, so the graph's triangles are the mesh"},
+        &Of::has_certain_triangles_only);
   visit({"self_intersections",
          "pairs of triangles that intersect (exact), ascending: all, or a sample", 0,
          FieldKind::TriangleList},

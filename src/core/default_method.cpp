@@ -91,16 +91,16 @@ public:
   void untangle(Candidate& best) {
     // So many intersections cost more than handles that are cut.
     constexpr std::size_t unusable_of = 100;
-    if (!isTangle(best) || clock_.remaining() == 0.0)
+    if (!isTangle(best) || !clock_.hasTimeAgain())
       return;
     clock_.begin("openings");
-    std::optional<Triangles> of_faces =
+    const std::optional<FaceMesh> faces =
         meshFaces(points_, graph_, best.handles.size(), clock_.execution());
-    if (!of_faces)
+    if (!faces)
       return;
     Candidate other;
     other.embedding = best.embedding;
-    other.triangles = std::move(*of_faces);
+    other.triangles = withAllNodes(points_, graph_, faces->triangles);
     if (other.triangles.cols() == best.triangles.cols())
       other.handles = best.handles;
     else if (!isTangle(best, unusable_of))
@@ -255,7 +255,7 @@ MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceT
     mesher.untangle(best);
   if (mesher.hasFailed())
     best.found = topology.handles;
-  if (may_open && isTangle(best)) {
+  if (may_open && isTangle(best) && clock.hasTimeAgain()) {
     // Over a possible opening the surface may be wrong.
     Options open = options;
     open.surface = SurfaceMode::Open;

@@ -223,6 +223,9 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result) {
     findings.push_back({counted(result.left_out_triangles, "triangle") +
                             " that would intersect others, left out: small openings",
                         "", "", hasTangle(result)});
+  if (result.has_certain_triangles_only)
+    findings.push_back(
+        {"only triangles that are certain: a mesh of all points is a tangle", "", "", true});
   if (result.intersecting_triangles > 0)
     findings.push_back({"self-intersections", "", "", true});
   const bool has_option = std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
@@ -259,7 +262,9 @@ std::string verdictOf(const Options& options, const Surface& result) {
     doubts.emplace_back("may cut a handle");
   if (isFolded(options, result))
     doubts.emplace_back("is folded");
-  if (hasTangle(result))
+  if (result.has_certain_triangles_only)
+    doubts.emplace_back("has only the triangles that are certain");
+  else if (hasTangle(result))
     doubts.emplace_back("leaves out " + counted(result.left_out_triangles, "triangle") +
                         " that would intersect");
   for (std::size_t i = 0; i < doubts.size(); ++i)

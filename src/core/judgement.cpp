@@ -71,6 +71,7 @@ Surface judge(const Positions& points, MeshedCloud mesh, Triangles triangles, bo
   result.is_noisy = mesh.optimization.report.is_noisy && !areOnGrid(points);
   const bool is_poor = mesh.optimization.report.is_noisy || result.intersecting_triangles > 0;
   result.diagnosis.fills_volume = is_poor && fillVolume(points);
+  result.has_certain_triangles_only = mesh.has_certain_triangles_only;
   result.is_out_of_time = mesh.optimization.report.is_out_of_time;
   return result;
 }

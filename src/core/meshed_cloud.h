@@ -16,7 +16,8 @@ struct MeshedCloud {
   std::vector<HandleLoop> handles;  ///< that were found
   Embedding embedding;              ///< without directions if the mesh has handles
   MeshOptimization optimization;
-  SmoothedMesh smoothed;  ///< empty without smoothing
+  bool has_certain_triangles_only = false;  ///< see Surface
+  SmoothedMesh smoothed;                    ///< empty without smoothing
 
   bool isSmoothed() const { return smoothed.points.cols() > 0; }
   Triangles& triangles() { return isSmoothed() ? smoothed.triangles : optimization.triangles; }

@@ -4,6 +4,7 @@
 #include "consolidation.h"
 #include "default_method.h"
 #include "embedding_history.h"
+#include "face_mesh.h"
 #include "findings.h"
 #include "intersection_removal.h"
 #include "judgement.h"
@@ -142,24 +143,64 @@ internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
   return closed;
 }
 
-/// Pairs of triangles of a mesh that intersect: all, or some if there are any.
-internal::IntersectingTriangles intersectionsOf(const Positions& positions, const MeshedCloud& mesh,
-                                                bool is_open, bool all,
-                                                const internal::OpenMesh& open,
-                                                const Execution& execution) {
-  // The optimisation has left those of a closed mesh on its points.
-  const internal::IntersectingPairs& left = mesh.optimization.intersecting;
-  if (!is_open && !mesh.isSmoothed() && !(all && left.is_sample))
-    return left.pairs;
-  const Triangles surface = surfaceOf(open);
-  internal::IntersectingTriangles pairs =
-      all ? findSelfIntersections(positions, surface, execution)
-          : internal::findPairsUpTo(1, positions, surface, execution).pairs;
+/// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
+internal::IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions,
+                                      const internal::OpenMesh& open, const Execution& execution) {
+  internal::IntersectingPairs found =
+      internal::findPairsUpTo(most, positions, surfaceOf(open), execution);
   const std::vector<Index> triangles = trianglesOfSurface(open);
-  for (auto& pair : pairs)
+  for (auto& pair : found.pairs)
     for (Index& t : pair)
       t = triangles[static_cast<std::size_t>(t)];
-  return pairs;
+  return found;
+}
+
+std::size_t surfaceCount(const internal::OpenMesh& open) {
+  return static_cast<std::size_t>(
+      std::count(open.is_open.begin(), open.is_open.end(), std::uint8_t{0}));
+}
+
+/// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
+/// them. Returns how many intersect.
+std::optional<std::size_t> leaveOutUpTo(std::size_t most,
+                                        const internal::IntersectingTriangles& pairs,
+                                        std::size_t min_piece, const Positions& points,
+                                        internal::OpenMesh& open) {
+  internal::OpenMesh rest = open;
+  const std::size_t left_out =
+      leaveOutTangles(internal::columnCount(points), pairs, min_piece, rest);
+  if (surfaceCount(rest) + most < surfaceCount(open))
+    return std::nullopt;
+  open = std::move(rest);
+  return left_out;
+}
+
+/// Makes the faces of the graph the mesh, without those that intersect. Returns how many do;
+/// nothing, and the mesh as it was, if too few points are left.
+std::optional<std::size_t> takeFaces(const Positions& points, std::size_t min_piece,
+                                     const Execution& execution, MeshedCloud& mesh,
+                                     internal::OpenMesh& open) {
+  constexpr double min_vertices = 1.0 / 3.0;
+  std::optional<internal::FaceMesh> faces =
+      internal::meshFaces(points, mesh.graph.graph, 0, execution);
+  if (!faces)
+    return std::nullopt;
+  internal::OpenMesh certain{std::move(faces->triangles), std::move(faces->is_filling)};
+  const auto all = pairsUpTo(surfaceCount(certain), points, certain, execution);
+  const std::size_t left_out =
+      leaveOutTangles(internal::columnCount(points), all.pairs, min_piece, certain);
+  const Triangles surface = surfaceOf(certain);
+  std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
+  internal::sortUnique(vertices);
+  if (static_cast<double>(vertices.size()) < min_vertices * static_cast<double>(points.cols()))
+    return std::nullopt;
+  open = std::move(certain);
+  mesh.has_certain_triangles_only = true;
+  mesh.embedding.directions.resize(3, 0);
+  mesh.embedding.history = {};
+  for (HandleLoop& handle : mesh.handles)
+    handle.is_cut = true;
+  return left_out;
 }
 
 /// Removes the intersections of a mesh, if the options say so. Returns the number of triangles that
@@ -171,32 +212,34 @@ std::optional<std::size_t> clean(const Positions& points, MeshedCloud& mesh, boo
   constexpr std::size_t vertices_of = 500;
   constexpr std::size_t triangles_of = 100;
   constexpr std::size_t tangle_of = 10;
-  const bool may_open = options.surface != SurfaceMode::Closed;
   const bool removes =
       options.intersections == IntersectionMode::Remove && !mesh.optimization.report.is_out_of_time;
+  const bool may_open = options.surface != SurfaceMode::Closed;
   const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
-  const internal::IntersectingTriangles pairs =
-      intersectionsOf(positions, mesh, is_open, removes, open, execution);
-  if (pairs.empty())
+  const std::size_t triangles = surfaceCount(open);
+  // The optimisation has left those of a closed mesh on its points. One of two may stay.
+  internal::IntersectingPairs found = mesh.optimization.intersecting;
+  if (is_open || mesh.isSmoothed() || (removes && found.is_sample))
+    found = pairsUpTo(removes ? 2 * triangles / tangle_of : 1, positions, open, execution);
+  if (found.pairs.empty())
     return std::size_t{0};
   if (!removes)
     return std::nullopt;
-  const auto triangles = static_cast<std::size_t>(
-      std::count(open.is_open.begin(), open.is_open.end(), std::uint8_t{0}));
+  const auto min_piece = static_cast<std::size_t>(options.min_points);
   const internal::Removal most{internal::columnCount(points) / vertices_of,
                                may_open ? triangles / triangles_of : 0};
-  std::size_t left_out = 0;
-  if (const auto removal = clearIntersections(positions, pairs, most, open)) {
+  std::optional<internal::Removal> removal;
+  if (!found.is_sample)
+    removal = clearIntersections(positions, found.pairs, most, open);
+  std::optional<std::size_t> left_out;
+  if (removal)
     left_out = removal->triangles;
-  } else if (may_open) {
-    internal::OpenMesh rest = open;
-    left_out = leaveOutTangles(internal::columnCount(points), pairs, rest);
-    if (tangle_of * left_out > triangles)
-      return std::nullopt;
-    open = std::move(rest);
-  } else {
+  if (!left_out && may_open && !found.is_sample)
+    left_out = leaveOutUpTo(triangles / tangle_of, found.pairs, min_piece, points, open);
+  if (!left_out && may_open && !mesh.isSmoothed())
+    left_out = takeFaces(points, min_piece, execution, mesh, open);
+  if (!left_out)
     return std::nullopt;
-  }
   mesh.smoothed.intersecting_triangles = 0;
   mesh.smoothed.is_sample = false;
   mesh.smoothed.report.self_intersections = 0;
@@ -301,6 +344,39 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
   return surface;
 }
 
+/// Leaves out the surfaces that are not usable, if the others have a third of the points.
+///
+/// \param failed receives their points.
+void dropTangles(const std::vector<std::vector<Index>>& parts,
+                 const std::vector<std::size_t>& part_of_surface, Result& result,
+                 std::vector<Index>& failed) {
+  constexpr std::size_t kept_of = 3;
+  const auto stays = [](const Surface& surface) {
+    return surface.isUsable() || surface.is_out_of_time;
+  };
+  std::size_t points = 0;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
+    const std::size_t count = parts[part_of_surface[i]].size();
+    points += count;
+    kept += stays(result.surfaces[i]) ? count : 0;
+  }
+  if (kept_of * kept < points)
+    return;
+  std::vector<Surface> surfaces;
+  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
+    const std::size_t part = part_of_surface[i];
+    if (stays(result.surfaces[i])) {
+      surfaces.push_back(std::move(result.surfaces[i]));
+      continue;
+    }
+    result.failures.push_back(
+        internal::failureOf(part, part + 1, parts, "more than 1 % of its triangles intersect"));
+    failed.insert(failed.end(), parts[part].begin(), parts[part].end());
+  }
+  result.surfaces = std::move(surfaces);
+}
+
 /// Meshes all parts, each with its share of the time. One of several that cannot be meshed is left
 /// out.
 void meshParts(Selection& selection, const Options& options, StageClock& clock, Result& result) {
@@ -315,6 +391,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   const auto all = static_cast<double>(left);
   std::exception_ptr first_error;
   std::vector<Index> failed;  // points of parts that cannot be meshed
+  std::vector<std::size_t> part_of_surface;
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto count = static_cast<double>(parts[part].size());
     clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
@@ -328,6 +405,7 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
     };
     try {
       result.surfaces.push_back(meshPart(selection, part, options, clock, result.left_out));
+      part_of_surface.push_back(part);
     } catch (const InvalidInput& error) {
       leave_out(error, part + 1);
     } catch (const internal::OutOfTime& error) {
@@ -339,6 +417,8 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   }
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
+  if (options.intersections == IntersectionMode::Remove)
+    dropTangles(parts, part_of_surface, result, failed);
   std::vector<Index>& left_out = result.left_out.other_parts;
   left_out.insert(left_out.end(), failed.begin(), failed.end());
   std::sort(left_out.begin(), left_out.end());

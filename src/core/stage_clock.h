@@ -65,6 +65,7 @@ public:
     if (limit)
       *limit *= fraction;
     part_left_ = TimeLeft(limit);
+    part_begin_ = Clock::now();
   }
 
   /// The part's share of the points of all parts.
@@ -77,6 +78,13 @@ public:
       if (time.name == "neighbors" || time.name == "graph")
         kept += fraction_ * time.seconds / 2.0;
     return part_left_ ? (*part_left_)(kept) : left_(kept);
+  }
+
+  /// Whether as much time is left for the part as it has taken.
+  bool hasTimeAgain() const {
+    const std::optional<double> left = remaining();
+    const std::chrono::duration<double> taken = Clock::now() - part_begin_;
+    return !left || *left > taken.count();
   }
 
   /// Ends the last stage. \return the time of each stage
@@ -123,6 +131,7 @@ private:
   const char* stage_ = nullptr;
   bool has_mesh_ = false;  ///< of the part
   Clock::time_point begin_;
+  Clock::time_point part_begin_ = Clock::now();
   std::size_t part_ = 0;
   std::size_t parts_ = 1;
   std::vector<StageTime> times_;

@@ -41,6 +41,10 @@ void rejectIndex(std::size_t entry, pcl::index_t index, std::size_t points) {
 void requireSphere(const spherical_param::Surface& surface) {
   if (surface.sphere.cols() > 0)
     return;
+  if (surface.has_certain_triangles_only)
+    throw InvalidInput("the mesh has no map to one sphere: it is a tangle; call "
+                       "setTopology(TopologyMode::Sphere), "
+                       "which maps it as it is");
   const std::size_t handles = surface.genus();
   throw InvalidInput(
       "the mesh has no map to one sphere: it " +

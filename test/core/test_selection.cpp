@@ -4,11 +4,13 @@
 #include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/errors.h"
+#include "spherical_param/self_intersection.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <thread>
@@ -107,6 +109,53 @@ TEST(Topology, AScanHasNoIntersectionsAndASphereEveryPoint) {
   const Surface sphere = surfaceOf(points, test::sphere());
   EXPECT_TRUE(test::isSphereOverAll(sphere.triangles, 300));
   EXPECT_GT(sphere.intersecting_triangles, 0U);
+}
+
+/// A field of 18 x 18 points, of which 3 x 3 each are 0, 2.5 or 5 high, without walls.
+Positions terraces() {
+  Positions points(3, 324);
+  for (Index i = 0; i < 324; ++i) {
+    const double x = i % 18 + 0.5 * (i / 18 % 2);
+    const double y = std::sqrt(0.75) * (i / 18);
+    const int column = std::min(static_cast<int>(x / 3.0), 5);
+    const int row = static_cast<int>(y / 3.0);
+    points.col(i) << x, y, 2.5 * ((column * column + 2 * row * row + column * row) % 3);
+  }
+  return points;
+}
+
+TEST(Topology, OfATangleHasTheTrianglesThatAreCertain) {
+  const Positions points = terraces();
+  const Result scan = reconstruct(points);
+  const Surface& surface = scan.surface();
+  EXPECT_TRUE(surface.has_certain_triangles_only);
+  EXPECT_TRUE(findSelfIntersections(points(Eigen::all, surface.input_of_vertex), surface.triangles)
+                  .empty());
+  EXPECT_TRUE(surface.topology.manifold() && surface.topology.oriented);
+  EXPECT_EQ(surface.topology.boundary_loops, surface.boundary.size());
+  EXPECT_GT(surface.triangles.cols(), 150);
+  EXPECT_GT(scan.left_out.unmeshed.size(), 50U);
+  EXPECT_EQ(surface.sphere.cols(), 0);
+  EXPECT_NE(scan.verdict.find("has only the triangles that are certain"), std::string::npos);
+  EXPECT_FALSE(surfaceOf(points, test::sphere()).has_certain_triangles_only);
+}
+
+TEST(Topology, OfATangleAmongOtherPartsLeavesItOut) {
+  // A line with three bends, in one plane.
+  Positions bent(3, 200);
+  for (Index i = 0; i < 200; ++i) {
+    const double angle = 2.0 * test::kPi * i / 200;
+    const double radius = 0.32 + 0.048 * std::cos(3.0 * angle);
+    bent.col(i) << 2.0 + radius * std::cos(angle), radius * std::sin(angle), 0.0;
+  }
+  const Result scan = reconstruct(horizontally(0.3 * test::spiralSphere(600), bent));
+  EXPECT_EQ(scan.surfaces.size(), 1U);
+  EXPECT_EQ(scan.left_out.other_parts.size(), 200U);
+  ASSERT_EQ(scan.failures.size(), 1U);
+  EXPECT_EQ(scan.failures[0],
+            "part 2 of 2 (200 points) cannot be meshed: more than 1 % of its triangles intersect");
+  // Alone it stays.
+  EXPECT_FALSE(reconstruct(bent).isUsable());
 }
 
 TEST(Topology, OfWholeObjectsIsASphereInBothWays) {

@@ -49,13 +49,17 @@ TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
   internal::StageClock unlimited(user);
   unlimited.beginPart(0, 2, 0.5, 0.5);
   EXPECT_FALSE(unlimited.remaining().has_value());
+  EXPECT_TRUE(unlimited.hasTimeAgain());
   user.time_limit = 1e6;
   internal::StageClock clock(user);
   EXPECT_NEAR(*clock.remaining(), 1e6, 1e3);
   for (const double fraction : {0.25, 0.5, 1.0}) {  // none of them uses its share
     clock.beginPart(0, 3, fraction, 0.1);
     EXPECT_NEAR(*clock.remaining(), 1e6 * fraction, 1e3);
+    EXPECT_TRUE(clock.hasTimeAgain());
   }
+  user.time_limit = 0.0;
+  EXPECT_FALSE(internal::StageClock(user).hasTimeAgain());
 }
 
 TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {

@@ -89,6 +89,10 @@ void requireSpheres(const std::string& path, const CloudReconstruction& cloud, b
                     "give -fill flat, which adds none");
     }
     const std::string part = surfaces.size() > 1 ? "part " + std::to_string(i + 1) + " of " : "";
+    if (surfaces[i].has_certain_triangles_only) {
+      throw Failure(part + inQuotes(path) + " has no map to one sphere: it is a tangle",
+                    "give -topology sphere, which maps it as it is");
+    }
     const std::string mesh = surfaces[i].genus() > 0
                                  ? "its mesh has " + counted(surfaces[i].genus(), "handle")
                                  : "its mesh was glued from several";

@@ -52,12 +52,12 @@ inline UnionFind piecesOf(const Triangles& triangles, std::size_t vertices) {
   return pieces;
 }
 
-/// The piece with the most triangles, by its lowest vertex.
-inline Index largestPiece(const Triangles& triangles, std::size_t vertices, UnionFind& pieces) {
+/// The number of triangles of each piece, by the vertex that find() returns.
+inline Indexed<Index> sizesOf(const Triangles& triangles, std::size_t vertices, UnionFind& pieces) {
   Indexed<Index> sizes(vertices, 0);
   for (const auto& t : triangles.colwise())
     ++sizes[pieces.find(t[0])];
-  return static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  return sizes;
 }
 
 }  // namespace spherical_param::internal

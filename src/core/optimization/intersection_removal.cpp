@@ -385,13 +385,15 @@ void leaveOneFan(std::size_t vertices, OpenMesh& mesh) {
   }
 }
 
-/// Leaves out all pieces of the surface but that with the most triangles.
-void leaveLargestPiece(std::size_t vertices, OpenMesh& mesh) {
+/// Leaves out the pieces of the surface with fewer triangles than a number, but the largest.
+void leaveLargePieces(std::size_t vertices, std::size_t min_piece, OpenMesh& mesh) {
   const Triangles surface = surfaceOf(mesh);
   UnionFind pieces = piecesOf(surface, vertices);
-  const Index largest = largestPiece(surface, vertices, pieces);
+  const Indexed<Index> sizes = sizesOf(surface, vertices, pieces);
+  const Index least =
+      std::min(static_cast<Index>(min_piece), *std::max_element(sizes.begin(), sizes.end()));
   for (Index t = 0; t < mesh.is_open.count(); ++t)
-    if (pieces.find(mesh.triangles(0, t)) != largest)
+    if (sizes[pieces.find(mesh.triangles(0, t))] < least)
       mesh.is_open[t] = 1;
 }
 
@@ -414,15 +416,16 @@ std::optional<Removal> clearIntersections(const Positions& points,
 }
 
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
-                            OpenMesh& mesh) {
+                            std::size_t min_piece, OpenMesh& mesh) {
   const auto open = [&] {
     return std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{1});
   };
   const auto before = open();
   leaveOutIntersecting(pairs, mesh);
+  const auto left_out = open() - before;
   leaveOneFan(vertices, mesh);
-  leaveLargestPiece(vertices, mesh);
-  return static_cast<std::size_t>(open() - before);
+  leaveLargePieces(vertices, min_piece, mesh);
+  return static_cast<std::size_t>(left_out);
 }
 
 }  // namespace spherical_param::internal

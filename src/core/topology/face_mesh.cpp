@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <queue>
+#include <set>
 #include <tuple>
 #include <unordered_set>
 #include <utility>
@@ -261,7 +262,9 @@ Triangles joined(const Positions& points, const Graph& graph, const Triangles& s
       triangles.push_back({tube.rims[i], tube.rims[j + 3], tube.rims[i + 3]});
     }
   }
-  const Index largest = largestPiece(spheres, graph.size(), pieces);
+  const Indexed<Index> sizes = sizesOf(spheres, graph.size(), pieces);
+  const auto largest =
+      static_cast<Index>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   for (Eigen::Index t = 0; t < spheres.cols(); ++t)
     if (is_taken[t] == 0)
       triangles.push_back({spheres(0, t), spheres(1, t), spheres(2, t)});
@@ -393,27 +396,36 @@ bool insert(const Positions& points, const Graph& graph, Index v, SphereMesh& me
 
 }  // namespace
 
-std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
-                                   const Execution& execution) {
+std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
+                                  const Execution& execution) {
   RotationSystem rotation(points, graph, nodeSpacings(graph, execution.threads), execution.threads);
   if (rotation.hasOpposite(graph))
     rotation.separateOpposite();
   reportFraction(reportOf(execution, "openings"), 0.5);
-  Triangles faces = matrixOf(trianglesOf(points, rotation));
-  Triangles spheres;
+  const TriangleList found = trianglesOf(points, rotation);
+  Triangles faces = matrixOf(found);
+  FaceMesh mesh;
   for (bool is_cut = true; std::exchange(is_cut, false);) {
-    spheres = joined(points, graph, closed(points, withoutPinches(std::move(faces), graph.size())));
-    if (spheres.cols() == 0)
+    mesh.triangles =
+        joined(points, graph, closed(points, withoutPinches(std::move(faces), graph.size())));
+    if (mesh.triangles.cols() == 0)
       return std::nullopt;
-    if (genusOf(spheres, graph.size()) == genus)
+    if (genusOf(mesh.triangles, graph.size()) == genus)
       break;
-    const SphereMesh mesh(spheres, graph.size());
-    PlanarRegion region(points, mesh);
+    const SphereMesh whole(mesh.triangles, graph.size());
+    PlanarRegion region(points, whole);
     region.grow(0);
-    faces = filtered(spheres, [&](Eigen::Index t) { return region.contains(t); });
-    is_cut = faces.cols() < spheres.cols();
+    faces = filtered(mesh.triangles, [&](Eigen::Index t) { return region.contains(t); });
+    is_cut = faces.cols() < mesh.triangles.cols();
   }
-  SphereMesh mesh(spheres, graph.size());
+  const std::set<std::array<Index, 3>> known(found.begin(), found.end());
+  for (const auto& t : mesh.triangles.colwise())
+    mesh.is_filling.push_back(known.count({t[0], t[1], t[2]}) > 0 ? 0 : 1);
+  return mesh;
+}
+
+Triangles withAllNodes(const Positions& points, const Graph& graph, const Triangles& closed) {
+  SphereMesh mesh(closed, graph.size());
   for (bool has_changed = true; std::exchange(has_changed, false);)
     for (const Index v : graph.nodes())
       if (mesh.triangleAt(v) < 0 && insert(points, graph, v, mesh))

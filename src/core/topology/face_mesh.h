@@ -1,16 +1,24 @@
 #pragma once
 
 #include "graph.h"
+#include "indexed.h"
 #include "spherical_param/execution.h"
 #include "spherical_param/types.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace spherical_param::internal {
 
-/// A closed mesh of the faces of the rotation system of a graph. Where a few edges of a graph are
-/// false, the embedding of all is folded, but all faces elsewhere are right.
+/// A closed mesh of the faces of a graph.
+struct FaceMesh {
+  Triangles triangles;               ///< a closed, oriented manifold in one piece over most nodes
+  Indexed<std::uint8_t> is_filling;  ///< for each triangle, 1 if it is in no face of the graph
+};
+
+/// Finds a closed mesh of the faces of the rotation system of a graph. Where a few edges of a graph
+/// are false, the embedding of all is folded, but all faces elsewhere are right.
 ///
 /// 1. Triangles, and faces of up to 12 nodes, cut into triangles, are a mesh with openings. Where
 ///    several fans meet in a node, the largest stays.
@@ -18,14 +26,15 @@ namespace spherical_param::internal {
 ///    by tubes along edges of the graph.
 /// 3. If the genus is not the wanted one, a region of genus 0 grows over the mesh; the triangles
 ///    that it cannot take are left out, and the loops filled again.
-/// 4. Nodes that are not in the mesh are put into a triangle near a neighbour.
 ///
 /// \param points 3 x n.
 /// \param graph  n nodes, connected.
 /// \param genus  that is kept; another one becomes 0.
-/// \return a closed, oriented manifold in one piece over all nodes; nothing if the graph has no
-///         faces. Cost: O(n log n).
-std::optional<Triangles> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
-                                   const Execution& execution);
+/// \return nothing if the graph has no faces. Cost: O(n log n).
+std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, std::size_t genus,
+                                  const Execution& execution);
+
+/// Puts each node of a graph that a closed mesh does not have into a triangle near a neighbour.
+Triangles withAllNodes(const Positions& points, const Graph& graph, const Triangles& closed);
 
 }  // namespace spherical_param::internal

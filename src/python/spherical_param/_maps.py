@@ -94,6 +94,11 @@ def _sphere(mesh: Result) -> FloatArray:
             "the mesh has no map to one sphere: vertices were added; give reconstruct() "
             'fill="flat", which adds none'
         )
+    if mesh.has_certain_triangles_only:
+        raise InvalidInput(
+            "the mesh has no map to one sphere: it is a tangle; give reconstruct() "
+            'topology="sphere", which maps it as it is'
+        )
     if mesh.sphere is None:
         count = mesh.topology.genus or 0
         what = f"has {count} handle{'s' * (count > 1)}" if count else "was glued from several"

@@ -85,9 +85,10 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   points.rightCols(200) = test::randomCube(200, 1) * 0.2;
   OpenMesh mesh = closedMesh(triangulateSphere(test::spiralSphere(600)));
   const std::size_t left_out =
-      internal::leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), mesh);
+      internal::leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), 32, mesh);
   const Triangles surface = internal::surfaceOf(mesh);
-  EXPECT_EQ(left_out + internal::columnCount(surface), 1196U);
+  EXPECT_GT(left_out, 200U);
+  EXPECT_LE(left_out + internal::columnCount(surface), 1196U);
   EXPECT_TRUE(findSelfIntersections(points, surface).empty());
   const MeshTopology topology = checkTopology(surface, 600);
   EXPECT_TRUE(topology.manifold() && topology.oriented);

@@ -10,10 +10,16 @@
 namespace spherical_param {
 namespace {
 
-using internal::meshFaces;
-
 Graph delaunayGraph(const Positions& points) {
   return test::localDelaunayGraph(points).graph;
+}
+
+/// The mesh of the faces of a graph, and of the other nodes.
+std::optional<Triangles> meshOf(const Positions& points, const Graph& graph, std::size_t genus) {
+  const auto faces = internal::meshFaces(points, graph, genus, {});
+  if (!faces)
+    return std::nullopt;
+  return internal::withAllNodes(points, graph, faces->triangles);
 }
 
 /// The edges of a mesh, {lower, higher}.
@@ -27,12 +33,12 @@ std::set<std::pair<Index, Index>> edgesOf(const Triangles& triangles) {
 
 TEST(FaceMesh, OfASphereAndOfATorusIsTheirSurface) {
   const Positions sphere = test::spiralSphere(500);
-  const auto of_sphere = meshFaces(sphere, delaunayGraph(sphere), 0, {});
+  const auto of_sphere = meshOf(sphere, delaunayGraph(sphere), 0);
   ASSERT_TRUE(of_sphere);
   EXPECT_TRUE(test::isSphereOverAll(*of_sphere, 500));
   EXPECT_TRUE(findSelfIntersections(sphere, *of_sphere).empty());
   const Positions torus = test::torusCloud(40, 16, 1.0, 0.4);
-  const auto of_torus = meshFaces(torus, delaunayGraph(torus), 1, {});
+  const auto of_torus = meshOf(torus, delaunayGraph(torus), 1);
   ASSERT_TRUE(of_torus);
   EXPECT_TRUE(test::isSurfaceOverAll(*of_torus, static_cast<Index>(torus.cols()), 1));
   EXPECT_TRUE(findSelfIntersections(torus, *of_torus).empty());
@@ -41,13 +47,13 @@ TEST(FaceMesh, OfASphereAndOfATorusIsTheirSurface) {
 TEST(FaceMesh, WithoutAHandleThatIsNotWantedKeepsAllElse) {
   const Positions torus = test::torusCloud(40, 16, 1.0, 0.4);
   const Graph graph = delaunayGraph(torus);
-  const auto cut = meshFaces(torus, graph, 0, {});
+  const auto cut = meshOf(torus, graph, 0);
   ASSERT_TRUE(cut);
   EXPECT_TRUE(test::isSphereOverAll(*cut, static_cast<Index>(torus.cols())));
   // It is cut across the tube, of 16 points, or along it, of 40.
   const auto of_cut = edgesOf(*cut);
   std::size_t lost = 0;
-  for (const auto& edge : edgesOf(*meshFaces(torus, graph, 1, {})))
+  for (const auto& edge : edgesOf(*meshOf(torus, graph, 1)))
     lost += of_cut.count(edge) == 0 ? 1 : 0;
   EXPECT_LE(lost, 4U * 40U);
 }
@@ -58,7 +64,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
   Positions thin = sphere;
   thin.row(2) *= 0.1;
   const Graph graph = delaunayGraph(thin);
-  const auto right = meshFaces(thin, graph, 0, {});
+  const auto right = meshOf(thin, graph, 0);
   ASSERT_TRUE(right);
   std::vector<Bridge> bridges;
   for (Index v = 0; v < 1500; v += 100)
@@ -68,7 +74,7 @@ TEST(FaceMesh, FalseEdgesCostTheirPlacesAlone) {
         bridges.push_back({v, w, distance});
     }
   ASSERT_GT(bridges.size(), 20U);
-  const auto mesh = meshFaces(thin, internal::withEdges(graph, bridges), 0, {});
+  const auto mesh = meshOf(thin, internal::withEdges(graph, bridges), 0);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(test::isSphereOverAll(*mesh, 1500));
   const auto found = edgesOf(*mesh);
@@ -85,16 +91,32 @@ TEST(FaceMesh, PiecesAreJoinedAndNodesWithoutFacesPutIn) {
       Positions::Zero(3, 5);
   for (Eigen::Index i = 0; i < 5; ++i)
     points(1, 600 + i) = 1.2 + 0.2 * static_cast<double>(i);
-  const auto mesh = meshFaces(points, delaunayGraph(points), 0, {});
+  const auto mesh = meshOf(points, delaunayGraph(points), 0);
   ASSERT_TRUE(mesh);
   EXPECT_TRUE(test::isSphereOverAll(*mesh, 605));
+}
+
+TEST(FaceMesh, SaysWhatIsNoFace) {
+  // The loop of 20 points and more around a hole is no face.
+  const Positions points = test::sphereWithHoles(1000, 1, 0.4);
+  const auto mesh = internal::meshFaces(points, delaunayGraph(points), 0, {});
+  ASSERT_TRUE(mesh);
+  ASSERT_EQ(mesh->is_filling.size(), internal::columnCount(mesh->triangles));
+  Index fillings = 0;
+  for (Eigen::Index t = 0; t < mesh->triangles.cols(); ++t)
+    if (mesh->is_filling[t] != 0) {
+      ++fillings;
+      for (const Index v : mesh->triangles.col(t))
+        EXPECT_LT((points.col(v) - test::spiralSphere(1).col(0)).norm(), 0.6);
+    }
+  EXPECT_GT(fillings, 15);
 }
 
 TEST(FaceMesh, IsNoneWithoutFaces) {
   Positions line = Positions::Zero(3, 20);
   for (Eigen::Index i = 0; i < 20; ++i)
     line(0, i) = static_cast<double>(i);
-  EXPECT_FALSE(meshFaces(line, delaunayGraph(line), 0, {}));
+  EXPECT_FALSE(meshOf(line, delaunayGraph(line), 0));
 }
 
 }  // namespace

@@ -71,6 +71,17 @@ TEST(Openings, TheRimOfALowSheetIsCertainHoweverFewItsPoints) {
     EXPECT_FALSE(opening.isCertain());
 }
 
+TEST(Openings, ThatCurlAreAsWideAsTheLeastSurfaceOverThem) {
+  // Half of a tennis ball: the vector area of its rim is 0.
+  const Positions half = test::pointsWhere(test::spiralSphere(4000), [](const Eigen::Vector3d& p) {
+    return p.x() * p.x() - p.y() * p.y() + 0.3 * p.z() > 0.0;
+  });
+  const std::vector<Opening> openings = openingsOf(half);
+  ASSERT_EQ(openings.size(), 1U);
+  EXPECT_GT(openings[0].area, 2.0);
+  EXPECT_TRUE(openings[0].isCertain());
+}
+
 TEST(Openings, CountFromThreeSpacingsOn) {
   // Without five points in two rows the hole is of 19 triangles and 11 edges, a little less than 3
   // wide: 4 area / length = 2.99. Without six, it is of 22 and 12: 3.18.
