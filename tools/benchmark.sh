@@ -4,7 +4,8 @@
 # plots, pictures and report.md to a folder.
 #
 #   tools/benchmark.sh OUT [MODELS] [--quick] [--large] [--update-doc]
-#                      [--only paper|comparison|maps|scaling|gallery]
+#                      [--only clean|paper|comparison|maps|scaling|gallery]
+#                      [--clean DIR]... [--clean-list FILE] [--update-clean]
 #
 #   OUT           folder for the report
 #   MODELS        folder of real models: points/NAME.ply and, if known, the true mesh truth/NAME.ply.
@@ -14,13 +15,16 @@
 #   --only        one section alone; may be repeated
 #   --update-doc  also put the tables into doc/benchmarks.md and README.md, and the gallery into
 #                 doc/gallery
+#   --clean       folder of clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the list
+#                 test/benchmark/clean.txt (or FILE) names must be meshed as cleanly as before
+#   --update-clean  mesh all clouds of these folders, and put the clean ones into the list
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 build="$root/build/release"
 
 if [ "$#" -eq 0 ] || [ "$1" = "-h" ] || [ "$1" = "--help" ]; then
-  sed -n -e '2,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+  sed -n -e '2,20s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   [ "$#" -eq 1 ] && exit 0
   exit 2
 fi

@@ -7,11 +7,12 @@ import sys
 import tempfile
 import time
 
-from . import comparison, gallery, machine, maps, paper, scaling
+from . import clean, comparison, gallery, machine, maps, paper, scaling
 from .programs import Failure, Programs, load_clouds
 from .report import Report
 
 SECTIONS = {
+    "clean": clean.section,
     "paper": paper.section,
     "comparison": comparison.section,
     "maps": maps.section,
@@ -29,6 +30,8 @@ class Context:
         self.quick, self.large = arguments.quick, arguments.large
         self.programs = Programs(arguments.build / "bin", self.work, self.choose(10000, 50000))
         self.models = load_clouds(arguments.models) if arguments.models else []
+        self.clean = arguments.clean, arguments.clean_list, arguments.update_clean
+        self.lost = []
         self.report = Report(self.out)
         self.started = time.monotonic()
 
@@ -47,8 +50,13 @@ def main(words):
     parser.add_argument("--large", action="store_true")
     parser.add_argument("--only", choices=SECTIONS, action="append")
     parser.add_argument("--update-doc", action="store_true")
+    parser.add_argument("--clean", type=pathlib.Path, metavar="DIR", action="append")
+    parser.add_argument("--clean-list", type=pathlib.Path, metavar="FILE", default=clean.LIST)
+    parser.add_argument("--update-clean", action="store_true")
     parser.add_argument("--build", type=pathlib.Path, required=True)
     arguments = parser.parse_args(words)
+    if not arguments.clean and (arguments.update_clean or "clean" in (arguments.only or ())):
+        raise Failure("no clouds are given to compare", "add --clean DIR")
     out = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     if any(out.iterdir()) and not (out / "report.md").is_file():
@@ -69,6 +77,9 @@ def main(words):
         if "gallery" in report.facts:
             shutil.copytree(out / "gallery", root / "doc" / "gallery", dirs_exist_ok=True)
     context.say(f"report: {out / 'report.md'}")
+    if context.lost:
+        raise Failure(f"no longer as clean as in the list: {', '.join(context.lost)}",
+                      f"repair that, or remove their lines from {arguments.clean_list}")  # fmt: skip
 
 
 if __name__ == "__main__":

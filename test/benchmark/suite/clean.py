@@ -1,0 +1,117 @@
+"""Clouds with clean meshes beside a list of them, so that no later change loses one unseen.
+
+A mesh is clean if the tool finds no fault in it and the referee no triangles that intersect.
+"""
+
+import concurrent.futures
+import os
+import pathlib
+
+from .programs import Cloud, Failure
+
+LIST = pathlib.Path(__file__).parents[1] / "clean.txt"
+HEADER = """\
+# Clouds that the default options mesh cleanly: no faults, no triangles that intersect. They are
+# the real models of doc/benchmarks.md, open, partial, multi-part and noisy variants of these and of
+# models with handles, generated clouds of unusual samplings, and real scans. None is part of the
+# project. tools/benchmark.sh compares the list (--clean) and adds to it (--update-clean); lines are
+# removed by hand. The columns: name, """
+NUMBERS = ("points", "surfaces", "openings", "handles", "points left out", "triangles left out")
+CLEAN = [("cloud", "cloud"), ("result", "result"), ("remark", "remark"),
+         *((title, title) for title in NUMBERS)]  # fmt: skip
+RESULTS = ("lost", "not found", "other points", "changed", "newly clean", "not clean", "as before")
+
+
+def _read(path):
+    entries = {}
+    for line in path.read_text().splitlines():
+        if line and not line.startswith("#"):
+            try:
+                name, *numbers = line.rsplit(maxsplit=len(NUMBERS))
+                entries[name] = dict(zip(NUMBERS, map(int, numbers), strict=True))
+            except ValueError:
+                raise Failure(f"{path}: '{line}' is not a name and {len(NUMBERS)} numbers",
+                              "correct or remove the line") from None  # fmt: skip
+    return entries
+
+
+def _write(path, entries):
+    lines = [f"{name:24} {' '.join(map(str, numbers.values()))}\n"
+             for name, numbers in sorted(entries.items())]  # fmt: skip
+    path.write_text(f"{HEADER}{', '.join(NUMBERS)}.\n{''.join(lines)}")
+
+
+def _find(folders):
+    paths = sorted(path for folder in folders for path in folder.iterdir()
+                   if path.suffix in (".pcd", ".ply", ".xyz"))  # fmt: skip
+    clouds = {path.stem: path for path in paths}
+    for path in paths:
+        if clouds[path.stem] is not path:
+            raise Failure(f"{path} and {clouds[path.stem]} have one name", "rename one of them")
+    return clouds
+
+
+def _measure(context, path):
+    """The numbers of the default's mesh, and why it is not clean, or ""."""
+    mesh = context.work / f"clean_{path.stem}.ply"
+    try:
+        told = context.programs.reconstruct(Cloud(path.stem, path), mesh, threads=1)[1]
+        is_sound = told["usable"] and not any(found["is_fault"] for found in told["findings"])
+        # The referee also compares the surfaces with each other.
+        pairs = context.programs.measure(mesh)["intersections"] if is_sound else 0
+    except Failure as failure:
+        return {}, failure.cause
+    mesh.unlink()
+    surfaces = told.get("parts", [told])
+    numbers = (told["points"], len(surfaces), sum(one["boundary_loops"] for one in surfaces),
+               sum(one["genus"] or 0 for one in surfaces), sum(map(len, told["left_out"].values())),
+               sum(one["left_out_triangles"] for one in surfaces))  # fmt: skip
+    fault = f"{pairs} self-intersections" if pairs else "" if is_sound else told["verdict"]
+    return dict(zip(NUMBERS, numbers)), fault
+
+
+def _compare(before, now, fault):
+    """One of RESULTS, and a remark."""
+    if not before:
+        return ("not clean" if fault else "newly clean"), fault
+    changes = [f"{title} {before[title]} -> {now[title]}" for title in now
+               if now[title] != before[title]]  # fmt: skip
+    remark = "; ".join(filter(None, [*changes, fault]))
+    if now and now["points"] != before["points"]:
+        return "other points", remark
+    if fault or any(now[title] > before[title] for title in NUMBERS if "left out" in title):
+        return "lost", remark
+    return ("changed" if changes else "as before"), remark
+
+
+def section(context):
+    """Listed clouds that are found; to update the list, all that are found."""
+    folders, path, is_update = context.clean
+    if not folders:
+        return
+    entries = _read(path) if path.is_file() or not is_update else {}
+    clouds = _find(folders)
+    names = [name for name in clouds if is_update or name in entries]
+    if not names:
+        raise Failure(f"none of the clouds of {path} was found", "give their folders by --clean")
+    context.say(f"clean: {len(names)} clouds")
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        measured = pool.map(lambda name: _measure(context, clouds[name]), names)
+    rows = [{"cloud": name, "result": "not found"} for name in entries if name not in clouds]
+    for name, (now, fault) in zip(names, measured):
+        result, remark = _compare(entries.get(name), now, fault)
+        rows.append({"cloud": name, "result": result, "remark": remark, **now})
+        if is_update and not fault and result != "lost":
+            entries[name] = now
+    if is_update:
+        _write(path, entries)
+    rows.sort(key=lambda row: RESULTS.index(row["result"]))
+    for row in rows:
+        if row["result"] != "as before":
+            context.say(f"{row['result']}: {row['cloud']} {row.get('remark', '')}".rstrip())
+    found = [row["result"] for row in rows]
+    counts = ", ".join(f"{found.count(result)} {result}" for result in RESULTS if result in found)
+    context.say(f"clean: {counts}")
+    context.report.facts["clean_counts"] = counts
+    context.report.add("clean", CLEAN, rows)
+    context.lost = [row["cloud"] for row in rows if row["result"] == "lost"]
