@@ -245,6 +245,8 @@ std::string verdictOf(const Options& options, const Surface& result) {
            counted(static_cast<std::size_t>(result.triangles.cols()), "triangle") + " intersect.";
   const SurfaceDiagnosis& diagnosis = result.diagnosis;
   std::string text = "A sound mesh";
+  if (result.topology.components > 1)
+    text += " in " + counted(result.topology.components, "piece");
   if (result.genus() > 0)
     text += " with " + counted(result.genus(), "handle");
   if (!result.boundary.empty())

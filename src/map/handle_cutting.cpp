@@ -465,7 +465,7 @@ CutMesh cutHandles(const Positions& points, const Triangles& triangles) {
   const MeshTopology topology = checkTopology(triangles, internal::columnCount(points));
   if (!topology.isSurface())
     throw InvalidInput("cutHandles: the triangles are not an oriented manifold in one piece over "
-                       "all vertices; give a mesh as reconstruct() makes it");
+                       "all vertices; give a mesh in one piece, of topology = sphere if need be");
   if (!points.allFinite())
     throw InvalidInput("cutHandles: a coordinate of a vertex is not finite; remove such points "
                        "first");

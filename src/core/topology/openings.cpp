@@ -23,13 +23,15 @@ namespace internal {
 
 namespace {
 
-/// What a face needs to be an opening: edges, width [spacing] and mean corner [rad].
+/// What a face needs to be an opening: edges, width [spacing] and mean corner [rad]; from the sure
+/// width on it is certain.
 constexpr std::size_t kMinSteps = 7;
 constexpr double kMinWidth = 3.0;
+constexpr double kSureWidth = 9.0;
 constexpr double kMinCorner = 0.65 * kPi;
 
-/// The least area of triangles over a loop (Barequet and Sharir 1995); of a long loop, over vertices
-/// at equal steps of it.
+/// The least area of triangles over a loop (Barequet and Sharir 1995); of a long loop, over
+/// vertices at equal steps of it.
 double leastArea(const Positions& points, const std::vector<Index>& loop) {
   constexpr std::size_t max_corners = 96;
   const std::size_t n = std::min(loop.size(), max_corners);
@@ -67,16 +69,20 @@ Opening measured(const Positions& points, const Indexed<double>& spacing, std::v
     area += p.cross(q) / 2.0;
     moments += p * p.transpose() / m;
   }
+  opening.area = area.norm();
+  const double sure_area = kSureWidth * opening.spacing * opening.boundary_length / 4.0;
   // The vector area of a loop that curls is small, the opening is not.
-  opening.area = std::max(area.norm(), leastArea(points, opening.loop));
+  if (const double least = opening.area < sure_area ? leastArea(points, opening.loop) : 0.0;
+      least >= sure_area)
+    opening.area = least;
   opening.width =
       std::min(4.0 * opening.area / opening.boundary_length, opening.boundary_length / kPi);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments, Eigen::EigenvaluesOnly);
   // Loops nearer to a plane are flat [spacing].
   constexpr double max_flat = 0.01;
   opening.is_flat = std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < max_flat * opening.spacing;
-  opening.certainty =
-      std::clamp((opening.width / opening.spacing - kMinWidth) / (2.0 * kMinWidth), 0.0, 1.0);
+  opening.certainty = std::clamp(
+      (opening.width / opening.spacing - kMinWidth) / (kSureWidth - kMinWidth), 0.0, 1.0);
   return opening;
 }
 
