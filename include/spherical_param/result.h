@@ -48,10 +48,10 @@ struct Opening {
   /// Vertices around it, in order; a vertex that the face passes twice is listed twice.
   std::vector<Index> loop;
   double boundary_length = 0.0;  ///< of the loop [unit of the input]
-  /// Length of the vector area of the loop; of one that curls, so that it is certain, the least area
-  /// of triangles over it [unit squared].
+  /// Length of the vector area of the loop; of one that curls, so that it is certain, the least
+  /// area of triangles over it [unit squared].
   double area = 0.0;
-  double spacing = 0.0;          ///< mean point spacing at the loop [unit of the input]
+  double spacing = 0.0;  ///< mean point spacing at the loop [unit of the input]
   /// min(4 area / boundary_length, boundary_length / pi), the diameter of a disc [unit of the
   /// input].
   double width = 0.0;

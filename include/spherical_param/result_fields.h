@@ -170,7 +170,8 @@ void visitFields(const Opening*, const Visit& visit) {
   visit({"center", "mean of the loop", 1}, &Of::center);
   visit({"width", "min(4 area / boundary_length, boundary_length / pi)", 1}, &Of::width);
   visit({"spacing", "mean point spacing at the loop", 1}, &Of::spacing);
-  visit({"area", "length of the vector area of the loop; if it curls, least area over it", 2}, &Of::area);
+  visit({"area", "length of the vector area of the loop; if it curls, least area over it", 2},
+        &Of::area);
   visit({"boundary_length", "of the loop", 1}, &Of::boundary_length);
   visit({"loop", "vertices around it, in order; may list a vertex twice", 0, FieldKind::Loops},
         &Of::loop);

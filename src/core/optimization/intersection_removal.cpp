@@ -348,6 +348,7 @@ void leaveOutIntersecting(const IntersectingTriangles& pairs, OpenMesh& mesh) {
     others[u].push_back(t);
   }
   std::vector<std::pair<int, Index>> order;
+  order.reserve(others.size());
   for (const auto& [t, of] : others)
     order.emplace_back(-static_cast<int>(of.size()), t);
   std::sort(order.begin(), order.end());
