@@ -14,6 +14,14 @@
 
 namespace spherical_param::internal {
 
+/// Joins sheets along rims: where the spacing jumps at a sharp edge, as from contours to the cap of
+/// a tube, the stars on the coarse side reach the fine side, but not the other way round. If so
+/// many points of a sheet reach another one as its rim has, these edges are added.
+///
+/// \param agreed \see agreedGraph
+/// \return the graph, with these edges.
+Graph joinedAlongRims(const Positions& points, const Graph& agreed, const Stars& stars);
+
 /// Splits a cloud into its surfaces.
 ///
 /// Small components beside large ones belong to these. Others of fewer than `min_points` nodes are

@@ -1,5 +1,6 @@
 #include "neighborhoods.h"
 
+#include "cloud_surfaces.h"
 #include "local_delaunay_graph.h"
 #include "neighbor_search.h"
 #include "progress.h"
@@ -91,7 +92,7 @@ void Neighborhoods::findStars(const Execution& execution) {
   if (stars_.size() > 0)
     return;
   stars_ = internal::findStars(nodes_.points, neighbors_, execution);
-  agreed_ = agreedGraph(nodes_.points, stars_, execution);
+  agreed_ = joinedAlongRims(nodes_.points, agreedGraph(nodes_.points, stars_, execution), stars_);
 }
 
 void Neighborhoods::release() {

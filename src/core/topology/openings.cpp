@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -33,16 +34,19 @@ constexpr double kMinCorner = 0.65 * kPi;
 /// The least area of triangles over a loop (Barequet and Sharir 1995); of a long loop, over
 /// vertices at equal steps of it.
 double leastArea(const Positions& points, const std::vector<Index>& loop) {
-  constexpr std::size_t max_corners = 96;
-  const std::size_t n = std::min(loop.size(), max_corners);
-  const auto corner = [&](std::size_t i) { return points.col(loop[i * loop.size() / n]); };
+  constexpr Eigen::Index max_corners = 96;
+  const auto all = static_cast<Eigen::Index>(loop.size());
+  const Eigen::Index n = std::min(all, max_corners);
+  const auto corner = [&](Eigen::Index i) {
+    return points.col(loop[static_cast<std::size_t>(i * all / n)]);
+  };
   Eigen::MatrixXd least = Eigen::MatrixXd::Zero(n, n);  // over the corners from one to another
-  for (std::size_t steps = 2; steps < n; ++steps)
-    for (std::size_t i = 0; i + steps < n; ++i) {
-      const std::size_t j = i + steps;
-      least(i, j) = std::numeric_limits<double>::max();
+  for (Eigen::Index steps = 2; steps < n; ++steps)
+    for (Eigen::Index i = 0; i + steps < n; ++i) {
+      const Eigen::Index j = i + steps;
       const Eigen::Vector3d edge = corner(j) - corner(i);
-      for (std::size_t k = i + 1; k < j; ++k)
+      least(i, j) = std::numeric_limits<double>::max();
+      for (Eigen::Index k = i + 1; k < j; ++k)
         least(i, j) = std::min(least(i, j), least(i, k) + least(k, j) +
                                                 edge.cross(corner(k) - corner(i)).norm() / 2.0);
     }

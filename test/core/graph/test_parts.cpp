@@ -1,7 +1,11 @@
 #include "cloud_surfaces.h"
 
+#include "core/reconstructions.h"
 #include "graph_helpers.h"
 #include "spherical_param/errors.h"
+
+#include <cmath>
+#include <vector>
 
 namespace spherical_param {
 namespace {
@@ -62,6 +66,27 @@ TEST(Parts, SmallSheetsBesideLargeOnesBelongToThem) {
   EXPECT_EQ(findParts(horizontally(sphere, movedTo(1.6, cap))).size(), 2U);
   const Positions half = spiralSphere(1000);
   EXPECT_EQ(findParts(horizontally(half, movedTo(2.2, half))).size(), 2U);
+}
+
+TEST(Parts, AreJoinedAlongARimWhereTheSpacingJumps) {
+  // Contours of a tube with caps, four times as far apart as their points and those of the caps.
+  const double step = 2.0 * test::kPi / 60;
+  std::vector<Eigen::Vector3d> points;
+  for (Index slice = 0; slice < 6; ++slice)
+    for (Index i = 0; i < 60; ++i) {
+      const double angle = step * (i + 0.5 * (slice % 2));
+      points.emplace_back(std::cos(angle), std::sin(angle), 4.0 * step * slice);
+    }
+  for (const double z : {0.0, 20.0 * step})
+    for (Index i = -10; i <= 10; ++i)
+      for (Index k = -10; k <= 10; ++k)
+        if (const Eigen::Vector3d p(step * i, step * k, z); p.head<2>().norm() < 1.0 - 0.7 * step)
+          points.push_back(p);
+  const Positions contours = test::positionsOf(points);
+  EXPECT_EQ(findParts(contours), Parts{range(0, contours.cols())});
+  const Surface surface = test::surfaceOf(contours);
+  EXPECT_TRUE(test::isSphereOverAll(surface.triangles, static_cast<Index>(contours.cols())));
+  EXPECT_EQ(surface.intersecting_triangles, 0U);
 }
 
 TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
