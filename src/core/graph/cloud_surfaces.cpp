@@ -176,7 +176,7 @@ void joinSmall(const Positions& points, const Graph& agreed, UnionFind& componen
 
 }  // namespace
 
-Graph joinedAlongRims(const Positions& points, const Graph& agreed, const Stars& stars) {
+Graph joinedAlongRims(const Positions& points, Graph agreed, const Stars& stars) {
   // A rim of a sheet of n points has about the root of n, as near to each other as those across. So
   // it is 0.96 to 1 times as far from one to the next on contours and turned parts; stray points in
   // an object, whose stars reach it, are 2.2 times as far from each other, and nets of such points,
@@ -209,7 +209,9 @@ Graph joinedAlongRims(const Positions& points, const Graph& agreed, const Stars&
   for (auto& [pair, rim] : rims)
     if (rim.points * rim.points >= sizes[pair.first] && medianOf(rim.coarseness) <= max_coarseness)
       edges.insert(edges.end(), rim.edges.begin(), rim.edges.end());
-  return edges.empty() ? agreed : withEdges(agreed, edges);
+  if (!edges.empty())
+    agreed = withEdges(agreed, edges);
+  return agreed;
 }
 
 Indexed<Index> partsOf(const Positions& points, const Graph& agreed, const Stars& stars,

@@ -20,7 +20,7 @@ namespace spherical_param::internal {
 ///
 /// \param agreed \see agreedGraph
 /// \return the graph, with these edges.
-Graph joinedAlongRims(const Positions& points, const Graph& agreed, const Stars& stars);
+Graph joinedAlongRims(const Positions& points, Graph agreed, const Stars& stars);
 
 /// Splits a cloud into its surfaces.
 ///
