@@ -56,7 +56,8 @@ def _measure(context, path):
     mesh = context.work / f"clean_{path.stem}.ply"
     try:
         told = context.programs.reconstruct(Cloud(path.stem, path), mesh, threads=1)[1]
-        is_sound = told["usable"] and not any(found["is_fault"] for found in told["findings"])
+        is_sound = (told["usable"] and not told["failures"]
+                    and not any(found["is_fault"] for found in told["findings"]))  # fmt: skip
         # The referee also compares the surfaces with each other.
         pairs = context.programs.measure(mesh)["intersections"] if is_sound else 0
     except Failure as failure:
