@@ -114,8 +114,9 @@ enum class HandleMode {
 /// What happens to triangles that still intersect at the end.
 enum class IntersectionMode {
   AsTopology,  ///< Remove for TopologyMode::Scan, else Keep
-  /// They are taken apart: by other triangles, by openings, last by leaving out up to 0.2 % of the
-  /// points of a surface.
+  /// They are taken apart: by other triangles, else by leaving out triangles and points. A tangle
+  /// keeps only the triangles that are certain, unless it is smoothed; one part of several without
+  /// enough of them is left out.
   Remove,
   Keep,  ///< they are counted; every point is in the mesh
 };

@@ -50,8 +50,8 @@ std::optional<Eigen::Vector3d> viewpointOf(const Positions& points, const Eigen:
 ///        meshed is left out and reported in Result::failures; if all parts fail, the first error
 ///        is thrown.
 ///
-/// Guaranteed: each mesh is manifold, consistently oriented, in one piece, and closed unless
-/// openings stay open. It has the handles that are listed; with HandleMode::None it is a sphere.
+/// Guaranteed: each mesh is manifold and consistently oriented, and closed and in one piece unless
+/// it has openings. It has the handles that are listed; with HandleMode::None it is a sphere.
 /// Every distinct (or consolidated) point of its part is a vertex, but for LeftOut::unmeshed, which
 /// IntersectionMode::Keep leaves empty. The same input and options give the same result, bit by
 /// bit, for any number of threads, unless a time limit ends the work. Reentrant.

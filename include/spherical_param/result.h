@@ -308,8 +308,8 @@ struct Surface {
   /// Triangles that were left out because they would intersect others: each leaves an opening, or
   /// widens one.
   std::size_t left_out_triangles = 0;
-  /// The sphere is a tangle: the mesh has the triangles only of which the graph is certain, and
-  /// `sphere` is empty.
+  /// A mesh of all points is a tangle: this one has only the triangles that are certain, the small
+  /// faces of the graph, may be in several pieces, and has no `sphere`.
   bool has_certain_triangles_only = false;
   std::string verdict;            ///< a headline, e.g. "A sound mesh with 2 openings."
   std::vector<Finding> findings;  ///< remarks and remedies; empty if all is well
@@ -370,7 +370,7 @@ struct LeftOut {
   std::vector<Index> unused;       ///< of a file with faces, in none of these
   std::vector<Index> outliers;     ///< found by Options::outliers
   std::vector<Index> other_parts;  ///< of parts that were not meshed, or of no part
-  std::vector<Index> unmeshed;     ///< triangles through them would intersect
+  std::vector<Index> unmeshed;     ///< of meshed parts: triangles through them would intersect
 
   /// In words. \return e.g. "2 points that are not finite, 3 stray points"; empty if nothing was
   /// left out
@@ -382,7 +382,7 @@ struct Result {
   /// One for each meshed part, the largest first; exactly one with PartsMode::All or Largest.
   std::vector<Surface> surfaces;
   LeftOut left_out;                   ///< points in no surface
-  std::vector<std::string> failures;  ///< why parts could not be meshed: faults
+  std::vector<std::string> failures;  ///< parts that have no mesh, and why: faults
   std::vector<StageTime> stages;      ///< in the order of the work, of all surfaces together
   std::string verdict;                ///< a headline, e.g. "3 meshes, all sound."
   std::vector<Finding> findings;      ///< of all surfaces; with several, each names its parts

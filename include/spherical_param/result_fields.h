@@ -353,7 +353,7 @@ void visitFields(const Surface*, const Visit& visit) {
   visit({"left_out_triangles", "triangles that were left out because they would intersect others"},
         &Of::left_out_triangles);
   visit({"has_certain_triangles_only",
-         "the sphere is a tangle, so the graph's triangles are the mesh"},
+         "a mesh of all points is a tangle: only small faces of the graph are in this one"},
         &Of::has_certain_triangles_only);
   visit({"self_intersections",
          "pairs of triangles that intersect (exact), ascending: all, or a sample", 0,
@@ -416,8 +416,9 @@ void visitFields(const LeftOut*, const Visit& visit) {
   visit({"outliers", "found by the option outliers", 0, FieldKind::Inputs}, &Of::outliers);
   visit({"other_parts", "of parts that were not meshed, or of no part", 0, FieldKind::Inputs},
         &Of::other_parts);
-  visit({"unmeshed", "triangles through them would intersect", 0, FieldKind::Inputs},
-        &Of::unmeshed);
+  visit(
+      {"unmeshed", "of meshed parts: triangles through them would intersect", 0, FieldKind::Inputs},
+      &Of::unmeshed);
 }
 
 constexpr ResultField describe(const Result*) {

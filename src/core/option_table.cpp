@@ -259,8 +259,8 @@ std::vector<OptionRow> surfaceRows() {
            {"auto", HandleMode::Auto}},
           memberOf(&Options::handles))),
       byDefault(choice<IntersectionMode>("intersections", "intersections",
-                                         "triangles that intersect are taken apart, at last with "
-                                         "up to 0.2 % of the points, or kept",
+                                         "triangles that intersect are taken apart, if need be "
+                                         "by leaving out triangles and points, or kept",
                                          Everybody,
                                          {{"topology", IntersectionMode::AsTopology},
                                           {"remove", IntersectionMode::Remove},

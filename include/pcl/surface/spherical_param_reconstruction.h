@@ -157,8 +157,8 @@ public:
   inline FillMode getFill() const { return options_.fill; }
 
   /** \brief Set what happens to triangles that still intersect at the end.
-   * \param[in] mode Remove: they are taken apart, if need be by leaving out up to 0.2 % of the
-   * points of a surface. Keep: they are counted. Default: as setTopology() says.
+   * \param[in] mode Remove: they are taken apart, if need be by leaving out triangles and
+   * points. Keep: they are counted. Default: as setTopology() says.
    * \note getResult().left_out.unmeshed has the points. */
   inline void setIntersections(IntersectionMode mode) { options_.intersections = mode; }
   /** \brief Get what happens to triangles that intersect.
