@@ -70,4 +70,17 @@ inline std::map<Index, Index> boundaryOf(const Triangles& triangles) {
   return next;
 }
 
+/// A field of 18 x 18 points, of which 3 x 3 each are 0, 2.5 or 5 high, without walls.
+inline Positions terraces() {
+  Positions points(3, 324);
+  for (Index i = 0; i < 324; ++i) {
+    const double x = i % 18 + 0.5 * (i / 18 % 2);
+    const double y = std::sqrt(0.75) * (i / 18);
+    const int column = std::min(static_cast<int>(x / 3.0), 5);
+    const int row = static_cast<int>(y / 3.0);
+    points.col(i) << x, y, 2.5 * ((column * column + 2 * row * row + column * row) % 3);
+  }
+  return points;
+}
+
 }  // namespace spherical_param::test

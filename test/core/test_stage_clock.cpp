@@ -60,6 +60,11 @@ TEST(StageClock, APartHasItsShareOfTheTimeThatIsLeft) {
   }
   user.time_limit = 0.0;
   EXPECT_FALSE(internal::StageClock(user).hasTimeAgain());
+  user.time_limit = 0.4;
+  internal::StageClock half(user);
+  EXPECT_TRUE(half.hasTimeAgain());
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  EXPECT_FALSE(half.hasTimeAgain());
 }
 
 TEST(StageClock, ALimitEndsTheWorkBeforeAMeshUnlessItIsZero) {

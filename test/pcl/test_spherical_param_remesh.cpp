@@ -2,6 +2,7 @@
 
 #include <pcl/surface/spherical_param_map.h>
 #include <pcl/surface/spherical_param_remesh.h>
+#include <spherical_param/errors.h>
 
 #include <limits>
 #include <stdexcept>
@@ -108,6 +109,9 @@ TEST_F(SphericalParamRemesh, MeshesWithHandlesAreRefusedAndCutOnesAreNot) {
   EXPECT_EQ(points.cols() + map.sphere.cols(), 0);
   EXPECT_EQ(reconstruction.getResult().surface().genus(), 1U);
   EXPECT_TRUE(reconstruction.getSphereCoordinates()->empty());
+  spherical_param::Surface tangle;
+  tangle.has_certain_triangles_only = true;
+  EXPECT_THROW(pcl::detail::requireSphere(tangle), spherical_param::InvalidInput);
   reconstruction.setHandles(spherical_param::HandleMode::None);
   ASSERT_TRUE(pcl::remeshSphericalParam(reconstruction, mesh));
   EXPECT_TRUE(test::isSphere(mesh.polygons, mesh.cloud.width));

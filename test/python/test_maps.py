@@ -53,6 +53,16 @@ class Maps(unittest.TestCase):
         layout = sp.texture_coordinates(mapped)
         self.assertEqual(set(layout.source_triangle), set(range(len(mesh.triangles))))
 
+    def test_a_tangle_has_no_map(self):
+        # A grid whose squares of nine points are at three heights, without walls.
+        i, j = np.divmod(np.arange(324), 18)
+        a, b = np.minimum((j + i % 2 / 2) // 3, 5), np.sqrt(0.75) * i // 3
+        heights = 2.5 * ((a * a + 2 * b * b + a * b) % 3)
+        mesh = sp.reconstruct(np.column_stack((j + i % 2 / 2, np.sqrt(0.75) * i, heights)))
+        self.assertTrue(mesh.has_certain_triangles_only)
+        with self.assertRaisesRegex(sp.InvalidInput, 'it is a tangle; .*topology="sphere"'):
+            sp.sphere_map(mesh)
+
     def test_grids_have_their_vertices_and_are_closed(self):
         for grid, count, frequency in (
             ("icosahedral", 642, 8),  # 10 f^2 + 2

@@ -201,6 +201,9 @@ TEST_F(BadInput, MeshesWithHandlesHaveNoMapToOneSphere) {
                     {remesh_tool, {"torus.xyz", "out.ply", "-handles", "auto"}, cause},
                     {morph_tool, {"in.xyz", "torus.xyz", "out.ply", "-handles", "auto"}, cause}},
                    failed);
+  write("tangle.xyz", tool_test::linesOf(spherical_param::test::terraces()));
+  expectRefused(mesh_tool, {"tangle.xyz", "out.ply", "-sphere", "s.ply"}, failed,
+                "'tangle.xyz' has no map to one sphere: it is a tangle");
   run(mesh_tool,
       {"torus.xyz", "out.ply", "-sphere", "s.ply", "-handles", "none", "-time-limit", "0"});
   EXPECT_TRUE(mesh("s.ply").isSphere());

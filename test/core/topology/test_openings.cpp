@@ -78,7 +78,10 @@ TEST(Openings, ThatCurlAreAsWideAsTheLeastSurfaceOverThem) {
   });
   const std::vector<Opening> openings = openingsOf(half);
   ASSERT_EQ(openings.size(), 1U);
+  // The cone from the middle of the ball to the rim is no smaller.
   EXPECT_GT(openings[0].area, 2.0);
+  EXPECT_LE(openings[0].area, openings[0].boundary_length / 2.0);
+  EXPECT_NEAR(openings[0].width, 4.0 * openings[0].area / openings[0].boundary_length, 1e-12);
   EXPECT_TRUE(openings[0].isCertain());
 }
 
