@@ -277,18 +277,11 @@ std::string verdictOf(const Options& options, const Surface& result) {
   return text + ".";
 }
 
-std::string failureOf(std::size_t first, std::size_t end,
-                      const std::vector<std::vector<Index>>& parts, std::string error) {
+std::string failureOf(std::size_t parts, std::size_t points, std::string error) {
   const std::string function = "reconstruct: ";
   if (error.compare(0, function.size(), function) == 0)
     error.erase(0, function.size());
-  std::size_t points = 0;
-  for (std::size_t part = first; part < end; ++part)
-    points += parts[part].size();
-  return (end > first + 1 ? "parts " + std::to_string(first + 1) + " to " + std::to_string(end)
-                          : "part " + std::to_string(end)) +
-         " of " + std::to_string(parts.size()) + " (" + counted(points, "point") +
-         ") cannot be meshed: " + error;
+  return counted(parts, "part") + " (" + counted(points, "point") + ") cannot be meshed: " + error;
 }
 
 void summarize(std::size_t parts_in_all, Result& result) {

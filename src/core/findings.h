@@ -14,10 +14,9 @@ std::vector<Finding> findingsOf(const Options& given, const Surface& result);
 
 /// Message for parts that cannot be meshed.
 ///
-/// \param first, end indices among the parts.
-/// \param error      message of the exception.
-std::string failureOf(std::size_t first, std::size_t end,
-                      const std::vector<std::vector<Index>>& parts, std::string error);
+/// \param points of these parts.
+/// \param error  why, e.g. the message of the exception.
+std::string failureOf(std::size_t parts, std::size_t points, std::string error);
 
 /// Fills verdict and findings of a result from its surfaces and failures; equal findings of several
 /// surfaces become one.

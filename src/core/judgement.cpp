@@ -38,6 +38,10 @@ Surface judge(const Positions& points, MeshedCloud mesh, Triangles triangles, bo
   result.self_intersections = std::move(found.pairs);
   result.intersections_are_sampled = found.is_sample || mesh.smoothed.is_sample;
   result.openings = openings.found(points, mesh.graph.graph, result.triangles);
+  result.has_certain_triangles_only = mesh.has_certain_triangles_only;
+  if (result.has_certain_triangles_only)
+    for (Opening& opening : result.openings)
+      opening.is_filled = !opening.triangles.empty();
   result.topology =
       checkTopology(result.triangles, static_cast<std::size_t>(points.cols()), options.threads);
   if (!result.topology.closed)
@@ -71,7 +75,6 @@ Surface judge(const Positions& points, MeshedCloud mesh, Triangles triangles, bo
   result.is_noisy = mesh.optimization.report.is_noisy && !areOnGrid(points);
   const bool is_poor = mesh.optimization.report.is_noisy || result.intersecting_triangles > 0;
   result.diagnosis.fills_volume = is_poor && fillVolume(points);
-  result.has_certain_triangles_only = mesh.has_certain_triangles_only;
   result.is_out_of_time = mesh.optimization.report.is_out_of_time;
   return result;
 }

@@ -4,11 +4,10 @@
 #include "consolidation.h"
 #include "default_method.h"
 #include "embedding_history.h"
-#include "face_mesh.h"
 #include "findings.h"
-#include "intersection_removal.h"
 #include "judgement.h"
 #include "local_delaunay_graph.h"
+#include "mesh_cleaning.h"
 #include "open_mesh.h"
 #include "open_surface.h"
 #include "orientation.h"
@@ -143,109 +142,6 @@ internal::OpenMesh openMeshOf(const Positions& points, MeshedCloud& mesh,
   return closed;
 }
 
-/// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
-internal::IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions,
-                                      const internal::OpenMesh& open, const Execution& execution) {
-  internal::IntersectingPairs found =
-      internal::findPairsUpTo(most, positions, surfaceOf(open), execution);
-  const std::vector<Index> triangles = trianglesOfSurface(open);
-  for (auto& pair : found.pairs)
-    for (Index& t : pair)
-      t = triangles[static_cast<std::size_t>(t)];
-  return found;
-}
-
-std::size_t surfaceCount(const internal::OpenMesh& open) {
-  return static_cast<std::size_t>(
-      std::count(open.is_open.begin(), open.is_open.end(), std::uint8_t{0}));
-}
-
-/// Leaves out the triangles that intersect, if at most a number are left out with what hangs on
-/// them. Returns how many intersect.
-std::optional<std::size_t> leaveOutUpTo(std::size_t most,
-                                        const internal::IntersectingTriangles& pairs,
-                                        std::size_t min_piece, const Positions& points,
-                                        internal::OpenMesh& open) {
-  internal::OpenMesh rest = open;
-  const std::size_t left_out =
-      leaveOutTangles(internal::columnCount(points), pairs, min_piece, rest);
-  if (surfaceCount(rest) + most < surfaceCount(open))
-    return std::nullopt;
-  open = std::move(rest);
-  return left_out;
-}
-
-/// Makes the faces of the graph the mesh, without those that intersect. Returns how many do;
-/// nothing, and the mesh as it was, if too few points are left.
-std::optional<std::size_t> takeFaces(const Positions& points, std::size_t min_piece,
-                                     const Execution& execution, MeshedCloud& mesh,
-                                     internal::OpenMesh& open) {
-  constexpr double min_vertices = 1.0 / 3.0;
-  std::optional<internal::FaceMesh> faces =
-      internal::meshFaces(points, mesh.graph.graph, 0, execution);
-  if (!faces)
-    return std::nullopt;
-  internal::OpenMesh certain{std::move(faces->triangles), std::move(faces->is_filling)};
-  const auto all = pairsUpTo(surfaceCount(certain), points, certain, execution);
-  const std::size_t left_out =
-      leaveOutTangles(internal::columnCount(points), all.pairs, min_piece, certain);
-  const Triangles surface = surfaceOf(certain);
-  std::vector<Index> vertices(surface.data(), surface.data() + surface.size());
-  internal::sortUnique(vertices);
-  if (static_cast<double>(vertices.size()) < min_vertices * static_cast<double>(points.cols()))
-    return std::nullopt;
-  open = std::move(certain);
-  mesh.has_certain_triangles_only = true;
-  mesh.embedding.directions.resize(3, 0);
-  mesh.embedding.history = {};
-  for (HandleLoop& handle : mesh.handles)
-    handle.is_cut = true;
-  return left_out;
-}
-
-/// Removes the intersections of a mesh, if the options say so. Returns the number of triangles that
-/// were left out for that; nothing if some still intersect.
-std::optional<std::size_t> clean(const Positions& points, MeshedCloud& mesh, bool is_open,
-                                 const Options& options, const Execution& execution,
-                                 internal::OpenMesh& open) {
-  // More of a surface is no spot, but a tangle.
-  constexpr std::size_t vertices_of = 500;
-  constexpr std::size_t triangles_of = 100;
-  constexpr std::size_t tangle_of = 10;
-  const bool removes =
-      options.intersections == IntersectionMode::Remove && !mesh.optimization.report.is_out_of_time;
-  const bool may_open = options.surface != SurfaceMode::Closed;
-  const Positions& positions = mesh.isSmoothed() ? mesh.smoothed.points : points;
-  const std::size_t triangles = surfaceCount(open);
-  // The optimisation has left those of a closed mesh on its points. One of two may stay.
-  internal::IntersectingPairs found = mesh.optimization.intersecting;
-  if (is_open || mesh.isSmoothed() || (removes && found.is_sample))
-    found = pairsUpTo(removes ? 2 * triangles / tangle_of : 1, positions, open, execution);
-  if (found.pairs.empty())
-    return std::size_t{0};
-  if (!removes)
-    return std::nullopt;
-  const auto min_piece = static_cast<std::size_t>(options.min_points);
-  const internal::Removal most{internal::columnCount(points) / vertices_of,
-                               may_open ? triangles / triangles_of : 0};
-  std::optional<internal::Removal> removal;
-  if (!found.is_sample)
-    removal = clearIntersections(positions, found.pairs, most, open);
-  std::optional<std::size_t> left_out;
-  if (removal)
-    left_out = removal->triangles;
-  if (!left_out && may_open && !found.is_sample)
-    left_out = leaveOutUpTo(triangles / tangle_of, found.pairs, min_piece, points, open);
-  if (!left_out && may_open && !mesh.isSmoothed())
-    left_out = takeFaces(points, min_piece, execution, mesh, open);
-  if (!left_out)
-    return std::nullopt;
-  mesh.smoothed.intersecting_triangles = 0;
-  mesh.smoothed.is_sample = false;
-  mesh.smoothed.report.self_intersections = 0;
-  return left_out;
-}
-
 /// Meshes a graph of points, and judges the mesh.
 ///
 /// \param is_flat all points are in one plane.
@@ -263,7 +159,7 @@ Surface meshGraph(const Positions& points, NeighborGraph graph, SurfaceTopology 
   clock.begin("quality");
   internal::OpenMesh open = openMeshOf(points, mesh, openings);
   const std::optional<std::size_t> left_out =
-      clean(points, mesh, openings.isOpen(), options, clock.execution(), open);
+      internal::cleanMesh(points, openings.isOpen(), options, clock.execution(), mesh, open);
   const FacedBy faced_by = internal::orient(points, info, open, mesh.embedding);
   Surface surface = internal::judge(points, std::move(mesh), surfaceOf(open), left_out.has_value(),
                                     openings, options, clock.execution());
@@ -347,34 +243,28 @@ Surface meshPart(Selection& selection, std::size_t part, const Options& options,
 /// Leaves out the surfaces that are not usable, if the others have a third of the points.
 ///
 /// \param failed receives their points.
-void dropTangles(const std::vector<std::vector<Index>>& parts,
-                 const std::vector<std::size_t>& part_of_surface, Result& result,
-                 std::vector<Index>& failed) {
+void dropTangles(Result& result, std::vector<Index>& failed) {
   constexpr std::size_t kept_of = 3;
-  const auto stays = [](const Surface& surface) {
-    return surface.isUsable() || surface.is_out_of_time;
+  const auto is_tangle = [](const Surface& surface) {
+    return !surface.isUsable() && !surface.is_out_of_time;
   };
-  std::size_t points = 0;
+  std::vector<Surface>& surfaces = result.surfaces;
+  std::vector<Index> dropped;
+  std::size_t tangles = 0;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
-    const std::size_t count = parts[part_of_surface[i]].size();
-    points += count;
-    kept += stays(result.surfaces[i]) ? count : 0;
-  }
-  if (kept_of * kept < points)
-    return;
-  std::vector<Surface> surfaces;
-  for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
-    const std::size_t part = part_of_surface[i];
-    if (stays(result.surfaces[i])) {
-      surfaces.push_back(std::move(result.surfaces[i]));
-      continue;
+  for (const Surface& surface : surfaces)
+    if (is_tangle(surface)) {
+      dropped.insert(dropped.end(), surface.inputs.begin(), surface.inputs.end());
+      ++tangles;
+    } else {
+      kept += surface.inputs.size();
     }
-    result.failures.push_back(
-        internal::failureOf(part, part + 1, parts, "more than 1 % of its triangles intersect"));
-    failed.insert(failed.end(), parts[part].begin(), parts[part].end());
-  }
-  result.surfaces = std::move(surfaces);
+  if (tangles == 0 || kept_of * kept < kept + dropped.size())
+    return;
+  surfaces.erase(std::remove_if(surfaces.begin(), surfaces.end(), is_tangle), surfaces.end());
+  result.failures.push_back(
+      internal::failureOf(tangles, dropped.size(), "more than 1 % of the triangles intersect"));
+  failed.insert(failed.end(), dropped.begin(), dropped.end());
 }
 
 /// Meshes all parts, each with its share of the time. One of several that cannot be meshed is left
@@ -391,7 +281,6 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   const auto all = static_cast<double>(left);
   std::exception_ptr first_error;
   std::vector<Index> failed;  // points of parts that cannot be meshed
-  std::vector<std::size_t> part_of_surface;
   for (std::size_t part = 0; part < parts.size(); ++part) {
     const auto count = static_cast<double>(parts[part].size());
     clock.beginPart(part, parts.size(), count / static_cast<double>(left), count / all);
@@ -399,13 +288,14 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
     const auto leave_out = [&](const std::exception& error, std::size_t end) {
       if (!first_error)
         first_error = std::current_exception();
-      result.failures.push_back(internal::failureOf(part, end, parts, error.what()));
+      const std::size_t before = failed.size();
       for (std::size_t i = part; i < end; ++i)
         failed.insert(failed.end(), parts[i].begin(), parts[i].end());
+      result.failures.push_back(
+          internal::failureOf(end - part, failed.size() - before, error.what()));
     };
     try {
       result.surfaces.push_back(meshPart(selection, part, options, clock, result.left_out));
-      part_of_surface.push_back(part);
     } catch (const InvalidInput& error) {
       leave_out(error, part + 1);
     } catch (const internal::OutOfTime& error) {
@@ -417,8 +307,8 @@ void meshParts(Selection& selection, const Options& options, StageClock& clock, 
   }
   if (result.surfaces.empty())
     std::rethrow_exception(first_error);
-  if (options.intersections == IntersectionMode::Remove)
-    dropTangles(parts, part_of_surface, result, failed);
+  if (internal::removesIntersections(options))
+    dropTangles(result, failed);
   std::vector<Index>& left_out = result.left_out.other_parts;
   left_out.insert(left_out.end(), failed.begin(), failed.end());
   std::sort(left_out.begin(), left_out.end());

@@ -143,15 +143,13 @@ TEST(Findings, OfSeveralPartsNameThemAndAreSaidOnce) {
   result.surfaces.resize(3, soundResult());
   result.surfaces[0].findings = {{"noisy", "consolidation", "auto", false}};
   result.surfaces[2].findings = {{"noisy", "consolidation", "auto", false}, {"torn", "", "", true}};
-  const std::vector<std::vector<Index>> parts{{}, {}, {}, std::vector<Index>(1200)};
-  result.failures = {internal::failureOf(3, 4, parts, "reconstruct: it is flat")};
-  EXPECT_EQ(internal::failureOf(2, 4, parts, "slow"),
-            "parts 3 to 4 of 4 (1,200 points) cannot be meshed: slow");
+  EXPECT_EQ(internal::failureOf(1, 1200, "reconstruct: it is flat"),
+            "1 part (1,200 points) cannot be meshed: it is flat");
+  EXPECT_EQ(internal::failureOf(2, 1200, "slow"), "2 parts (1,200 points) cannot be meshed: slow");
   internal::summarize(4, result);
   std::vector<std::string> texts;
   for (const Finding& finding : result.findings)
     texts.push_back(finding.text);
-  EXPECT_EQ(result.failures[0], "part 4 of 4 (1,200 points) cannot be meshed: it is flat");
   EXPECT_EQ(texts, (std::vector<std::string>{"part 1, part 3: noisy", "part 3: torn"}));
   EXPECT_EQ(result.verdict, "3 surfaces, 1 with faults. 1 part cannot be meshed.");
   result = {};
@@ -221,6 +219,15 @@ TEST(Verdict, SaysInProportionWhatIsWrong) {
     r.boundary.resize(1);
     r.diagnosis.edges_outside_graph = 0.12;
   });
+  expect(
+      "A sound mesh in 3 pieces with 3 openings, but it has only the triangles that are certain.",
+      [](Surface& r) {
+        r.topology.components = 3;
+        r.boundary.resize(3);
+        r.has_certain_triangles_only = true;
+      });
+  expect("A sound mesh, but it leaves out 20 triangles that would intersect.",
+         [](Surface& r) { r.left_out_triangles = 20; });
   expect("The mesh has faults: 7 of 1,996 triangles intersect.",
          [](Surface& r) { r.intersecting_triangles = 7; });
 }

@@ -386,7 +386,7 @@ class Parts(unittest.TestCase):
         side = np.arange(10.0)
         flat = np.stack(np.meshgrid(side, side, [50.0]), axis=-1).reshape(-1, 3) / 10
         cloud = np.concatenate([self.large, flat])
-        with self.assertWarnsRegex(UserWarning, r"part 2 of 2 \(100 points\) cannot be meshed"):
+        with self.assertWarnsRegex(UserWarning, r"1 part \(100 points\) cannot be meshed"):
             mesh = sp.reconstruct(cloud, surface="closed")
         self.assertEqual(len(mesh.vertices), 400)
 

@@ -386,13 +386,13 @@ void leaveOneFan(std::size_t vertices, OpenMesh& mesh) {
   }
 }
 
-/// Leaves out the pieces of the surface with fewer triangles than a number, but the largest.
-void leaveLargePieces(std::size_t vertices, std::size_t min_piece, OpenMesh& mesh) {
+/// Leaves out small pieces of the surface, but the largest.
+void leaveLargePieces(std::size_t vertices, OpenMesh& mesh) {
+  constexpr Index min_triangles = 50;
   const Triangles surface = surfaceOf(mesh);
   UnionFind pieces = piecesOf(surface, vertices);
   const Indexed<Index> sizes = sizesOf(surface, vertices, pieces);
-  const Index least =
-      std::min(static_cast<Index>(min_piece), *std::max_element(sizes.begin(), sizes.end()));
+  const Index least = std::min(min_triangles, *std::max_element(sizes.begin(), sizes.end()));
   for (Index t = 0; t < mesh.is_open.count(); ++t)
     if (sizes[pieces.find(mesh.triangles(0, t))] < least)
       mesh.is_open[t] = 1;
@@ -417,7 +417,7 @@ std::optional<Removal> clearIntersections(const Positions& points,
 }
 
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
-                            std::size_t min_piece, OpenMesh& mesh) {
+                            OpenMesh& mesh) {
   const auto open = [&] {
     return std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{1});
   };
@@ -425,7 +425,7 @@ std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& p
   leaveOutIntersecting(pairs, mesh);
   const auto left_out = open() - before;
   leaveOneFan(vertices, mesh);
-  leaveLargePieces(vertices, min_piece, mesh);
+  leaveLargePieces(vertices, mesh);
   return static_cast<std::size_t>(left_out);
 }
 

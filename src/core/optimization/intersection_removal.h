@@ -37,14 +37,13 @@ std::optional<Removal> clearIntersections(const Positions& points,
                                           OpenMesh& mesh);
 
 /// Leaves out all triangles that intersect, those with the most intersections first; then the
-/// smaller fans at a vertex that has several, and small pieces. Vertices may be left without
-/// triangles.
+/// smaller fans at a vertex that has several, and pieces of fewer than 50 triangles, but the
+/// largest. Vertices may be left without triangles.
 ///
-/// \param pairs     all that intersect, of the triangles of `mesh`.
-/// \param min_piece triangles of a piece; the largest stays, however small.
-/// \param mesh      with at least one triangle that intersects none.
+/// \param pairs all that intersect, of the triangles of `mesh`.
+/// \param mesh  with at least one triangle that intersects none.
 /// \return the number of triangles that were left out because they intersect.
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
-                            std::size_t min_piece, OpenMesh& mesh);
+                            OpenMesh& mesh);
 
 }  // namespace spherical_param::internal

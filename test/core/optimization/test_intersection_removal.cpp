@@ -85,7 +85,7 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   points.rightCols(200) = test::randomCube(200, 1) * 0.2;
   OpenMesh mesh = closedMesh(triangulateSphere(test::spiralSphere(600)));
   const std::size_t left_out =
-      internal::leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), 32, mesh);
+      internal::leaveOutTangles(600, findSelfIntersections(points, mesh.triangles), mesh);
   const Triangles surface = internal::surfaceOf(mesh);
   EXPECT_GT(left_out, 200U);
   EXPECT_LE(left_out + internal::columnCount(surface), 1196U);
@@ -94,6 +94,32 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   EXPECT_TRUE(topology.manifold() && topology.oriented);
   EXPECT_EQ(topology.components, 1U);
   EXPECT_GT(surface.cols(), 700);
+}
+
+TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {
+  const Positions points = test::spiralSphere(600);
+  const Triangles triangles = triangulateSphere(points);
+  // The number of triangles within a height of the pole, and of those that stay if they are a piece
+  // of their own beside the rest of the sphere, or alone.
+  const auto kept_of = [&](double height, bool is_alone) {
+    OpenMesh mesh = closedMesh(triangles);
+    Index cap = 0;
+    for (Index t = 0; t < mesh.is_open.count(); ++t) {
+      const double lowest = points(2, triangles.col(t)).minCoeff();
+      cap += lowest > height ? 1 : 0;
+      mesh.is_open[t] = lowest <= height && (is_alone || lowest > height - 0.2) ? 1 : 0;
+    }
+    const auto before = internal::surfaceOf(mesh).cols();
+    EXPECT_EQ(internal::leaveOutTangles(600, {}, mesh), 0U);
+    return std::pair(cap, cap - (before - internal::surfaceOf(mesh).cols()));
+  };
+  const auto [small, kept_of_small] = kept_of(0.93, false);
+  ASSERT_TRUE(small > 20 && small < 50) << small;
+  EXPECT_EQ(kept_of_small, 0);
+  EXPECT_EQ(kept_of(0.93, true), std::pair(small, Eigen::Index{small}));
+  const auto [large, kept_of_large] = kept_of(0.86, false);
+  ASSERT_TRUE(large >= 50 && large < 100) << large;
+  EXPECT_EQ(kept_of_large, large);
 }
 
 }  // namespace

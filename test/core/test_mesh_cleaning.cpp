@@ -1,0 +1,107 @@
+#include "mesh_cleaning.h"
+
+#include "graphs.h"
+#include "open_shapes.h"
+#include "reconstructions.h"
+#include "spherical_param/self_intersection.h"
+#include "spherical_param/sphere_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace spherical_param {
+namespace {
+
+using test::surfaceOf;
+
+TEST(MeshCleaning, TakesASpotApartIfTheOptionsSaySo) {
+  Positions points = test::spiralSphere(600);
+  const Triangles triangles = triangulateSphere(points);
+  points.col(200) *= -1.5;
+  internal::MeshedCloud mesh;
+  mesh.optimization.triangles = triangles;
+  mesh.optimization.intersecting.pairs = findSelfIntersections(points, triangles);
+  ASSERT_FALSE(mesh.optimization.intersecting.pairs.empty());
+  const auto cleaned = [&](const Options& options) {
+    internal::OpenMesh open{triangles,
+                            internal::Indexed<std::uint8_t>(internal::columnCount(triangles), 0)};
+    const auto left_out = internal::cleanMesh(points, false, options, {}, mesh, open);
+    const Triangles surface = internal::surfaceOf(open);
+    EXPECT_EQ(findSelfIntersections(points, surface).empty(), left_out.has_value());
+    EXPECT_TRUE(left_out || surface == triangles);
+    return left_out;
+  };
+  Options options = withTopology({});
+  EXPECT_TRUE(cleaned(options));
+  options.surface = SurfaceMode::Closed;
+  EXPECT_EQ(cleaned(options), 0U);
+  options.method = Method::Paper;
+  EXPECT_FALSE(cleaned(options));
+  options = withTopology({});
+  options.intersections = IntersectionMode::Keep;
+  EXPECT_FALSE(cleaned(options));
+  mesh.optimization.report.is_out_of_time = true;
+  EXPECT_FALSE(cleaned(withTopology({})));
+}
+
+TEST(MeshCleaning, AScanHasNoIntersectionsAndASphereEveryPoint) {
+  // Random points of a thin plate: false edges join its two sides, and the sphere is a tangle.
+  Positions points = test::randomSphere(300, 2);
+  points.row(2) *= 0.1;
+  const Result scan = reconstruct(points);
+  const Surface& surface = scan.surface();
+  EXPECT_EQ(surface.intersecting_triangles, 0U);
+  EXPECT_TRUE(surface.topology.manifold() && surface.topology.oriented);
+  const std::vector<Index>& unmeshed = scan.left_out.unmeshed;
+  EXPECT_TRUE(std::is_sorted(unmeshed.begin(), unmeshed.end()));
+  EXPECT_EQ(surface.inputs.size() + unmeshed.size() + scan.left_out.outliers.size(), 300U);
+  for (const Index i : unmeshed)
+    EXPECT_EQ(surface.vertexOf(i), -1);
+  const Surface sphere = surfaceOf(points, test::sphere());
+  EXPECT_TRUE(test::isSphereOverAll(sphere.triangles, 300));
+  EXPECT_GT(sphere.intersecting_triangles, 0U);
+}
+
+TEST(MeshCleaning, OfATangleTheTrianglesThatAreCertainStay) {
+  const Positions points = test::terraces();
+  const Result scan = reconstruct(points);
+  const Surface& surface = scan.surface();
+  EXPECT_TRUE(surface.has_certain_triangles_only);
+  EXPECT_TRUE(findSelfIntersections(points(Eigen::all, surface.input_of_vertex), surface.triangles)
+                  .empty());
+  EXPECT_TRUE(surface.topology.manifold() && surface.topology.oriented);
+  EXPECT_EQ(surface.topology.boundary_loops, surface.boundary.size());
+  EXPECT_GT(surface.triangles.cols(), 150);
+  EXPECT_GT(scan.left_out.unmeshed.size(), 50U);
+  EXPECT_EQ(surface.sphere.cols(), 0);
+  for (const Opening& opening : surface.openings)
+    EXPECT_EQ(opening.is_filled, !opening.triangles.empty());
+  EXPECT_NE(scan.verdict.find("has only the triangles that are certain"), std::string::npos);
+  EXPECT_FALSE(surfaceOf(points, test::sphere()).has_certain_triangles_only);
+}
+
+TEST(MeshCleaning, ATangleAmongOtherPartsIsLeftOut) {
+  // A line with three bends, in one plane.
+  Positions bent(3, 200);
+  for (Index i = 0; i < 200; ++i) {
+    const double angle = 2.0 * test::kPi * i / 200;
+    const double radius = 0.32 + 0.048 * std::cos(3.0 * angle);
+    bent.col(i) << 2.0 + radius * std::cos(angle), radius * std::sin(angle), 0.0;
+  }
+  const Result scan = reconstruct(test::horizontally(0.3 * test::spiralSphere(600), bent));
+  EXPECT_EQ(scan.surfaces.size(), 1U);
+  EXPECT_EQ(scan.left_out.other_parts.size(), 200U);
+  ASSERT_EQ(scan.failures.size(), 1U);
+  EXPECT_EQ(scan.failures[0],
+            "1 part (200 points) cannot be meshed: more than 1 % of the triangles intersect");
+  // Alone it stays.
+  EXPECT_FALSE(reconstruct(bent).isUsable());
+}
+
+}  // namespace
+}  // namespace spherical_param
