@@ -89,6 +89,21 @@ TEST(Parts, AreJoinedAlongARimWhereTheSpacingJumps) {
   EXPECT_EQ(surface.intersecting_triangles, 0U);
 }
 
+TEST(Parts, AreNotJoinedToNetsOfPointsInside) {
+  // A net of 100 points in a sphere of 2,000, which their stars reach, but farther from each other.
+  const Positions sphere = spiralSphere(2000);
+  const Positions points = horizontally(sphere, 0.7 * randomSphere(100, 3));
+  const NeighborLists lists = test::bruteForceNeighbors(points, 32);
+  const internal::Stars stars = test::starsOf(points, lists);
+  const Graph agreed = internal::agreedGraph(points, stars, {});
+  std::size_t reaching = 0;
+  for (Index i = 2000; i < 2100; ++i)
+    for (const Index j : stars.of(i))
+      reaching += j < 2000 ? 1 : 0;
+  EXPECT_GT(reaching, 500U);
+  EXPECT_EQ(internal::joinedAlongRims(points, agreed, stars).neighbors, agreed.neighbors);
+}
+
 TEST(Parts, HoldWhatIsNearAndNotWhatIsFarFromAll) {
   const Positions sphere = spiralSphere(1000);
   Positions others(3, 3);
