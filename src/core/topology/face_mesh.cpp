@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <limits>
 #include <queue>
-#include <set>
 #include <tuple>
 #include <unordered_set>
 #include <utility>
@@ -402,7 +401,7 @@ std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, s
   if (rotation.hasOpposite(graph))
     rotation.separateOpposite();
   reportFraction(reportOf(execution, "openings"), 0.5);
-  const TriangleList found = trianglesOf(points, rotation);
+  TriangleList found = trianglesOf(points, rotation);
   Triangles faces = matrixOf(found);
   FaceMesh mesh;
   for (bool is_cut = true; std::exchange(is_cut, false);) {
@@ -418,9 +417,11 @@ std::optional<FaceMesh> meshFaces(const Positions& points, const Graph& graph, s
     faces = filtered(mesh.triangles, [&](Eigen::Index t) { return region.contains(t); });
     is_cut = faces.cols() < mesh.triangles.cols();
   }
-  const std::set<std::array<Index, 3>> known(found.begin(), found.end());
-  for (const auto& t : mesh.triangles.colwise())
-    mesh.is_filling.push_back(known.count({t[0], t[1], t[2]}) > 0 ? 0 : 1);
+  std::sort(found.begin(), found.end());
+  for (const auto& t : mesh.triangles.colwise()) {
+    const std::array<Index, 3> corners{t[0], t[1], t[2]};
+    mesh.is_filling.push_back(std::binary_search(found.begin(), found.end(), corners) ? 0 : 1);
+  }
   return mesh;
 }
 
