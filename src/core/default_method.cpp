@@ -6,6 +6,7 @@
 #include "face_mesh.h"
 #include "glued_spheres.h"
 #include "graph_building.h"
+#include "mesh_cleaning.h"
 #include "mesh_optimization.h"
 #include "orientation.h"
 #include "spherical_param/mesh_topology.h"
@@ -245,7 +246,7 @@ std::vector<HandleLoop> handlesOf(const Positions& points, const std::vector<Cut
 
 MeshedCloud meshByDefault(const Positions& points, NeighborGraph graph, SurfaceTopology& topology,
                           const Options& options, StageClock& clock) {
-  const bool removes = options.intersections == IntersectionMode::Remove;
+  const bool removes = removesIntersections(options);
   const bool may_open =
       removes && options.surface == SurfaceMode::Auto && topology.openings.fillsPossible();
   Mesher mesher(points, graph.graph, topology, options, clock);
