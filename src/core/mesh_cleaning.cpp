@@ -5,24 +5,18 @@
 #include "point_set.h"
 #include "spherical_param/self_intersection.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::internal {
 namespace {
 
-std::size_t surfaceCount(const OpenMesh& open) {
-  return static_cast<std::size_t>(
-      std::count(open.is_open.begin(), open.is_open.end(), std::uint8_t{0}));
-}
-
 /// Pairs of triangles of the surface of a mesh that intersect, until more than a number do.
 IntersectingPairs pairsUpTo(std::size_t most, const Positions& positions, const OpenMesh& open,
                             const Execution& execution) {
-  IntersectingPairs found = findPairsUpTo(most, positions, surfaceOf(open), execution);
   const std::vector<Index> triangles = trianglesOfSurface(open);
+  IntersectingPairs found =
+      findPairsUpTo(most, positions, open.triangles(Eigen::all, triangles), execution);
   for (auto& pair : found.pairs)
     for (Index& t : pair)
       t = triangles[static_cast<std::size_t>(t)];

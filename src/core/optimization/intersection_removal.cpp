@@ -418,15 +418,12 @@ std::optional<Removal> clearIntersections(const Positions& points,
 
 std::size_t leaveOutTangles(std::size_t vertices, const IntersectingTriangles& pairs,
                             OpenMesh& mesh) {
-  const auto open = [&] {
-    return std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{1});
-  };
-  const auto before = open();
+  const std::size_t before = surfaceCount(mesh);
   leaveOutIntersecting(pairs, mesh);
-  const auto left_out = open() - before;
+  const std::size_t left_out = before - surfaceCount(mesh);
   leaveOneFan(vertices, mesh);
   leaveLargePieces(vertices, mesh);
-  return static_cast<std::size_t>(left_out);
+  return left_out;
 }
 
 }  // namespace spherical_param::internal

@@ -348,6 +348,11 @@ std::vector<Index> trianglesOfSurface(const OpenMesh& mesh) {
   return surface;
 }
 
+std::size_t surfaceCount(const OpenMesh& mesh) {
+  return static_cast<std::size_t>(
+      std::count(mesh.is_open.begin(), mesh.is_open.end(), std::uint8_t{0}));
+}
+
 Triangles surfaceOf(const OpenMesh& mesh) {
   return mesh.triangles(Eigen::all, trianglesOfSurface(mesh));
 }

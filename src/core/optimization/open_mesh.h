@@ -5,6 +5,7 @@
 #include "sphere_mesh.h"
 #include "spherical_param/types.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -37,6 +38,9 @@ OpenMesh openMesh(const Positions& points, const Triangles& triangles, const Ope
 
 /// The triangles of an open mesh that are on the surface, ascending.
 std::vector<Index> trianglesOfSurface(const OpenMesh& mesh);
+
+/// Their number.
+std::size_t surfaceCount(const OpenMesh& mesh);
 
 /// Their corners.
 Triangles surfaceOf(const OpenMesh& mesh);

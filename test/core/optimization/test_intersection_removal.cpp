@@ -96,6 +96,16 @@ TEST(IntersectionRemoval, ATangleIsLeftOutAsAWhole) {
   EXPECT_GT(surface.cols(), 700);
 }
 
+TEST(IntersectionRemoval, CountsWhatIsLeftOutBecauseItIntersects) {
+  // Nothing hangs on what intersects at one vertex.
+  Pierced sphere;
+  const auto pairs = findSelfIntersections(sphere.points, sphere.mesh.triangles);
+  const std::size_t left_out = internal::leaveOutTangles(400, pairs, sphere.mesh);
+  EXPECT_EQ(left_out + internal::surfaceCount(sphere.mesh), 796U);
+  EXPECT_GT(left_out, 0U);
+  EXPECT_EQ(sphere.intersections(), 0U);
+}
+
 TEST(IntersectionRemoval, SmallPiecesAreLeftOutButTheLargest) {
   const Positions points = test::spiralSphere(600);
   const Triangles triangles = triangulateSphere(points);
