@@ -43,8 +43,7 @@ void requireSphere(const spherical_param::Surface& surface) {
     return;
   if (surface.has_certain_triangles_only)
     throw InvalidInput("the mesh has no map to one sphere: it is a tangle; call "
-                       "setTopology(TopologyMode::Sphere), "
-                       "which maps it as it is");
+                       "setTopology(TopologyMode::Sphere), which maps it as it is");
   const std::size_t handles = surface.genus();
   throw InvalidInput(
       "the mesh has no map to one sphere: it " +

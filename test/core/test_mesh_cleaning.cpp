@@ -1,6 +1,5 @@
 #include "mesh_cleaning.h"
 
-#include "graphs.h"
 #include "open_shapes.h"
 #include "reconstructions.h"
 #include "spherical_param/self_intersection.h"
