@@ -4,10 +4,11 @@
 #include "common/point_data.h"
 
 #include <string>
+#include <vector>
 
 namespace spherical_param::tools {
 
-/// Reads the points of a .pcd, .ply, .obj, .xyz or .txt file with their colours and normals.
+/// Reads the points of a PCD, PLY, OBJ or text file with their colours, normals and other numbers.
 /// Coordinates that are not finite are kept. Besides the points, a block of the file is in memory,
 /// but for compressed .pcd, whose fields have to be unpacked as a whole.
 ///
@@ -15,7 +16,12 @@ namespace spherical_param::tools {
 /// without a message. Ours are fuzzed (test/fuzz).
 ///
 /// \param progress is called with the fraction that is read; may be empty.
+/// \param columns  of text, from the first on; "-" is left out. Empty: those that it says itself.
 /// \throw UsageError, Failure.
-PointData readCloud(const std::string& path, const FileProgress& progress = {});
+PointData readCloud(const std::string& path, const FileProgress& progress = {},
+                    const std::vector<std::string>& columns = {});
+
+/// The names in "x,y,z,-,red,green,blue". \throw UsageError if x, y and z are not among them.
+std::vector<std::string> parseColumns(const std::string& text);
 
 }  // namespace spherical_param::tools

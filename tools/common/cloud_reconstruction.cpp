@@ -3,6 +3,7 @@
 #include "common/cloud_reader.h"
 #include "common/errors.h"
 #include "common/text.h"
+#include "spherical_param/mesh_measures.h"
 
 #include <utility>
 
@@ -22,6 +23,23 @@ CloudInfo infoOf(const PointData& data) {
   }
   info.unused = data.unused;
   return info;
+}
+
+/// The points with the normals of their meshes.
+std::shared_ptr<const PointData> withNormals(PointData data, const CloudReconstruction& cloud) {
+  data.normals.assign(data.points.size(), Normal{});
+  for (const Surface& surface : cloud.result.surfaces) {
+    const Positions normals =
+        areaWeightedNormals(vertexPositions(cloud, surface), surface.triangles);
+    const auto given = static_cast<Eigen::Index>(surface.vertexCount() - surface.added_vertices);
+    for (Eigen::Index v = 0; v < given; ++v) {
+      const auto point =
+          static_cast<std::size_t>(surface.input_of_vertex[static_cast<std::size_t>(v)]);
+      const Eigen::Vector3d normal = normals.col(v).stableNormalized();
+      data.normals[point] = toFloat({normal.x(), normal.y(), normal.z()});
+    }
+  }
+  return std::make_shared<PointData>(std::move(data));
 }
 
 /// Progress of the library on the console: each stage begins when the one before ends.
@@ -64,9 +82,11 @@ private:
 void reconstructCloud(const std::string& path, const ReconstructionSettings& settings,
                       Console& console, CloudReconstruction& cloud) {
   console.begin("read");
-  cloud.data = std::make_shared<PointData>(
-      readCloud(path, [&console](double fraction) { console.update(fraction); }));
-  const double seconds = console.end(std::to_string(cloud.data->points.size()) + " points");
+  cloud.data = std::make_shared<PointData>(readCloud(
+      path, [&console](double fraction) { console.update(fraction); }, settings.columns));
+  const std::string& contents = cloud.data->contents;
+  const double seconds = console.end(std::to_string(cloud.data->points.size()) + " points" +
+                                     (contents.empty() ? "" : "; " + contents));
   StageProgress progress(console);
   Options options = settings.options;
   options.progress = [&progress](const Progress& reported) { return progress(reported); };
@@ -74,6 +94,9 @@ void reconstructCloud(const std::string& path, const ReconstructionSettings& set
     cloud.result = reconstruct(positionsOf(*cloud.data), options, {}, infoOf(*cloud.data));
   });
   progress.finish();
+  if (cloud.data->has_null_normals) {
+    cloud.data = withNormals(*cloud.data, cloud);
+  }
   cloud.stages = cloud.result.stages;
   cloud.stages.insert(cloud.stages.begin(), {"read", seconds});
 }

@@ -1,9 +1,12 @@
 #include "common/file_formats.h"
 
 #include "common/errors.h"
+#include "common/input_file.h"
 #include "common/text.h"
 
+#include <array>
 #include <filesystem>
+#include <system_error>
 
 namespace spherical_param::tools {
 namespace {
@@ -24,6 +27,67 @@ std::string purposeOf(FileUse use) {
   return use == FileUse::ReadCloud    ? "points are read from"
          : use == FileUse::WriteCloud ? "points are written to"
                                       : "meshes are written to";
+}
+
+/// A format that is not read, by its extension and perhaps how its files begin.
+struct ForeignFormat {
+  std::string_view extension;
+  std::string_view beginning;
+  const char* name;
+  const char* remedy;
+};
+
+constexpr std::array foreign_formats = {
+    ForeignFormat{".las", "LASF", "LAS", "pdal translate in.las out.ply"},
+    ForeignFormat{".laz", "", "LAZ", "pdal translate in.laz out.ply"},
+    ForeignFormat{".e57", "ASTM-E57", "E57",
+                  "CloudCompare -SILENT -C_EXPORT_FMT PLY -O in.e57 -SAVE_CLOUDS"},
+    ForeignFormat{".ptx", "", "PTX",
+                  "CloudCompare -SILENT -C_EXPORT_FMT PLY -O in.ptx -SAVE_CLOUDS"},
+    ForeignFormat{".stl", "", "STL, a mesh", "pcl_converter in.stl out.ply"},
+    ForeignFormat{".glb", "glTF", "glTF, a mesh", "assimp export in.glb out.ply"},
+    ForeignFormat{".gltf", "", "glTF, a mesh", "assimp export in.gltf out.ply"},
+    ForeignFormat{".off", "OFF", "OFF, a mesh", "assimp export in.off out.ply"},
+    ForeignFormat{".vtk", "# vtk", "VTK", "pcl_vtk2pcd in.vtk out.pcd"},
+    ForeignFormat{".bag", "#ROSBAG", "a bag of ROS",
+                  "rosrun pcl_ros bag_to_pcd in.bag /points out"},
+    ForeignFormat{".db3", "SQLite format 3", "a bag of ROS 2",
+                  "ros2 bag play in.db3 & ros2 run pcl_ros pointcloud_to_pcd"},
+    ForeignFormat{".mcap", "\x89MCAP", "a bag of ROS 2",
+                  "ros2 bag play in.mcap & ros2 run pcl_ros pointcloud_to_pcd"}};
+
+[[noreturn]] void failForeign(const std::string& path, const ForeignFormat& format) {
+  throw UsageError(inQuotes(path) + " is " + format.name + ", which no points are read from",
+                   std::string("convert it: ") + format.remedy);
+}
+
+/// The extension that belongs to the content of a file; empty if it is not known.
+std::string extensionOfContent(const std::string& path) {
+  constexpr std::size_t most_bytes = 4096;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return "";
+  }
+  const std::string content = readBeginning(path, most_bytes);
+  const auto begins = [&](std::string_view text) {
+    return !text.empty() && content.compare(0, text.size(), text) == 0;
+  };
+  for (const ForeignFormat& format : foreign_formats) {
+    if (begins(format.beginning)) {
+      failForeign(path, format);
+    }
+  }
+  if (begins("ply\n") || begins("ply\r")) {
+    return ".ply";
+  }
+  if (content.find("FIELDS ") != std::string::npos && content.find("DATA ") != std::string::npos) {
+    return ".pcd";
+  }
+  if (begins("v ") || content.find("\nv ") != std::string::npos) {
+    return ".obj";
+  }
+  const bool is_text = content.find('\0') == std::string::npos;
+  return is_text && content.find_first_of("0123456789") != std::string::npos ? ".txt" : "";
 }
 
 }  // namespace
@@ -49,14 +113,21 @@ std::string extensionsFor(FileUse use) {
 }
 
 FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others) {
-  const FileFormat format = formatOf(path);
+  FileFormat format = formatOf(path);
+  if (use == FileUse::ReadCloud && (format == nullptr || !isUsable(*format, use))) {
+    const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+    for (const ForeignFormat& foreign : foreign_formats) {
+      if (extension == foreign.extension) {
+        failForeign(path, foreign);
+      }
+    }
+    format = formatOf("a" + extensionOfContent(path));
+  }
   if (format != nullptr && isUsable(*format, use)) {
     return format;
   }
   throw UsageError(inQuotes(path) + " has an extension that no " + purposeOf(use),
-                   format != nullptr && format->extension == ".vtk"
-                       ? "convert it to .pcd with PCL's tool: pcl_vtk2pcd in.vtk out.pcd"
-                       : "use one of " + extensionsFor(use) + others);
+                   "use one of " + extensionsFor(use) + others);
 }
 
 }  // namespace spherical_param::tools

@@ -3,6 +3,7 @@
 #include "common/errors.h"
 #include "common/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -59,6 +60,31 @@ std::optional<double> toReal(std::string_view text) {
     return std::nullopt;
   }
   return value;
+}
+
+std::optional<double> toValue(std::string_view text) {
+  if (const std::optional<double> value = toReal(text)) {
+    return value;
+  }
+  std::string plain = lowerCase(text);
+  if (plain == "null" || plain == "na" || plain == "n/a") {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const std::size_t mark = plain.find(".#");  // Microsoft's
+  if (mark != std::string::npos && toReal(plain.substr(0, mark))) {
+    const bool is_infinite = plain.compare(mark + 2, 3, "inf") == 0;
+    const double value = is_infinite ? std::numeric_limits<double>::infinity()
+                                     : std::numeric_limits<double>::quiet_NaN();
+    return plain[0] == '-' ? -value : value;
+  }
+  if (std::count(plain.begin(), plain.end(), ',') == 1 && plain.find('.') == std::string::npos) {
+    plain[plain.find(',')] = '.';
+  }
+  const std::size_t exponent = plain.find('d');  // Fortran's
+  if (exponent != std::string::npos && exponent > 0) {
+    plain[exponent] = 'e';
+  }
+  return toReal(plain);
 }
 
 std::optional<std::int64_t> toInteger(std::string_view text) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace spherical_param::tools {
@@ -35,14 +36,24 @@ inline std::vector<Normal> toNormals(const Positions& directions) {
   return normals;
 }
 
+/// A further number of each point, e.g. its intensity.
+struct Scalar {
+  std::string name;  ///< without blanks
+  std::vector<double> values;
+  bool is_double = false;  ///< single precision would change them
+};
+
 /// Points and what belongs to each of them.
 struct PointData {
   std::vector<Point> points;       ///< finite or not
   std::vector<Normal> normals;     ///< one per point, or none at all
   std::vector<Color> colors;       ///< one per point, or none at all
+  std::vector<Scalar> scalars;     ///< each with one number per point
   std::vector<Index> unused;       ///< points that are in no face of the file
   std::optional<Point> viewpoint;  ///< of the sensor, if the file says it
+  bool has_null_normals = false;   ///< the file has normals that are all zero: there are none
   bool has_alpha = false;          ///< the alpha of the colours comes from a file; else it is 255
+  std::string contents;            ///< what was taken from a file, e.g. "text, columns x y z"
 
   Eigen::Map<const Eigen::Vector3d> position(std::size_t i) const {
     return Eigen::Map<const Eigen::Vector3d>(points[i].data());

@@ -4,6 +4,7 @@
 #include "common/input_file.h"
 #include "common/numbers.h"
 #include "common/text.h"
+#include "formats/text_lines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,21 +95,15 @@ std::vector<FilePair> readPointPairs(const std::string& path, const CloudReconst
   if (size > most_bytes) {
     failContent(path, "it has " + std::to_string(size) + " bytes, which are no list of pairs");
   }
-  const std::string text = readBeginning(path, static_cast<std::size_t>(size));
   const PairReader reader(path, first, second);
   std::vector<FilePair> pairs;
-  std::vector<std::string_view> words;
-  std::size_t line = 0;
-  for (std::size_t begin = 0; begin < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string_view content(text.data() + begin, end - begin);
-    content = content.substr(0, content.find('#'));
-    split(content, " \t\r,;", words);
+  Words words;
+  forEachLine(path, {}, [&](std::size_t line, std::string_view content) {
+    split(withoutRemark(content), " \t\r,;", words);
     if (!words.empty()) {
-      pairs.push_back(reader.read(line + 1, words));
+      pairs.push_back(reader.read(line, words));
     }
-    begin = end + 1;
-  }
+  });
   return pairs;
 }
 

@@ -1,5 +1,6 @@
 #include "common/reconstruction_options.h"
 
+#include "common/cloud_reader.h"
 #include "common/errors.h"
 #include "common/numbers.h"
 #include "common/text.h"
@@ -123,6 +124,11 @@ std::vector<OptionInfo> reconstructionOptions(const Options& defaults) {
                      row.expert});
   }
   lines.push_back(
+      {"columns", "NAMES",
+       "of a text file, from the first on: x,y,z,-,red,green,blue,nx,ny,nz; - leaves one "
+       "out, other names are kept as numbers (as the file says)",
+       false});
+  lines.push_back(
       {"strict", "",
        "end with exit code 1 if the mesh has self-intersections or folds, fills openings, "
        "cuts handles or joins parts",
@@ -135,6 +141,9 @@ ReconstructionSettings parseReconstructionOptions(const CommandLine& command_lin
   ReconstructionSettings settings;
   settings.options = parseOptions(command_line, defaults);
   settings.strict = command_line.has("strict");
+  if (command_line.has("columns")) {
+    settings.columns = parseColumns(command_line.value("columns", ""));
+  }
   return settings;
 }
 
@@ -157,6 +166,7 @@ Json reconstructionOptionsToJson(const ReconstructionSettings& settings) {
   for (const OptionRow& row : toolRows()) {
     json[row.name] = failedCondition(row, in_force) ? Json(nullptr) : jsonOf(row.get(in_force));
   }
+  json["columns"] = settings.columns.empty() ? Json(nullptr) : Json(settings.columns);
   json["strict"] = settings.strict;
   return json;
 }

@@ -12,8 +12,9 @@ namespace spherical_param::tools {
 
 /// How a cloud is to be meshed.
 struct ReconstructionSettings {
-  Options options;      ///< the number of threads is never 0
-  bool strict = false;  ///< faults are a failure, see Findings
+  Options options;                   ///< the number of threads is never 0
+  bool strict = false;               ///< faults are a failure, see Findings
+  std::vector<std::string> columns;  ///< of text files; empty: those that they say themselves
 };
 
 /// The lines of the options of the reconstruction: those of the library's table, and a few more.

@@ -11,41 +11,29 @@ namespace spherical_param::tools {
 /// Packed: little endian as well, but all values of one field after those of another, by LZF.
 enum class RecordStorage { Text, LittleEndian, BigEndian, Packed };
 
-/// One property of the points of a file.
+/// One property of a record.
 struct RecordField {
   std::string name;
-  char type = 'F';         ///< F real, I signed, U unsigned
-  std::size_t size = 4;    ///< bytes of a value
-  std::size_t count = 1;   ///< values
-  std::size_t offset = 0;  ///< bytes from the beginning of a record
-  std::size_t column = 0;  ///< numbers before it on a line of text
+  char type = 'F';              ///< F real, I signed, U unsigned, T any word of a text
+  std::size_t size = 4;         ///< bytes of a value
+  std::size_t count = 1;        ///< values
+  std::size_t length_size = 0;  ///< bytes of the length of a list, which is skipped; 0: no list
 };
 
-/// Records of a file that are no points, of which no more is known than how long they are.
-struct SkippedElement {
-  struct Property {
-    std::size_t size = 0;         ///< bytes of a value
-    std::size_t length_size = 0;  ///< bytes of the length of a list; 0: one value
-    bool are_corners = false;     ///< its values are points of a face
-  };
+/// Records of one kind: points, faces or others.
+struct RecordElement {
+  std::string name;
   std::uint64_t count = 0;
-  std::vector<Property> properties;  ///< at least one
+  std::vector<RecordField> fields;  ///< at least one
 };
 
-/// Where a file has its points, as its header says.
+/// What a file has, as its header says.
 struct RecordLayout {
   RecordStorage storage = RecordStorage::Text;
-  std::uint64_t body = 0;         ///< bytes before the first record
-  std::size_t body_line = 0;      ///< lines before the first record
-  std::uint64_t points = 0;       ///< number of them
-  std::size_t record_size = 0;    ///< bytes of a point
-  std::size_t columns = 0;        ///< numbers on a line of text
-  std::uint64_t packed_size = 0;  ///< bytes of the file, if they are packed
-  std::vector<RecordField> fields;
-  std::array<double, 3> sensor{};      ///< its place
-  bool has_rows = false;               ///< it has seen them in rows
-  std::vector<SkippedElement> before;  ///< the points
-  std::vector<SkippedElement> after;   ///< the points, up to their faces; the rest is not read
+  std::uint64_t body = 0;               ///< bytes before the first record
+  std::size_t body_line = 0;            ///< lines before the first record
+  std::uint64_t packed_size = 0;        ///< bytes of the file, if they are packed
+  std::vector<RecordElement> elements;  ///< in their order; one is "vertex", and perhaps one "face"
 };
 
 }  // namespace spherical_param::tools

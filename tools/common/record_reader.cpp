@@ -3,12 +3,12 @@
 #include "common/input_file.h"
 #include "common/lzf.h"
 #include "common/numbers.h"
+#include "common/point_table.h"
 #include "common/text.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -17,151 +17,21 @@
 namespace spherical_param::tools {
 namespace {
 
-using Fields = std::vector<RecordField>;
+constexpr const char* broken = "it is broken or not complete";
 
-/// A word as a number without sign; too large if it is none.
-std::uint64_t toCount(std::string_view word) {
-  const double number = toReal(word).value_or(-1.0);
-  return number >= 0.0 && number < 1e15 ? static_cast<std::uint64_t>(number)
-                                        : std::numeric_limits<std::uint64_t>::max();
+/// No list is longer: the number of its bytes must not overflow.
+constexpr double list_limit = 1e15;
+
+/// What a field of 32 bits is whose meaning is not a number: rgb.
+double bitsOf(double value, char type) {
+  if (type != 'F') {
+    return value < 0.0 ? value + 4294967296.0 : value;
+  }
+  const auto number = static_cast<float>(value);
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &number, sizeof bits);
+  return bits;
 }
-
-[[noreturn]] void failBroken(const std::string& path) {
-  failContent(path, "it is broken or not complete");
-}
-
-const RecordField* findField(const Fields& fields, const std::string& name) {
-  const auto found = std::find_if(fields.begin(), fields.end(),
-                                  [&](const RecordField& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
-}
-
-/// Three fields of real numbers.
-using RealFields = std::array<const RecordField*, 3>;
-
-std::optional<RealFields> findReals(const Fields& fields, const std::array<const char*, 3>& names) {
-  RealFields reals{};
-  for (std::size_t d = 0; d < 3; ++d) {
-    reals[d] = findField(fields, names[d]);
-    if (reals[d] == nullptr || reals[d]->type != 'F') {
-      return std::nullopt;
-    }
-  }
-  return reals;
-}
-
-/// A point as the file has it: bytes, or the numbers of a line.
-class Record {
-public:
-  explicit Record(RecordStorage storage) : storage_(storage) {}
-
-  void setBytes(const char* bytes) { bytes_ = bytes; }
-  std::vector<double>& numbers() { return numbers_; }
-
-  double real(const RecordField& field) const {
-    if (storage_ == RecordStorage::Text) {
-      const double value = numbers_[field.column];
-      return field.size == 4 ? static_cast<double>(static_cast<float>(value)) : value;
-    }
-    return field.size == 8 ? load<double>(field) : static_cast<double>(load<float>(field));
-  }
-  std::array<double, 3> reals(const RealFields& fields) const {
-    return {real(*fields[0]), real(*fields[1]), real(*fields[2])};
-  }
-  std::uint8_t byte(const RecordField& field) const {
-    return storage_ == RecordStorage::Text
-               ? static_cast<std::uint8_t>(toInteger(numbers_[field.column]))
-               : load<std::uint8_t>(field);
-  }
-  /// 32 bits, whatever their meaning.
-  std::uint32_t word(const RecordField& field) const {
-    if (storage_ != RecordStorage::Text) {
-      return load<std::uint32_t>(field);
-    }
-    if (field.type != 'F') {
-      return static_cast<std::uint32_t>(toInteger(numbers_[field.column]));
-    }
-    const auto value = static_cast<float>(numbers_[field.column]);
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    return bits;
-  }
-
-private:
-  static std::int64_t toInteger(double number) {
-    constexpr double largest = 4294967295.0;
-    // The comparison also sorts out what is not a number.
-    return number >= -largest && number <= largest ? static_cast<std::int64_t>(number) : 0;
-  }
-
-  template <typename Number>
-  Number load(const RecordField& field) const {
-    std::array<char, sizeof(Number)> bytes{};
-    std::memcpy(bytes.data(), bytes_ + field.offset, bytes.size());
-    if (storage_ == RecordStorage::BigEndian) {
-      std::reverse(bytes.begin(), bytes.end());
-    }
-    Number value;
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return value;
-  }
-
-  RecordStorage storage_;
-  const char* bytes_ = nullptr;
-  std::vector<double> numbers_;
-};
-
-/// The colours of points: PLY has a byte for each channel, PCD all in one number.
-class ColorFields {
-public:
-  explicit ColorFields(const RecordLayout& layout) {
-    const auto is_byte = [](const RecordField* field) {
-      return field != nullptr && field->type == 'U' && field->size == 1 && field->count == 1;
-    };
-    for (const std::string prefix : {"", "diffuse_"}) {
-      const std::array<const RecordField*, 3> found = {findField(layout.fields, prefix + "red"),
-                                                       findField(layout.fields, prefix + "green"),
-                                                       findField(layout.fields, prefix + "blue")};
-      if (channels_[0] == nullptr && std::all_of(found.begin(), found.end(), is_byte)) {
-        std::copy(found.begin(), found.end(), channels_.begin());
-      }
-    }
-    if (channels_[0] != nullptr) {
-      const RecordField* const alpha = findField(layout.fields, "alpha");
-      channels_[3] = is_byte(alpha) ? alpha : nullptr;
-      has_alpha_ = channels_[3] != nullptr;
-      return;
-    }
-    packed_ = findField(layout.fields, "rgba");
-    has_alpha_ = packed_ != nullptr;
-    if (packed_ == nullptr) {
-      packed_ = findField(layout.fields, "rgb");
-    }
-    if (packed_ != nullptr && packed_->size != 4) {
-      packed_ = nullptr;
-      has_alpha_ = false;
-    }
-  }
-
-  bool any() const { return channels_[0] != nullptr || packed_ != nullptr; }
-  bool hasAlpha() const { return has_alpha_; }
-
-  Color of(const Record& record) const {
-    if (packed_ != nullptr) {
-      const std::uint32_t packed = record.word(*packed_);
-      return {static_cast<std::uint8_t>(packed >> 16U), static_cast<std::uint8_t>(packed >> 8U),
-              static_cast<std::uint8_t>(packed),
-              static_cast<std::uint8_t>(has_alpha_ ? packed >> 24U : 255U)};
-    }
-    return {record.byte(*channels_[0]), record.byte(*channels_[1]), record.byte(*channels_[2]),
-            has_alpha_ ? record.byte(*channels_[3]) : std::uint8_t{255}};
-  }
-
-private:
-  std::array<const RecordField*, 4> channels_{};
-  const RecordField* packed_ = nullptr;
-  bool has_alpha_ = false;
-};
 
 class RecordReader {
 public:
@@ -170,14 +40,20 @@ public:
         line_number_(layout.body_line) {}
 
   PointData read() {
-    for (const SkippedElement& element : layout_.before) {
-      isText() ? skipLines(element.count) : skipBytes(element);
+    PointData data;
+    for (const RecordElement& element : layout_.elements) {
+      if (element.name == "vertex") {
+        data = readPoints(element);
+      } else if (!data.points.empty() && element.name == "face") {
+        noteUnused(element, data);
+        break;
+      } else if (!canSkip(element)) {
+        if (data.points.empty()) {
+          failContent(path_, problem_);
+        }
+        break;
+      }
     }
-    if (isPacked()) {
-      unpack();
-    }
-    PointData data = readPoints();
-    noteUnused(data);
     return data;
   }
 
@@ -185,192 +61,71 @@ private:
   bool isText() const { return layout_.storage == RecordStorage::Text; }
   bool isPacked() const { return layout_.storage == RecordStorage::Packed; }
 
-  PointData readPoints() {
-    const auto coordinates = findReals(layout_.fields, {"x", "y", "z"});
-    if (!coordinates) {
+  PointData readPoints(const RecordElement& element) {
+    std::vector<PointColumn> columns;
+    std::vector<int> column_of_field;
+    std::vector<bool> are_bits;
+    RecordElement points = element;
+    for (RecordField& field : points.fields) {
+      const bool is_column =
+          field.count == 1 && field.length_size == 0 && field.type != 'T' && field.name != "_";
+      column_of_field.push_back(is_column ? static_cast<int>(columns.size()) : -1);
+      if (!is_column) {
+        continue;
+      }
+      const std::string name = commonName(field.name);
+      are_bits.push_back(field.size == 4 && (name == "rgb" || name == "rgba"));
+      // Bits that are no number would not outlive the way through one.
+      field.type = are_bits.back() && !isText() ? 'U' : field.type;
+      columns.push_back({field.name, field.type == 'U' && field.size == 1, {}});
+      columns.back().values.reserve(static_cast<std::size_t>(element.count));
+    }
+    if (findColumns(columns, {"x", "y", "z"}).empty()) {
       failContent(path_, "it has no points with x, y and z");
     }
-    auto normals = findReals(layout_.fields, {"normal_x", "normal_y", "normal_z"});
-    if (!normals) {
-      normals = findReals(layout_.fields, {"nx", "ny", "nz"});
-    }
-    const ColorFields colors(layout_);
-    const auto count = static_cast<std::size_t>(layout_.points);
-    PointData data;
-    data.has_alpha = colors.hasAlpha();
-    data.points.reserve(count);
-    data.normals.reserve(normals ? count : 0);
-    data.colors.reserve(colors.any() ? count : 0);
-    Record record(layout_.storage);
-    for (std::size_t i = 0; i < count; ++i) {
-      isText() ? readNumbers(record) : readBytes(record);
-      data.points.push_back(record.reals(*coordinates));
-      if (normals) {
-        data.normals.push_back(toFloat(record.reals(*normals)));
-      }
-      if (colors.any()) {
-        data.colors.push_back(colors.of(record));
-      }
-    }
-    return data;
-  }
-
-  void readBytes(Record& record) {
-    const char* const bytes = isPacked() ? gathered() : reader_.take(layout_.record_size);
-    if (bytes == nullptr) {
-      failBroken(path_);
-    }
-    record.setBytes(bytes);
-  }
-
-  void unpack() {
-    std::size_t size = 0;
-    const auto count = static_cast<std::size_t>(layout_.points);
-    for (const RecordField& field : layout_.fields) {
-      size += count * field.size * field.count;
-    }
-    std::optional<std::string> bytes = unpackLzf(reader_, layout_.packed_size, size);
-    if (!bytes) {
-      failBroken(path_);
-    }
-    unpacked_ = std::move(*bytes);
-    gathered_.assign(layout_.record_size, '\0');
-  }
-
-  /// The next record, from the columns that were unpacked.
-  const char* gathered() {
-    const auto count = static_cast<std::size_t>(layout_.points);
-    std::size_t column = 0;
-    for (const RecordField& field : layout_.fields) {
-      const std::size_t size = field.size * field.count;
-      std::memcpy(&gathered_[field.offset], &unpacked_[column + next_record_ * size], size);
-      column += count * size;
-    }
-    ++next_record_;
-    return gathered_.data();
-  }
-
-  /// The words of the next line that has any.
-  bool nextWords() {
-    std::string_view line;
-    while (reader_.nextLine(line)) {
-      ++line_number_;
-      split(line, " \t\r", words_);
-      if (!words_.empty()) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  void readNumbers(Record& record) {
-    if (!nextWords()) {
-      failContent(path_, "it has fewer points than its header says");
-    }
-    std::vector<double>& numbers = record.numbers();
-    numbers.clear();
-    for (std::size_t i = 0; i < std::min(words_.size(), layout_.columns); ++i) {
-      const std::optional<double> number = toReal(words_[i]);
-      if (!number) {
-        break;
-      }
-      numbers.push_back(*number);
-    }
-    if (numbers.size() < layout_.columns) {
-      failContent(path_, "line " + std::to_string(line_number_) + " has no " +
-                             std::to_string(layout_.columns) + " numbers");
-    }
-  }
-
-  void skipLines(std::uint64_t count) {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (!nextWords()) {
-        failContent(path_, "it has fewer points than its header says");
-      }
-    }
-  }
-
-  void skipBytes(const SkippedElement& element) {
+    unpack(element);
+    const auto take = [&](std::size_t field, double value) {
+      const auto column = static_cast<std::size_t>(column_of_field[field]);
+      columns[column].values.push_back(are_bits[column] ? bitsOf(value, points.fields[field].type)
+                                                        : value);
+    };
+    const auto is_wanted = [&](std::size_t field) { return column_of_field[field] >= 0; };
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      if (!visitBytes(element, [](std::uint64_t) {})) {
-        failBroken(path_);
+      if (!next(points, is_wanted, take)) {
+        failContent(path_, problem_);
       }
     }
+    return toPoints(std::move(columns));
   }
 
-  /// The next bytes as a number without sign. \return false if the file has fewer
-  bool takeInteger(std::size_t size, std::uint64_t& number) {
-    const char* const bytes = reader_.take(size);
-    number = 0;
-    for (std::size_t b = 0; bytes != nullptr && b < size; ++b) {
-      const std::size_t place = layout_.storage == RecordStorage::BigEndian ? size - 1 - b : b;
-      number |= std::uint64_t{static_cast<std::uint8_t>(bytes[place])} << (8 * b);
+  bool canSkip(const RecordElement& element) {
+    std::uint64_t left = element.count;
+    const auto is_wanted = [](std::size_t) { return false; };
+    while (left > 0 && next(element, is_wanted, [](std::size_t, double) {})) {
+      --left;
     }
-    return bytes != nullptr;
-  }
-
-  /// Passes a record by, and calls a function for each corner. \return false if the file ends
-  template <typename Visit>
-  bool visitBytes(const SkippedElement& element, const Visit& visit) {
-    for (const SkippedElement::Property& property : element.properties) {
-      std::uint64_t values = 1;
-      if (property.length_size > 0 && !takeInteger(property.length_size, values)) {
-        return false;
-      }
-      for (std::uint64_t corner = 0; property.are_corners && values > 0; --values) {
-        if (!takeInteger(property.size, corner)) {
-          return false;
-        }
-        visit(corner);
-      }
-      if (!reader_.skip(values * property.size)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  template <typename Visit>
-  bool visitWords(const SkippedElement& element, const Visit& visit) {
-    if (!nextWords()) {
-      return false;
-    }
-    std::size_t word = 0;
-    for (const SkippedElement::Property& property : element.properties) {
-      std::uint64_t values = 1;
-      if (property.length_size > 0) {
-        values = word < words_.size() ? toCount(words_[word++]) : 0;
-      }
-      for (; values > 0 && word < words_.size(); --values, ++word) {
-        if (property.are_corners) {
-          visit(toCount(words_[word]));
-        }
-      }
-      if (values > 0) {
-        return false;
-      }
-    }
-    return true;
+    return left == 0;
   }
 
   /// Notes points of a mesh that no face uses. Faces that cannot be read, or have other points, say
   /// nothing.
-  void noteUnused(PointData& data) {
+  void noteUnused(const RecordElement& faces, PointData& data) {
     std::vector<bool> used(data.points.size(), false);
     bool is_mesh = false;
     bool is_sound = true;
-    const auto visit = [&](std::uint64_t corner) {
+    const auto is_corner = [&](std::size_t field) {
+      const std::string& name = faces.fields[field].name;
+      return name == "vertex_indices" || name == "vertex_index";
+    };
+    const auto take = [&](std::size_t /*field*/, double corner) {
       is_mesh = true;
-      is_sound = is_sound && corner < used.size();
+      is_sound = is_sound && corner >= 0.0 && corner < static_cast<double>(used.size());
       if (is_sound) {
-        used[corner] = true;
+        used[static_cast<std::size_t>(corner)] = true;
       }
     };
-    for (const SkippedElement& element : layout_.after) {
-      for (std::uint64_t i = 0; is_sound && i < element.count; ++i) {
-        const bool is_there = isText() ? visitWords(element, visit) : visitBytes(element, visit);
-        is_sound = is_sound && is_there;
-      }
+    for (std::uint64_t i = 0; is_sound && i < faces.count; ++i) {
+      is_sound = next(faces, is_corner, take) && is_sound;
     }
     for (std::size_t i = 0; is_mesh && is_sound && i < used.size(); ++i) {
       if (!used[i]) {
@@ -379,13 +134,152 @@ private:
     }
   }
 
+  /// Reads the next record of an element and hands over the numbers of fields. \return false, with
+  /// the problem, if it is not there.
+  template <typename IsWanted, typename Take>
+  bool next(const RecordElement& element, const IsWanted& is_wanted, const Take& take) {
+    if (isText() && !nextWords(element)) {
+      return fail("it has fewer points than its header says");
+    }
+    std::size_t word = 0;
+    for (std::size_t f = 0; f < element.fields.size(); ++f) {
+      const RecordField& field = element.fields[f];
+      std::uint64_t count = field.count;
+      if (field.length_size > 0) {
+        RecordField length;
+        length.type = 'U';
+        length.size = field.length_size;
+        const std::optional<double> value = nextValue(length, word, f);
+        if (!value || *value < 0.0 || *value > list_limit) {
+          return fail(broken);
+        }
+        count = static_cast<std::uint64_t>(*value);
+      }
+      if (!is_wanted(f)) {
+        word += isText() ? static_cast<std::size_t>(count) : 0;
+        if (!isText() && !isPacked() && !reader_.skip(count * field.size)) {
+          return fail(broken);
+        }
+        continue;
+      }
+      for (; count > 0; --count) {
+        const std::optional<double> value = nextValue(field, word, f);
+        if (!value) {
+          return fail(isText() ? "line " + std::to_string(line_number_) + " has no number for " +
+                                     inQuotes(field.name)
+                               : broken);
+        }
+        take(f, *value);
+      }
+    }
+    ++next_record_;
+    return word <= words_.size() || fail(broken);
+  }
+
+  bool fail(const std::string& problem) {
+    problem_ = problem;
+    return false;
+  }
+
+  std::optional<double> nextValue(const RecordField& field, std::size_t& word, std::size_t f) {
+    if (isText()) {
+      const std::optional<double> value =
+          word < words_.size() ? toValue(words_[word]) : std::nullopt;
+      ++word;
+      return value && field.type == 'F' && field.size == 4 ? static_cast<float>(*value) : value;
+    }
+    const char* const bytes = isPacked()
+                                  ? &unpacked_[begin_of_field_[f] + next_record_ * field.size]
+                                  : reader_.take(field.size);
+    return bytes == nullptr ? std::nullopt : std::optional(valueOf(field, bytes));
+  }
+
+  double valueOf(const RecordField& field, const char* bytes) const {
+    switch (field.type == 'F' ? 'F' : field.type + static_cast<char>(field.size)) {
+    case 'F':
+      return field.size == 8 ? load<double>(bytes) : load<float>(bytes);
+    case 'I' + 1:
+      return load<std::int8_t>(bytes);
+    case 'I' + 2:
+      return load<std::int16_t>(bytes);
+    case 'I' + 4:
+      return load<std::int32_t>(bytes);
+    case 'I' + 8:
+      return static_cast<double>(load<std::int64_t>(bytes));
+    case 'U' + 1:
+      return load<std::uint8_t>(bytes);
+    case 'U' + 2:
+      return load<std::uint16_t>(bytes);
+    case 'U' + 4:
+      return load<std::uint32_t>(bytes);
+    default:
+      return static_cast<double>(load<std::uint64_t>(bytes));
+    }
+  }
+
+  template <typename Number>
+  Number load(const char* from) const {
+    std::array<char, sizeof(Number)> bytes{};
+    std::memcpy(bytes.data(), from, bytes.size());
+    if (layout_.storage == RecordStorage::BigEndian) {
+      std::reverse(bytes.begin(), bytes.end());
+    }
+    Number value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+
+  void unpack(const RecordElement& element) {
+    if (!isPacked()) {
+      return;
+    }
+    std::size_t size = 0;
+    for (const RecordField& field : element.fields) {
+      begin_of_field_.push_back(size);
+      size += static_cast<std::size_t>(element.count) * field.size * field.count;
+    }
+    std::optional<std::string> bytes = unpackLzf(reader_, layout_.packed_size, size);
+    if (!bytes) {
+      failContent(path_, broken);
+    }
+    unpacked_ = std::move(*bytes);
+  }
+
+  /// The words of the next line that has any. Commas may be in numbers, or separate them.
+  bool nextWords(const RecordElement& element) {
+    std::string_view line;
+    do {
+      if (!reader_.nextLine(line)) {
+        return false;
+      }
+      ++line_number_;
+      split(line, " \t\r", words_);
+    } while (words_.empty());
+    if (line.find(',') == std::string_view::npos) {
+      return true;
+    }
+    std::size_t least = 0;
+    for (const RecordField& field : element.fields) {
+      least += field.count;
+    }
+    if (words_.size() < least) {
+      split(line, " \t\r,", words_);
+      words_.resize(words_.size() == least ? least : 0);
+    }
+    for (std::string_view& word : words_) {
+      word.remove_suffix(word.size() > 1 && word.back() == ',' ? 1 : 0);
+    }
+    return true;
+  }
+
   const std::string& path_;
   const RecordLayout& layout_;
   BlockReader reader_;
   std::size_t line_number_;
   std::vector<std::string_view> words_;
+  std::string problem_;   ///< of the record that could not be read
   std::string unpacked_;  ///< all values of a field, then those of the next
-  std::string gathered_;  ///< those of one point
+  std::vector<std::size_t> begin_of_field_;
   std::size_t next_record_ = 0;
 };
 

@@ -3,10 +3,13 @@
 namespace spherical_param::tools {
 
 const std::vector<FormatRow> format_table = {
-    {".pcd", readPcd, writePcd, nullptr},  {".ply", readPly, writePly, writePly},
-    {".obj", readObj, writeObj, writeObj}, {".vtk", nullptr, writeVtk, writeVtk},
-    {".xyz", readXyz, writeXyz, nullptr},  {".txt", readXyz, writeXyz, nullptr},
-    {".stl", nullptr, nullptr, writeStl},  {".off", nullptr, nullptr, writeOff},
+    {".pcd", readPcd, writePcd, nullptr},       {".ply", readPly, writePly, writePly},
+    {".obj", readObj, writeObj, writeObj},      {".vtk", nullptr, writeVtk, writeVtk},
+    {".xyz", readText, writeXyz, nullptr},      {".txt", readText, writeXyz, nullptr},
+    {".csv", readText, nullptr, nullptr},       {".asc", readText, nullptr, nullptr},
+    {".pts", readText, nullptr, nullptr},       {".xyzn", readText, nullptr, nullptr},
+    {".xyzrgb", readText, nullptr, nullptr},    {".stl", nullptr, nullptr, writeStl},
+    {".off", nullptr, nullptr, writeOff},
 };
 
 }  // namespace spherical_param::tools

@@ -14,7 +14,9 @@ namespace spherical_param::tools {
 /// How numbers are stored in formats that have both.
 enum class Encoding { Binary, Ascii };
 
-using CloudReader = PointData(const std::string& path, const FileProgress& progress);
+/// \param columns of text, as the user names them; empty: those that the file says.
+using CloudReader = PointData(const std::string& path, const std::vector<std::string>& columns,
+                              const FileProgress& progress);
 using MeshFormatWriter = void(RecordWriter& writer, const MeshView& mesh, Encoding encoding);
 
 /// A file format, named by the extension of a file. Functions that do not exist are null.
@@ -29,7 +31,7 @@ struct FormatRow {
 extern const std::vector<FormatRow> format_table;
 
 /// Readers throw Failure with the place of what is broken.
-CloudReader readPcd, readPly, readObj, readXyz;
+CloudReader readPcd, readPly, readObj, readText;
 MeshFormatWriter writePcd, writePly, writeObj, writeVtk, writeXyz, writeStl, writeOff;
 
 }  // namespace spherical_param::tools

@@ -25,7 +25,7 @@ inline constexpr std::size_t header_limit = std::size_t{1} << 20;
 /// No cloud has more points: indices have 32 bits.
 inline constexpr std::int64_t count_limit = std::int64_t{1} << 30;
 
-inline constexpr std::string_view blanks = " \t\r";
+inline constexpr std::string_view blanks = " \t\r,";
 
 /// Goes through the lines of a text.
 class Lines {
@@ -58,14 +58,6 @@ private:
 /// Bytes of a file behind a line; none if it was shorter when its size was asked for.
 inline std::uint64_t bytesBehind(const Lines& lines, std::uint64_t file_size) {
   return file_size - std::min<std::uint64_t>(lines.position(), file_size);
-}
-
-inline void addField(RecordField field, RecordLayout& layout) {
-  field.offset = layout.record_size;
-  field.column = layout.columns;
-  layout.record_size += field.size * field.count;
-  layout.columns += field.count;
-  layout.fields.push_back(std::move(field));
 }
 
 /// A number in a header. \throw Failure if it is not a number, or more than points may be.

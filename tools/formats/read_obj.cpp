@@ -1,3 +1,4 @@
+#include "common/point_table.h"
 #include "formats/formats.h"
 #include "formats/text_lines.h"
 
@@ -27,11 +28,12 @@ std::optional<std::size_t> objIndex(std::string_view word, std::size_t count) {
 
 /// What of an OBJ file is not known before its end.
 struct ObjContent {
-  PointData data;  ///< points only
-  std::vector<std::array<double, 3>> colors;
-  std::vector<Normal> normals;
+  std::vector<PointColumn> columns;  ///< x y z red green blue
+  std::vector<std::array<double, 3>> normals;
   std::vector<std::optional<std::size_t>> normal_of_point;
   bool normals_referenced = false;
+
+  std::size_t points() const { return columns[0].values.size(); }
 };
 
 void readObjCorner(std::string_view word, ObjContent& content) {
@@ -40,28 +42,33 @@ void readObjCorner(std::string_view word, ObjContent& content) {
   if (second == std::string_view::npos) {
     return;
   }
-  const auto point = objIndex(word.substr(0, first), content.data.points.size());
+  const auto point = objIndex(word.substr(0, first), content.points());
   const auto normal = objIndex(word.substr(second + 1), content.normals.size());
   if (point && normal) {
-    content.normal_of_point.resize(content.data.points.size());
+    content.normal_of_point.resize(content.points());
     content.normal_of_point[*point] = normal;
     content.normals_referenced = true;
   }
 }
 
-std::vector<Normal> objNormals(const ObjContent& content) {
-  if (!content.normals_referenced) {
-    return content.normals.size() == content.data.points.size() ? content.normals
-                                                                : std::vector<Normal>();
-  }
-  std::vector<Normal> normals;
-  for (std::size_t i = 0; i < content.data.points.size(); ++i) {
-    if (i >= content.normal_of_point.size() || !content.normal_of_point[i]) {
-      return {};  // a vertex has no normal: none are kept
+/// Adds the normals, if each point has one.
+void addNormals(ObjContent& content) {
+  std::vector<PointColumn> columns = {{"nx", false, {}}, {"ny", false, {}}, {"nz", false, {}}};
+  for (std::size_t i = 0; i < content.points(); ++i) {
+    std::optional<std::size_t> normal = i;
+    if (content.normals_referenced) {
+      normal = i < content.normal_of_point.size() ? content.normal_of_point[i] : std::nullopt;
+    } else if (content.normals.size() != content.points()) {
+      return;
     }
-    normals.push_back(content.normals[*content.normal_of_point[i]]);
+    if (!normal) {
+      return;
+    }
+    for (std::size_t d = 0; d < 3; ++d) {
+      columns[d].values.push_back(content.normals[*normal][d]);
+    }
   }
-  return normals;
+  content.columns.insert(content.columns.end(), columns.begin(), columns.end());
 }
 
 }  // namespace
@@ -69,10 +76,17 @@ std::vector<Normal> objNormals(const ObjContent& content) {
 /// Wavefront OBJ: the vertices, with colours (v x y z r g b), and normals as the faces refer to
 /// them, or in the order of the vertices if no face does. PCL's reader is not used: it drops the
 /// colours and takes the normals in their order, whatever the faces say.
-PointData readObj(const std::string& path, const FileProgress& progress) {
+PointData readObj(const std::string& path, const std::vector<std::string>& /*columns*/,
+                  const FileProgress& progress) {
   ObjContent content;
-  content.data.points.reserve(countLines(path, "v "));
-  forEachLine(path, progress, " \t\r", [&](std::size_t line, const Words& words) {
+  const std::size_t count = countLines(path, "v ");
+  for (const char* name : {"x", "y", "z", "red", "green", "blue"}) {
+    content.columns.push_back({name, false, {}});
+    content.columns.back().values.reserve(content.columns.size() > 3 ? 0 : count);
+  }
+  Words words;
+  forEachLine(path, progress, [&](std::size_t line, std::string_view text) {
+    split(withoutRemark(text), " \t\r", words);
     if (words.empty()) {
       return;
     }
@@ -82,12 +96,15 @@ PointData readObj(const std::string& path, const FileProgress& progress) {
         failLine(path, line, "has no three numbers");
       }
       if (words[0] == "vn") {
-        content.normals.push_back(toFloat(*values));
+        content.normals.push_back(*values);
         return;
       }
-      content.data.points.push_back(*values);
-      if (const auto color = threeNumbers(words, 4)) {
-        content.colors.push_back(*color);
+      const auto color = threeNumbers(words, 4);
+      for (std::size_t d = 0; d < 3; ++d) {
+        content.columns[d].values.push_back((*values)[d]);
+        if (color) {
+          content.columns[3 + d].values.push_back((*color)[d]);
+        }
       }
     } else if (words[0] == "f") {
       for (std::size_t w = 1; w < words.size(); ++w) {
@@ -98,24 +115,14 @@ PointData readObj(const std::string& path, const FileProgress& progress) {
       failLine(path, line, "is not a statement of an OBJ file");
     }
   });
-  if (content.data.points.empty()) {
+  if (content.points() == 0) {
     failContent(path, "it has no points");
   }
-  std::vector<Normal> normals = objNormals(content);
-
-  PointData data = std::move(content.data);
-  data.normals = std::move(normals);
-  if (content.colors.size() == data.points.size()) {
-    // The usual range is 0 ... 1; some programs write 0 ... 255.
-    const bool bytes = std::any_of(
-        content.colors.begin(), content.colors.end(), [](const std::array<double, 3>& color) {
-          return std::any_of(color.begin(), color.end(), [](double value) { return value > 1.0; });
-        });
-    for (const std::array<double, 3>& color : content.colors) {
-      data.colors.push_back(toColor(color, bytes ? 1.0 : 255.0));
-    }
+  addNormals(content);
+  if (content.columns[3].values.size() != content.points()) {
+    content.columns.erase(content.columns.begin() + 3, content.columns.begin() + 6);
   }
-  return data;
+  return toPoints(std::move(content.columns));
 }
 
 }  // namespace spherical_param::tools

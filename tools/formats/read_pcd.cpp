@@ -1,3 +1,4 @@
+#include "common/point_table.h"
 #include "common/record_reader.h"
 #include "formats/formats.h"
 #include "formats/header_lines.h"
@@ -6,6 +7,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <utility>
 
 namespace spherical_param::tools {
 namespace {
@@ -31,7 +33,17 @@ Entries readEntries(const std::string& path, Lines& lines) {
     }
     entries[name] = std::vector<std::string>(words.begin() + 1, words.end());
   }
-  for (const char* name : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT", "POINTS", "DATA"}) {
+  // What PCL takes if it is not said.
+  const std::size_t fields = entries["FIELDS"].size();
+  for (const auto& [name, value] : {std::pair("SIZE", "4"), {"TYPE", "F"}, {"COUNT", "1"}}) {
+    if (entries[name].empty()) {
+      entries[name].assign(fields, value);
+    }
+  }
+  if (entries["HEIGHT"].empty()) {
+    entries["HEIGHT"] = {"1"};
+  }
+  for (const char* name : {"FIELDS", "WIDTH", "DATA"}) {
     if (entries[name].empty()) {
       failContent(path, std::string("its header has no ") + name);
     }
@@ -39,7 +51,7 @@ Entries readEntries(const std::string& path, Lines& lines) {
   return entries;
 }
 
-/// One field. \throw Failure if it is no number, or a coordinate of another type than float.
+/// One field. \throw Failure if it is no number.
 RecordField makeField(const std::string& path, const std::string& name, const std::string& type,
                       const std::string& size, const std::string& count_text) {
   const bool is_number = type == "F"
@@ -51,9 +63,8 @@ RecordField makeField(const std::string& path, const std::string& name, const st
                 "field " + inQuotes(name) + " has the unknown type " + inQuotes(type + " " + size));
   }
   const std::int64_t count = requireCount(path, count_text, "values in a field");
-  const bool is_coordinate = name == "x" || name == "y" || name == "z";
-  if (count < 1 || (is_coordinate && (count != 1 || type != "F"))) {
-    failContent(path, "field " + inQuotes(name) + " does not hold one number a point");
+  if (count < 1) {
+    failContent(path, "field " + inQuotes(name) + " has no number");
   }
   RecordField field;
   field.name = name;
@@ -66,15 +77,7 @@ RecordField makeField(const std::string& path, const std::string& name, const st
 /// All fields of a point, padding included.
 std::vector<RecordField> makeFields(const std::string& path, Entries& entries) {
   const std::vector<std::string>& names = entries["FIELDS"];
-  for (const char* name : {"x", "y", "z"}) {
-    if (std::count(names.begin(), names.end(), name) != 1) {
-      failContent(path, "it has no fields x, y and z");
-    }
-  }
-  std::vector<std::string>& counts = entries["COUNT"];
-  if (counts.empty()) {
-    counts.assign(names.size(), "1");
-  }
+  const std::vector<std::string>& counts = entries["COUNT"];
   if (entries["SIZE"].size() != names.size() || entries["TYPE"].size() != names.size() ||
       counts.size() != names.size()) {
     failContent(path, "FIELDS, SIZE, TYPE and COUNT of its header differ in length");
@@ -86,26 +89,24 @@ std::vector<RecordField> makeFields(const std::string& path, Entries& entries) {
   return fields;
 }
 
+std::string firstOf(const std::vector<std::string>& words) {
+  return words.empty() ? "" : words.front();
+}
+
 std::int64_t pointCount(const std::string& path, Entries& entries) {
-  const std::int64_t points = requireCount(path, entries["POINTS"][0], "points");
   const std::int64_t width = requireCount(path, entries["WIDTH"][0], "columns");
   const std::int64_t height = requireCount(path, entries["HEIGHT"][0], "rows");
+  const double all = static_cast<double>(width) * static_cast<double>(height);
+  const std::int64_t points = entries["POINTS"].empty() && all < static_cast<double>(count_limit)
+                                  ? width * height
+                                  : requireCount(path, firstOf(entries["POINTS"]), "points");
   if (points == 0) {
     failContent(path, "it has no points");
   }
-  if (static_cast<double>(width) * static_cast<double>(height) != static_cast<double>(points)) {
+  if (all != static_cast<double>(points)) {
     failContent(path, "POINTS of its header is not WIDTH times HEIGHT");
   }
   return points;
-}
-
-/// Where the sensor was.
-Point sensorOf(Entries& entries) {
-  Point sensor{};
-  for (std::size_t axis = 0; axis < std::min<std::size_t>(3, entries["VIEWPOINT"].size()); ++axis) {
-    sensor[axis] = toReal(entries["VIEWPOINT"][axis]).value_or(0.0);
-  }
-  return sensor;
 }
 
 /// Checks the two sizes before compressed data. \return the compressed one.
@@ -128,22 +129,24 @@ std::uint32_t checkPacked(const std::string& path, std::string_view body, double
   return sizes[0];
 }
 
-RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
+RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size, Entries& entries) {
   const std::string beginning = readBeginning(path, header_limit);
   Lines lines(beginning);
-  Entries entries = readEntries(path, lines);
-  const std::string& storage = entries["DATA"][0];
+  entries = readEntries(path, lines);
+  const std::string storage = lowerCase(entries["DATA"][0]);
   const bool is_packed = storage == "binary_compressed";
   RecordLayout layout;
   double bytes = 0.0;   // of all points
   double values = 0.0;  // of all points
+  RecordElement element{"vertex", 0, {}};
   const std::vector<RecordField> fields = makeFields(path, entries);
-  const auto points = static_cast<double>(pointCount(path, entries));
+  element.count = static_cast<std::uint64_t>(pointCount(path, entries));
+  const auto points = static_cast<double>(element.count);
   for (const RecordField& field : fields) {
     if (is_packed && field.name == "_") {
       continue;  // PCL leaves padding out of what it packs
     }
-    addField(field, layout);
+    element.fields.push_back(field);
     bytes += points * static_cast<double>(field.count) * static_cast<double>(field.size);
     values += points * static_cast<double>(field.count);
   }
@@ -165,20 +168,23 @@ RecordLayout checkPcdHeader(const std::string& path, std::uint64_t file_size) {
   }
   layout.body += lines.position();
   layout.body_line = lines.number();
-  layout.points = static_cast<std::uint64_t>(points);
-  layout.sensor = sensorOf(entries);
-  layout.has_rows = entries["HEIGHT"][0] != "1";
+  layout.elements.push_back(std::move(element));
   return layout;
 }
 
 }  // namespace
 
-PointData readPcd(const std::string& path, const FileProgress& progress) {
-  const RecordLayout layout = checkPcdHeader(path, checkInputFile(path));
-  PointData data = readRecords(path, layout, progress);
-  const Eigen::Map<const Eigen::Vector3d> sensor(layout.sensor.data());
-  if (viewpointOf(positionsOf(data), sensor, layout.has_rows)) {
-    data.viewpoint = layout.sensor;
+PointData readPcd(const std::string& path, const std::vector<std::string>& /*columns*/,
+                  const FileProgress& progress) {
+  Entries entries;
+  PointData data = readRecords(path, checkPcdHeader(path, checkInputFile(path), entries), progress);
+  Point sensor{};
+  for (std::size_t axis = 0; axis < std::min<std::size_t>(3, entries["VIEWPOINT"].size()); ++axis) {
+    sensor[axis] = toReal(entries["VIEWPOINT"][axis]).value_or(0.0);
+  }
+  if (viewpointOf(positionsOf(data), Eigen::Map<const Eigen::Vector3d>(sensor.data()),
+                  entries["HEIGHT"][0] != "1")) {
+    data.viewpoint = sensor;
   }
   return data;
 }

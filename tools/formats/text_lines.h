@@ -20,16 +20,23 @@ namespace spherical_param::tools {
 
 using Words = std::vector<std::string_view>;
 
-/// Hands the words of each line to a function, with the number of the line.
+/// A line without the comment after '#', which is no part of a word: 1.#QNAN is a number.
+inline std::string_view withoutRemark(std::string_view line) {
+  std::size_t hash = line.find('#');
+  while (hash != std::string_view::npos && hash > 0 && line[hash - 1] == '.') {
+    hash = line.find('#', hash + 1);
+  }
+  return line.substr(0, hash);
+}
+
+/// Hands each line to a function, with its number.
 template <typename Take>
-void forEachLine(const std::string& path, const FileProgress& progress, std::string_view separators,
-                 const Take& take) {
+void forEachLine(const std::string& path, const FileProgress& progress, const Take& take) {
   BlockReader reader(path, 0, progress);
   std::string_view line;
-  Words words;
   for (std::size_t number = 1; reader.nextLine(line); ++number) {
-    split(line.substr(0, line.find('#')), separators, words);
-    take(number, words);
+    line.remove_prefix(number == 1 && line.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0);
+    take(number, line);
   }
 }
 
@@ -57,23 +64,13 @@ inline std::optional<std::array<double, 3>> threeNumbers(const Words& words, std
   }
   std::array<double, 3> values{};
   for (std::size_t d = 0; d < 3; ++d) {
-    const std::optional<double> value = toReal(words[first + d]);
+    const std::optional<double> value = toValue(words[first + d]);
     if (!value) {
       return std::nullopt;
     }
     values[d] = *value;
   }
   return values;
-}
-
-inline Color toColor(const std::array<double, 3>& values, double scale) {
-  Color color = {0, 0, 0, 255};
-  for (std::size_t c = 0; c < 3; ++c) {
-    // The comparison also sorts out what is not a number.
-    const double channel = values[c] >= 0.0 ? std::min(values[c] * scale, 255.0) : 0.0;
-    color[c] = static_cast<std::uint8_t>(std::lround(channel));
-  }
-  return color;
 }
 
 }  // namespace spherical_param::tools

@@ -123,8 +123,9 @@ std::string plyOf(const Cloud& cloud, const std::string& format) {
       " 1.0\nelement camera 2\nproperty double angle\nproperty list uchar short ids\n"
       "element vertex " +
       std::to_string(cloud.size()) +
-      "\nproperty float x\nproperty uchar quality\nproperty float y\nproperty float "
-      "z\nelement face 50000\nproperty list uchar int vertex_indices\n"
+      "\nproperty float x\nproperty list uchar short views\nproperty uchar quality\nproperty float "
+      "y\nproperty int64 time\nproperty float z\nelement face 50000\nproperty list uchar int "
+      "vertex_indices\n"
       "property uchar flag\nend_header\n";
   const auto add = [&](auto value) {
     std::ostringstream number;
@@ -142,8 +143,11 @@ std::string plyOf(const Cloud& cloud, const std::string& format) {
   }
   for (const pcl::PointXYZRGBNormal& point : cloud) {
     add(point.x);
+    add(std::uint8_t{1});
+    add(std::int16_t{-3});
     add(std::uint8_t{7});
     add(point.y);
+    add(std::int64_t{-12345678901});
     add(point.z);
     end_line();
   }
@@ -163,7 +167,24 @@ TEST_F(CloudReader, FindsThePointsAmongOtherElementsInAnyByteOrder) {
     SCOPED_TRACE(format);
     const std::string path = directory.file("a.ply");
     tool_test::writeFile(path, plyOf(cloud, format));
-    expectSame(readCloud(path), cloud, false);
+    const PointData data = readCloud(path);
+    expectSame(data, cloud, false);
+    ASSERT_EQ(data.scalars.size(), 2U);
+    EXPECT_EQ(data.scalars[0].name, "quality");
+    EXPECT_EQ(data.scalars[1].values.back(), -12345678901.0);
+  }
+}
+
+TEST_F(CloudReader, CoordinatesAreOfAnyNumericType) {
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty short x\n"
+                "property uint64 y\nproperty char z\nend_header\n" +
+                    std::string("\1\1\5\0\0\0\0\0\0\0\xff", 11)},
+      {"a.pcd", "FIELDS x y z\nSIZE 2 8 1\nTYPE I U I\nWIDTH 1\nDATA binary\n" +
+                    std::string("\1\1\5\0\0\0\0\0\0\0\xff", 11)}};
+  for (const auto& [name, content] : files) {
+    tool_test::writeFile(directory.file(name), content);
+    EXPECT_EQ(readCloud(directory.file(name)).points, (std::vector<Point>{{257.0, 5.0, -1.0}}));
   }
 }
 
@@ -265,9 +286,9 @@ TEST_F(CloudReader, LargeFilesThatAreCutAreRefused) {
   expect_cut_refused("cut.pcd", content, content.rfind('\n', content.size() - 2) + 1,
                      "fewer points than its header says");
   expect_cut_refused("cut.pcd", content, content.rfind(' '),
-                     "line " + std::to_string(point_count + 8) + " has no 3 numbers");
+                     "line " + std::to_string(point_count + 8) + " has no number for 'z'");
   content = textOf(cloud, "");
-  expect_cut_refused("cut.xyz", content, content.rfind(' '), last_line + " does not begin");
+  expect_cut_refused("cut.xyz", content, content.rfind(' '), last_line + " has 2 columns");
   content = textOf(cloud, "v ");
   expect_cut_refused("cut.obj", content, content.rfind(' '), last_line + " has no three numbers");
 }
@@ -319,8 +340,8 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
       {"a.pcd", xyzPcd("1000000000", "ascii\n1 2 3\n"), "shorter than its header"},
       {"a.pcd", xyzPcd("1000000000", "binary\n" + bytes24), "shorter than its header"},
       {"a.pcd", xyzPcd("1000000000", "binary_compressed\n" + bytes24), "shorter than its header"},
-      {"a.pcd", xyzPcd("99999999999999999999", "binary\n" + bytes24), "number of points"},
-      {"a.pcd", xyzPcd("-5", "ascii\n1 2 3\n"), "number of points"},
+      {"a.pcd", xyzPcd("99999999999999999999", "binary\n" + bytes24), "number of columns"},
+      {"a.pcd", xyzPcd("-5", "ascii\n1 2 3\n"), "number of columns"},
       {"a.pcd", xyzPcd("0", "ascii\n"), "no points"},
       {"a.pcd", xyzPcd("4", "zip\n1 2 3\n"), "stored as 'zip'"},
       {"a.pcd", xyzPcd("5", "ascii\n1.00 2.00 3.00\n4.000 5.000 6.000\n"), "fewer points"},
@@ -328,7 +349,12 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
       {"a.ply", points, "does not begin as a PLY"},
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "no end"},
       {"a.ply", plyOf("hexadecimal", "4", points), "neither ascii"},
-      {"a.ply", plyOf("ascii", "4", points, "property list uchar int a\n"), "the list 'a'"},
+      {"a.ply",
+       plyOf("ascii", "4", "1 2 3 4 5 6 7\n1 2 3 0\n1 2 3 0\n1 2 3 0\n",
+             "property list uchar int a\n"),
+       "it is broken"},
+      {"a.ply", plyOf("binary_big_endian", "4", points, "property string a\n"),
+       "unknown type, of 'a'"},
       {"a.ply", plyOf("binary_little_endian", "1000000000", bytes24), "shorter than its header"},
       {"a.ply", plyOf("ascii", "99999999999999999999", points), "number of elements"},
       {"a.ply", plyOf("ascii", "0", ""), "no points"},
@@ -339,6 +365,20 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
       {"a.obj", "v 1 2 3\nv 1 2\n", "line 2"},
       {"a.obj", "o nothing\nf 1 2 3\n", "no points"},
       {"a.xyz", "hello world and more\n", "line 1"},
+      {"a.csv", "1,0,2,0,3,0\n4,5,5,0,6,0\n", "commas separate columns, or they are decimal"},
+      {"a.csv", "1,0,2,0,3,0\n4,2,5,0,6\n", "line 2 has 5 columns instead of 6"},
+      {"a.xyz", "1.5,2,3,4\n1,5 2,5 3,5\n", "line 2 has"},
+      {"a.xyz", "1 2 3\n4 5 6 7\n", "line 2 has 4 columns instead of 3"},
+      {"a.xyz", "1 2 3\n4 x 6\n", "line 2 has no number in column 2, but 'x'"},
+      {"a.xyz", "7 1 2 3\n8 4 5 6\n9 7 8 9\n10 1 1 1\n", "first column counts the lines"},
+      {"a.xyz", "1 2 3\r4 5 6\r", "do not end in LF"},
+      {"a.txt",
+       "\xff\xfe"
+       "1",
+       "UTF-16"},
+      {"a.pts", "10\n20\n0 0 0\n1 2 3\n", "as PTX files do"},
+      {"a.pts", "3\n0 0 0\n1 2 3\n", "fewer points than its first line"},
+      {"a.pcd", xyzPcd("1", "ascii\n1,5 2,5\n"), "no number for 'x'"},
       {"a.xyz", "1 2 3\n4 5\n", "line 2"},
       {"a.txt", "# nothing\n# here\n", "no points"},
   };

@@ -1,10 +1,12 @@
 #include "formats/text_lines.h"
 
 #include "common/cloud_reader.h"
+#include "common/errors.h"
 #include "tool_runner.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -24,11 +26,58 @@ struct Case {
 const std::vector<Case> cases = {
     {"Plain", "xyz", "1 2 3\n4.5 -5 +6", false, false},
     {"ColoursThenNormals", "xyz", "1 2 3 255 0 0 1 0 0\n4.5 -5 6 0 0 255 0 0 1\n", true, true},
-    {"TitlesCommentsBlankLinesOtherSeparators", "txt",
-     "# a comment\nx;y;z;nx;ny;nz;r;g;b\n1;2;3;1;0;0;255;0;0;more # end\r\n\n"
-     "4.5,-5\t6;0;0;1;0;0;255;more\r\n",
+    {"HeadingCommentsBlankLines", "txt",
+     "# a comment\nx;y;z;nx;ny;nz;r;g;b\n1;2;3;1;0;0;255;0;0; # end\r\n\n"
+     "4.5;-5;6;0;0;1;0;0;255\r\n",
      true, true},
     {"NumberOfPointsFirst", "xyz", "2\n1 2 3\n4.5 -5 6\n", false, false},
+    {"DecimalCommasSemicolons", "txt", "1,0;2,0;3,0\n4,5;-5,0;6,0\n", false, false},
+    {"DecimalCommasTabs", "xyz", "1,0\t2,0\t3,0\t255\t0\t0\n4,5\t-5,0\t6,0\t0\t0\t255\n", false,
+     true},
+    {"DecimalCommasBlanks", "xyz", "1,0 2,0 3,0\n4,5 -5,0 6,0\n", false, false},
+    {"DecimalCommasInQuotes", "csv", "\"1,0\",\"2,0\",\"3,0\"\n\"4,5\",\"-5,0\",\"6,0\"\n", false,
+     false},
+    {"DecimalCommasUnderAHeading", "csv", "x,y,z\n1,0,2,0,3,0\n4,5,-5,0,6,0\n", false, false},
+    {"CommasAndBlanks", "csv", "1.0, 2.0, 3.0,\n4.5, -5.0, 6.0,\n", false, false},
+    {"IntensityThenColours", "pts", "2\n1 2 3 17 255 0 0\n4.5 -5 6 80 0 0 255\n", false, true},
+    {"ColoursThenIntensity", "xyzrgb", "1 2 3 255 0 0 0.5\n4.5 -5 6 0 0 255 -7\n", false, true},
+    {"ColoursToOneByExtension", "xyzrgb", "1 2 3 1 0 0\n4.5 -5 6 0 0 1\n", false, true},
+    {"NormalsAlone", "xyzn", "1 2 3 1 0 0\n4.5 -5 6 0 0 1\n", true, false},
+    {"CloudCompare", "asc",
+     "//X Y Z R G B Nx Ny Nz\n2\n1 2 3 255 0 0 1 0 0\n4.5 -5 6 0 0 255 0 0 1\n", true, true},
+    {"QuotedHeading", "csv", "\"Z\",\"X\",\"Y\"\n3,1,2\n6,4.5,-5\n", false, false},
+    {"HeadingWithUnits", "txt", "Id X [mm] Y [mm] Z [mm]\n7 1 2 3\n8 4.5 -5 6\n", false, false},
+    {"HeadingWithUnitsAndTabs", "txt", "X (m)\tY (m)\tZ (m)\n1\t2\t3\n4.5\t-5\t6\n", false, false},
+    {"ParaView", "csv",
+     "\"time\",\"Points_m_XYZ:0\",\"Points_m_XYZ:1\",\"Points_m_XYZ:2\"\n7,1,2,3\n8,4.5,-5,6\n",
+     false, false},
+    {"RowNumbersWords", "csv", ",x,y,z,class\n0,1,2,3,tree\n1,4.5,-5,6,\n", false, false},
+    {"RowNumbersSemicolonsDecimalCommas", "csv", ";x;y;z\n0;1,0;2,0;3,0\n1;4,5;-5,0;6,0\n", false,
+     false},
+    {"AllComments", "xyz", "% a\n; b\n// c\n# x y z\n1 2 3\n4.5 -5 6\n", false, false},
+    {"ByteOrderMark", "xyz",
+     "\xef\xbb\xbf"
+     "1 2 3\n4.5 -5 6\n",
+     false, false},
+    {"ExponentsOfFortran", "xyz", "1.0D+00 2d0 0.3D1\n4.5 -5 6\n", false, false},
+    {"TextOfUnknownExtension", "dat", "1 2 3\n4.5 -5 6\n", false, false},
+    {"ObjOfUnknownExtension", "dat", "# a\nv 1 2 3\nv 4.5 -5 6\n", false, false},
+    {"ObjWithByteOrderMark", "obj", "\xef\xbb\xbfv 1 2 3\nv 4.5 -5 6\n", false, false},
+    {"PlyWithListsWordsAndLongIntegers", "ply",
+     "ply\nformat ascii 1.0\nelement vertex 2\nproperty list uchar int views\nproperty float X\n"
+     "property string name\nproperty int64 time\nproperty float Y\nproperty float "
+     "Z\nend_header\n2 5 6 1 a 7 2 3\n0 4.5 b 8 -5 6\n",
+     false, false},
+    {"PlyOfUnknownExtension", "dat",
+     "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float "
+     "z\nend_header\n1 2 3\n4.5 -5 6\n",
+     false, false},
+    {"PcdWithoutHeightAndPoints", "pcd",
+     "FIELDS X Y Z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n1 2 3\n4.5 -5 6\n", false, false},
+    {"PcdWithCommas", "pcd", "FIELDS x, y, z\nWIDTH 2\nDATA ascii\n1,2,3\n4.5, -5, 6\n", false,
+     false},
+    {"PcdWithDecimalCommas", "pcd", "FIELDS x y z\nWIDTH 2\nDATA ascii\n1,0 2,0 3,0\n4,5 -5,0 6\n",
+     false, false},
     {"ColumnsOfSomethingElse", "xyz", "1 2 3 0.5 7 8\n4.5 -5 6 1 2 3\n", false, false},
     {"ObjWithNormalsByFaces", "obj",
      "# test\no object\nv 1 2 3 1 0 0\nv 4.5 -5 6 0 0 1\nvn 0 0 1\nvn 1 0 0\n"
@@ -54,6 +103,54 @@ TEST(TextClouds, PointsNormalsAndColoursAreFoundInEveryNotation) {
     const std::vector<Color> colors = {{255, 0, 0, 255}, {0, 0, 255, 255}};
     EXPECT_EQ(data.colors, test.has_colors ? colors : std::vector<Color>());
   }
+}
+
+PointData read(const std::string& extension, const std::string& text,
+               const std::vector<std::string>& columns = {}) {
+  const tool_test::TemporaryDirectory directory;
+  tool_test::writeFile(directory.file("a." + extension), text);
+  return readCloud(directory.file("a." + extension), {}, columns);
+}
+
+TEST(TextClouds, ColumnsCanBeNamedAndAreSaid) {
+  const PointData data = read("txt", "z q x y red green blue\n3 9 1 2 4 5 6\n",
+                              {"x", "y", "-", "z", "nx", "ny", "nz"});
+  EXPECT_EQ(data.points, (std::vector<Point>{{3.0, 9.0, 2.0}}));
+  EXPECT_EQ(data.normals, (std::vector<Normal>{{4.0F, 5.0F, 6.0F}}));
+  EXPECT_EQ(data.contents, "text, 7 columns: x y - z nx ny nz, separated by blanks");
+  const std::string commas = "1,0,2,0,3,0\n4,5,5,0,6,0\n";
+  EXPECT_EQ(read("csv", commas, {"x", "y", "z"}).points[1], (Point{4.5, 5.0, 6.0}));
+  EXPECT_EQ(read("csv", commas, {"x", "y", "z", "-", "-", "-"}).points[1], (Point{4.0, 5.0, 5.0}));
+  EXPECT_EQ(read("csv", "1,2,3\n4,5,6\n").contents, "text, 3 columns: x y z, separated by commas");
+  EXPECT_EQ(parseColumns("x,y, z"), (std::vector<std::string>{"x", "y", "z"}));
+  EXPECT_THROW(parseColumns("x,y"), UsageError);
+  EXPECT_THROW(read("obj", "v 1 2 3\n", {"x", "y", "z"}), UsageError);
+}
+
+TEST(TextClouds, OtherColumnsAreScalars) {
+  const PointData data = read("txt", "x y z \"Scalar field\" time\n1 2 3 0.5 1700000000.25\n");
+  ASSERT_EQ(data.scalars.size(), 2U);
+  EXPECT_EQ(data.scalars[0].name, "Scalar_field");
+  EXPECT_FALSE(data.scalars[0].is_double);
+  EXPECT_TRUE(data.scalars[1].is_double);
+  EXPECT_EQ(data.scalars[1].values, (std::vector<double>{1700000000.25}));
+  EXPECT_EQ(read("pts", "1 2 3 -700 1 2 3\n").scalars[0].name, "intensity");
+}
+
+TEST(TextClouds, NullNormalsAreNone) {
+  for (const PointData& data : {read("xyz", "1 2 3 0 0 0\n4 5 6 0 0 0\n"),
+                                read("xyz", "x y z nx ny nz\n1 2 3 0 0 nan\n")}) {
+    EXPECT_TRUE(data.normals.empty() && data.colors.empty());
+    EXPECT_TRUE(data.has_null_normals);
+  }
+}
+
+TEST(TextClouds, WhatIsNoNumberToOtherProgramsIsNotFinite) {
+  const PointData data = read("csv", "x,y,z\n1.#QNAN,-1.#IND,1.#INF\n-nan(ind),NULL,\n");
+  ASSERT_EQ(data.points.size(), 2U);
+  for (const Point& point : data.points)
+    for (const double value : point)
+      EXPECT_FALSE(std::isfinite(value));
 }
 
 TEST(TextClouds, NumbersBeyondTheRangeOfDoubleAreInfiniteOrZero) {

@@ -1,0 +1,421 @@
+#include "common/point_table.h"
+#include "formats/formats.h"
+#include "formats/text_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace spherical_param::tools {
+namespace {
+
+constexpr const char* name_columns = "name its columns, e.g. -columns x,y,z,-,red,green,blue";
+
+/// How the cells of a line are separated.
+struct TextStyle {
+  char separator = ' ';  ///< ',' or ';'; ' ': blanks and tabs
+  bool has_decimal_commas = false;
+
+  std::string text() const {
+    const std::string by = separator == ',' ? "commas" : separator == ';' ? "semicolons" : "blanks";
+    return "separated by " + by + (has_decimal_commas ? ", with decimal commas" : "");
+  }
+};
+
+std::string_view trimmed(std::string_view text, std::string_view around = " \t\r") {
+  text = text.substr(std::min(text.find_first_not_of(around), text.size()));
+  return text.substr(0, text.find_last_not_of(around) + 1);
+}
+
+/// A line without a comment; one that is all comment is empty. After ';' the first cell may be
+/// empty.
+std::string_view withoutComment(std::string_view line) {
+  line = trimmed(line);
+  const bool is_comment =
+      !line.empty() && (line[0] == '%' || line.substr(0, 2) == "//" || line.rfind(';') == 0);
+  return is_comment ? std::string_view() : trimmed(withoutRemark(line));
+}
+
+/// Splits at a separator that is neither in quotes nor in brackets. Parts may be empty; the last
+/// one only if `count` are expected.
+void splitOutsideQuotes(std::string_view line, char separator, std::size_t count, Words& parts) {
+  parts.clear();
+  bool is_quoted = false;
+  int brackets = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    const char c = i < line.size() ? line[i] : separator;
+    is_quoted = is_quoted != (c == '"') && i < line.size();
+    brackets += c == '[' || c == '(' ? 1 : c == ']' || c == ')' ? -1 : 0;
+    if (i == line.size() || (c == separator && !is_quoted && brackets <= 0)) {
+      parts.push_back(trimmed(line.substr(begin, i - begin), " \t\r\""));
+      begin = i + 1;
+    }
+  }
+  if (parts.back().empty() && parts.size() != count) {
+    parts.pop_back();
+  }
+}
+
+/// \param count of cells, 0 if it is not known.
+void splitCells(std::string_view line, const TextStyle& style, std::size_t count, Words& cells) {
+  if (style.separator == ' ') {
+    split(line, " \t\r", cells);
+    return;
+  }
+  splitOutsideQuotes(line, style.separator, count, cells);
+  if (style.separator == ',' && style.has_decimal_commas) {
+    for (std::size_t c = 0; 2 * c + 1 < cells.size(); ++c) {
+      const char* const begin = cells[2 * c].data();
+      const std::string_view& end = cells[2 * c + 1];
+      cells[c] = {begin, static_cast<std::size_t>(end.data() + end.size() - begin)};
+    }
+    cells.resize((cells.size() + 1) / 2);
+  }
+}
+
+/// The names of a heading: in quotes, with units in brackets.
+std::vector<std::string> namesOf(std::string_view line) {
+  line = trimmed(line, " \t\r#%/!");
+  line.remove_prefix(line.rfind(';') == 0 ? 1 : 0);
+  Words names;
+  for (const char separator : {';', ',', '\t', ' '}) {
+    splitOutsideQuotes(line, separator, 0, names);
+    if (names.size() > 1) {
+      break;
+    }
+  }
+  std::vector<std::string> result;
+  for (const std::string_view name : names) {
+    const bool is_unit = !name.empty() && (name[0] == '[' || name[0] == '(');
+    if (!is_unit) {  // "X [mm]" between blanks is one name
+      result.emplace_back(name);
+    }
+  }
+  if (line.find_first_of(";,\t") == std::string_view::npos) {
+    result.erase(std::remove(result.begin(), result.end(), ""), result.end());
+  }
+  return result;
+}
+
+/// The first lines of a file.
+struct Beginning {
+  std::string content;
+  Words lines;     ///< those with data, or a heading
+  Words comments;  ///< before the first of them
+};
+
+Beginning readFirstLines(const std::string& path) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 16;
+  Beginning beginning;
+  beginning.content = readBeginning(path, most_bytes);
+  std::string_view rest = beginning.content;
+  if (rest.find('\n') == std::string_view::npos && rest.find('\r') < rest.size() - 1) {
+    failReading(path, "its lines do not end in LF",
+                "convert it: tr '\\r' '\\n' < in.txt > out.txt");
+  }
+  const bool is_utf16 = rest.substr(0, 2) == "\xff\xfe" || rest.substr(0, 2) == "\xfe\xff";
+  if (is_utf16 || rest.find('\0') != std::string_view::npos) {
+    failReading(path, is_utf16 ? "it is text in UTF-16" : "it is no text, or text in UTF-16",
+                "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
+  }
+  const bool is_whole = rest.size() < most_bytes;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos && !is_whole && !beginning.lines.empty()) {
+      break;  // it is cut
+    }
+    const std::string_view line = trimmed(rest.substr(0, end), " \t\r\xef\xbb\xbf");
+    const std::string_view data = withoutComment(line);
+    if (!data.empty()) {
+      beginning.lines.push_back(data);
+    } else if (beginning.lines.empty() && !line.empty()) {
+      beginning.comments.push_back(line);
+    }
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  }
+  return beginning;
+}
+
+/// Whether a line names columns: none of its words is a number.
+bool isHeading(std::string_view line) {
+  const Words words = split(line, " \t\r,;\"");
+  return std::none_of(words.begin(), words.end(),
+                      [](std::string_view word) { return toValue(word).has_value(); });
+}
+
+bool isCount(std::string_view line) {
+  return toInteger(line).has_value();
+}
+
+/// How lines of data are separated. \param names of the columns, if they are known.
+TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names) {
+  const auto all = [&](const auto& is_so) {
+    return std::all_of(lines.begin(), lines.end(), is_so);
+  };
+  const auto has = [](char c) {
+    return [c](std::string_view line) { return line.find(c) != std::string_view::npos; };
+  };
+  const bool has_commas = std::any_of(lines.begin(), lines.end(), has(','));
+  if (std::any_of(lines.begin(), lines.end(), has(';'))) {
+    return {';', has_commas};
+  }
+  const auto is_in_words = [](std::string_view line) {
+    const Words words = split(line, " \t\r");
+    return words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, [](auto word) {
+             return word.back() != ',' && toValue(word);
+           });
+  };
+  if (!has_commas || all(is_in_words)) {
+    return {' ', has_commas};
+  }
+  // Commas separate; whole numbers may be the halves of numbers with decimal commas.
+  Words cells;
+  const auto are_pairs = [&](std::string_view line) {
+    splitCells(line, {','}, 0, cells);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const std::string_view signs = c % 2 == 0 ? "+-" : "";
+      if (trimmed(cells[c], signs).find_first_not_of("0123456789") != std::string_view::npos) {
+        return false;
+      }
+    }
+    return cells.size() >= 6 && cells.size() % 2 == 0 && (names == 0 || cells.size() == 2 * names);
+  };
+  const bool are_all_pairs = all(are_pairs);
+  if (are_all_pairs && names == 0) {
+    failReading(path, "its commas separate columns, or they are decimal",
+                "if they are decimal, give -columns x,y,z; else -columns x,y,z,-,-,-");
+  }
+  return {',', are_all_pairs};
+}
+
+/// What a text file has.
+struct TextLayout {
+  TextStyle style;
+  std::vector<std::string> names;  ///< of columns; empty: not said
+  bool are_given = false;          ///< by the caller
+  bool has_heading = false;        ///< before the points
+  bool has_counts = false;         ///< of points, before them
+};
+
+TextLayout layoutOf(const std::string& path, const std::vector<std::string>& given) {
+  const Beginning beginning = readFirstLines(path);
+  TextLayout layout;
+  layout.names = given;
+  layout.are_given = !given.empty();
+  Words lines = beginning.lines;
+  while (!lines.empty() && ((!layout.has_counts && isCount(lines.front())) ||
+                            (!layout.has_heading && isHeading(lines.front())))) {
+    (isCount(lines.front()) ? layout.has_counts : layout.has_heading) = true;
+    if (!isCount(lines.front()) && !layout.are_given) {
+      layout.names = namesOf(lines.front());
+    }
+    lines.erase(lines.begin());
+  }
+  if (layout.has_heading && !areCoordinatesNamed(layout.names)) {
+    failReading(path, "line 1 neither begins with three numbers nor names x, y and z",
+                name_columns);
+  }
+  if (lines.empty()) {
+    failContent(path, "it has no points");
+  }
+  if (isCount(lines.front())) {
+    failReading(path, "it begins with two numbers of points, as PTX files do",
+                "convert it to PLY with CloudCompare");
+  }
+  for (auto comment = beginning.comments.rbegin();
+       layout.names.empty() && comment != beginning.comments.rend(); ++comment) {
+    const std::vector<std::string> names = namesOf(*comment);
+    if (areCoordinatesNamed(names)) {
+      Words cells;
+      splitCells(lines.front(), styleOf(path, lines, names.size()), names.size(), cells);
+      layout.names = names.size() == cells.size() ? names : std::vector<std::string>();
+    }
+  }
+  layout.style = styleOf(path, lines, layout.names.size());
+  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  Words cells;
+  splitCells(lines.front(), layout.style, 0, cells);
+  if (layout.names.empty() && cells.size() == 6 && extension == ".xyzn") {
+    layout.names = {"x", "y", "z", "nx", "ny", "nz"};
+  } else if (layout.names.empty() && cells.size() == 6 && extension == ".xyzrgb") {
+    layout.names = {"x", "y", "z", "red", "green", "blue"};
+  }
+  return layout;
+}
+
+/// The columns of lines of text.
+class TextColumns {
+public:
+  TextColumns(const std::string& path, const TextLayout& layout) : path_(path), layout_(layout) {}
+
+  std::vector<PointColumn>& columns() { return columns_; }
+
+  /// \param number of the line.
+  void add(std::size_t number, std::string_view line) {
+    splitCells(line, layout_.style, columns_.empty() ? layout_.names.size() : columns_.size(),
+               cells_);
+    if (columns_.empty()) {
+      begin();
+    }
+    const std::size_t count = columns_.size();
+    if (cells_.size() < count || (cells_.size() > count && !layout_.are_given)) {
+      fail(number, counted(cells_.size(), "column") + " instead of " + std::to_string(count));
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+      if (is_left_out_[c]) {
+        continue;
+      }
+      const std::optional<double> value =
+          cells_[c].empty() ? std::numeric_limits<double>::quiet_NaN() : toValue(cells_[c]);
+      if (!value) {
+        fail(number,
+             "no number in column " + std::to_string(c + 1) + ", but " + inQuotes(cells_[c]));
+      }
+      columns_[c].values.push_back(*value);
+    }
+  }
+
+private:
+  [[noreturn]] void fail(std::size_t line, const std::string& reason) const {
+    failReading(path_, "line " + std::to_string(line) + " has " + reason,
+                "correct it, or " + std::string(name_columns));
+  }
+
+  void begin() {
+    const std::vector<std::string>& names = layout_.names;
+    columns_.resize(names.empty() ? std::max<std::size_t>(cells_.size(), 3) : names.size());
+    const std::size_t lines = countLines(path_, "");
+    is_left_out_.resize(columns_.size(), false);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      PointColumn& column = columns_[c];
+      column.name = !names.empty() ? names[c] : c < 3 ? std::string(1, "xyz"[c]) : "";
+      const bool is_word = c < cells_.size() && !cells_[c].empty() && !toValue(cells_[c]);
+      const std::string common = commonName(column.name);
+      const bool is_coordinate = common == "x" || common == "y" || common == "z";
+      is_left_out_[c] = column.name == "-" || (is_word && !is_coordinate);
+      column.values.reserve(is_left_out_[c] ? 0 : lines);
+    }
+  }
+
+  const std::string& path_;
+  const TextLayout& layout_;
+  Words cells_;
+  std::vector<PointColumn> columns_;
+  std::vector<bool> is_left_out_;
+};
+
+/// Names three columns that nothing names by what is in them: colours are whole numbers of 0 to 255
+/// that are not all 0, normals have length 1, or are all 0. \return whether they are one of these.
+bool nameThree(std::vector<PointColumn>& columns, std::size_t first) {
+  bool are_normals = true;
+  bool are_colors = true;
+  for (std::size_t i = 0; i < columns[0].values.size() && (are_normals || are_colors); ++i) {
+    std::array<double, 3> values{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      const std::vector<double>& column = columns[first + d].values;
+      values[d] = i < column.size() ? column[i] : -1.0;
+      are_colors = are_colors && values[d] >= 0.0 && values[d] <= 255.0 &&
+                   values[d] == std::floor(values[d]);
+    }
+    // Files with 3 digits are common: their normals have unit length to about that.
+    const double length = std::hypot(values[0], values[1], values[2]);
+    are_normals = are_normals && (std::abs(length - 1.0) < 5e-3 || length == 0.0);
+  }
+  const std::array<const char*, 3> normals = {"nx", "ny", "nz"};
+  const std::array<const char*, 3> colors = {"red", "green", "blue"};
+  for (std::size_t d = 0; d < 3 && (are_normals || are_colors); ++d) {
+    columns[first + d].name = are_normals ? normals[d] : colors[d];
+    columns[first + d].is_byte = !are_normals;
+  }
+  return are_normals || are_colors;
+}
+
+/// Names the columns after x, y and z that nothing names: by threes, perhaps with an intensity
+/// before or behind them.
+void nameFurther(std::vector<PointColumn>& columns) {
+  const bool has_intensity = columns.size() % 3 == 1;
+  bool is_found = false;
+  for (std::size_t begin = has_intensity ? 4 : 3; !is_found && begin >= 3; --begin) {
+    for (std::size_t c = begin; c + 3 <= columns.size(); c += 3) {
+      is_found = nameThree(columns, c) || is_found;
+    }
+    if (is_found && has_intensity) {
+      columns[begin == 4 ? 3 : columns.size() - 1].name = "intensity";
+    }
+  }
+  if (columns.size() == 4) {
+    columns[3].name = "intensity";
+  }
+}
+
+/// Whether a column counts the lines.
+bool isCounter(const std::vector<double>& values) {
+  constexpr std::size_t least = 4;
+  bool is_counter = values.size() >= least && values[0] == std::floor(values[0]);
+  for (std::size_t i = 1; is_counter && i < values.size(); ++i) {
+    is_counter = values[i] == values[i - 1] + 1.0;
+  }
+  return is_counter;
+}
+
+std::string describe(const std::vector<PointColumn>& columns, const TextStyle& style) {
+  std::string names;
+  for (const PointColumn& column : columns) {
+    names += " " + (column.name.empty() ? "-" : commonName(column.name));
+  }
+  return "text, " + counted(columns.size(), "column") + ":" + names + ", " + style.text();
+}
+
+}  // namespace
+
+/// Plain text: a line a point, with the columns that a heading, a comment before the points, or the
+/// caller names; else x y z, and what nameFurther() finds. Blanks, tabs, commas or semicolons
+/// separate; decimal commas are seen. The first line may be the number of points.
+PointData readText(const std::string& path, const std::vector<std::string>& given,
+                   const FileProgress& progress) {
+  checkInputFile(path);
+  const TextLayout layout = layoutOf(path, given);
+  TextColumns table(path, layout);
+  double announced = 0.0;
+  double count = 0.0;
+  bool is_heading = layout.has_heading;
+  forEachLine(path, progress, [&](std::size_t number, std::string_view line) {
+    line = withoutComment(line);
+    if (line.empty()) {
+      return;
+    }
+    if (layout.has_counts && isCount(line)) {
+      announced += static_cast<double>(*toInteger(line));
+    } else if (!std::exchange(is_heading, false)) {
+      table.add(number, line);
+      count += 1.0;
+    }
+  });
+  if (count < announced) {
+    failContent(path, "it has fewer points than its first line says");
+  }
+  std::vector<PointColumn> columns = std::move(table.columns());
+  if (layout.names.empty()) {
+    if (columns.size() > 3 && isCounter(columns[0].values)) {
+      failReading(path, "its first column counts the lines, or it is x",
+                  "name its columns: -columns -,x,y,z or -columns x,y,z");
+    }
+    nameFurther(columns);
+  }
+  for (PointColumn& column : columns) {
+    column.name = column.values.empty() ? "" : column.name;
+  }
+  const std::string contents = describe(columns, layout.style);
+  PointData points = toPoints(std::move(columns));
+  points.contents = contents;
+  return points;
+}
+
+}  // namespace spherical_param::tools
