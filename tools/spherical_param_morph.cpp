@@ -280,6 +280,7 @@ struct Morph {
   /// Of both shapes, 4 x w, in 0 ... 255; empty unless both have colours.
   std::array<Eigen::Matrix<double, 4, Eigen::Dynamic>, 2> colors;
   std::vector<spherical_param::StageTime> stages;
+  Point offset{};  ///< of the coordinates that are written
 
   bool hasColors() const { return colors[0].cols() > 0; }
 };
@@ -408,6 +409,7 @@ void checkFrames(const Settings& settings, Morph& morph, Console& console) {
 void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, Morph& morph,
            std::vector<std::unique_ptr<OutputFile>>& files, Console& console) {
   console.begin("write");
+  morph.offset = offsetOf(settings.report, settings.format, *clouds[0].cloud.data);
   PointData vertices;
   const auto count = static_cast<std::size_t>(morph.result.first.cols());
   if (morph.hasColors()) {
@@ -431,8 +433,9 @@ void store(const Settings& settings, const std::array<MappedCloud, 2>& clouds, M
       }
     }
     files.push_back(std::make_unique<OutputFile>(settings.frames[frame]));
-    writeMesh(*files.back(), MeshView(vertices, morph.result.triangles), settings.format,
-              settings.report.encoding);
+    MeshView mesh(vertices, morph.result.triangles);
+    mesh.shiftBy(morph.offset);
+    writeMesh(*files.back(), mesh, settings.format, settings.report.encoding);
     files.back()->finish();
     console.update(t);
   }
@@ -464,6 +467,7 @@ Json report(const Settings& settings, const std::array<MappedCloud, 2>& clouds,
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["inputs"] = {settings.inputs[0], settings.inputs[1]};
   json["output"] = settings.output;
+  json["offset"] = morph.offset;
   json["options"] = optionsToJson(settings);
   json["frames"] = settings.frames.size();
   json["files"] = settings.frames;
@@ -528,6 +532,7 @@ void printVerdict(const Settings& settings, const std::array<MappedCloud, 2>& cl
       counted(static_cast<std::size_t>(morph.result.triangles.cols()), "triangle");
   summary.written = {settings.frames.front() +
                      (settings.frames.size() > 1 ? " to " + settings.frames.back() : "")};
+  summary.written.front() += notWritten(morph.hasColors(), settings.format, morph.offset);
   addReport(settings.report, summary.written);
   console.summary(summary);
 }

@@ -191,9 +191,15 @@ Json filesToJson(const Settings& settings) {
   return json;
 }
 
+/// What is subtracted from the coordinates of the mesh.
+Point offsetOf(const Settings& settings, const CloudReconstruction& cloud) {
+  return offsetOf(settings.report, settings.output_format, *cloud.data);
+}
+
 /// The members that are the same for the whole cloud and for each of its parts.
 Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
   Json json = filesToJson(settings);
+  json["offset"] = offsetOf(settings, cloud);
   json["points"] = cloud.data->points.size();
   json["left_out"] = toJson(cloud.result.left_out);
   json["stages"] = toJson(cloud.stages);
@@ -227,8 +233,9 @@ Json reportOnParts(const Settings& settings, const CloudReconstruction& cloud) {
   return json;
 }
 
-/// The names of the files that are written.
-std::vector<std::string> writtenFiles(const Settings& settings, std::size_t surfaces) {
+/// The names of the files that are written, and what is not in them.
+std::vector<std::string> writtenFiles(const Settings& settings, const CloudReconstruction& cloud) {
+  const std::size_t surfaces = cloud.result.surfaces.size();
   std::vector<std::string> files;
   for (const std::string& name : outputsOf(settings)) {
     const bool is_view = name != settings.output && name != settings.report.json;
@@ -236,6 +243,8 @@ std::vector<std::string> writtenFiles(const Settings& settings, std::size_t surf
                         ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
                         : numbered(name, 0) + (is_view && surfaces > 1 ? " (the largest)" : ""));
   }
+  files.front() +=
+      notWritten(!cloud.data->colors.empty(), settings.output_format, offsetOf(settings, cloud));
   return files;
 }
 
@@ -273,16 +282,17 @@ void printSummary(const Settings& settings, const CloudReconstruction& cloud, Co
     vertices += surface.vertexCount();
     triangles += static_cast<std::size_t>(surface.triangles.cols());
   }
-  console.summary(
-      {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.result.verdict,
-       counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
-       leftOut(cloud), writtenFiles(settings, surfaces.size()), movedBy(settings, surfaces)});
+  console.summary({settings.input + ", " + counted(cloud.data->points.size(), "point"),
+                   cloud.result.verdict,
+                   counted(vertices, "vertex", "vertices") + ", " + counted(triangles, "triangle"),
+                   leftOut(cloud), writtenFiles(settings, cloud), movedBy(settings, surfaces)});
 }
 
 using Files = std::vector<std::unique_ptr<OutputFile>>;
 
-void writeMeshFile(const Settings& settings, const MeshView& mesh, CloudReconstruction& cloud,
+void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction& cloud,
                    Console& console, Files& files) {
+  mesh.shiftBy(offsetOf(settings, cloud));
   console.begin("write");
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), mesh, settings.output_format, settings.report.encoding,

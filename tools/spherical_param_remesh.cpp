@@ -154,8 +154,9 @@ void checkCombination(const CommandLine& command_line, const Settings& settings)
   if (settings.reads_image) {
     for (const OptionInfo& option : option_table) {
       const bool has_a_say = option.name == "sphere" || option.name == "json" ||
-                             option.name == "ascii" || option.name == "quiet" ||
-                             option.name == "threads" || option.name == "strict";
+                             option.name == "ascii" || option.name == "offset" ||
+                             option.name == "quiet" || option.name == "threads" ||
+                             option.name == "strict";
       if (!has_a_say) {
         refuse(command_line, option.name, "a geometry image as input", "a cloud");
       }
@@ -164,7 +165,7 @@ void checkCombination(const CommandLine& command_line, const Settings& settings)
   }
   if (settings.writes_image) {
     const std::string image = "a geometry image as output";
-    for (const char* option : {"grid", "sphere", "series", "ascii"}) {
+    for (const char* option : {"grid", "sphere", "series", "offset", "ascii"}) {
       refuse(command_line, option, image, "a mesh as output");
     }
     if (command_line.has("points")) {
@@ -327,6 +328,7 @@ struct Output {
   std::vector<std::array<Index, 2>> self_intersections;
   std::optional<DistanceStatistics> distance;  ///< of the vertices of the cloud's mesh
   std::vector<spherical_param::StageTime> stages;
+  Point offset{};  ///< of the coordinates that are written
 
   std::size_t pointCount() const { return static_cast<std::size_t>(mesh.points.cols()); }
   bool isCloud() const { return mesh.triangles.cols() == 0; }
@@ -545,6 +547,7 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
   json["output"] = settings.output;
+  json["offset"] = output.offset;
   json["options"] = optionsToJson(settings);
   if (!settings.reads_image) {
     addMapToJson(mapped, json);
@@ -644,6 +647,8 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
     summary.left_out = leftOut(cloud);
   }
   summary.written = outputsOf(settings);
+  summary.written.front() +=
+      notWritten(!output.colors.empty(), settings.output_format, output.offset);
   console.summary(summary);
 }
 
@@ -668,12 +673,15 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
     writeGeometryImage(*files.back(), output.image, update);
   } else {
     const PointData vertices = toVertices(output, mapped);
-    const MeshView mesh(vertices, output.mesh.triangles);
+    MeshView mesh(vertices, output.mesh.triangles);
+    output.offset = offsetOf(settings.report, settings.output_format, vertices);
+    mesh.shiftBy(output.offset);
     writeMesh(*files.back(), mesh, settings.output_format, settings.report.encoding, update);
     if (!settings.sphere.empty()) {
       files.push_back(std::make_unique<OutputFile>(settings.sphere));
       MeshView sphere = mesh;
       sphere.leaveOutNormals();
+      sphere.shiftBy({});
       sphere.moveTo(output.mesh.directions);
       writeMesh(*files.back(), sphere, settings.sphere_format, settings.report.encoding,
                 [&](double fraction) { console.update(0.5 + 0.5 * fraction); });

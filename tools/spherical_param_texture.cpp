@@ -244,6 +244,11 @@ Json optionsToJson(const Settings& settings) {
   return json;
 }
 
+/// What is subtracted from the coordinates of the mesh.
+Point offsetOf(const Settings& settings, const MappedCloud& mapped) {
+  return offsetOf(settings.report, formatOf(settings.output), *mapped.cloud.data);
+}
+
 /// What is written, with how it came about.
 struct Output {
   TextureAtlas atlas;
@@ -303,6 +308,7 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
   json["output"] = settings.output;
+  json["offset"] = offsetOf(settings, mapped);
   json["options"] = optionsToJson(settings);
   addMapToJson(mapped, json);
   json["chart"] = nameOf(settings.atlas.chart, chart_names);
@@ -333,13 +339,15 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
   console.entry("coordinates", std::to_string(output.atlas.coordinates.cols()));
   console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
   const CloudReconstruction& cloud = mapped.cloud;
+  std::vector<std::string> files = outputsOf(settings);
+  files.front() += notWritten(false, formatOf(settings.output), offsetOf(settings, mapped));
   console.summary(
       {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.surface().verdict,
        counted(output.atlas.vertices.size(), "vertex", "vertices") + ", " +
            counted(static_cast<std::size_t>(output.atlas.triangles.cols()), "triangle") + ", " +
            std::to_string(output.image.width) + " x " + std::to_string(output.image.height) +
            " pixels",
-       leftOut(cloud), outputsOf(settings)});
+       leftOut(cloud), files});
 }
 
 /// Stores all files but the report, none of them under its name yet.
@@ -347,9 +355,13 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
                                                Output& output, Console& console) {
   console.begin("write");
   const Surface& surface = mapped.cloud.surface();
-  const TexturedMesh mesh =
-      makeTexturedMesh(output.atlas, vertexPositions(mapped.cloud, surface), surface.triangles);
-  const std::string png = encodePng(output.image);
+  const Point offset = offsetOf(settings, mapped);
+  const spherical_param::Positions points = vertexPositions(mapped.cloud, surface).colwise() -
+                                            Eigen::Map<const Eigen::Vector3d>(offset.data());
+  const PointData vertices = verticesOf(output.atlas, points, surface.triangles);
+  MeshTexture texture;
+  texture.png = encodePng(output.image);
+  texture.repeats_u = output.atlas.chart == SphereChart::Equirectangular;
   console.update(0.5);
   std::vector<std::unique_ptr<OutputFile>> files;
   const auto open = [&files](const std::string& path) -> OutputFile& {
@@ -358,20 +370,18 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
   };
   // What another mentions gets its name before that does.
   if (!settings.image.empty()) {
-    open(settings.image).write(png);
+    open(settings.image).write(texture.png);
+    texture.image_name = seenFrom(settings.output, settings.image);
   }
-  switch (settings.format) {
-  case TextureFormat::Glb:
-    writeGlb(open(settings.output), mesh, png);
-    break;
-  case TextureFormat::Obj:
+  if (settings.format == TextureFormat::Obj) {
     writeMaterial(open(settings.material), seenFrom(settings.material, settings.image));
-    writeTexturedObj(open(settings.output), mesh, seenFrom(settings.output, settings.material));
-    break;
-  case TextureFormat::Ply:
-    writeTexturedPly(open(settings.output), mesh, seenFrom(settings.output, settings.image),
-                     settings.report.encoding);
-    break;
+    writeTexturedObj(open(settings.output), output.atlas, vertices,
+                     seenFrom(settings.output, settings.material));
+  } else {
+    const TriangleMesh mesh = repeatedOnCuts(output.atlas, vertices);
+    MeshView view(mesh);
+    view.cover(texture);
+    writeMesh(open(settings.output), view, formatOf(settings.output), settings.report.encoding, {});
   }
   for (const auto& file : files) {
     file->finish();

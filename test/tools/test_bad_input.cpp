@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -60,14 +61,34 @@ protected:
   }
 };
 
+TEST_F(BadInput, FormatsThatAreNotReadAreNamedWithACommandThatConvertsThem) {
+  write("in.dat", "LASF" + std::string(9, '\0'));
+  for (const auto& [file, format, command] :
+       std::vector<std::tuple<Words, std::string, std::string>>{
+           {{"in.las", "in.LAZ", "in.dat"}, " is LA", "pdal translate"},
+           {{"in.e57"}, " is E57", "CloudCompare "},
+           {{"in.ptx"}, " is PTX", "CloudCompare "},
+           {{"in.stl"}, " is STL", "pcl_converter "},
+           {{"in.glb"}, " is glTF", "assimp export "},
+           {{"in.vtk"}, " is VTK", "pcl_vtk2pcd "},
+           {{"in.bag"}, " is a bag of ROS", "rosrun pcl_ros bag_to_pcd "},
+           {{"in.mcap", "in.db3"}, " is a bag of ROS 2", "ros2 bag play "}})
+    for (const std::string& name : file) {
+      const auto result = run(mesh_tool, {name, "out.ply"});
+      EXPECT_EQ(result.exit_code, wrong_usage);
+      EXPECT_NE(result.errors.find(format), std::string::npos) << result.errors;
+      EXPECT_NE(result.errors.find("\n  remedy: convert it: " + command), std::string::npos)
+          << result.errors;
+    }
+}
+
 TEST_F(BadInput, FilesThatMakeNoSenseAreRefused) {
   ASSERT_EQ(symlink("in.ply", directory.file("link.ply").c_str()), 0);
   expectAllRefused(
       {{mesh_tool, {}, "the input file is missing"},
        {mesh_tool, {"in.xyz"}, "the output file"},
        {mesh_tool, {"in.xyz", "a.ply", "b.ply"}, "too many: 'b.ply'"},
-       {mesh_tool, {"in.las", "out.ply"}, "'in.las' has an extension"},
-       {mesh_tool, {"in.vtk", "out.ply"}, "'in.vtk' has an extension"},
+       {mesh_tool, {"in.foo", "out.ply"}, "'in.foo' has an extension"},
        {mesh_tool, {"in\n.las", "out.ply"}, "'in?.las'"},
        {mesh_tool, {"in.xyz", "out"}, "'out' has an extension"},
        {mesh_tool, {"in.xyz", "out.pcd"}, "'out.pcd' has an extension"},
@@ -180,6 +201,7 @@ TEST_F(BadInput, OptionsThatDoNothingAreRefused) {
   expectOptionsRefused(remesh_tool, {"in.xyz", "out.tif"},
                        {{{"-side", "9", "-points", "9"}, "-side" + nothing},
                         {{"-series"}, "-series" + nothing},
+                        {{"-offset", "1,2,3"}, "-offset" + nothing},
                         {{"-ascii"}, "-ascii" + nothing}});
   for (const char* option : {"-points=9", "-fit=linear", "-k=9", "-map-sweeps=2", "-grid=even",
                              "-series", "-harmonics=c.json"})

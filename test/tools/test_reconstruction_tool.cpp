@@ -72,6 +72,58 @@ TEST_F(ReconstructionTool, MeshAndSphereHaveTheSameTrianglesAndKeepWhatThePoints
   EXPECT_NE(content("text.ply").find("format ascii"), std::string::npos);
 }
 
+TEST_F(ReconstructionTool, WhatFurtherColumnsHoldIsSaidAndComesAlong) {
+  std::string text;
+  std::istringstream lines(linesOf(points));
+  for (std::string line; std::getline(lines, line);)
+    text += line + " " + std::to_string(text.size() % 7) + ".5 10 20 30\n";
+  write("in.pts", "200\n" + text);
+  const RunResult result = tool({"in.pts", "out.ply", "-verbose"});
+  EXPECT_NE(result.output.find("200 points; text, 7 columns: x y z intensity red green blue, "
+                               "separated by blanks\n"),
+            std::string::npos);
+  EXPECT_EQ(mesh("out.ply").points(), points);
+  EXPECT_EQ(mesh("out.ply").properties.at("intensity")[0], 0.5);
+  EXPECT_EQ(mesh("out.ply").properties.at("blue")[199], 30.0);
+  EXPECT_EQ(reportOf({"in.pts", "out.ply", "-columns", "x,y,z,-,nx,ny,nz"})["options"]["columns"],
+            json({"x", "y", "z", "-", "nx", "ny", "nz"}));
+  EXPECT_EQ(mesh("out.ply").properties.count("red"), 0U);
+  EXPECT_EQ(mesh("out.ply").properties.at("nz")[0], 30.0);
+  EXPECT_NE(tool({"in.pts", "out.stl"}).output.find("out.stl (without colours)\n"),
+            std::string::npos);
+  expectRefused(RECONSTRUCTION_TOOL, {"in.ply", "out.stl", "-columns", "x,y,z"}, 2, "-columns");
+  expectRefused(RECONSTRUCTION_TOOL, {"in.pts", "out.stl", "-columns", "x,y,q"}, 2,
+                "no x, y and z");
+}
+
+TEST_F(ReconstructionTool, NormalsThatAreNullAreReplacedByThoseOfTheMesh) {
+  write("in.ply", plyOf(points, Positions::Zero(3, 200)));
+  expectSuccess(RECONSTRUCTION_TOOL, {"in.ply", "out.ply"});
+  const Positions written = mesh("out.ply").normals();
+  EXPECT_LT((written.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-6);
+  EXPECT_GT(written.cwiseProduct(points).colwise().sum().minCoeff(), 0.0);
+}
+
+TEST_F(ReconstructionTool, AnOffsetIsTakenOffWhereSinglePrecisionIsTooCoarse) {
+  const Eigen::Vector3d far(512345.678, 5412345.25, 301.5);
+  const Positions utm = points.colwise() + far;
+  write("utm.ply", plyOf(utm));
+  EXPECT_EQ(reportOf({"utm.ply", "out.ply"})["offset"], json({0.0, 0.0, 0.0}));
+  EXPECT_TRUE(tool_test::containsAll(mesh("out.ply").points(), utm));
+  EXPECT_EQ(reportOf({"in.ply", "out.stl"})["offset"], json({0.0, 0.0, 0.0}));
+  for (const char* name : {"out.stl", "out.glb"}) {
+    EXPECT_EQ(reportOf({"utm.ply", name})["offset"], json({512346.0, 5412345.0, 302.0}));
+    EXPECT_NE(
+        tool({"utm.ply", name}).output.find(std::string(name) + " (less 512346, 5412345, 302)\n"),
+        std::string::npos);
+  }
+  const json report = reportOf({"utm.ply", "out.ply", "-offset", "512345,5412345.25,300"});
+  EXPECT_EQ(report["options"]["offset"], json({512345.0, 5412345.25, 300.0}));
+  const Eigen::Vector3d offset(512345.0, 5412345.25, 300.0);
+  EXPECT_LT(((mesh("out.ply").points().colwise() + offset) - utm).cwiseAbs().maxCoeff(), 1e-6);
+  expectRefused(RECONSTRUCTION_TOOL, {"utm.ply", "out.stl", "-offset", "1,2"}, 2, "three numbers");
+}
+
 /// Unit spheres without caps, with these coordinates x of their centres.
 Positions spheresWithoutCaps(int n, const std::vector<double>& centers) {
   std::vector<Eigen::Vector3d> kept;

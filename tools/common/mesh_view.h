@@ -6,12 +6,20 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace spherical_param::tools {
 
 using Triangle = std::array<std::int32_t, 3>;  ///< counter-clockwise from outside
+
+/// An image over a mesh, whose first two scalars are the place in it, u to the right and v up.
+struct MeshTexture {
+  std::string image_name;  ///< beside the mesh
+  std::string png;         ///< the image, as a file
+  bool repeats_u = false;  ///< its left side continues its right side
+};
 
 /// A mesh to be written. Points and triangles are not copied: they must outlive it.
 class MeshView {
@@ -41,7 +49,11 @@ public:
   ///
   /// \param places 3 x vertices.
   void moveTo(const Positions& places) { places_ = &places; }
+  /// Gives it a texture, which must outlive it.
+  void cover(const MeshTexture& texture) { texture_ = &texture; }
   void leaveOutNormals() { has_normals_ = false; }
+  /// Subtracts an offset from all points.
+  void shiftBy(const Point& offset) { offset_ = offset; }
   /// Marks vertices that are not points of the cloud.
   ///
   /// \param marks 1 for each that was added, else 0; empty if none was.
@@ -52,15 +64,22 @@ public:
   bool hasNormals() const { return has_normals_; }
   bool hasColors() const { return !data_->colors.empty(); }
   bool hasAlpha() const { return data_->has_alpha; }
+  /// Of the colours, 0 without any.
+  std::size_t channelCount() const { return !hasColors() ? 0 : hasAlpha() ? 4 : 3; }
+  const std::vector<Scalar>& scalars() const { return data_->scalars; }
+  const MeshTexture* texture() const { return texture_; }
   bool hasAdded() const { return !added_.empty(); }
 
   Point point(std::size_t vertex) const {
+    Point point{};
     if (places_ == nullptr) {
-      return data_->points[index(vertex)];
+      point = data_->points[index(vertex)];
+    } else {
+      Eigen::Map<Eigen::Vector3d>(point.data()) = places_->col(static_cast<Eigen::Index>(vertex));
     }
-    const auto place = places_->col(static_cast<Eigen::Index>(vertex));
-    return {place.x(), place.y(), place.z()};
+    return {point[0] - offset_[0], point[1] - offset_[1], point[2] - offset_[2]};
   }
+  double scalar(const Scalar& of, std::size_t vertex) const { return of.values[index(vertex)]; }
   const Normal& normal(std::size_t vertex) const { return data_->normals[index(vertex)]; }
   const Color& color(std::size_t vertex) const { return data_->colors[index(vertex)]; }
   std::uint8_t added(std::size_t vertex) const { return added_[vertex]; }
@@ -77,6 +96,8 @@ private:
   const PointData* data_;
   const std::vector<int>* indices_ = nullptr;
   const Positions* places_ = nullptr;
+  const MeshTexture* texture_ = nullptr;
+  Point offset_{};
   std::size_t vertex_count_;
   std::size_t triangle_count_;
   const std::int32_t* corners_;

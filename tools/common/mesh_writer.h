@@ -3,6 +3,8 @@
 #include "common/file_formats.h"
 #include "common/output_file.h"
 
+#include <string>
+
 namespace spherical_param::tools {
 
 /// Writes a mesh, or a plain cloud if there are no triangles, with the colours and normals that
@@ -21,6 +23,20 @@ namespace spherical_param::tools {
 /// \throw Failure if the file cannot be written.
 void writeMesh(OutputFile& file, const MeshView& mesh, FileFormat format, Encoding encoding,
                const FileProgress& progress = {});
+
+/// Whether single precision would move points too far: they are far from the origin.
+bool needsDouble(const PointData& data);
+
+/// What has to be subtracted from points so that a format keeps their digits: 0, or a round number
+/// near their middle if it has single precision only and they are far from the origin.
+///
+/// \param format null: one that has no mesh.
+Point offsetFor(const PointData& data, FileFormat format, Encoding encoding);
+
+/// What is not in the file of a mesh: " (without colours, less 1000, 0, 0)"; empty if all is.
+///
+/// \param has_colors of the mesh. \param format null: one that has no mesh.
+std::string notWritten(bool has_colors, FileFormat format, const Point& offset);
 
 /// The coordinates of points as writeMesh() rounds them.
 Positions asWritten(const Positions& points);

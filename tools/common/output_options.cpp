@@ -2,7 +2,10 @@
 
 #include "common/console.h"
 #include "common/errors.h"
+#include "common/numbers.h"
 #include "common/text.h"
+
+#include <cmath>
 
 namespace spherical_param::tools {
 
@@ -12,9 +15,31 @@ std::vector<OptionInfo> outputOptions() {
        false},
       {"verbose", "", "print options, stages and tables before the summary", false},
       {"quiet", "", "print only errors", true},
+      {"offset", "X,Y,Z",
+       "subtract this from the coordinates that are written; auto: what STL and GLB, in single "
+       "precision, need (auto)",
+       true},
       {"ascii", "", "write PLY, STL and VTK as text", true},
   };
 }
+
+namespace {
+
+Point parseOffset(const std::string& text) {
+  const std::vector<std::string_view> words = split(text, ", ");
+  Point offset{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const std::optional<double> value = words.size() == 3 ? toReal(words[d]) : std::nullopt;
+    if (!value || !std::isfinite(*value)) {
+      throw UsageError("option -offset: " + inQuotes(text) + " is not three numbers",
+                       "give -offset X,Y,Z, or auto");
+    }
+    offset[d] = *value;
+  }
+  return offset;
+}
+
+}  // namespace
 
 OutputSettings parseOutputOptions(const CommandLine& command_line) {
   OutputSettings settings;
@@ -23,6 +48,9 @@ OutputSettings parseOutputOptions(const CommandLine& command_line) {
     throw UsageError("option -json: the name of the file is empty", "give a file, or - ");
   }
   settings.encoding = command_line.has("ascii") ? Encoding::Ascii : Encoding::Binary;
+  if (const std::string text = command_line.value("offset", "auto"); text != "auto") {
+    settings.offset = parseOffset(text);
+  }
   settings.quiet = command_line.has("quiet");
   settings.verbose = command_line.has("verbose");
   if (settings.quiet && settings.verbose) {
@@ -31,8 +59,13 @@ OutputSettings parseOutputOptions(const CommandLine& command_line) {
   return settings;
 }
 
+Point offsetOf(const OutputSettings& settings, FileFormat format, const PointData& data) {
+  return settings.offset ? *settings.offset : offsetFor(data, format, settings.encoding);
+}
+
 void addToJson(const OutputSettings& settings, Json& json) {
   json["json"] = settings.json;
+  json["offset"] = settings.offset ? Json(*settings.offset) : Json("auto");
   json["ascii"] = settings.encoding == Encoding::Ascii;
   json["quiet"] = settings.quiet;
   json["verbose"] = settings.verbose;

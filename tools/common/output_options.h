@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace spherical_param::tools {
 struct OutputSettings {
   std::string json;  ///< file of the report, empty: not wanted
   Encoding encoding = Encoding::Binary;
+  std::optional<Point> offset;  ///< of the coordinates that are written; unset: as the format needs
   bool quiet = false;
   bool verbose = false;
 
@@ -34,6 +36,9 @@ std::vector<OptionInfo> outputOptions();
 
 /// \throw UsageError
 OutputSettings parseOutputOptions(const CommandLine& command_line);
+
+/// What is subtracted from the coordinates of a file.
+Point offsetOf(const OutputSettings& settings, FileFormat format, const PointData& data);
 
 /// Adds the members `json`, `ascii`, `quiet` and `verbose`.
 void addToJson(const OutputSettings& settings, Json& json);

@@ -16,7 +16,8 @@
 
 namespace spherical_param::tools {
 
-enum class ByteOrder { Little, Big };
+/// How put() writes numbers: with blanks between them, or as bytes in an order.
+enum class NumberStyle { Text, LittleEndian, BigEndian };
 
 /// Puts numbers and text of a file together and hands them to the file in blocks.
 class RecordWriter {
@@ -29,6 +30,8 @@ public:
   }
 
   bool inDouble() const { return in_double_; }
+  bool isText() const { return style_ == NumberStyle::Text; }
+  void useStyle(NumberStyle style) { style_ = style; }
   /// \param records lines, or vertices and triangles, that will be written.
   void expect(std::size_t records) { records_ = records; }
 
@@ -43,80 +46,50 @@ public:
                                    std::chars_format::general, 9);
     block_.append(digits.data(), end.ptr);
   }
-  void number(std::int64_t value) {
+  /// The fewest digits that distinguish the value from any other.
+  template <typename Number>
+  void number(Number value) {
     std::array<char, 32> digits;
     block_.append(digits.data(),
                   std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-  }
-  /// The fewest digits that distinguish the value from any other double.
-  void number(double value) {
-    std::array<char, 32> digits;
-    block_.append(digits.data(),
-                  std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
-  }
-  void numbers(const FloatTriple& values) {
-    number(values[0]);
-    block_ += ' ';
-    number(values[1]);
-    block_ += ' ';
-    number(values[2]);
-  }
-  void numbers(const Point& values) {
-    if (!in_double_) {
-      numbers(toFloat(values));
-      return;
-    }
-    number(values[0]);
-    block_ += ' ';
-    number(values[1]);
-    block_ += ' ';
-    number(values[2]);
   }
 
-  void byte(std::uint8_t value) { block_ += static_cast<char>(value); }
-  void word(std::uint32_t value, ByteOrder order) {
-    std::array<char, 4> bytes{};
-    for (unsigned i = 0; i < 4; ++i) {
-      const unsigned shift = order == ByteOrder::Little ? 8 * i : 24 - 8 * i;
-      bytes[i] = static_cast<char>(static_cast<std::uint8_t>(value >> shift));
+  template <typename Number>
+  void put(Number value) {
+    if (isText()) {
+      block_ += is_line_begun_ ? " " : "";
+      is_line_begun_ = true;
+      number(value);
+      return;
+    }
+    std::array<char, sizeof value> bytes;
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (style_ == NumberStyle::BigEndian) {
+      std::reverse(bytes.begin(), bytes.end());
     }
     block_.append(bytes.data(), bytes.size());
   }
-  void word(float value, ByteOrder order) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    word(bits, order);
+  /// A number in single precision, if that is enough.
+  void put(double value, bool in_double) {
+    in_double ? put(value) : put(static_cast<float>(value));
   }
-  void word(double value, ByteOrder order) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    const auto low = static_cast<std::uint32_t>(bits);
-    const auto high = static_cast<std::uint32_t>(bits >> 32U);
-    word(order == ByteOrder::Little ? low : high, order);
-    word(order == ByteOrder::Little ? high : low, order);
-  }
-  void words(const FloatTriple& values, ByteOrder order) {
-    for (const float value : values) {
-      word(value, order);
-    }
-  }
-  void words(const Point& values, ByteOrder order) {
-    if (!in_double_) {
-      words(toFloat(values), order);
-      return;
-    }
+  void put(const Point& values) {
     for (const double value : values) {
-      word(value, order);
+      put(value, in_double_);
     }
   }
-  void words(const Triangle& triangle, ByteOrder order) {
-    for (const std::int32_t corner : triangle) {
-      word(static_cast<std::uint32_t>(corner), order);
+  template <typename Number>
+  void put(const std::array<Number, 3>& values) {
+    for (const Number value : values) {
+      put(value);
     }
   }
+  /// Ends a line of put() in text, else what counts as a record.
+  void end() { isText() ? endLine() : endRecord(); }
 
   void endLine() {
     block_ += '\n';
+    is_line_begun_ = false;
     endRecord();
   }
   void line(std::string_view whole) {
@@ -152,6 +125,8 @@ private:
 
   OutputFile& file_;
   bool in_double_;
+  NumberStyle style_ = NumberStyle::Text;
+  bool is_line_begun_ = false;
   std::size_t records_ = 0;
   std::size_t written_ = 0;
   const FileProgress& progress_;

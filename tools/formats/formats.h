@@ -25,6 +25,8 @@ struct FormatRow {
   CloudReader* read_cloud;
   MeshFormatWriter* write_cloud;
   MeshFormatWriter* write_mesh;
+  bool has_single_precision = false;  ///< only, if it is binary
+  bool has_colors = true;
 };
 
 /// All formats. A new one is a file beside this one, its name in the list below, and a row.
@@ -32,6 +34,6 @@ extern const std::vector<FormatRow> format_table;
 
 /// Readers throw Failure with the place of what is broken.
 CloudReader readPcd, readPly, readObj, readText;
-MeshFormatWriter writePcd, writePly, writeObj, writeVtk, writeXyz, writeStl, writeOff;
+MeshFormatWriter writePcd, writePly, writeObj, writeVtk, writeXyz, writeStl, writeOff, writeGlb;
 
 }  // namespace spherical_param::tools

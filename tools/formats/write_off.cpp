@@ -1,5 +1,4 @@
 #include "formats/formats.h"
-#include "formats/mesh_parts.h"
 
 namespace spherical_param::tools {
 
@@ -12,21 +11,19 @@ void writeOff(RecordWriter& writer, const MeshView& mesh, Encoding /*text only*/
   writer.line(std::to_string(mesh.vertexCount()) + " " + std::to_string(mesh.triangleCount()) +
               " 0");
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
-    writer.numbers(mesh.point(i));
+    writer.put(mesh.point(i));
     if (mesh.hasNormals()) {
-      writer.text(" ");
-      writer.numbers(mesh.normal(i));
+      writer.put(mesh.normal(i));
     }
-    if (mesh.hasColors()) {
-      for (const std::uint8_t channel : mesh.color(i)) {
-        writer.text(" ");
-        writer.number(std::int64_t{channel});
-      }
+    for (std::size_t c = 0; mesh.hasColors() && c < 4; ++c) {
+      writer.put(mesh.color(i)[c]);
     }
-    writer.endLine();
+    writer.end();
   }
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-    writeTextTriangle(writer, mesh.triangle(t));
+    writer.put(std::uint8_t{3});
+    writer.put(mesh.triangle(t));
+    writer.end();
   }
 }
 

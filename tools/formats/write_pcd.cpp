@@ -1,5 +1,4 @@
 #include "formats/formats.h"
-#include "formats/mesh_parts.h"
 
 namespace spherical_param::tools {
 namespace {
@@ -40,19 +39,19 @@ void writePcdHeader(RecordWriter& writer, const MeshView& mesh) {
 void writePcd(RecordWriter& writer, const MeshView& mesh, Encoding /*binary only*/) {
   writer.expect(mesh.vertexCount());
   writePcdHeader(writer, mesh);
+  writer.useStyle(NumberStyle::LittleEndian);
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
-    writer.words(mesh.point(i), ByteOrder::Little);
+    writer.put(mesh.point(i));
     if (mesh.hasNormals()) {
-      writer.words(mesh.normal(i), ByteOrder::Little);
+      writer.put(mesh.normal(i));
     }
     if (mesh.hasColors()) {
       const Color& color = mesh.color(i);
       const std::uint32_t alpha = mesh.hasAlpha() ? color[3] : 0U;
-      writer.word(alpha << 24U | std::uint32_t{color[0]} << 16U | std::uint32_t{color[1]} << 8U |
-                      std::uint32_t{color[2]},
-                  ByteOrder::Little);
+      writer.put(alpha << 24U | std::uint32_t{color[0]} << 16U | std::uint32_t{color[1]} << 8U |
+                 std::uint32_t{color[2]});
     }
-    writer.endRecord();
+    writer.end();
   }
 }
 

@@ -1,17 +1,15 @@
 #include "formats/formats.h"
-#include "formats/mesh_parts.h"
 
 namespace spherical_param::tools {
 namespace {
-
-std::size_t writtenChannels(const MeshView& mesh) {
-  return mesh.hasColors() ? channelCount(mesh) : 0;
-}
 
 void writePlyHeader(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   writer.line("ply");
   writer.line(encoding == Encoding::Binary ? "format binary_little_endian 1.0"
                                            : "format ascii 1.0");
+  if (mesh.texture() != nullptr) {
+    writer.line("comment TextureFile " + mesh.texture()->image_name);  // for MeshLab
+  }
   writer.line("element vertex " + std::to_string(mesh.vertexCount()));
   for (const char* name : {"x", "y", "z"}) {
     writer.line((writer.inDouble() ? "property double " : "property float ") + std::string(name));
@@ -22,8 +20,11 @@ void writePlyHeader(RecordWriter& writer, const MeshView& mesh, Encoding encodin
     }
   }
   constexpr std::array channels = {"red", "green", "blue", "alpha"};
-  for (std::size_t c = 0; c < writtenChannels(mesh); ++c) {
+  for (std::size_t c = 0; c < mesh.channelCount(); ++c) {
     writer.line(std::string("property uchar ") + channels[c]);
+  }
+  for (const Scalar& scalar : mesh.scalars()) {
+    writer.line((scalar.is_double ? "property double " : "property float ") + scalar.name);
   }
   if (mesh.hasAdded()) {
     writer.line("property uchar added");
@@ -35,34 +36,21 @@ void writePlyHeader(RecordWriter& writer, const MeshView& mesh, Encoding encodin
   writer.line("end_header");
 }
 
-void writeBinaryVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i) {
-  writer.words(mesh.point(i), ByteOrder::Little);
+void writeVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i) {
+  writer.put(mesh.point(i));
   if (mesh.hasNormals()) {
-    writer.words(mesh.normal(i), ByteOrder::Little);
+    writer.put(mesh.normal(i));
   }
-  for (std::size_t c = 0; c < writtenChannels(mesh); ++c) {
-    writer.byte(mesh.color(i)[c]);
+  for (std::size_t c = 0; c < mesh.channelCount(); ++c) {
+    writer.put(mesh.color(i)[c]);
+  }
+  for (const Scalar& scalar : mesh.scalars()) {
+    writer.put(mesh.scalar(scalar, i), scalar.is_double);
   }
   if (mesh.hasAdded()) {
-    writer.byte(mesh.added(i));
+    writer.put(mesh.added(i));
   }
-  writer.endRecord();
-}
-
-void writeTextVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i) {
-  writer.numbers(mesh.point(i));
-  if (mesh.hasNormals()) {
-    writer.text(" ");
-    writer.numbers(mesh.normal(i));
-  }
-  for (std::size_t c = 0; c < writtenChannels(mesh); ++c) {
-    writer.text(" ");
-    writer.number(std::int64_t{mesh.color(i)[c]});
-  }
-  if (mesh.hasAdded()) {
-    writer.text(mesh.added(i) != 0 ? " 1" : " 0");
-  }
-  writer.endLine();
+  writer.end();
 }
 
 }  // namespace
@@ -70,21 +58,14 @@ void writeTextVertex(RecordWriter& writer, const MeshView& mesh, std::size_t i) 
 void writePly(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   writer.expect(mesh.vertexCount() + mesh.triangleCount());
   writePlyHeader(writer, mesh, encoding);
+  writer.useStyle(encoding == Encoding::Binary ? NumberStyle::LittleEndian : NumberStyle::Text);
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
-    if (encoding == Encoding::Binary) {
-      writeBinaryVertex(writer, mesh, i);
-    } else {
-      writeTextVertex(writer, mesh, i);
-    }
+    writeVertex(writer, mesh, i);
   }
   for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
-    if (encoding == Encoding::Binary) {
-      writer.byte(3);
-      writer.words(mesh.triangle(t), ByteOrder::Little);
-      writer.endRecord();
-    } else {
-      writeTextTriangle(writer, mesh.triangle(t));
-    }
+    writer.put(std::uint8_t{3});
+    writer.put(mesh.triangle(t));
+    writer.end();
   }
 }
 

@@ -1,7 +1,8 @@
 #include "formats/formats.h"
-#include "formats/mesh_parts.h"
 
 #include <Eigen/Geometry>
+
+#include <cmath>
 
 namespace spherical_param::tools {
 namespace {
@@ -19,24 +20,14 @@ Normal facetNormal(const std::array<Point, 3>& corners) {
   return toFloat({normal.x() / length, normal.y() / length, normal.z() / length});
 }
 
-void writeBinaryFacet(RecordWriter& writer, const std::array<Point, 3>& corners) {
-  writer.words(facetNormal(corners), ByteOrder::Little);
-  for (const Point& corner : corners) {
-    writer.words(toFloat(corner), ByteOrder::Little);
-  }
-  writer.byte(0);
-  writer.byte(0);
-  writer.endRecord();
-}
-
 void writeTextFacet(RecordWriter& writer, const std::array<Point, 3>& corners) {
   writer.text("facet normal ");
-  writer.numbers(facetNormal(corners));
+  writer.put(facetNormal(corners));
   writer.endLine();
   writer.line("outer loop");
   for (const Point& corner : corners) {
     writer.text("vertex ");
-    writer.numbers(corner);
+    writer.put(corner);
     writer.endLine();
   }
   writer.line("endloop");
@@ -54,8 +45,9 @@ void writeStl(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
     std::string header = "binary STL";
     header.resize(80, ' ');
     writer.text(header);
-    writer.word(static_cast<std::uint32_t>(mesh.triangleCount()), ByteOrder::Little);
-    writer.endRecord();
+    writer.useStyle(NumberStyle::LittleEndian);
+    writer.put(static_cast<std::uint32_t>(mesh.triangleCount()));
+    writer.end();
   } else {
     writer.line("solid mesh");
   }
@@ -64,11 +56,16 @@ void writeStl(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
     const std::array<Point, 3> corners = {mesh.point(static_cast<std::size_t>(triangle[0])),
                                           mesh.point(static_cast<std::size_t>(triangle[1])),
                                           mesh.point(static_cast<std::size_t>(triangle[2]))};
-    if (binary) {
-      writeBinaryFacet(writer, corners);
-    } else {
+    if (!binary) {
       writeTextFacet(writer, corners);
+      continue;
     }
+    writer.put(facetNormal(corners));
+    for (const Point& corner : corners) {
+      writer.put(toFloat(corner));
+    }
+    writer.put(std::uint16_t{0});
+    writer.end();
   }
   if (!binary) {
     writer.line("endsolid mesh");

@@ -1,65 +1,38 @@
 #include "formats/formats.h"
-#include "formats/mesh_parts.h"
 
 namespace spherical_param::tools {
 namespace {
 
-template <typename Values>
-void writeNumbers(RecordWriter& writer, const Values& values, bool binary) {
-  if (binary) {
-    writer.words(values, ByteOrder::Big);
-    writer.endRecord();
-  } else {
-    writer.numbers(values);
-    writer.endLine();
-  }
-}
-
-/// Points that belong to no cell are not shown.
-void writeVertexCells(RecordWriter& writer, std::size_t count, bool binary) {
-  writer.line("VERTICES " + std::to_string(count) + " " + std::to_string(2 * count));
+/// Points that belong to no cell are not shown: without triangles, each is one.
+void writeCells(RecordWriter& writer, const MeshView& mesh) {
+  const bool is_mesh = mesh.triangleCount() > 0;
+  const std::size_t count = is_mesh ? mesh.triangleCount() : mesh.vertexCount();
+  writer.line((is_mesh ? "POLYGONS " : "VERTICES ") + std::to_string(count) + " " +
+              std::to_string((is_mesh ? 4 : 2) * count));
   for (std::size_t i = 0; i < count; ++i) {
-    if (binary) {
-      writer.word(std::uint32_t{1}, ByteOrder::Big);
-      writer.word(static_cast<std::uint32_t>(i), ByteOrder::Big);
-      writer.endRecord();
-    } else {
-      writer.line("1 " + std::to_string(i));
-    }
+    writer.put(std::int32_t{is_mesh ? 3 : 1});
+    is_mesh ? writer.put(mesh.triangle(i)) : writer.put(static_cast<std::int32_t>(i));
+    writer.end();
   }
 }
 
-void writePolygons(RecordWriter& writer, const MeshView& mesh, bool binary) {
-  const std::size_t count = mesh.triangleCount();
-  writer.line("POLYGONS " + std::to_string(count) + " " + std::to_string(4 * count));
-  for (std::size_t t = 0; t < count; ++t) {
-    if (binary) {
-      writer.word(std::uint32_t{3}, ByteOrder::Big);
-      writer.words(mesh.triangle(t), ByteOrder::Big);
-      writer.endRecord();
-    } else {
-      writeTextTriangle(writer, mesh.triangle(t));
-    }
-  }
-}
-
-void writeColors(RecordWriter& writer, const MeshView& mesh, bool binary) {
-  writer.line("COLOR_SCALARS Colors " + std::to_string(channelCount(mesh)));
+void writeColors(RecordWriter& writer, const MeshView& mesh) {
+  writer.line("COLOR_SCALARS Colors " + std::to_string(mesh.channelCount()));
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
-    const Color color = mesh.color(i);
-    for (std::size_t c = 0; c < channelCount(mesh); ++c) {
-      if (binary) {
-        writer.byte(color[c]);
-      } else {
-        writer.text(c == 0 ? "" : " ");
-        writer.number(static_cast<float>(color[c]) / 255.0F);
-      }
+    for (std::size_t c = 0; c < mesh.channelCount(); ++c) {
+      const std::uint8_t channel = mesh.color(i)[c];
+      writer.isText() ? writer.put(static_cast<float>(channel) / 255.0F) : writer.put(channel);
     }
-    if (binary) {
-      writer.endRecord();
-    } else {
-      writer.endLine();
-    }
+    writer.end();
+  }
+}
+
+void writeScalar(RecordWriter& writer, const MeshView& mesh, const Scalar& scalar) {
+  writer.line("SCALARS " + scalar.name + (scalar.is_double ? " double" : " float"));
+  writer.line("LOOKUP_TABLE default");
+  for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
+    writer.put(mesh.scalar(scalar, i), scalar.is_double);
+    writer.end();
   }
 }
 
@@ -75,25 +48,27 @@ void writeVtk(RecordWriter& writer, const MeshView& mesh, Encoding encoding) {
   writer.line("DATASET POLYDATA");
   writer.line("POINTS " + std::to_string(mesh.vertexCount()) +
               (writer.inDouble() ? " double" : " float"));
+  writer.useStyle(binary ? NumberStyle::BigEndian : NumberStyle::Text);
   for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
-    writeNumbers(writer, mesh.point(i), binary);
+    writer.put(mesh.point(i));
+    writer.end();
   }
-  if (mesh.triangleCount() == 0) {
-    writeVertexCells(writer, mesh.vertexCount(), binary);
-  } else {
-    writePolygons(writer, mesh, binary);
-  }
-  if (mesh.hasColors() || mesh.hasNormals()) {
+  writeCells(writer, mesh);
+  if (mesh.hasColors() || mesh.hasNormals() || !mesh.scalars().empty()) {
     writer.line("POINT_DATA " + std::to_string(mesh.vertexCount()));
   }
   if (mesh.hasColors()) {
-    writeColors(writer, mesh, binary);
+    writeColors(writer, mesh);
   }
   if (mesh.hasNormals()) {
     writer.line("NORMALS Normals float");
     for (std::size_t i = 0; i < mesh.vertexCount(); ++i) {
-      writeNumbers(writer, mesh.normal(i), binary);
+      writer.put(mesh.normal(i));
+      writer.end();
     }
+  }
+  for (const Scalar& scalar : mesh.scalars()) {
+    writeScalar(writer, mesh, scalar);
   }
 }
 

@@ -15,12 +15,17 @@
 #include <pcl/point_types.h>
 
 #include <vtkCellArray.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkDataArray.h>
+#include <vtkGLTFReader.h>
 #include <vtkIdList.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataReader.h>
 #include <vtkSTLReader.h>
+#include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <gtest/gtest.h>
@@ -99,12 +104,7 @@ TriangleMesh readWithPcl(const std::string& path) {
   return mesh;
 }
 
-template <typename Reader>
-TriangleMesh readWithVtk(const std::string& path) {
-  vtkNew<Reader> reader;
-  reader->SetFileName(path.c_str());
-  reader->Update();
-  vtkPolyData& data = *reader->GetOutput();
+TriangleMesh meshOf(vtkPolyData& data) {
   TriangleMesh mesh;
   auto* const normals = data.GetPointData()->GetNormals();
   auto* const colors = vtkUnsignedCharArray::SafeDownCast(data.GetPointData()->GetScalars());
@@ -125,6 +125,37 @@ TriangleMesh readWithVtk(const std::string& path) {
                               static_cast<std::int32_t>(cell->GetId(1)),
                               static_cast<std::int32_t>(cell->GetId(2))});
   }
+  return mesh;
+}
+
+template <typename Reader>
+TriangleMesh readWithVtk(const std::string& path) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return meshOf(*reader->GetOutput());
+}
+
+/// Its colours have 16 bits, and are linear in the light.
+TriangleMesh readGlb(const std::string& path) {
+  vtkNew<vtkGLTFReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  const auto parts = vtk::TakeSmartPointer(reader->GetOutput()->NewIterator());
+  auto& data = *vtkPolyData::SafeDownCast(parts->GetCurrentDataObject());
+  TriangleMesh mesh = meshOf(data);
+  vtkDataArray& colors = *data.GetPointData()->GetArray("COLOR_0");
+  mesh.vertices.colors.resize(mesh.vertices.points.size());
+  for (std::size_t i = 0; i < mesh.vertices.points.size(); ++i)
+    for (int c = 0; c < 4; ++c) {
+      const double most = colors.GetRange(3)[1];
+      const double linear = colors.GetComponent(static_cast<vtkIdType>(i), c) / most;
+      const double value = c == 3 || linear <= 0.0031308
+                               ? linear * (c == 3 ? 1.0 : 12.92)
+                               : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+      mesh.vertices.colors[i][static_cast<std::size_t>(c)] =
+          static_cast<std::uint8_t>(std::lround(255.0 * value));
+    }
   return mesh;
 }
 
@@ -193,6 +224,8 @@ TriangleMesh readMesh(const std::string& path, const std::vector<Point>& points)
     return readWithPcl(path);
   if (format == formatOf("a.vtk"))
     return readWithVtk<vtkPolyDataReader>(path);
+  if (format == formatOf("a.glb"))
+    return readGlb(path);
   if (format == formatOf("a.stl"))
     return readStl(path, points);
   return readText(path);
@@ -209,10 +242,11 @@ protected:
 TEST_F(MeshWriter, OtherReadersFindThePointsNormalsColoursAndTriangles) {
   const TriangleMesh mesh = makeMesh(300);
   for (const Encoding encoding : {Encoding::Binary, Encoding::Ascii})
-    for (const char* name : {"out.PLY", "out.obj", "out.stl", "out.vtk", "out.off", "out.pcd"}) {
+    for (const char* name :
+         {"out.PLY", "out.obj", "out.stl", "out.vtk", "out.off", "out.glb", "out.pcd"}) {
       const bool is_text = encoding == Encoding::Ascii;
-      if (is_text && formatOf(name) == formatOf("a.pcd"))
-        continue;  // it has no text
+      if (is_text && (formatOf(name) == formatOf("a.pcd") || formatOf(name) == formatOf("a.glb")))
+        continue;  // they have no text
       SCOPED_TRACE(std::string(name) + (is_text ? " as text" : ""));
       const std::string path = directory.file(name);
       writeTo(path, mesh, encoding);
@@ -223,8 +257,12 @@ TEST_F(MeshWriter, OtherReadersFindThePointsNormalsColoursAndTriangles) {
         EXPECT_EQ(read.triangles, mesh.triangles);
       }
       if (format != formatOf("a.stl")) {
-        EXPECT_EQ(read.vertices.normals, mesh.vertices.normals);
         EXPECT_EQ(read.vertices.colors, mesh.vertices.colors);
+        ASSERT_EQ(read.vertices.normals.size(), 300U);
+        for (std::size_t i = 0; i < 300; ++i)  // VTK normalises those of glTF again
+          for (std::size_t d = 0; d < 3; ++d)
+            ASSERT_NEAR(read.vertices.normals[i][d], mesh.vertices.normals[i][d],
+                        format == formatOf("a.glb") ? 1e-6 : 0.0);
       }
       const bool has_text_only = format == formatOf("a.obj") || format == formatOf("a.off");
       EXPECT_EQ(readFile(path).find('\0') == std::string::npos, is_text || has_text_only);
@@ -266,6 +304,32 @@ TEST_F(MeshWriter, OurReadersFindWhatIsInLargeClouds) {
         EXPECT_EQ(read.has_alpha, has_alpha);
       }
     }
+}
+
+TEST_F(MeshWriter, ScalarsAreInPlyAndVtk) {
+  TriangleMesh mesh = makeMesh(50);
+  mesh.vertices.scalars = {{"intensity", std::vector<double>(50, 0.25)},
+                           {"time", std::vector<double>(50, 1700000000.25), true}};
+  for (const Encoding encoding : {Encoding::Binary, Encoding::Ascii}) {
+    writeTo(directory.file("a.ply"), mesh, encoding);
+    const std::vector<Scalar> read = readCloud(directory.file("a.ply")).scalars;
+    writeTo(directory.file("a.vtk"), mesh, encoding);
+    vtkNew<vtkPolyDataReader> reader;
+    reader->SetFileName(directory.file("a.vtk").c_str());
+    reader->ReadAllScalarsOn();
+    reader->ReadAllColorScalarsOn();
+    reader->Update();
+    ASSERT_EQ(read.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Scalar& scalar = mesh.vertices.scalars[i];
+      EXPECT_EQ(read[i].name, scalar.name);
+      EXPECT_EQ(read[i].values, scalar.values);
+      vtkDataArray* const array =
+          reader->GetOutput()->GetPointData()->GetArray(scalar.name.c_str());
+      ASSERT_NE(array, nullptr) << scalar.name;
+      EXPECT_EQ(array->GetTuple1(49), scalar.values[49]);
+    }
+  }
 }
 
 TEST_F(MeshWriter, DoubleIsWrittenOnlyWhereSinglePrecisionMovesPointsTooFar) {
