@@ -345,9 +345,9 @@ PYBIND11_MODULE(_core, module) {
   module.attr("has_report") = hasReportPage();
   module.def("reconstruct", &reconstructPoints, points, "options"_a, py::kw_only(), "normals"_a,
              "viewpoint"_a, "unused"_a, "details"_a, "progress"_a);
-  module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "progress"_a);
+  module.def("read_cloud", &readCloudFile, "path"_a, py::kw_only(), "columns"_a, "progress"_a);
   module.def("write_mesh", &writeMeshFile, "path"_a, points, triangles, "normals"_a, "colors"_a,
-             "added"_a);
+             "added"_a, "scalars"_a, "offset"_a);
   module.def("write_report", &writeReportFile, "path"_a, points, "colors"_a, "options"_a,
              py::kw_only(), "normals"_a, "viewpoint"_a, "unused"_a, "part"_a, "input"_a,
              "command"_a, "progress"_a);

@@ -7,6 +7,7 @@
 #include "common/mesh_view.h"
 #include "common/mesh_writer.h"
 #include "common/output_file.h"
+#include "common/point_table.h"
 #include "common/reconstruction_report.h"
 #include "common/report_page.h"
 #include "python/listener.h"
@@ -18,6 +19,7 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace spherical_param::python {
 namespace {
@@ -26,7 +28,8 @@ namespace py = pybind11;
 using py::literals::operator""_a;
 
 tools::PointData toPointData(const DoubleArray& points, const std::optional<DoubleArray>& normals,
-                             const std::optional<ByteArray>& colors) {
+                             const std::optional<ByteArray>& colors,
+                             const ScalarArrays& scalars = {}) {
   tools::PointData data;
   data.points = tools::toPoints(toPositions(points));
   if (normals)
@@ -36,6 +39,8 @@ tools::PointData toPointData(const DoubleArray& points, const std::optional<Doub
     for (py::ssize_t i = 0; i < rows.shape(0); ++i)
       data.colors.push_back({rows(i, 0), rows(i, 1), rows(i, 2), 255});
   }
+  for (const auto& [name, values] : scalars)
+    data.scalars.push_back(tools::makeScalar(name, {values.data(), values.data() + values.size()}));
   return data;
 }
 
@@ -54,36 +59,47 @@ tools::Json reportOf(const tools::ReconstructionSettings& settings, const std::s
 
 }  // namespace
 
-py::dict readCloudFile(const std::string& path, const py::object& progress) {
+py::dict readCloudFile(const std::string& path, const std::optional<std::string>& columns,
+                       const py::object& progress) {
   Listener listener(progress);
   const tools::PointData data = listener.run([&] {
-    tools::requireFormat(path, tools::FileUse::ReadCloud);
-    return tools::readCloud(path, [&](double fraction) { listener.step("read", fraction); });
+    return tools::readCloud(
+        path, [&](double fraction) { listener.step("read", fraction); },
+        columns ? tools::parseColumns(*columns) : std::vector<std::string>());
   });
+  py::dict scalars;
+  for (const tools::Scalar& scalar : data.scalars)
+    scalars[py::str(scalar.name)] = toArray(scalar.values);
   return py::dict("points"_a = toArray(data.points),
                   "normals"_a = data.normals.empty() ? py::object(py::none())
                                                      : py::object(toArray(data.normals)),
                   "colors"_a = data.colors.empty() ? py::object(py::none())
                                                    : py::object(toArray(data.colors)),
-                  "unused"_a = toArray(data.unused),
+                  "scalars"_a = scalars, "unused"_a = toArray(data.unused),
                   "viewpoint"_a = data.viewpoint ? py::object(py::cast(*data.viewpoint))
                                                  : py::object(py::none()));
 }
 
-void writeMeshFile(const std::string& path, const DoubleArray& points, const IndexArray& triangles,
-                   const std::optional<DoubleArray>& normals,
-                   const std::optional<ByteArray>& colors, const std::optional<ByteArray>& added) {
+tools::Point writeMeshFile(const std::string& path, const DoubleArray& points,
+                           const IndexArray& triangles, const std::optional<DoubleArray>& normals,
+                           const std::optional<ByteArray>& colors,
+                           const std::optional<ByteArray>& added, const ScalarArrays& scalars,
+                           const std::optional<tools::Point>& offset) {
   const Triangles faces = toTriangles(triangles);
   const tools::FileFormat format = tools::requireFormat(
       path, faces.cols() > 0 ? tools::FileUse::WriteMesh : tools::FileUse::WriteCloud);
-  const tools::PointData data = toPointData(points, normals, colors);
+  const tools::PointData data = toPointData(points, normals, colors, scalars);
   tools::MeshView mesh(data, faces);
+  const tools::Point taken_off =
+      offset ? *offset : tools::offsetFor(data, format, tools::Encoding::Binary);
+  mesh.shiftBy(taken_off);
   if (added)
     mesh.markAdded({added->data(), added->data() + added->size()});
   const py::gil_scoped_release others_may_run;
   tools::OutputFile file(path);
   tools::writeMesh(file, mesh, format, tools::Encoding::Binary, {});
   file.commit();
+  return taken_off;
 }
 
 bool hasReportPage() {

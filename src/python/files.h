@@ -6,19 +6,30 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 
 /// Files and the page of a report, by the readers and writers of the tools.
 namespace spherical_param::python {
 
-/// `points` (n, 3), `normals` (n, 3) or None, `colors` (n, 3) or None.
-pybind11::dict readCloudFile(const std::string& path, const pybind11::object& progress);
+/// Further numbers of each point, by their names.
+using ScalarArrays = std::map<std::string, DoubleArray>;
 
-/// A mesh, or a plain cloud without triangles. \param added a mark of each vertex, or None
-void writeMeshFile(const std::string& path, const DoubleArray& points, const IndexArray& triangles,
-                   const std::optional<DoubleArray>& normals,
-                   const std::optional<ByteArray>& colors, const std::optional<ByteArray>& added);
+/// `points` (n, 3), `normals` (n, 3) or None, `colors` (n, 3) or None, `scalars` and others.
+/// \param columns of a text, or None
+pybind11::dict readCloudFile(const std::string& path, const std::optional<std::string>& columns,
+                             const pybind11::object& progress);
+
+/// A mesh, or a plain cloud without triangles.
+///
+/// \param added  a mark of each vertex, or None
+/// \param offset None: what the format needs. \return what was subtracted from the points
+std::array<double, 3>
+writeMeshFile(const std::string& path, const DoubleArray& points, const IndexArray& triangles,
+              const std::optional<DoubleArray>& normals, const std::optional<ByteArray>& colors,
+              const std::optional<ByteArray>& added, const ScalarArrays& scalars,
+              const std::optional<std::array<double, 3>>& offset);
 
 /// Whether the module was built with the page.
 bool hasReportPage();

@@ -59,6 +59,34 @@ class Clouds(unittest.TestCase):
             with self.assertRaisesRegex(sp.InvalidInput, "; use one of .pcd .ply"):
                 sp.find_parts(folder / "scan.docx")
 
+    def test_columns_of_text_have_names_and_scalars_come_along(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            intensity = np.arange(300) + 0.5
+            np.savetxt(
+                folder / "a.csv",
+                np.column_stack([self.points, intensity, self.colors]),
+                delimiter=";",
+            )
+            self.check(folder / "a.csv", normals=False)
+            sp.reconstruct(folder / "a.csv").write(folder / "a.ply")
+            again = sp.reconstruct(folder / "a.ply")
+            np.testing.assert_array_equal(again._export_scalars()["intensity"], intensity)
+            plain = sp.reconstruct(folder / "a.csv", columns="x,y,z,time")
+            self.assertIsNone(plain.colors)
+            self.assertEqual([*plain._export_scalars()], ["time"])
+            with self.assertRaisesRegex(sp.InvalidInput, "no x, y and z"):
+                sp.reconstruct(folder / "a.csv", columns="x,y")
+            with self.assertRaisesRegex(sp.InvalidInput, "columns are of a file"):
+                sp.reconstruct(self.points, columns="x,y,z")
+
+    def test_coordinates_too_large_for_a_format_are_written_less_an_offset(self):
+        far = sp.reconstruct(self.points + [500000, 5400000, 0])
+        with tempfile.TemporaryDirectory() as name:
+            self.assertEqual(far.write(Path(name, "a.ply")), (0, 0, 0))
+            self.assertEqual(far.write(Path(name, "a.glb")), (500000, 5400000, 0))
+            self.assertEqual(far.write(Path(name, "b.ply"), offset=(1, 2, 3)), (1, 2, 3))
+
     def test_surfaces_face_as_normals_do_or_the_sensor(self):
         self.assertEqual(self.expected.faced_by, "outward")
         inward = sp.reconstruct(shapes.record(self.points, self.colors, -self.normals))

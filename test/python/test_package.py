@@ -130,7 +130,7 @@ class Files(unittest.TestCase):
         np.testing.assert_array_equal(shapes.columns(vertices, "x", "y", "z"), far.vertices)
 
     def test_every_format_is_written_whole_or_not_at_all(self):
-        for name in ("mesh.ply", "mesh.obj", "mesh.vtk", "mesh.stl", "mesh.off"):
+        for name in ("mesh.ply", "mesh.obj", "mesh.vtk", "mesh.glb", "mesh.stl", "mesh.off"):
             self.mesh.write(self.folder / name)
             self.assertGreater((self.folder / name).stat().st_size, 3 * 4 * 300)
             (self.folder / name).unlink()

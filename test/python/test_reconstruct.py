@@ -15,6 +15,7 @@ from spherical_param import _core
 
 #: Keywords that are no rows of the table, and wrong values of them.
 OTHERS = {
+    "columns": ("x,y,z",),
     "details": (1, "yes", None),
     "progress": (1, "print"),
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Optional, Protocol, Union
 
 import numpy as np
@@ -44,13 +44,21 @@ class Cloud:
     name: Optional[str] = None  #: of the file
     viewpoint: Optional[list[float]] = None  #: of the sensor, if the file says it
     unused: Optional[IndexArray] = None  #: rows in no face of the file
+    scalars: dict[str, FloatArray] = field(default_factory=dict)  #: (n,) other numbers of the file
 
 
-def read(name: str, value: Any, progress: Optional[ProgressFunction] = None) -> Cloud:
+def read(
+    name: str,
+    value: Any,
+    progress: Optional[ProgressFunction] = None,
+    columns: Optional[str] = None,
+) -> Cloud:
     """The cloud that a caller gave as ``name``."""
     if isinstance(value, (str, bytes, os.PathLike)):
-        fields = _core.read_cloud(os.fsencode(value), progress=progress)
+        fields = _core.read_cloud(os.fsencode(value), columns=columns, progress=progress)
         return Cloud(**fields, name=os.fsdecode(value))
+    if columns is not None:
+        raise InvalidInput(f"columns are of a file, which {name} is not; leave them out")
     libraries = {base.__module__.partition(".")[0] for base in type(value).__mro__}
     if "open3d" in libraries:
         return _of_open3d(name, value)

@@ -23,6 +23,7 @@ def reconstruct(
 def read_cloud(
     path: bytes,
     *,
+    columns: Optional[str],
     progress: Optional[Callable[[str, float], object]],
 ) -> dict[str, Any]: ...
 def write_mesh(
@@ -32,7 +33,9 @@ def write_mesh(
     normals: Optional[NDArray[np.float64]],
     colors: Optional[NDArray[np.uint8]],
     added: Optional[NDArray[np.uint8]],
-) -> None: ...
+    scalars: dict[str, NDArray[np.float64]],
+    offset: Optional[tuple[float, float, float]],
+) -> list[float]: ...
 def write_report(
     path: bytes,
     points: NDArray[np.float64],

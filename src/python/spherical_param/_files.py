@@ -51,6 +51,10 @@ class MeshExport:
         """(v,) 1 for each vertex that was added to the points, else 0; None if none can be."""
         return None
 
+    def _export_scalars(self) -> dict[str, FloatArray]:
+        """(v,) other numbers of the vertices, by their names."""
+        return {}
+
     def to_trimesh(self) -> Any:
         """The mesh as a ``trimesh.Trimesh``, vertices and triangles as they are.
 
@@ -92,13 +96,31 @@ class MeshExport:
             self._export_points(), [("triangle", self.triangles)], point_data=data
         )
 
-    def write(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Write the mesh into a file: .ply, .obj, .vtk, .stl or .off, with what it has room for.
+    def write(
+        self,
+        path: Union[str, os.PathLike[str]],
+        *,
+        offset: Optional[tuple[float, float, float]] = None,
+    ) -> tuple[float, float, float]:
+        """Write the mesh into a file: .ply, .obj, .vtk, .glb, .stl or .off, with what it has room for.
 
         Points without triangles go to .pcd, .ply, .obj, .vtk, .xyz or .txt. Coordinates are in
         single precision, or in double where that would move points by more than a millionth of
-        their extent (but for .stl). A property ``added`` of .ply files marks added vertices. Under
-        the given name the file is whole, or not there.
+        their extent; .glb and .stl, which have no double, get them less an offset then. A property
+        ``added`` of .ply files marks added vertices; .ply and .vtk have the other numbers of the
+        points of a file. Under the given name the file is whole, or not there.
+
+        Parameters
+        ----------
+        path
+            Its extension says the format.
+        offset
+            Subtracted from the coordinates [unit of the input]; None: what the format needs.
+
+        Returns
+        -------
+        tuple of 3 float
+            What was subtracted, mostly 0.
 
         Raises
         ------
@@ -108,14 +130,17 @@ class MeshExport:
             The file cannot be written.
         """
         added = self._export_added()
-        _core.write_mesh(
+        x, y, z = _core.write_mesh(
             os.fsencode(path),
             np.ascontiguousarray(self._export_points()),
             np.ascontiguousarray(self.triangles),
             np.ascontiguousarray(self._export_normals()),
             self._export_colors(),
             added if added is not None and added.any() else None,
+            self._export_scalars(),
+            offset,
         )
+        return x, y, z
 
     def show(self) -> None:
         """Show the mesh in a window of Open3D or PyVista, or else by matplotlib.

@@ -10,6 +10,14 @@ from typing import Any
 #: Options that are no rows of the table: name, type, default, range and help.
 OTHERS = (
     (
+        "columns",
+        "Optional[str]",
+        None,
+        "names",
+        """What the columns of a text file are, from the first on, e.g. "x,y,z,-,red,green,blue"; "-"
+        is left out. None: what the file says, or looks like.""",
+    ),
+    (
         "details",
         "bool",
         False,

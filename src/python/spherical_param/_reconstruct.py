@@ -19,6 +19,7 @@ _NAMES = [row["name"] for row in _TABLE]
 def reconstruct(
     points: CloudLike,
     *,
+    columns: Optional[str] = None,
     details: bool = False,
     progress: Progress = None,
     **options: Any,
@@ -35,8 +36,8 @@ def reconstruct(
     points : array-like (n, 3), path, or cloud of another library
         An array in any unit, of any real type; the work is done in double precision. A structured
         array has x, y, z, and may have normals (nx, ny, nz or normal_x ...) and colours (red,
-        green, blue or r, g, b, or rgb as PCL packs them). A file is .pcd, .ply, .obj, .xyz or
-        .txt. Of Open3D a point cloud or mesh, of trimesh a PointCloud or Trimesh, the normals
+        green, blue or r, g, b, or rgb as PCL packs them). A file is .pcd, .ply, .obj, or
+        text of any extension. Of Open3D a point cloud or mesh, of trimesh a PointCloud or Trimesh, the normals
         of which are not used. Colours and normals come along. At least 4 distinct finite points
         that are not all in one plane.
         Points with a coordinate that is not finite (or masked) are left out and listed.
@@ -77,13 +78,13 @@ OPTIONS
     for name in options:
         if name not in _NAMES:
             raise TypeError(
-                f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, details or "
-                "progress"
+                f"reconstruct() has no option {name!r}; use one of {', '.join(_NAMES)}, columns, "
+                "details or progress"
             )
     has_details = arguments.truth("details", details)
     values = {**options, "threads": arguments.thread_count(options.get("threads", 0))}
     with listening(progress) as listener:
-        cloud = read("points", points, listener)
+        cloud = read("points", points, listener, columns)
         fields = _core.reconstruct(
             cloud.points,
             values,

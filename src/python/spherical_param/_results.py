@@ -96,6 +96,10 @@ class Result(Surface, MeshExport):
     def _export_colors(self) -> Optional[ByteArray]:
         return self.colors
 
+    def _export_scalars(self) -> dict[str, FloatArray]:
+        scalars = self._source.cloud.scalars
+        return {name: values[self.input_of_vertex] for name, values in scalars.items()}
+
     def report(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None) -> None:
         """Write a page to look at: mesh, sphere, unfolding and findings, in one file.
 
@@ -236,6 +240,10 @@ class Results(tuple[Result, ...], MeshExport):
 
     def _export_added(self) -> ByteArray:
         return np.concatenate([each._export_added() for each in self])
+
+    def _export_scalars(self) -> dict[str, FloatArray]:
+        parts = [each._export_scalars() for each in self]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _repr_html_(self) -> Optional[str]:
         return self[0]._repr_html_()
