@@ -24,6 +24,11 @@ PointData readCloud(const std::string& path, const FileProgress& progress,
                     const std::vector<std::string>& columns) {
   const FileFormat format = requireFormat(path, FileUse::ReadCloud);
   checkInputFile(path);
+  const std::string beginning = readBeginning(path, 2);
+  if (beginning == "\xff\xfe" || beginning == "\xfe\xff") {
+    failReading(path, "it is text in UTF-16",
+                "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
+  }
   if (!columns.empty() && format->read_cloud != readText) {
     throw UsageError("-columns names the columns of text, which " + inQuotes(path) + " is not",
                      "leave it out");

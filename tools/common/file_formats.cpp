@@ -44,11 +44,11 @@ constexpr std::array foreign_formats = {
                   "CloudCompare -SILENT -C_EXPORT_FMT PLY -O in.e57 -SAVE_CLOUDS"},
     ForeignFormat{".ptx", "", "PTX",
                   "CloudCompare -SILENT -C_EXPORT_FMT PLY -O in.ptx -SAVE_CLOUDS"},
-    ForeignFormat{".stl", "", "STL, a mesh", "pcl_converter in.stl out.ply"},
+    ForeignFormat{".stl", "solid ", "STL, a mesh", "pcl_converter in.stl out.ply"},
     ForeignFormat{".glb", "glTF", "glTF, a mesh", "assimp export in.glb out.ply"},
     ForeignFormat{".gltf", "", "glTF, a mesh", "assimp export in.gltf out.ply"},
-    ForeignFormat{".off", "OFF", "OFF, a mesh", "assimp export in.off out.ply"},
-    ForeignFormat{".vtk", "# vtk", "VTK", "pcl_vtk2pcd in.vtk out.pcd"},
+    ForeignFormat{".off", "OFF\n", "OFF, a mesh", "assimp export in.off out.ply"},
+    ForeignFormat{".vtk", "# vtk DataFile", "VTK", "pcl_vtk2pcd in.vtk out.pcd"},
     ForeignFormat{".bag", "#ROSBAG", "a bag of ROS",
                   "rosrun pcl_ros bag_to_pcd in.bag /points out"},
     ForeignFormat{".db3", "SQLite format 3", "a bag of ROS 2",
@@ -114,14 +114,16 @@ std::string extensionsFor(FileUse use) {
 
 FileFormat requireFormat(const std::string& path, FileUse use, const std::string& others) {
   FileFormat format = formatOf(path);
-  if (use == FileUse::ReadCloud && (format == nullptr || !isUsable(*format, use))) {
+  if (use == FileUse::ReadCloud &&
+      (format == nullptr || !isUsable(*format, use) || format->read_cloud == readText)) {
     const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
     for (const ForeignFormat& foreign : foreign_formats) {
       if (extension == foreign.extension) {
         failForeign(path, foreign);
       }
     }
-    format = formatOf("a" + extensionOfContent(path));
+    const FileFormat content = formatOf("a" + extensionOfContent(path));
+    format = content != nullptr ? content : format;
   }
   if (format != nullptr && isUsable(*format, use)) {
     return format;

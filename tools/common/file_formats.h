@@ -18,8 +18,8 @@ FileFormat formatOf(const std::string& path);
 /// The extensions that can be used that way, e.g. ".ply .obj".
 std::string extensionsFor(FileUse use);
 
-/// The format of a file that is wanted for a use: by its extension; a file of points whose
-/// extension is not known, by its content.
+/// The format of a file that is wanted for a use: by its extension; a file of points that is text,
+/// or whose extension is not known, by its content.
 ///
 /// \param others further extensions that the tool takes, e.g. " .tif".
 /// \throw UsageError if the extension is unknown or its format cannot be used that way.

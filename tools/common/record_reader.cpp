@@ -150,7 +150,7 @@ private:
         length.type = 'U';
         length.size = field.length_size;
         const std::optional<double> value = nextValue(length, word, f);
-        if (!value || *value < 0.0 || *value > list_limit) {
+        if (!value || !(*value >= 0.0 && *value <= list_limit)) {
           return fail(broken);
         }
         count = static_cast<std::uint64_t>(*value);

@@ -30,7 +30,8 @@ inline constexpr std::string_view blanks = " \t\r,";
 /// Goes through the lines of a text.
 class Lines {
 public:
-  explicit Lines(std::string_view text) : text_(text) {}
+  explicit Lines(std::string_view text)
+      : text_(text), position_(text.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0) {}
 
   /// Moves on to the next line. \return false at the end of the text.
   bool next() {
@@ -50,7 +51,7 @@ public:
 
 private:
   std::string_view text_;
-  std::size_t position_ = 0;
+  std::size_t position_;
   std::size_t number_ = 0;
   std::vector<std::string_view> words_;
 };

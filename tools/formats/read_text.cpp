@@ -33,13 +33,22 @@ std::string_view trimmed(std::string_view text, std::string_view around = " \t\r
   return text.substr(0, text.find_last_not_of(around) + 1);
 }
 
-/// A line without a comment; one that is all comment is empty. After ';' the first cell may be
-/// empty.
+/// A line without a comment, which '#' begins, or "//" or '%' before a word; one that is all
+/// comment is empty.
 std::string_view withoutComment(std::string_view line) {
-  line = trimmed(line);
-  const bool is_comment =
-      !line.empty() && (line[0] == '%' || line.substr(0, 2) == "//" || line.rfind(';') == 0);
-  return is_comment ? std::string_view() : trimmed(withoutRemark(line));
+  line = trimmed(withoutRemark(line));
+  // After ';' the first cell may be empty.
+  const bool is_empty_cell = line.rfind(';') > 0 && line.find_first_of("; ", 1) != 1;
+  if ((line.substr(0, 1) == ";" && !is_empty_cell) || line.substr(0, 4) == "sep=") {
+    return {};
+  }
+  for (std::size_t i = 0; (i = line.find_first_of("%/", i)) != std::string_view::npos; ++i) {
+    const bool begins_word = i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t';
+    if (begins_word && (line[i] == '%' || line.substr(i, 2) == "//")) {
+      return trimmed(line.substr(0, i));
+    }
+  }
+  return line;
 }
 
 /// Splits at a separator that is neither in quotes nor in brackets. Parts may be empty; the last
@@ -65,6 +74,7 @@ void splitOutsideQuotes(std::string_view line, char separator, std::size_t count
 
 /// \param count of cells, 0 if it is not known.
 void splitCells(std::string_view line, const TextStyle& style, std::size_t count, Words& cells) {
+  line = style.separator == ';' ? line : line.substr(0, line.find(';'));  // a comment
   if (style.separator == ' ') {
     split(line, " \t\r", cells);
     return;
@@ -120,9 +130,8 @@ Beginning readFirstLines(const std::string& path) {
     failReading(path, "its lines do not end in LF",
                 "convert it: tr '\\r' '\\n' < in.txt > out.txt");
   }
-  const bool is_utf16 = rest.substr(0, 2) == "\xff\xfe" || rest.substr(0, 2) == "\xfe\xff";
-  if (is_utf16 || rest.find('\0') != std::string_view::npos) {
-    failReading(path, is_utf16 ? "it is text in UTF-16" : "it is no text, or text in UTF-16",
+  if (rest.find('\0') != std::string_view::npos) {
+    failReading(path, "it is no text, or text in UTF-16",
                 "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
   }
   const bool is_whole = rest.size() < most_bytes;
@@ -163,7 +172,10 @@ TextStyle styleOf(const std::string& path, const Words& lines, std::size_t names
     return [c](std::string_view line) { return line.find(c) != std::string_view::npos; };
   };
   const bool has_commas = std::any_of(lines.begin(), lines.end(), has(','));
-  if (std::any_of(lines.begin(), lines.end(), has(';'))) {
+  const bool has_semicolons = std::any_of(lines.begin(), lines.end(), [](std::string_view line) {
+    return line.find(';') != line.rfind(';');
+  });
+  if (has_semicolons) {
     return {';', has_commas};
   }
   const auto is_in_words = [](std::string_view line) {

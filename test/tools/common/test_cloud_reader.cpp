@@ -353,6 +353,8 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
        plyOf("ascii", "4", "1 2 3 4 5 6 7\n1 2 3 0\n1 2 3 0\n1 2 3 0\n",
              "property list uchar int a\n"),
        "it is broken"},
+      {"a.ply", plyOf("ascii", "1", "1 2 3 nan 5\n", "property list uchar int a\n"),
+       "it is broken"},
       {"a.ply", plyOf("binary_big_endian", "4", points, "property string a\n"),
        "unknown type, of 'a'"},
       {"a.ply", plyOf("binary_little_endian", "1000000000", bytes24), "shorter than its header"},
@@ -371,6 +373,10 @@ TEST_F(CloudReader, WhatIsNoCloudIsRefusedWithItsCause) {
       {"a.xyz", "1 2 3\n4 5 6 7\n", "line 2 has 4 columns instead of 3"},
       {"a.xyz", "1 2 3\n4 x 6\n", "line 2 has no number in column 2, but 'x'"},
       {"a.xyz", "7 1 2 3\n8 4 5 6\n9 7 8 9\n10 1 1 1\n", "first column counts the lines"},
+      {"a.obj",
+       "\xfe\xff"
+       "v 1 2 3\n",
+       "UTF-16"},
       {"a.xyz", "1 2 3\r4 5 6\r", "do not end in LF"},
       {"a.txt",
        "\xff\xfe"

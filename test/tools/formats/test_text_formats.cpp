@@ -55,6 +55,14 @@ const std::vector<Case> cases = {
     {"RowNumbersSemicolonsDecimalCommas", "csv", ";x;y;z\n0;1,0;2,0;3,0\n1;4,5;-5,0;6,0\n", false,
      false},
     {"AllComments", "xyz", "% a\n; b\n// c\n# x y z\n1 2 3\n4.5 -5 6\n", false, false},
+    {"CommentsAtTheEnd", "xyz", "; a; b\n1 2 3 ; a, b\n4.5 -5 6 // c\n", false, false},
+    {"RowsThatSemicolonsEnd", "txt", "1 2 3;\n4.5 -5 6;\n", false, false},
+    {"SeparatorOfExcel", "csv", "sep=;\n1,0;2,0;3,0\n4,5;-5;6\n", false, false},
+    {"ObjNamedText", "txt", "v 1 2 3\nv 4.5 -5 6\n", false, false},
+    {"PcdWithByteOrderMark", "pcd",
+     "\xef\xbb\xbf"
+     "FIELDS x y z\nWIDTH 2\nDATA ASCII\n1 2 3\n4.5 -5 6\n",
+     false, false},
     {"ByteOrderMark", "xyz",
      "\xef\xbb\xbf"
      "1 2 3\n4.5 -5 6\n",
