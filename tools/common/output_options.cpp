@@ -5,8 +5,6 @@
 #include "common/numbers.h"
 #include "common/text.h"
 
-#include <cmath>
-
 namespace spherical_param::tools {
 
 std::vector<OptionInfo> outputOptions() {
@@ -27,14 +25,13 @@ namespace {
 
 Point parseOffset(const std::string& text) {
   const std::vector<std::string_view> words = split(text, ", ");
+  if (words.size() != 3) {
+    throw UsageError("option -offset: " + inQuotes(text) + " is not three numbers",
+                     "give -offset X,Y,Z, or auto");
+  }
   Point offset{};
   for (std::size_t d = 0; d < 3; ++d) {
-    const std::optional<double> value = words.size() == 3 ? toReal(words[d]) : std::nullopt;
-    if (!value || !std::isfinite(*value)) {
-      throw UsageError("option -offset: " + inQuotes(text) + " is not three numbers",
-                       "give -offset X,Y,Z, or auto");
-    }
-    offset[d] = *value;
+    offset[d] = parseReal("offset", std::string(words[d]), {-1e300, 1e300});
   }
   return offset;
 }

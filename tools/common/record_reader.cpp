@@ -146,9 +146,7 @@ private:
       const RecordField& field = element.fields[f];
       std::uint64_t count = field.count;
       if (field.length_size > 0) {
-        RecordField length;
-        length.type = 'U';
-        length.size = field.length_size;
+        const RecordField length{"", 'U', field.length_size};
         const std::optional<double> value = nextValue(length, word, f);
         if (!value || !(*value >= 0.0 && *value <= list_limit)) {
           return fail(broken);

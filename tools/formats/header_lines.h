@@ -2,7 +2,6 @@
 
 #include "common/input_file.h"
 #include "common/numbers.h"
-#include "common/record_layout.h"
 #include "common/text.h"
 
 #include <algorithm>
@@ -11,7 +10,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace spherical_param::tools {

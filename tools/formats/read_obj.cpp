@@ -93,7 +93,7 @@ PointData readObj(const std::string& path, const std::vector<std::string>& /*col
     if (words[0] == "v" || words[0] == "vn") {
       const auto values = threeNumbers(words, 1);
       if (!values) {
-        failLine(path, line, "has no three numbers");
+        failContent(path, "line " + std::to_string(line) + " has no three numbers");
       }
       if (words[0] == "vn") {
         content.normals.push_back(*values);
@@ -112,7 +112,7 @@ PointData readObj(const std::string& path, const std::vector<std::string>& /*col
       }
     } else if (words[0].find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
                                           "0123456789/.-\\") != std::string_view::npos) {
-      failLine(path, line, "is not a statement of an OBJ file");
+      failContent(path, "line " + std::to_string(line) + " is not a statement of an OBJ file");
     }
   });
   if (content.points() == 0) {

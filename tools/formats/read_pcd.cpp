@@ -89,21 +89,17 @@ std::vector<RecordField> makeFields(const std::string& path, Entries& entries) {
   return fields;
 }
 
-std::string firstOf(const std::vector<std::string>& words) {
-  return words.empty() ? "" : words.front();
-}
-
 std::int64_t pointCount(const std::string& path, Entries& entries) {
   const std::int64_t width = requireCount(path, entries["WIDTH"][0], "columns");
   const std::int64_t height = requireCount(path, entries["HEIGHT"][0], "rows");
-  const double all = static_cast<double>(width) * static_cast<double>(height);
-  const std::int64_t points = entries["POINTS"].empty() && all < static_cast<double>(count_limit)
-                                  ? width * height
-                                  : requireCount(path, firstOf(entries["POINTS"]), "points");
+  if (entries["POINTS"].empty()) {
+    entries["POINTS"] = {std::to_string(width * height)};
+  }
+  const std::int64_t points = requireCount(path, entries["POINTS"][0], "points");
   if (points == 0) {
     failContent(path, "it has no points");
   }
-  if (all != static_cast<double>(points)) {
+  if (width * height != points) {
     failContent(path, "POINTS of its header is not WIDTH times HEIGHT");
   }
   return points;

@@ -21,11 +21,6 @@ constexpr const char* name_columns = "name its columns, e.g. -columns x,y,z,-,re
 struct TextStyle {
   char separator = ' ';  ///< ',' or ';'; ' ': blanks and tabs
   bool has_decimal_commas = false;
-
-  std::string text() const {
-    const std::string by = separator == ',' ? "commas" : separator == ';' ? "semicolons" : "blanks";
-    return "separated by " + by + (has_decimal_commas ? ", with decimal commas" : "");
-  }
 };
 
 std::string_view trimmed(std::string_view text, std::string_view around = " \t\r") {
@@ -369,12 +364,9 @@ void nameFurther(std::vector<PointColumn>& columns) {
 
 /// Whether a column counts the lines.
 bool isCounter(const std::vector<double>& values) {
-  constexpr std::size_t least = 4;
-  bool is_counter = values.size() >= least && values[0] == std::floor(values[0]);
-  for (std::size_t i = 1; is_counter && i < values.size(); ++i) {
-    is_counter = values[i] == values[i - 1] + 1.0;
-  }
-  return is_counter;
+  const auto is_other = [](double value, double next) { return next != value + 1.0; };
+  return values.size() >= 4 && values[0] == std::floor(values[0]) &&
+         std::adjacent_find(values.begin(), values.end(), is_other) == values.end();
 }
 
 std::string describe(const std::vector<PointColumn>& columns, const TextStyle& style) {
@@ -382,7 +374,12 @@ std::string describe(const std::vector<PointColumn>& columns, const TextStyle& s
   for (const PointColumn& column : columns) {
     names += " " + (column.name.empty() ? "-" : commonName(column.name));
   }
-  return "text, " + counted(columns.size(), "column") + ":" + names + ", " + style.text();
+  const char c = style.separator;
+  return "text, " + counted(columns.size(), "column") + ":" + names + ", separated by " +
+         (c == ','   ? "commas"
+          : c == ';' ? "semicolons"
+                     : "blanks") +
+         (style.has_decimal_commas ? ", with decimal commas" : "");
 }
 
 }  // namespace

@@ -3,13 +3,9 @@
 #include "common/block_reader.h"
 #include "common/input_file.h"
 #include "common/numbers.h"
-#include "common/point_data.h"
 #include "common/text.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,18 +39,11 @@ void forEachLine(const std::string& path, const FileProgress& progress, const Ta
 /// The number of lines that begin with some text: so much memory is set aside for points, instead
 /// of twice or three times as much while it grows.
 inline std::size_t countLines(const std::string& path, std::string_view beginning) {
-  BlockReader reader(path, 0, {});
-  std::string_view line;
   std::size_t count = 0;
-  while (reader.nextLine(line)) {
+  forEachLine(path, {}, [&](std::size_t /*number*/, std::string_view line) {
     count += line.substr(0, beginning.size()) == beginning ? 1 : 0;
-  }
+  });
   return count;
-}
-
-[[noreturn]] inline void failLine(const std::string& path, std::size_t line,
-                                  const std::string& reason) {
-  failContent(path, "line " + std::to_string(line) + " " + reason);
 }
 
 /// The three numbers from a word on, if there are any.
