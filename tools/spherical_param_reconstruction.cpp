@@ -191,15 +191,10 @@ Json filesToJson(const Settings& settings) {
   return json;
 }
 
-/// What is subtracted from the coordinates of the mesh.
-Point offsetOf(const Settings& settings, const CloudReconstruction& cloud) {
-  return offsetOf(settings.report, settings.output_format, *cloud.data);
-}
-
 /// The members that are the same for the whole cloud and for each of its parts.
 Json cloudReport(const Settings& settings, const CloudReconstruction& cloud) {
   Json json = filesToJson(settings);
-  json["offset"] = offsetOf(settings, cloud);
+  json["offset"] = cloud.offset;
   json["points"] = cloud.data->points.size();
   json["left_out"] = toJson(cloud.result.left_out);
   json["stages"] = toJson(cloud.stages);
@@ -243,8 +238,7 @@ std::vector<std::string> writtenFiles(const Settings& settings, const CloudRecon
                         ? numbered(name, 0) + " to " + numbered(name, surfaces - 1)
                         : numbered(name, 0) + (is_view && surfaces > 1 ? " (the largest)" : ""));
   }
-  files.front() +=
-      notWritten(!cloud.data->colors.empty(), settings.output_format, offsetOf(settings, cloud));
+  files.front() += notWritten(!cloud.data->colors.empty(), settings.output_format, cloud.offset);
   return files;
 }
 
@@ -292,7 +286,7 @@ using Files = std::vector<std::unique_ptr<OutputFile>>;
 
 void writeMeshFile(const Settings& settings, MeshView mesh, CloudReconstruction& cloud,
                    Console& console, Files& files) {
-  mesh.shiftBy(offsetOf(settings, cloud));
+  mesh.shiftBy(cloud.offset);
   console.begin("write");
   files.push_back(std::make_unique<OutputFile>(settings.output));
   writeMesh(*files.back(), mesh, settings.output_format, settings.report.encoding,
@@ -358,6 +352,7 @@ void run(const std::vector<std::string>& words) {
   printParameters(settings, console);
   CloudReconstruction cloud;
   reconstructCloud(settings.input, settings.reconstruction, console, cloud);
+  cloud.offset = offsetOf(settings.report, settings.output_format, *cloud.data);
   if (!settings.sphere.empty()) {
     requireSpheres(settings.input, cloud, isNumbered(settings.sphere));
   }

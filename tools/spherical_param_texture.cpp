@@ -135,7 +135,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
   std::tie(settings.input, settings.output) = inputAndOutput(command_line, tool_name);
   requireFormat(settings.input, FileUse::ReadCloud);
   const std::filesystem::path output = settings.output;
-  const std::string extension = lowerCase(output.extension().string());
+  const std::string extension = extensionOf(settings.output);
   const auto format =
       std::find_if(format_names.begin(), format_names.end(),
                    [&extension](const auto& entry) { return entry.first == extension; });
@@ -156,7 +156,7 @@ void parseFiles(const CommandLine& command_line, Settings& settings) {
     return std::filesystem::path(output).replace_extension(other).string();
   };
   settings.image = command_line.value("image", beside(".png"));
-  if (lowerCase(std::filesystem::path(settings.image).extension().string()) != ".png") {
+  if (extensionOf(settings.image) != ".png") {
     throw UsageError("option -image: " + inQuotes(settings.image) + " does not end in .png",
                      "give a name that does");
   }
@@ -244,11 +244,6 @@ Json optionsToJson(const Settings& settings) {
   return json;
 }
 
-/// What is subtracted from the coordinates of the mesh.
-Point offsetOf(const Settings& settings, const MappedCloud& mapped) {
-  return offsetOf(settings.report, formatOf(settings.output), *mapped.cloud.data);
-}
-
 /// What is written, with how it came about.
 struct Output {
   TextureAtlas atlas;
@@ -265,6 +260,7 @@ struct Output {
 
 void make(const Settings& settings, MappedCloud& mapped, Output& output, Console& console) {
   mapCloud(settings.input, settings.product, console, mapped);
+  mapped.cloud.offset = offsetOf(settings.report, formatOf(settings.output), *mapped.cloud.data);
   output.stages = mapped.cloud.stages;
   console.begin("atlas");
   output.atlas =
@@ -308,7 +304,7 @@ Json report(const Settings& settings, const MappedCloud& mapped, const Output& o
   json["version"] = SPHERICAL_PARAM_VERSION;
   json["input"] = settings.input;
   json["output"] = settings.output;
-  json["offset"] = offsetOf(settings, mapped);
+  json["offset"] = mapped.cloud.offset;
   json["options"] = optionsToJson(settings);
   addMapToJson(mapped, json);
   json["chart"] = nameOf(settings.atlas.chart, chart_names);
@@ -340,7 +336,7 @@ void printVerdict(const Settings& settings, const MappedCloud& mapped, const Out
   console.entry("triangles", std::to_string(output.atlas.triangles.cols()));
   const CloudReconstruction& cloud = mapped.cloud;
   std::vector<std::string> files = outputsOf(settings);
-  files.front() += notWritten(false, formatOf(settings.output), offsetOf(settings, mapped));
+  files.front() += notWritten(false, formatOf(settings.output), cloud.offset);
   console.summary(
       {settings.input + ", " + counted(cloud.data->points.size(), "point"), cloud.surface().verdict,
        counted(output.atlas.vertices.size(), "vertex", "vertices") + ", " +
@@ -355,9 +351,9 @@ std::vector<std::unique_ptr<OutputFile>> store(const Settings& settings, const M
                                                Output& output, Console& console) {
   console.begin("write");
   const Surface& surface = mapped.cloud.surface();
-  const Point offset = offsetOf(settings, mapped);
-  const spherical_param::Positions points = vertexPositions(mapped.cloud, surface).colwise() -
-                                            Eigen::Map<const Eigen::Vector3d>(offset.data());
+  const spherical_param::Positions points =
+      vertexPositions(mapped.cloud, surface).colwise() -
+      Eigen::Map<const Eigen::Vector3d>(mapped.cloud.offset.data());
   const PointData vertices = verticesOf(output.atlas, points, surface.triangles);
   MeshTexture texture;
   texture.png = encodePng(output.image);

@@ -20,6 +20,7 @@ struct CloudReconstruction {
   std::shared_ptr<const PointData> data = std::make_shared<PointData>();
   Result result;
   std::vector<StageTime> stages;  ///< that of reading first
+  Point offset{};                 ///< to be subtracted from coordinates that are written
 
   /// The only surface, of tools that make one.
   const Surface& surface() const { return result.surface(); }

@@ -92,8 +92,12 @@ std::string extensionOfContent(const std::string& path) {
 
 }  // namespace
 
+std::string extensionOf(const std::string& path) {
+  return lowerCase(std::filesystem::path(path).extension().string());
+}
+
 FileFormat formatOf(const std::string& path) {
-  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  const std::string extension = extensionOf(path);
   for (const FormatRow& row : format_table) {
     if (row.extension == extension) {
       return &row;
@@ -116,7 +120,7 @@ FileFormat requireFormat(const std::string& path, FileUse use, const std::string
   FileFormat format = formatOf(path);
   if (use == FileUse::ReadCloud &&
       (format == nullptr || !isUsable(*format, use) || format->read_cloud == readText)) {
-    const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+    const std::string extension = extensionOf(path);
     for (const ForeignFormat& foreign : foreign_formats) {
       if (extension == foreign.extension) {
         failForeign(path, foreign);

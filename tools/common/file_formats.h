@@ -18,6 +18,9 @@ FileFormat formatOf(const std::string& path);
 /// The extensions that can be used that way, e.g. ".ply .obj".
 std::string extensionsFor(FileUse use);
 
+/// The extension of a file with its dot, in lower case.
+std::string extensionOf(const std::string& path);
+
 /// The format of a file that is wanted for a use: by its extension; a file of points that is text,
 /// or whose extension is not known, by its content.
 ///

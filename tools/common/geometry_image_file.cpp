@@ -1,5 +1,6 @@
 #include "common/geometry_image_file.h"
 
+#include "common/file_formats.h"
 #include "common/input_file.h"
 #include "common/text.h"
 
@@ -10,7 +11,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string_view>
@@ -301,7 +301,7 @@ std::uint64_t checkKind(TiffReader& tiff, const std::string& path) {
 }  // namespace
 
 bool isGeometryImageFile(const std::string& path) {
-  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  const std::string extension = extensionOf(path);
   return extension == ".tif" || extension == ".tiff";
 }
 

@@ -100,11 +100,6 @@ void takeNormals(Columns& columns, PointData& data) {
 
 constexpr std::string_view around_names = " \t\r\"'/#%!";
 
-std::string_view trimmed(std::string_view name) {
-  name = name.substr(std::min(name.find_first_not_of(around_names), name.size()));
-  return name.substr(0, name.find_last_not_of(around_names) + 1);
-}
-
 }  // namespace
 
 std::string commonName(std::string_view name) {
@@ -121,7 +116,8 @@ std::string commonName(std::string_view name) {
                                                            {"normal_y", "ny"},
                                                            {"normal_z", "nz"},
                                                            {"diffuse_blue", "blue"}};
-  const std::string lower = lowerCase(trimmed(name.substr(0, name.find_first_of("[("))));
+  const std::string lower =
+      lowerCase(trimmed(name.substr(0, name.find_first_of("[(")), around_names));
   static const std::regex numbered("(point|normal).*:([012])");  // "points_m_xyz:0" of ParaView's
   std::smatch match;
   if (std::regex_match(lower, match, numbered)) {
@@ -159,7 +155,7 @@ bool areCoordinatesNamed(const std::vector<std::string>& names) {
 }
 
 Scalar makeScalar(std::string_view name, std::vector<double> values) {
-  Scalar scalar{std::string(trimmed(name)), std::move(values)};
+  Scalar scalar{std::string(trimmed(name, around_names)), std::move(values)};
   std::replace_if(
       scalar.name.begin(), scalar.name.end(),
       [](char c) { return static_cast<unsigned char>(c) <= ' '; }, '_');

@@ -1,5 +1,6 @@
 #include "common/text.h"
 
+#include <algorithm>
 #include <system_error>
 
 namespace spherical_param::tools {
@@ -40,6 +41,16 @@ std::string lowerCase(std::string_view text) {
     }
   }
   return result;
+}
+
+std::string_view trimmed(std::string_view text, std::string_view around) {
+  text = text.substr(std::min(text.find_first_not_of(around), text.size()));
+  return text.substr(0, text.find_last_not_of(around) + 1);
+}
+
+std::string_view withoutByteOrderMark(std::string_view text) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  return text.substr(0, mark.size()) == mark ? text.substr(mark.size()) : text;
 }
 
 void split(std::string_view text, std::string_view separators,

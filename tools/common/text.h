@@ -17,6 +17,12 @@ std::string oneLine(std::string_view text);
 /// The text in lower case (ASCII).
 std::string lowerCase(std::string_view text);
 
+/// The text without these characters around it.
+std::string_view trimmed(std::string_view text, std::string_view around = " \t\r");
+
+/// The beginning of a file without the byte order mark of UTF-8.
+std::string_view withoutByteOrderMark(std::string_view text);
+
 /// The parts of a text between any of the separators; empty parts are left out.
 std::vector<std::string_view> split(std::string_view text, std::string_view separators);
 

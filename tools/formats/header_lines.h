@@ -29,7 +29,7 @@ inline constexpr std::string_view blanks = " \t\r,";
 class Lines {
 public:
   explicit Lines(std::string_view text)
-      : text_(text), position_(text.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0) {}
+      : text_(text), position_(text.size() - withoutByteOrderMark(text).size()) {}
 
   /// Moves on to the next line. \return false at the end of the text.
   bool next() {

@@ -1,3 +1,4 @@
+#include "common/file_formats.h"
 #include "common/point_table.h"
 #include "formats/formats.h"
 #include "formats/text_lines.h"
@@ -5,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -22,11 +22,6 @@ struct TextStyle {
   char separator = ' ';  ///< ',' or ';'; ' ': blanks and tabs
   bool has_decimal_commas = false;
 };
-
-std::string_view trimmed(std::string_view text, std::string_view around = " \t\r") {
-  text = text.substr(std::min(text.find_first_not_of(around), text.size()));
-  return text.substr(0, text.find_last_not_of(around) + 1);
-}
 
 /// A line without a comment, which '#' begins, or "//" or '%' before a word; one that is all
 /// comment is empty.
@@ -120,7 +115,7 @@ Beginning readFirstLines(const std::string& path) {
   constexpr std::size_t most_bytes = std::size_t{1} << 16;
   Beginning beginning;
   beginning.content = readBeginning(path, most_bytes);
-  std::string_view rest = beginning.content;
+  std::string_view rest = withoutByteOrderMark(beginning.content);
   if (rest.find('\n') == std::string_view::npos && rest.find('\r') < rest.size() - 1) {
     failReading(path, "its lines do not end in LF",
                 "convert it: tr '\\r' '\\n' < in.txt > out.txt");
@@ -129,13 +124,13 @@ Beginning readFirstLines(const std::string& path) {
     failReading(path, "it is no text, or text in UTF-16",
                 "convert it: iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
   }
-  const bool is_whole = rest.size() < most_bytes;
+  const bool is_whole = beginning.content.size() < most_bytes;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     if (end == std::string_view::npos && !is_whole && !beginning.lines.empty()) {
       break;  // it is cut
     }
-    const std::string_view line = trimmed(rest.substr(0, end), " \t\r\xef\xbb\xbf");
+    const std::string_view line = trimmed(rest.substr(0, end));
     const std::string_view data = withoutComment(line);
     if (!data.empty()) {
       beginning.lines.push_back(data);
@@ -246,7 +241,7 @@ TextLayout layoutOf(const std::string& path, const std::vector<std::string>& giv
     }
   }
   layout.style = styleOf(path, lines, layout.names.size());
-  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  const std::string extension = extensionOf(path);
   Words cells;
   splitCells(lines.front(), layout.style, 0, cells);
   if (layout.names.empty() && cells.size() == 6 && extension == ".xyzn") {
@@ -389,7 +384,6 @@ std::string describe(const std::vector<PointColumn>& columns, const TextStyle& s
 /// separate; decimal commas are seen. The first line may be the number of points.
 PointData readText(const std::string& path, const std::vector<std::string>& given,
                    const FileProgress& progress) {
-  checkInputFile(path);
   const TextLayout layout = layoutOf(path, given);
   TextColumns table(path, layout);
   double announced = 0.0;

@@ -31,8 +31,7 @@ void forEachLine(const std::string& path, const FileProgress& progress, const Ta
   BlockReader reader(path, 0, progress);
   std::string_view line;
   for (std::size_t number = 1; reader.nextLine(line); ++number) {
-    line.remove_prefix(number == 1 && line.substr(0, 3) == "\xef\xbb\xbf" ? 3 : 0);
-    take(number, line);
+    take(number, number == 1 ? withoutByteOrderMark(line) : line);
   }
 }
 
