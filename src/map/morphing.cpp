@@ -6,7 +6,6 @@
 #include "input_checks.h"
 #include "progress.h"
 #include "rotation_search.h"
-#include "space_filling_curve.h"
 #include "sphere_locator.h"
 #include "sphere_overlay.h"
 #include "sphere_warp.h"
@@ -20,8 +19,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -123,22 +120,19 @@ bool moveVertex(Positions& sphere, const Triangles& triangles, const CornerTable
 /// Puts vertices of the second mesh that are next to one of the first at its place.
 void joinVertices(const SphereSurface& first, const Triangles& triangles, Positions& sphere,
                   Indexed<Index>& partner) {
-  Positions points(3, first.sphere().cols() + sphere.cols());
-  points << first.sphere(), sphere;
   Indexed<char> is_taken(internal::columnCount(first.sphere()), 0);
   for (const Index i : partner)
     if (i >= 0)
       is_taken[i] = 1;
-  const Indexed<SphereLocation> places =
-      internal::locateAll(points, first.triangles(), first.sphere().cols());
   const CornerTable at_first = cornersOf(first.triangles(), first.sphere());
   const CornerTable at_second = cornersOf(triangles, sphere);
-  for (const Index v : internal::mortonOrder(sphere)) {
+  for (Index v = 0; v < partner.count(); ++v) {
     if (partner[v] >= 0)
       continue;
+    const SphereLocation location = first.locate(sphere.col(v));
     Eigen::Index corner = 0;
-    places[v].weights.maxCoeff(&corner);
-    const Index other = first.triangles()(corner, places[v].triangle);
+    location.weights.maxCoeff(&corner);
+    const Index other = first.triangles()(corner, location.triangle);
     const Vector3d place = first.sphere().col(other);
     if (is_taken[other] != 0 ||
         (place - sphere.col(v)).norm() >
@@ -151,91 +145,6 @@ void joinVertices(const SphereSurface& first, const Triangles& triangles, Positi
       is_taken[other] = 1;
     }
   }
-}
-
-/// Whether a direction of the first sphere is in an opening of either surface.
-class OpenPart {
-public:
-  /// \param sphere of the second surface, as it is on the first; must outlive this.
-  OpenPart(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
-           int threads)
-      : first_(first), second_(second), locator_(sphere, second.triangles(), threads) {}
-
-  bool holds(const Vector3d& direction) const {
-    return first_.isCap(first_.locate(direction).triangle) ||
-           second_.isCap(locator_.locate(direction).triangle);
-  }
-
-private:
-  const SphereSurface& first_;
-  const SphereSurface& second_;
-  internal::SphereLocator locator_;
-};
-
-/// Gives places on the boundary a triangle of the mesh, where they have one of a cap.
-void leaveCaps(const SphereSurface& surface, std::vector<SphereLocation>& places) {
-  if (!surface.isOpen())
-    return;
-  const Triangles& triangles = surface.triangles();
-  const CornerTable corners = cornersOf(triangles, surface.points());
-  for (SphereLocation& place : places) {
-    if (!surface.isCap(place.triangle))
-      continue;
-    std::array<Index, 3> order = {0, 1, 2};
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return place.weights[a] > place.weights[b]; });
-    const Index nearest = triangles(order[0], place.triangle);
-    const Index next = triangles(order[1], place.triangle);
-    SphereLocation on_mesh;
-    on_mesh.triangle = -1;
-    double fraction = 0.0;  // towards `next`
-    corners.forEachCorner(nearest, [&](Index t, Index k) {
-      if (surface.isCap(t))
-        return;
-      const Index after = internal::nextCorner(k);
-      const Index before = internal::previousCorner(k);
-      const Index other = triangles(after, t) == next ? after : before;
-      const bool has_both = triangles(other, t) == next;
-      if (on_mesh.triangle >= 0 && !has_both)
-        return;
-      fraction = has_both
-                     ? place.weights[order[1]] / (place.weights[order[0]] + place.weights[order[1]])
-                     : 0.0;
-      on_mesh.triangle = t;
-      on_mesh.weights.setZero();
-      on_mesh.weights[k] = 1.0 - fraction;
-      on_mesh.weights[other] += fraction;
-    });
-    if (on_mesh.triangle >= 0)
-      place = on_mesh;
-  }
-}
-
-/// Leaves out the triangles over openings of either surface, and what only they use.
-void cutOpenings(const OpenPart& open, MorphResult& morph) {
-  Triangles triangles(3, morph.triangles.cols());
-  Eigen::Index kept = 0;
-  for (Eigen::Index t = 0; t < morph.triangles.cols(); ++t) {
-    const auto corner = [&](Eigen::Index k) -> Vector3d {
-      return morph.sphere.col(morph.triangles(k, t));
-    };
-    if (!open.holds(corner(0) + corner(1) + corner(2)))
-      triangles.col(kept++) = morph.triangles.col(t);
-  }
-  triangles.conservativeResize(3, kept);
-  const std::vector<Index> used = internal::compact(triangles, morph.sphere.cols());
-  const auto keep = [&](Positions& positions) { positions = internal::columnsOf(positions, used); };
-  const auto keep_places = [&](std::vector<SphereLocation>& places) {
-    std::vector<SphereLocation> all = std::exchange(places, {});
-    for (const Index v : used)
-      places.push_back(internal::entry(all, v));
-  };
-  morph.triangles = std::move(triangles);
-  keep(morph.first);
-  keep(morph.second);
-  keep(morph.sphere);
-  keep_places(morph.first_places);
-  keep_places(morph.second_places);
 }
 
 /// Positions at places of a surface; of the vertices as they are.
@@ -253,21 +162,26 @@ Positions positionsAt(const SphereSurface& surface, const std::vector<SphereLoca
   return positions;
 }
 
+double inverseArea(const SphereSurface& surface) {
+  return surface.area() > 0.0 ? 1.0 / surface.area() : 1.0;
+}
+
 /// Cuts the faces of an overlay in triangles, by the diagonals that are short in both shapes: any
-/// are right, as each face is flat in both.
-Triangles triangulateFaces(const internal::SphereOverlay& overlay, const MorphResult& morph,
-                           double first_scale, double second_scale) {
-  Triangles triangles(3, 2 * overlay.directions.cols() - 4);
-  Eigen::Index t = 0;
+/// are right, as each face is flat in both. Leaves out the faces in openings.
+Triangles triangulateFaces(const internal::SphereOverlay& overlay, const SphereSurface& first,
+                           const SphereSurface& second, const MorphResult& morph) {
+  std::vector<std::array<Index, 3>> triangles;
   Indexed<Index> face;
   const auto squared_length = [&](Index i, Index j) {
-    return first_scale * (morph.first.col(i) - morph.first.col(j)).squaredNorm() +
-           second_scale * (morph.second.col(i) - morph.second.col(j)).squaredNorm();
+    return (morph.first.col(i) - morph.first.col(j)).squaredNorm() * inverseArea(first) +
+           (morph.second.col(i) - morph.second.col(j)).squaredNorm() * inverseArea(second);
   };
-  for (std::size_t f = 0; f + 1 < overlay.offsets.size(); ++f) {
-    face.assign(overlay.corners.data() + overlay.offsets[f],
-                overlay.corners.data() + overlay.offsets[f + 1]);
-    for (Index n = internal::indexCount(face); n > 3; --n) {
+  for (Index f = 0; f < overlay.first_triangles.count(); ++f) {
+    if (first.isCap(overlay.first_triangles[f]) || second.isCap(overlay.second_triangles[f]))
+      continue;
+    face.assign(overlay.corners.begin() + overlay.offsets[f],
+                overlay.corners.begin() + overlay.offsets[f + 1]);
+    for (Index n = face.count(); n > 3; --n) {
       Index ear = 0;
       double shortest = std::numeric_limits<double>::infinity();
       for (Index i = 0; i < n; ++i) {
@@ -277,16 +191,12 @@ Triangles triangulateFaces(const internal::SphereOverlay& overlay, const MorphRe
           ear = i;
         }
       }
-      triangles.col(t++) << face[(ear + n - 1) % n], face[ear], face[(ear + 1) % n];
+      triangles.push_back({face[(ear + n - 1) % n], face[ear], face[(ear + 1) % n]});
       face.erase(face.begin() + ear);
     }
-    triangles.col(t++) << face[0], face[1], face[2];
+    triangles.push_back({face[0], face[1], face[2]});
   }
-  return triangles;
-}
-
-double inverseArea(const SphereSurface& surface) {
-  return surface.area() > 0.0 ? 1.0 / surface.area() : 1.0;
+  return Eigen::Map<const Triangles>(triangles.front().data(), 3, internal::indexCount(triangles));
 }
 
 /// A geodesic sphere with vertices at the places of pairs.
@@ -308,26 +218,43 @@ GridSphere gridWithPairs(const MorphOptions& options, const std::vector<Vector3d
   return grid;
 }
 
+/// The places of directions on a sphere.
+template <typename Locator>
+std::vector<SphereLocation> locateAll(const Positions& directions, const Locator& locator,
+                                      int threads) {
+  std::vector<SphereLocation> places(internal::columnCount(directions));
+  internal::forEachIndex(places.size(), threads, [&](Index i) {
+    const auto hit = locator.locate(directions.col(i));
+    internal::entry(places, i) = {hit.triangle, hit.weights};
+  });
+  return places;
+}
+
 /// The morph on a grid, with vertices at `places`.
+///
+/// \param sphere of the second surface, as it is on the first.
 void morphOnGrid(const SphereSurface& first, const SphereSurface& second, const Positions& sphere,
                  const MorphOptions& options, const std::vector<Vector3d>& places,
-                 const std::optional<OpenPart>& open, MorphResult& morph) {
+                 MorphResult& morph) {
+  const internal::SphereLocator on_second(sphere, second.triangles(), options.threads);
   GridSphere grid = gridWithPairs(options, places);
-  if (open) {
-    internal::OpenSphere cut = internal::cutOpenings(
-        grid.directions, grid.triangles, [&](const Vector3d& u) { return open->holds(u); });
-    grid.directions = std::move(cut.directions);
-    grid.triangles = std::move(cut.triangles);
+  if (first.isOpen() || second.isOpen()) {
+    internal::OpenSphere open =
+        internal::cutOpenings(grid.directions, grid.triangles, [&](const Vector3d& u) {
+          return first.isCap(first.locate(u).triangle) ||
+                 second.isCap(on_second.locate(u).triangle);
+        });
+    grid.directions = std::move(open.directions);
+    grid.triangles = std::move(open.triangles);
   }
   morph.triangles = std::move(grid.triangles);
   morph.sphere = std::move(grid.directions);
-  const auto locate = [&](const Positions& of_mesh, const Triangles& triangles) {
-    Positions points(3, of_mesh.cols() + morph.sphere.cols());
-    points << of_mesh, morph.sphere;
-    return internal::locateAll(points, triangles, of_mesh.cols());
-  };
-  morph.first_places = locate(first.sphere(), first.triangles());
-  morph.second_places = locate(sphere, second.triangles());
+  morph.first_places = locateAll(morph.sphere, first, options.threads);
+  morph.second_places = locateAll(morph.sphere, on_second, options.threads);
+  if (std::any_of(morph.second_places.begin(), morph.second_places.end(),
+                  [](const SphereLocation& place) { return place.triangle < 0; }))
+    throw ComputeError("morphSurfaces: coordinates on the sphere are too small for exact signs; "
+                       "turn the sphere a little");
   morph.first = positionsAt(first, morph.first_places, options.threads);
   morph.second = positionsAt(second, morph.second_places, options.threads);
 }
@@ -336,15 +263,19 @@ void morphOnGrid(const SphereSurface& first, const SphereSurface& second, const 
 void morphOnOverlay(const SphereSurface& first, const SphereSurface& second,
                     const Positions& sphere, const Indexed<Index>& partner, int threads,
                     MorphResult& morph) {
-  internal::SphereOverlay overlay = internal::overlaySpheres(
-      first.sphere(), first.triangles(), sphere, second.triangles(), partner,
-      internal::threadCount(threads, internal::columnCount(sphere)));
-  morph.first_places = std::move(overlay.first);
-  morph.second_places = std::move(overlay.second);
-  morph.first = positionsAt(first, morph.first_places, threads);
-  morph.second = positionsAt(second, morph.second_places, threads);
-  morph.triangles = triangulateFaces(overlay, morph, inverseArea(first), inverseArea(second));
-  morph.sphere = std::move(overlay.directions);
+  const internal::SphereOverlay overlay = internal::overlaySpheres(
+      first.sphere(), first.triangles(), sphere, second.triangles(), partner);
+  morph.first = positionsAt(first, overlay.first, threads);
+  morph.second = positionsAt(second, overlay.second, threads);
+  morph.triangles = triangulateFaces(overlay, first, second, morph);
+  const std::vector<Index> used = internal::compact(morph.triangles, overlay.directions.cols());
+  morph.first = internal::columnsOf(morph.first, used);
+  morph.second = internal::columnsOf(morph.second, used);
+  morph.sphere = internal::columnsOf(overlay.directions, used);
+  for (const Index v : used) {
+    morph.first_places.push_back(overlay.first[v]);
+    morph.second_places.push_back(overlay.second[v]);
+  }
 }
 
 /// Sets the partners of the vertices whose landmarks arrived, and adds the other pairs to the
@@ -405,21 +336,13 @@ MorphResult morphSurfaces(const SphereSurface& first, const SphereSurface& secon
   const std::vector<Vector3d> places =
       honouredPairs(choice, landmarks, warp, partner, morph.impossible);
 
-  std::optional<OpenPart> open;
-  if (first.isOpen() || second.isOpen())
-    open.emplace(first, second, sphere, options.threads);
   if (options.connectivity == MorphConnectivity::AllVertices) {
     joinVertices(first, second.triangles(), sphere, partner);
     internal::reportFraction(report, 0.0);
     morphOnOverlay(first, second, sphere, partner, options.threads, morph);
-    if (open)
-      cutOpenings(*open, morph);
   } else {
-    morphOnGrid(first, second, sphere, options, places, open, morph);
+    morphOnGrid(first, second, sphere, options, places, morph);
   }
-  internal::reportFraction(report, 0.0);
-  leaveCaps(first, morph.first_places);
-  leaveCaps(second, morph.second_places);
   internal::reportFraction(report, 1.0);
   return morph;
 }
