@@ -3,7 +3,6 @@
 #include "progress.h"
 #include "spherical_param/types.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,10 +18,8 @@ struct Landmark {
 struct SphereWarp {
   Positions sphere;  ///< 3 x v, unit vectors; those of landmarks that arrived are their targets
   std::vector<std::string> reasons;  ///< of each landmark: why it did not; empty: it arrived
-  double worst = 0.0;   ///< largest distance from a target of a landmark that arrived, before it
-                        ///< was put there [rad]
-  int steps = 0;        ///< of the motion
-  Index untangled = 0;  ///< vertices that were moved because a triangle had been flipped
+  double worst = 0.0;  ///< largest distance by which a step missed the place of a landmark, before
+                       ///< that was put there [rad]
 };
 
 /// Number of triangles that are not counter-clockwise on the sphere, by an exact predicate.
@@ -30,12 +27,10 @@ Index countFlipped(const Positions& sphere, const Triangles& triangles, int thre
 
 /// Moves the vertices of a mesh on the sphere, one to one, such that some come to given places.
 ///
-/// The landmarks move along arcs, with detours where they would come too near each other, and carry
-/// the sphere with them: in each of many steps every point moves along a smooth tangential field
-/// that takes the landmarks on their way. It is the field of least norm of Wendland's kernel (1995)
-/// of the chord. Each step is short enough to be one to one; see kMaxWarpSlope. Between its
-/// vertices the mesh only follows the field about: where one of its triangles is flipped after a
-/// step even so, vertices beside it are moved between their neighbours.
+/// The landmarks move along arcs and carry the sphere with them: in each of many steps every point
+/// moves along the tangential field of least norm of Wendland's kernel (1995) of the chord that
+/// takes the landmarks on their way. Where a step flips triangles all the same, vertices beside
+/// them are moved between their neighbours; a step that leaves one flipped is made shorter.
 ///
 /// \param sphere 3 x v, unit vectors; \param triangles closed, manifold, of genus 0.
 /// \param landmarks different vertices, different targets.
