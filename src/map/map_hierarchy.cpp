@@ -3,6 +3,7 @@
 #include "corner_table.h"
 #include "index_loops.h"
 #include "radix_sort.h"
+#include "sphere_mesh.h"
 #include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
@@ -28,147 +29,6 @@ constexpr Index kMaxCoarseNeighbors = 8;
 double areaOf(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return 0.5 * (b - a).cross(c - a).norm();
 }
-
-/// A mesh under half-edge collapses: corner 3 t + k is corner k of triangle t, and each knows the
-/// corner on the other side of the edge opposite to it.
-class CollapsibleMesh {
-public:
-  CollapsibleMesh(const Positions& points, const Triangles& triangles, Indexed<double> masses,
-                  int threads)
-      : points_(points), vertex_(triangles.data(), triangles.data() + triangles.size()),
-        opposite_(vertex_.size()), corner_of_(columnCount(points)), valence_(columnCount(points)),
-        marked_(columnCount(points)), masses_(std::move(masses)) {
-    const CornerTable corners(triangles, columnCount(points), threads);
-    forEachBlock(corners.vertexCount(), threads,
-                 [&](std::size_t, std::size_t begin, std::size_t end) {
-                   std::vector<std::pair<Index, Index>> behind;
-                   for (std::size_t v = begin; v < end; ++v)
-                     connectAround(static_cast<Index>(v), corners, behind);
-                 });
-  }
-
-  Index valence(Index v) const { return valence_[v]; }
-  bool isAlive(Index t) const { return vertex_[3 * t] >= 0; }
-  Index vertex(Index corner) const { return vertex_[corner]; }
-  double mass(Index t) const { return masses_[t]; }
-  Index triangleCount() const { return indexCount(masses_); }
-
-  /// Calls visit(corner, neighbor) for the triangles around v counter-clockwise, each with its
-  /// corner at v and its vertex behind that.
-  template <typename Visit>
-  void forEachAround(Index v, const Visit& visit) const {
-    const Index first = corner_of_[v];
-    Index corner = first;
-    do {
-      const Index following = after(opposite_[after(corner)]);
-      visit(corner, vertex_[after(corner)]);
-      corner = following;
-    } while (corner != first);
-  }
-
-  /// Whether the mesh stays a manifold if w is moved to its neighbour v, and is no tetrahedron.
-  bool canCollapse(Index w, Index v) {
-    marked_.clear();
-    forEachAround(w, [&](Index, Index neighbor) { marked_.insert(neighbor); });
-    int shared = 0;
-    forEachAround(v, [&](Index, Index neighbor) { shared += marked_.contains(neighbor) ? 1 : 0; });
-    return shared == 2;
-  }
-
-  /// Moves w to its neighbour v; the ring of w is left in ring(), from v on, with the masses of the
-  /// triangles in ringMasses().
-  void collapse(Index w, Index v) {
-    ring_.clear();
-    star_.clear();
-    forEachAround(w, [&](Index corner, Index neighbor) {
-      star_.push_back(corner);
-      ring_.push_back(neighbor);
-    });
-    const auto at = std::find(ring_.begin(), ring_.end(), v) - ring_.begin();
-    std::rotate(ring_.begin(), ring_.begin() + at, ring_.end());
-    std::rotate(star_.begin(), star_.begin() + at, star_.end());
-    ring_masses_.clear();
-    double mass = 0.0;
-    for (const Index corner : star_) {
-      ring_masses_.push_back(masses_[corner / 3]);
-      mass += ring_masses_.back();
-    }
-    // The triangles with both w and v are the first and the last.
-    const Index first = star_.front();
-    const Index last = star_.back();
-    join(opposite_[first], opposite_[after(first)]);
-    join(opposite_[last], opposite_[before(last)]);
-    vertex_[3 * (first / 3)] = -1;
-    vertex_[3 * (last / 3)] = -1;
-    const Index k = indexCount(star_);
-    valence_[v] += k - 4;
-    --valence_[ring_[1]];
-    --valence_[ring_[k - 1]];
-
-    double area = 0.0;
-    for (Index i = 1; i + 1 < k; ++i)
-      area += areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
-    const double count = k - 2;
-    for (Index i = 1; i + 1 < k; ++i) {
-      const Index corner = star_[i];
-      vertex_[corner] = v;
-      corner_of_[v] = corner;
-      corner_of_[ring_[i]] = after(corner);
-      corner_of_[ring_[i + 1]] = before(corner);
-      // A part is shared evenly, so that a triangle without area has some of it.
-      constexpr double even = 0.1;
-      const double fraction =
-          areaOf(points_.col(v), points_.col(ring_[i]), points_.col(ring_[i + 1]));
-      masses_[corner / 3] =
-          mass * (area > 0.0 ? even / count + (1.0 - even) * fraction / area : 1.0 / count);
-    }
-  }
-
-  const std::vector<Index>& ring() const { return ring_; }
-  const std::vector<double>& ringMasses() const { return ring_masses_; }
-
-private:
-  static Index after(Index corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-  static Index before(Index corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
-
-  void join(Index a, Index b) {
-    opposite_[a] = b;
-    opposite_[b] = a;
-  }
-
-  /// Finds the opposite corners over the edges of v.
-  ///
-  /// \param behind to work in: the vertex behind v, and the corner at v, of each triangle.
-  void connectAround(Index v, const CornerTable& corners,
-                     std::vector<std::pair<Index, Index>>& behind) {
-    behind.clear();
-    corners.forEachCorner(v, [&](Index t, Index k) {
-      const Index corner = 3 * t + k;
-      behind.emplace_back(vertex_[after(corner)], corner);
-    });
-    std::sort(behind.begin(), behind.end());
-    for (const auto& [neighbor, corner] : behind) {
-      const Index end = vertex_[before(corner)];
-      const auto next = std::lower_bound(behind.begin(), behind.end(), std::pair(end, Index{0}));
-      // Over the edge of v and `end`, of which the other side is written at `end`.
-      opposite_[after(corner)] = before(next->second);
-    }
-    corner_of_[v] = behind.front().second;
-    valence_[v] = indexCount(behind);
-  }
-
-  const Positions& points_;
-  Indexed<Index> vertex_;    // of each corner; the first of a triangle that is gone: -1
-  Indexed<Index> opposite_;  // of each corner
-  Indexed<Index> corner_of_;
-  Indexed<Index> valence_;
-  IndexSet marked_;
-  Indexed<double> masses_;
-  // Of the last collapse.
-  Indexed<Index> star_;
-  Indexed<Index> ring_;
-  std::vector<double> ring_masses_;
-};
 
 /// A vertex that may be taken out; the key sorts by cost.
 struct Candidate {
@@ -261,8 +121,9 @@ class Coarsening {
 public:
   Coarsening(const Positions& points, const Triangles& triangles, int requested, int threads)
       : points_(points), requested_threads_(requested),
-        mesh_(points, triangles, massesOf(points, triangles, threads), threads),
-        alive_(columnCount(points)), blocked_(alive_.size()) {
+        mesh_(triangles, columnCount(points), threads),
+        masses_(massesOf(points, triangles, threads)), alive_(columnCount(points)),
+        blocked_(alive_.size()), marked_(alive_.size()) {
     std::iota(alive_.begin(), alive_.end(), 0);
     keepMesh();
   }
@@ -300,13 +161,8 @@ private:
         break;
       if (blocked_.contains(candidate.vertex) || !chooseTarget(candidate))
         continue;
-      mesh_.collapse(candidate.vertex, candidate.target);
-      for (const Index neighbor : mesh_.ring())
-        blocked_.insert(neighbor);
       removed_.push_back({candidate.vertex, static_cast<std::uint32_t>(ring_.size())});
-      ring_.insert(ring_.end(), mesh_.ring().begin(), mesh_.ring().end());
-      for (const double mass : mesh_.ringMasses())
-        ring_masses_.push_back(static_cast<float>(mass));
+      collapse(candidate.vertex, candidate.target);
       gone_.push_back(candidate.vertex);
     }
     if (gone_.empty())
@@ -320,6 +176,61 @@ private:
     gone_.clear();
   }
 
+  /// Whether the mesh stays a manifold if w is moved to its neighbour v, and is no tetrahedron.
+  bool canCollapse(Index w, Index v) {
+    marked_.clear();
+    mesh_.forEachAround(w, [&](Index t, int k) { marked_.insert(mesh_.vertex(t, (k + 1) % 3)); });
+    int shared = 0;
+    mesh_.forEachAround(v, [&](Index t, int k) {
+      shared += marked_.contains(mesh_.vertex(t, (k + 1) % 3)) ? 1 : 0;
+    });
+    return shared == 2;
+  }
+
+  /// Moves w to its neighbour v: flips its edges to v until it has three, and merges these. Writes
+  /// down the ring of w, from v on, and the masses of its triangles.
+  void collapse(Index w, Index v) {
+    Indexed<Index> star;
+    Indexed<Index> ring;
+    mesh_.forEachAround(w, [&](Index t, int corner) {
+      star.push_back(t);
+      ring.push_back(mesh_.vertex(t, (corner + 1) % 3));
+    });
+    const auto at = std::find(ring.begin(), ring.end(), v) - ring.begin();
+    std::rotate(ring.begin(), ring.begin() + at, ring.end());
+    std::rotate(star.begin(), star.begin() + at, star.end());
+    double mass = 0.0;
+    for (Index i = 0; i < ring.count(); ++i) {
+      blocked_.insert(ring[i]);
+      ring_.push_back(ring[i]);
+      ring_masses_.push_back(static_cast<float>(masses_[star[i]]));
+      mass += masses_[star[i]];
+    }
+    Index t = star[0];
+    Indexed<Index> fan{-1};  // triangle i has v, ring i and ring i + 1
+    while (mesh_.degree(w) > 3) {
+      const int corner = mesh_.cornerOf(t, v);
+      const Index next = mesh_.neighbor(t, corner);
+      mesh_.flipFree(t, corner);
+      fan.push_back(t);
+      t = next;
+    }
+    fan.push_back(mesh_.merge(w));
+
+    const auto area = [&](Index i) {
+      return areaOf(points_.col(v), points_.col(ring[i]), points_.col(ring[i + 1]));
+    };
+    const Index count = fan.count() - 1;
+    double sum = 0.0;
+    for (Index i = 1; i <= count; ++i)
+      sum += area(i);
+    // A part is shared evenly, so that a triangle without area has some of it.
+    constexpr double even = 0.1;
+    for (Index i = 1; i <= count; ++i)
+      masses_[fan[i]] =
+          mass * (sum > 0.0 ? even / count + (1.0 - even) * area(i) / sum : 1.0 / count);
+  }
+
   void findCandidates(Index most_neighbors) {
     found_.resize(alive_.size());
     const int threads = threadCount(requested_threads_, alive_.size());
@@ -328,7 +239,7 @@ private:
       for (std::size_t i = begin; i < end; ++i) {
         const Index w = alive_[static_cast<Index>(i)];
         found_[i] = {0, w, none};
-        if (mesh_.valence(w) > most_neighbors)
+        if (mesh_.degree(w) > most_neighbors)
           continue;
         const auto [cost, target] = cheapestTarget(w, ring, [](Index) { return true; });
         found_[i] = {keyOf(cost), w, target};
@@ -344,7 +255,8 @@ private:
   /// The neighbours of w, and the mean normal of its triangles, a unit vector or zero.
   Vector3d ringOf(Index w, std::vector<Index>& ring) const {
     ring.clear();
-    mesh_.forEachAround(w, [&](Index, Index neighbor) { ring.push_back(neighbor); });
+    mesh_.forEachAround(
+        w, [&](Index t, int corner) { ring.push_back(mesh_.vertex(t, (corner + 1) % 3)); });
     const Vector3d at = points_.col(w);
     Vector3d normal = Vector3d::Zero();
     Vector3d side = points_.col(ring.back()) - at;
@@ -360,10 +272,10 @@ private:
   /// Whether the candidate can be taken out; to another neighbour if not to its target.
   bool chooseTarget(Candidate& candidate) {
     const Index w = candidate.vertex;
-    if (mesh_.canCollapse(w, candidate.target))
+    if (canCollapse(w, candidate.target))
       return true;
     candidate.target =
-        cheapestTarget(w, work_ring_, [&](Index v) { return mesh_.canCollapse(w, v); }).second;
+        cheapestTarget(w, work_ring_, [&](Index v) { return canCollapse(w, v); }).second;
     return candidate.target != none;
   }
 
@@ -378,7 +290,7 @@ private:
     std::pair<double, Index> best(std::numeric_limits<double>::infinity(), none);
     for (std::size_t j = 0; j < ring.size(); ++j) {
       const Index v = ring[j];
-      const double cost = costOf(points_, ring, j, normal, mesh_.valence(v) + mesh_.valence(w) - 4);
+      const double cost = costOf(points_, ring, j, normal, mesh_.degree(v) + mesh_.degree(w) - 4);
       if ((cost < best.first || best.second == none) && is_allowed(v))
         best = {cost, v};
     }
@@ -391,11 +303,10 @@ private:
     mesh.triangles.resize(3, 2 * mesh.vertex_count - 4);
     mesh.masses.reserve(columnCount(mesh.triangles));
     Eigen::Index t = 0;
-    for (Index i = 0; i < mesh_.triangleCount(); ++i)
-      if (mesh_.isAlive(i)) {
-        mesh.triangles.col(t++) << mesh_.vertex(3 * i), mesh_.vertex(3 * i + 1),
-            mesh_.vertex(3 * i + 2);
-        mesh.masses.push_back(static_cast<float>(mesh_.mass(i)));
+    for (Index i = 0; i < mesh_.size(); ++i)
+      if (const auto& [u, v, w] = mesh_.vertices(i); u >= 0) {
+        mesh.triangles.col(t++) << u, v, w;
+        mesh.masses.push_back(static_cast<float>(masses_[i]));
       }
     hierarchy_.meshes.push_back(std::move(mesh));
   }
@@ -443,9 +354,11 @@ private:
 
   const Positions& points_;
   int requested_threads_;
-  CollapsibleMesh mesh_;
+  SphereMesh mesh_;
+  Indexed<double> masses_;  // of the triangles
   Indexed<Index> alive_;
   IndexSet blocked_;  // vertices at which the batch changes something
+  IndexSet marked_;
   std::vector<Candidate> found_;
   Indexed<Candidate> candidates_;
   std::vector<Index> work_ring_;
