@@ -2,11 +2,13 @@
 
 #include "bit_mixing.h"
 #include "index_loops.h"
-#include "radix_sort.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <queue>
+#include <unordered_map>
 #include <utility>
 
 namespace spherical_param::internal {
@@ -19,7 +21,7 @@ using Eigen::Vector3d;
 constexpr double kBeta = 0.65;
 constexpr double kGamma = 1.5;
 
-/// Points sorted by the cells of a grid of cubes, which are found by hashing.
+/// Points sorted by the cells of a grid of cubes.
 class CellGrid {
 public:
   /// \param size of a cell.
@@ -28,33 +30,21 @@ public:
     const double extent = (points.rowwise().maxCoeff() - low).maxCoeff();
     // A cell has 21 bits for each axis, and neighbours on either side.
     size = std::max(size, extent / (1U << 20U));
-    std::vector<Item> items;
-    items.reserve(columnCount(points));
+    std::vector<std::pair<std::uint64_t, Index>> items;
     for (Index i = 0; i < points.cols(); ++i) {
       const Vector3d place = (points.col(i) - low) / size;
       std::uint64_t key = 0;
       for (const double coordinate : place)
         key = key << kBits | (static_cast<std::uint64_t>(coordinate) + 1);
-      items.push_back({key, i});
+      items.emplace_back(key, i);
     }
-    radixSort(items);
-    for (const Item& item : items) {
-      if (cells_.empty() || keys_.back() != item.key)
-        cells_.push_back(indexCount(order_));
-      order_.push_back(item.index);
-      keys_.push_back(item.key);
+    std::sort(items.begin(), items.end());
+    for (const auto& [key, index] : items) {
+      const Index place = indexCount(order_);
+      cells_.try_emplace(key, place, place).first->second.second = place + 1;
+      order_.push_back(index);
+      keys_.push_back(key);
     }
-    std::size_t slots = 16;
-    while (slots < 2 * cells_.size())
-      slots *= 2;
-    table_.assign(slots, -1);
-    for (Index cell = 0; cell < indexCount(cells_); ++cell) {
-      std::size_t slot = slotOf(keys_[cells_[cell]]);
-      while (table_[slot] >= 0)
-        slot = (slot + 1) & (slots - 1);
-      table_[slot] = cell;
-    }
-    cells_.push_back(indexCount(order_));
   }
 
   /// The points, cell by cell.
@@ -65,92 +55,21 @@ public:
   void forEachCellAround(Index i, const Visit& visit) const {
     constexpr std::uint64_t one_x = std::uint64_t{1} << (2 * kBits);
     constexpr std::uint64_t one_y = std::uint64_t{1} << kBits;
-    std::uint64_t x = keys_[i] - one_x - one_y - 1;
-    for (int dx = 0; dx < 3; ++dx, x += one_x) {
-      std::uint64_t y = x;
-      for (int dy = 0; dy < 3; ++dy, y += one_y)
-        for (std::uint64_t key = y; key < y + 3; ++key)
-          for (std::size_t slot = slotOf(key); table_[slot] >= 0;
-               slot = (slot + 1) & (table_.size() - 1)) {
-            const Index cell = table_[slot];
-            if (keys_[cells_[cell]] != key)
-              continue;
-            visit(cells_[cell], cells_[cell + 1]);
-            break;
-          }
-    }
+    for (std::uint64_t x = 0; x < 3; ++x)
+      for (std::uint64_t y = 0; y < 3; ++y)
+        for (std::uint64_t z = 0; z < 3; ++z) {
+          const auto cell = cells_.find(keys_[i] + (x - 1) * one_x + (y - 1) * one_y + z - 1);
+          if (cell != cells_.end())
+            visit(cell->second.first, cell->second.second);
+        }
   }
 
 private:
-  struct Item {
-    std::uint64_t key;
-    Index index;
-  };
   static constexpr unsigned kBits = 21;
 
-  std::size_t slotOf(std::uint64_t key) const { return splitmix64(key) & (table_.size() - 1); }
-
-  std::vector<Index> order_;     ///< points
-  Indexed<std::uint64_t> keys_;  ///< of the cell of order_[i]
-  Indexed<Index> cells_;         ///< where each begins in order_, and its end
-  std::vector<Index> table_;     ///< cells by the hash of their key; -1: none
-};
-
-/// Samples by their weight, the heaviest on top; of equal ones the first.
-class Heap {
-public:
-  explicit Heap(Indexed<double> weights)
-      : weights_(std::move(weights)), heap_(weights_.size()), place_(weights_.size()) {
-    for (Index i = 0; i < indexCount(heap_); ++i)
-      put(i, i);
-    for (Index i = indexCount(heap_) / 2; i-- > 0;)
-      sink(i);
-  }
-
-  std::size_t size() const { return heap_.size(); }
-  bool has(Index sample) const { return place_[sample] >= 0; }
-
-  Index takeTop() {
-    const Index top = heap_.front();
-    place_[top] = -1;
-    const Index last = heap_.back();
-    heap_.pop_back();
-    if (!heap_.empty()) {
-      put(0, last);
-      sink(0);
-    }
-    return top;
-  }
-
-  void lighten(Index sample, double by) {
-    weights_[sample] -= by;
-    sink(place_[sample]);
-  }
-
-private:
-  bool isHeavier(Index a, Index b) const {
-    return weights_[a] != weights_[b] ? weights_[a] > weights_[b] : a < b;
-  }
-  void put(Index place, Index sample) {
-    heap_[place] = sample;
-    place_[sample] = place;
-  }
-  void sink(Index place) {
-    const Index sample = heap_[place];
-    for (Index child = 2 * place + 1; child < indexCount(heap_); child = 2 * place + 1) {
-      if (child + 1 < indexCount(heap_) && isHeavier(heap_[child + 1], heap_[child]))
-        ++child;
-      if (!isHeavier(heap_[child], sample))
-        break;
-      put(place, heap_[child]);
-      place = child;
-    }
-    put(place, sample);
-  }
-
-  Indexed<double> weights_;
-  Indexed<Index> heap_;
-  Indexed<Index> place_;  ///< in heap_; -1: taken
+  std::vector<Index> order_;                                          ///< points
+  Indexed<std::uint64_t> keys_;                                       ///< of the cell of order_[i]
+  std::unordered_map<std::uint64_t, std::pair<Index, Index>> cells_;  ///< ranges of order_ by key
 };
 
 }  // namespace
@@ -188,17 +107,28 @@ std::vector<Index> eliminateSamples(const Positions& points, const Positions& no
     for_each_near(i, [&](Index, double weight) { sum += weight; });
     weights[i] = sum;
   });
-  Heap heap(std::move(weights));
-  while (heap.size() > count) {
-    for_each_near(heap.takeTop(), [&](Index j, double weight) {
-      if (heap.has(j))
-        heap.lighten(j, weight);
-    });
+  // The heaviest on top, of equal ones the first. Weights only fall: what is on top with more than
+  // its weight goes back.
+  const auto entry_of = [&](Index i) { return std::pair(weights[i], -i); };
+  std::vector<std::pair<double, Index>> entries;
+  for (Index i = 0; i < weights.count(); ++i)
+    entries.push_back(entry_of(i));
+  std::priority_queue heap(std::less<>(), std::move(entries));
+  Indexed<char> is_left(weights.size(), 1);
+  for (std::size_t left = weights.size(); left > count;) {
+    const auto [weight, negative] = heap.top();
+    heap.pop();
+    if (weight > weights[-negative]) {
+      heap.push(entry_of(-negative));
+      continue;
+    }
+    is_left[-negative] = 0;
+    --left;
+    for_each_near(-negative, [&](Index j, double by) { weights[j] -= by; });
   }
   std::vector<Index> result;
-  result.reserve(count);
-  for (Index i = 0; i < points.cols(); ++i)
-    if (heap.has(i))
+  for (Index i = 0; i < weights.count(); ++i)
+    if (is_left[i] != 0)
       result.push_back(entry(grid.order(), i));
   return result;
 }
