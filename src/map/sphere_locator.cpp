@@ -1,15 +1,13 @@
 #include "sphere_locator.h"
 
 #include "index_loops.h"
+#include "space_filling_curve.h"
 #include "triangle_geometry.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 namespace spherical_param::internal {
 namespace {
@@ -44,73 +42,17 @@ Vector3d unitVector(const Vector3d& direction) {
 
 SphereLocator::SphereLocator(const Positions& sphere, const Triangles& triangles, int threads)
     : sphere_(&sphere), triangles_(&triangles) {
-  const std::size_t count = columnCount(triangles);
-  // A leaf has four triangles at most.
-  while (count > std::size_t{4} << levels_)
-    ++levels_;
-  order_.resize(count);
-  std::iota(order_.begin(), order_.end(), Index{0});
-  boxes_.resize(std::size_t{2} << levels_);
+  threads = threadCount(threads, columnCount(triangles));
   Positions centers(3, triangles.cols());
-  threads = threadCount(threads, count);
-  forEachIndex(count, threads, [&](Index t) {
+  forEachIndex(columnCount(triangles), threads, [&](Index t) {
     centers.col(t) =
         sphere.col(triangles(0, t)) + sphere.col(triangles(1, t)) + sphere.col(triangles(2, t));
   });
-  for (unsigned level = 0; level < levels_; ++level)
-    forEachTask(std::size_t{1} << level, threads,
-                [&](std::size_t i) { split((std::size_t{1} << level) + i, level, centers); });
-  for (unsigned level = levels_ + 1; level-- > 0;)
-    forEachItem(std::size_t{1} << level, threads, {},
-                [&](std::size_t i) { makeBox((std::size_t{1} << level) + i); });
+  order_ = mortonOrder(centers);
+  tree_ = BoxTree(order_.size(), threads, {}, [&](Index i) { return boxOf(entry(order_, i)); });
 }
 
-std::size_t SphereLocator::begin(std::size_t leaf) const {
-  return order_.size() * leaf >> levels_;
-}
-
-void SphereLocator::split(std::size_t node, unsigned level, const Positions& centers) {
-  const std::size_t leaves = std::size_t{1} << (levels_ - level);
-  const std::size_t first_leaf = (node << (levels_ - level)) - (std::size_t{1} << levels_);
-  const auto at = [&](std::size_t leaf) { return order_.data() + begin(leaf); };
-  Index* const first = at(first_leaf);
-  Index* const end = at(first_leaf + leaves);
-  Vector3d lower = centers.col(*first);
-  Vector3d upper = lower;
-  for (const Index* i = first; i != end; ++i) {
-    lower = lower.cwiseMin(centers.col(*i));
-    upper = upper.cwiseMax(centers.col(*i));
-  }
-  Eigen::Index axis = 0;
-  (upper - lower).maxCoeff(&axis);
-  std::nth_element(first, at(first_leaf + leaves / 2), end, [&](Index a, Index b) {
-    const double at_a = centers(axis, a);
-    const double at_b = centers(axis, b);
-    return at_a != at_b ? at_a < at_b : a < b;
-  });
-}
-
-void SphereLocator::makeBox(std::size_t node) {
-  const std::size_t first_leaf = std::size_t{1} << levels_;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Box box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
-  const auto add = [&](const Box& part) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = std::min(box.lower[axis], part.lower[axis]);
-      box.upper[axis] = std::max(box.upper[axis], part.upper[axis]);
-    }
-  };
-  if (node < first_leaf) {
-    add(boxes_[2 * node]);
-    add(boxes_[2 * node + 1]);
-  } else {
-    for (std::size_t i = begin(node - first_leaf); i < begin(node - first_leaf + 1); ++i)
-      add(boxOf(order_[i]));
-  }
-  boxes_[node] = box;
-}
-
-SphereLocator::Box SphereLocator::boxOf(Index triangle) const {
+FloatBox SphereLocator::boxOf(Index triangle) const {
   const auto corner = [&](Index k) -> Vector3d {
     return sphere_->col((*triangles_)(k, triangle)).normalized();
   };
@@ -125,67 +67,36 @@ SphereLocator::Box SphereLocator::boxOf(Index triangle) const {
   const double fraction = std::min(1.0, longest / 3.0);
   // 1 - sqrt(1 - fraction), without cancellation.
   const double margin = fraction / (1.0 + std::sqrt(1.0 - fraction)) + kRounding;
-  const Vector3d lower = a.cwiseMin(b).cwiseMin(c);
-  const Vector3d upper = a.cwiseMax(b).cwiseMax(c);
-  Box box{};
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = lower[axis] - margin;
-    box.upper[axis] = upper[axis] + margin;
-  }
-  return box;
+  Eigen::AlignedBox3d box(a);
+  box.extend(b).extend(c);
+  return FloatBox((box.min().array() - margin).matrix().cast<float>(),
+                  (box.max().array() + margin).matrix().cast<float>());
 }
 
 SphereHit SphereLocator::locate(const Vector3d& direction) const {
   const Vector3d unit = unitVector(direction);
   const Vector3d exact = scaled(direction);
-  const Vector3d place = unit.normalized();
-  const double x = place.x();
-  const double y = place.y();
-  const double z = place.z();
-  const auto contains = [&](const Box& box) {
-    // Without branches, which would be mispredicted.
-    return ((box.lower[0] <= x) & (x <= box.upper[0]) & (box.lower[1] <= y) & (y <= box.upper[1]) &
-            (box.lower[2] <= z) & (z <= box.upper[2])) != 0;
-  };
-
   SphereHit hit;
   Eigen::Vector3i hit_sides;
-  const std::size_t first_leaf = std::size_t{1} << levels_;
-  std::array<std::size_t, std::numeric_limits<Index>::digits + 2> stack{};
-  std::size_t size = 0;
-  stack[size++] = 1;
-  bool is_inside = false;
-  while (size > 0 && !is_inside) {
-    const std::size_t node = stack[--size];
-    if (node < first_leaf) {
-      for (const std::size_t part : {2 * node + 1, 2 * node})
-        if (contains(boxes_[part]))
-          stack[size++] = part;
-      continue;
-    }
-    for (std::size_t i = begin(node - first_leaf); i < begin(node - first_leaf + 1); ++i) {
-      const Index t = order_[i];
-      if (hit.triangle >= 0 && hit.triangle < t)
-        continue;
-      const Vector3d a = sphere_->col((*triangles_)(0, t));
-      const Vector3d b = sphere_->col((*triangles_)(1, t));
-      const Vector3d c = sphere_->col((*triangles_)(2, t));
-      Eigen::Vector3i sides;
-      if ((sides[0] = determinantSign(exact, b, c)) < 0 ||
-          (sides[1] = determinantSign(exact, c, a)) < 0 ||
-          (sides[2] = determinantSign(exact, a, b)) < 0)
-        continue;
+  const auto visit = [&](Index i) {
+    const Index t = entry(order_, i);
+    if (hit.triangle >= 0 && hit.triangle < t)
+      return;
+    const Vector3d a = sphere_->col((*triangles_)(0, t));
+    const Vector3d b = sphere_->col((*triangles_)(1, t));
+    const Vector3d c = sphere_->col((*triangles_)(2, t));
+    Eigen::Vector3i sides;
+    if ((sides[0] = determinantSign(exact, b, c)) >= 0 &&
+        (sides[1] = determinantSign(exact, c, a)) >= 0 &&
+        (sides[2] = determinantSign(exact, a, b)) >= 0) {
       hit.triangle = t;
       hit_sides = sides;
-      is_inside = sides[0] > 0 && sides[1] > 0 && sides[2] > 0;
-      if (is_inside)
-        break;
     }
-  }
-  if (hit.triangle < 0)
-    return hit;
-
-  hit.weights = weightsIn(hit.triangle, unit, hit_sides);
+  };
+  tree_.forEachOverlapping(
+      FloatBox(unit.normalized().cast<float>()), 0, [](const FloatBox&) { return false; }, visit);
+  if (hit.triangle >= 0)
+    hit.weights = weightsIn(hit.triangle, unit, hit_sides);
   return hit;
 }
 
