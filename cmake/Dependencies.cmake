@@ -1,4 +1,4 @@
-# What the libraries build against; what tools and tests need more is found there. doc/dependencies.md lists
+# What the libraries build against; what tools and tests need more is found there. doc/reference.md lists
 # the bounds of their versions.
 include(${PROJECT_SOURCE_DIR}/cmake/RequireVersion.cmake)
 find_package(Eigen3 QUIET NO_MODULE)

@@ -79,6 +79,6 @@ if(SPHERICAL_PARAM_ROS_VERSION AND SPHERICAL_PARAM_BUILD_PCL)
   else()
     list(JOIN missing " " missing)
     message(FATAL_ERROR "The nodes of ROS ${SPHERICAL_PARAM_ROS_VERSION} need ${missing}: install "
-      "what doc/ros.md names, or set SPHERICAL_PARAM_BUILD_ROS to OFF")
+      "what doc/guide.md names, or set SPHERICAL_PARAM_BUILD_ROS to OFF")
   endif()
 endif()

@@ -13,7 +13,7 @@
 #   --quick       small clouds, and of the other libraries PCL alone: a minute or two
 #   --large       up to ten million points: 10 GB and some five minutes more
 #   --only        one section alone; may be repeated
-#   --update-doc  also put the tables into doc/benchmarks.md and README.md, and the gallery into
+#   --update-doc  also put the tables into doc/reference.md and README.md, and the gallery into
 #                 doc/gallery
 #   --clean       folder of clouds, NAME.ply, .pcd or .xyz; may be repeated. Those that the list
 #                 test/benchmark/clean.txt (or FILE) names must be meshed as cleanly as before

@@ -69,7 +69,7 @@ clean_clouds_are_kept() {
   ! compare_clean --update-clean && grep -q "^stray .* 0 0$" "$report/clean.txt"
 }
 
-check "benchmark.sh --quick" bash -euc "$(doc_block doc/benchmarks.md 1)" || finish
+check "benchmark.sh --quick" bash -euc "$(doc_block doc/reference.md 1)" || finish
 check "the report is whole" report_is_whole || true
 check "clean clouds are kept" clean_clouds_are_kept || true
 finish

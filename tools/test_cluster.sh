@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the commands of doc/many_scans.md as they are printed there: under GNU parallel, and in a Slurm
+# Runs the commands of doc/guide.md as they are printed there: under GNU parallel, and in a Slurm
 # that is started on this machine for the test only.
 #
 # shellcheck disable=SC2317  # the steps are called by their names
@@ -75,8 +75,8 @@ resumes() {
   "$1" && five_meshes && [ "$before" = "$(files_of_the_four)" ]
 }
 
-one_machine() { here "$(doc_block "$root/doc/many_scans.md" 1)"; }
-several_machines() { here "$(doc_block "$root/doc/many_scans.md" 2)"; }
+one_machine() { here "$(doc_block "$root/doc/guide.md" 1)"; }
+several_machines() { here "$(doc_block "$root/doc/guide.md" 2)"; }
 
 # wait_for <seconds> <command>...
 wait_for() {
@@ -125,7 +125,7 @@ print(*(s.getsockname()[1] for s in sockets))')"
 # The array job of the page; fails if one of its tasks does.
 array_job() {
   local job
-  job="$(here "$(doc_block "$root/doc/many_scans.md" 3)")" || return 2
+  job="$(here "$(doc_block "$root/doc/guide.md" 3)")" || return 2
   wait_for 90 sh -c 'queue="$(squeue -h)" && [ -z "$queue" ]' || return 2
   tail -n 5 "$work"/here/slurm-*.log
   [[ "$(scontrol show job "${job##* }")" != *JobState=FAILED* ]]

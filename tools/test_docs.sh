@@ -42,28 +42,26 @@ demo() {
 }
 
 installed() {
-  as_printed "$(doc_block README.md 3)" && as_printed "$(doc_block doc/install.md 1)" &&
+  as_printed "$(doc_block README.md 2)" &&
     [ -x "$prefix/bin/pcl_spherical_param_reconstruction" ]
 }
 
 # The program of README's example, without CMake.
 compiled_by_pkg_config() {
   sed -n '/^```cpp$/,/^```$/p' README.md | sed '/^```/d' >build/docs/main.cpp
-  (cd build/docs && PKG_CONFIG_PATH="$prefix/lib/pkgconfig" bash -euc "$(doc_block ../../doc/install.md 4)")
+  (cd build/docs && PKG_CONFIG_PATH="$prefix/lib/pkgconfig" bash -euc "$(doc_block ../../doc/guide.md 1)")
 }
 
 need_packages docs
 check "links" doc/check_links.py . || true
 if check "build" build_release && check "clone" cloned; then
-  check "site: built without warnings" bash -euc "$(doc_block doc/README.md 1)" || true
+  check "site: built without warnings" cmake --build build/release --target doc || true
   check "demo" demo || true
   if check "installation" installed; then
     check "compiled by pkg-config" compiled_by_pkg_config || true
-    for page in README.md doc/*.md doc/*/*.md; do
-      if grep -q '^<!-- test' "$page"; then
-        check "examples of $page" test/doc/run_examples.py "$prefix" build/release/python "$page" ||
-          true
-      fi
+    for page in README.md doc/guide.md; do
+      check "examples of $page" test/doc/run_examples.py "$prefix" build/release/python "$page" ||
+        true
     done
   fi
 fi

@@ -25,7 +25,7 @@ mkdir -p "$work" "${bare%/*}"
 trap '"${as_root[@]}" rm -rf "$work"' EXIT
 
 made() {
-  rm -rf "$packages" && CMAKE_BUILD_PARALLEL_LEVEL="$jobs" bash -euc "$(doc_block doc/install.md 2)" &&
+  rm -rf "$packages" && CMAKE_BUILD_PARALLEL_LEVEL="$jobs" bash -euc "$(doc_block doc/guide.md 1)" &&
     [ "$(find "$packages" -maxdepth 1 -name '*.deb' | wc -l)" -eq 6 ]
 }
 
@@ -98,7 +98,7 @@ installed_and_used() {
     "${as_root[@]}" rm "$root"/build/package/packages/libpcl*-dev_* &&
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 chroot "$root" sh -euc "
       apt-get update
-      $(doc_block doc/install.md 3)"'
+      $(doc_block doc/guide.md 2)"'
       pcl_spherical_param_scan hand scan.ply
       pcl_spherical_param_reconstruction scan.ply mesh.ply -json report.json -report report.html
       grep -q "\"closed\": true" report.json && grep -q "\"vertices\": 5000" report.json

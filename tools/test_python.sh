@@ -48,7 +48,7 @@ wheel_builds_and_installs() {
   git clone -q . "$work/clone" && "$python" -m venv --system-site-packages "$work/venv" &&
     (cd "$work/clone" && CCACHE_BASEDIR="$PWD" CMAKE_BUILD_PARALLEL_LEVEL="$jobs" \
       CMAKE_ARGS="-DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON" \
-      PATH="$work/venv/bin:$PATH" bash -euc "$(doc_block doc/install.md 5)") &&
+      PATH="$work/venv/bin:$PATH" bash -euc "$(doc_block doc/guide.md 1)") &&
     mkdir "$work/wheels" && mv "$work"/clone/*.whl "$work/wheels" && rm -rf "$work/clone"
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # shellcheck disable=SC2317  # functions are called by name, by check
 # The nodes of ROS: catkin, colcon and plain cmake build the same package.xml; node, nodelet,
-# service and launch files of ROS 1 work with a real master; the examples of doc/ros.md are run as
+# service and launch files of ROS 1 work with a real master; the examples of doc/guide.md are run as
 # printed. Installs what it needs. The last line counts tests.
 set -euo pipefail
 
@@ -20,13 +20,13 @@ plain_folder="$tree/build/ros-plain"
 options=(-DCMAKE_BUILD_TYPE=Release -DSPHERICAL_PARAM_WERROR=ON -DSPHERICAL_PARAM_HARDENING=ON
   -DSPHERICAL_PARAM_BUILD_TESTS=OFF -DSPHERICAL_PARAM_BUILD_TOOLS=OFF)
 
-# What the examples of doc/ros.md have for ~, and where the first one installs.
+# What the examples of doc/guide.md have for ~, and where the first one installs.
 home="$tree/build/ros-home"
 installed_by_catkin="$home/ws/install_isolated"
 
 built_by_catkin() { # as the page says
   rm -rf "$home/ws/src" "$installed_by_catkin"
-  HOME="$home" bash -eo pipefail -c "$(doc_block doc/ros.md 1)"
+  HOME="$home" bash -eo pipefail -c "$(doc_block doc/guide.md 1)"
 }
 
 # <version or ""> <folder>
@@ -202,7 +202,7 @@ else
   check "package.xml: well formed" xmllint --noout package.xml || true
 fi
 
-if check "doc/ros.md: build by catkin" built_by_catkin; then
+if check "doc/guide.md: build by catkin" built_by_catkin; then
   check "catkin: installed" installed "$installed_by_catkin" "${of_all[@]}" \
     "${of_ros1[@]}" || true
 fi
@@ -259,9 +259,9 @@ of_ros() ( # <name>
   . "$installed_by_catkin/setup.bash"
   set -u
   export DEPTH_CAMERA RVIZ SCANNER
-  DEPTH_CAMERA="$(doc_block doc/ros.md 2)"
-  RVIZ="$(doc_block doc/ros.md 3)"
-  SCANNER="$(doc_block doc/ros.md 4)"
+  DEPTH_CAMERA="$(doc_block doc/guide.md 2)"
+  RVIZ="$(doc_block doc/guide.md 3)"
+  SCANNER="$(doc_block doc/guide.md 4)"
   HOME="$home" exec test/ros/test_ros1.py -j "$logs/ros1.counts"
 )
 

@@ -1,4 +1,4 @@
-// The limits in doc/numbers.md: results are right within them, and warnings appear beyond.
+// The limits in doc/reference.md: results are right within them, and warnings appear beyond.
 
 #include "reconstructions.h"
 #include "spherical_param/errors.h"

@@ -2,9 +2,10 @@
 """Checks that every block of commands or code in README.md and doc is run by a test as printed.
 
 Before each there is a comment: "test", see run_examples.py, or "run by SCRIPT", which has a call
-"doc_block PAGE N" for it, or is .ci/run and has the script in its list.
+"doc_block PAGE N" for the N-th of its blocks, or is .ci/run and has the script in its list.
 """
 
+import collections
 import pathlib
 import re
 import unittest
@@ -18,16 +19,16 @@ class Commands(unittest.TestCase):
     def test_each_block_is_run_by_a_test(self):
         for page in [ROOT / "README.md", *sorted((ROOT / "doc").rglob("*.md"))]:
             name = page.relative_to(ROOT)
-            number = 0
+            numbers = collections.Counter()
             for block in BLOCK.finditer(page.read_text()):
-                number += block["language"] == "sh"
+                numbers[block["script"]] += 1
                 with self.subTest(page=str(name), block=block["text"].splitlines()[0]):
                     self.assertIsNotNone(block["mark"], "no comment says what runs it")
                     if block["script"] == ".ci/run":
                         tool = re.match(r"tools/(\w+)\.sh", block["text"])
                         self.assertRegex((ROOT / ".ci/run").read_text(), rf"scripts=\([^)]*\b{tool[1]}\b")
                     elif block["script"]:
-                        self.assertRegex((ROOT / block["script"]).read_text(), rf'doc_block "?\S*{name}"? {number}\b')
+                        self.assertRegex((ROOT / block["script"]).read_text(), rf'doc_block "?\S*{name}"? {numbers[block["script"]]}\b')
 
 
 if __name__ == "__main__":

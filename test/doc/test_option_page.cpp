@@ -20,7 +20,7 @@ std::string conditionsOf(const OptionRow& row) {
   return text;
 }
 
-/// The table of doc/options.md: those of experts come last.
+/// The table of doc/guide.md: those of experts come last.
 std::string optionPage() {
   std::string text = "| option | field of `Options` | meaning | range | default |\n"
                      "|---|---|---|---|---|\n";
@@ -38,7 +38,7 @@ TEST(OptionPage, IsThatOfTheTable) {
   std::stringstream page;
   page << file.rdbuf();
   EXPECT_NE(page.str().find(optionPage()), std::string::npos)
-      << "replace the table in doc/options.md by\n\n"
+      << "replace the table in doc/guide.md by\n\n"
       << optionPage();
 }
 

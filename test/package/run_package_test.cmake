@@ -94,7 +94,7 @@ if(PKG_CONFIG)
   set(ENV{LD_LIBRARY_PATH} ${prefix}/${LIBDIR})
   set(name_of_core spherical_param_core)
   set(name_of_pcl pcl_spherical_param)
-  # The line of doc/install.md: reading files takes PCL's own library for it.
+  # The line of doc/guide.md: reading files takes PCL's own library for it.
   set(packages_of_pcl pcl_io)
   set(definitions_of_pcl -DFILES)
   foreach(part IN LISTS parts)

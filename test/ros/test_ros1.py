@@ -4,7 +4,7 @@
     test_ros1.py [-j FILE] [Ros1.test_name...]
 
 The environment must have the package: setup.bash of its install space, which is that of the first
-example of doc/ros.md, below HOME. With -j, FILE is given the numbers of tests, and of those that did
+example of doc/guide.md, below HOME. With -j, FILE is given the numbers of tests, and of those that did
 not pass. Which mesh a cloud has is tested elsewhere.
 """
 
@@ -44,7 +44,7 @@ from std_msgs.msg import Header  # noqa: E402
 from visualization_msgs.msg import Marker  # noqa: E402
 
 POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("intensity", "<f4"), ("rgba", "<u4")])
-# The commands of doc/ros.md, from tools/test_ros.sh.
+# The commands of doc/guide.md, from tools/test_ros.sh.
 DEPTH_CAMERA, RVIZ, SCANNER = (os.environ[name] for name in ("DEPTH_CAMERA", "RVIZ", "SCANNER"))
 TIMEOUT = 120  # of whatever should take seconds at most [s]
 # A reconstruction that would take weeks.
@@ -398,7 +398,7 @@ class Ros1(unittest.TestCase):
             return yaml.safe_load(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
         text = (ROOT / "src/ros/ros1/config/depth_camera.yaml").read_text()
-        self.assertIn(f"```yaml\n{text}```\n", (ROOT / "doc/ros.md").read_text())
+        self.assertIn(f"```yaml\n{text}```\n", (ROOT / "doc/guide.md").read_text())
         of_node = {f"/spherical_param/{name}": value for name, value in yaml.safe_load(text).items()}
         self.assertLessEqual(of_node.items(), parameters().items())
         limits = {f"{side}_{axis}": 0.125 * i for i, (side, axis) in

@@ -115,10 +115,11 @@ configure_and_build() {
     cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"} -- -k 0
 }
 
-# doc_block <page> <n>: prints the n-th block of commands of a page.
+# doc_block <page> <n>: prints the n-th block of commands of a page that are run by this script.
 doc_block() {
-  awk -v wanted="$2" '/^```$/ { inside = 0 } inside && block == wanted
-    /^```sh$/ { inside = 1; ++block }' "$1"
+  awk -v wanted="$2" -v mark="<!-- run by tools/${0##*/} -->" '
+    $0 == mark { ours = 1 } /^```$/ { inside = 0 } inside && block == wanted
+    /^```sh$/ { inside = ours; block += ours; ours = 0 }' "$1"
 }
 
 # skip <step> <reason>: a step that cannot be made here; loud, and counted.

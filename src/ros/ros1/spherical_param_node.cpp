@@ -1,4 +1,4 @@
-// Meshes clouds of a topic, or of a service. See doc/ros.md.
+// Meshes clouds of a topic, or of a service. See doc/guide.md.
 
 #include "ros1/reconstruction_server.h"
 

@@ -72,7 +72,7 @@ def main(words):
     report.facts["minutes"] = (time.monotonic() - context.started) / 60
     report.write()
     if arguments.update_doc:
-        for page in ("README.md", "doc/benchmarks.md") if report.tables else ():
+        for page in ("README.md", "doc/reference.md") if report.tables else ():
             report.update_doc(root / page)
         if "gallery" in report.facts:
             shutil.copytree(out / "gallery", root / "doc" / "gallery", dirs_exist_ok=True)

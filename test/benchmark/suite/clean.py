@@ -12,7 +12,7 @@ from .programs import Cloud, Failure
 LIST = pathlib.Path(__file__).parents[1] / "clean.txt"
 HEADER = """\
 # Clouds that the default options mesh cleanly: no faults, no triangles that intersect. They are
-# the real models of doc/benchmarks.md, open, partial, multi-part and noisy variants of these and of
+# the real models of doc/reference.md, open, partial, multi-part and noisy variants of these and of
 # models with handles, generated clouds of unusual samplings, and real scans. None is part of the
 # project. tools/benchmark.sh compares the list (--clean) and adds to it (--update-clean); lines are
 # removed by hand. The columns: name, """

@@ -15,7 +15,7 @@ PEERS = [  # label, program, method
     ("PCL greedy projection", "benchmark_peer_pcl", "gp3"),
     ("Open3D ball pivoting", "benchmark_peer_open3d", "ball_pivoting"),
 ]
-COLUMNS = [("method", "method"), ("triangles", "triangles"), ("boundary", "boundary edges"),
+COLUMNS = [("cloud", "cloud"), ("method", "method"), ("triangles", "triangles"), ("boundary", "boundary edges"),
            ("crowded", "edges of three or more triangles"),
            ("sphere", "closed, manifold, genus 0"), ("intersections", "self-intersections"),
            ("used", "points used [%]", 1), ("seconds", "time [s]", 1),
@@ -115,17 +115,15 @@ QUICK = ("rabbit",)
 
 HEAD = """# Gallery
 
-Clouds, the meshes that we make of them, and those of PCL's Poisson reconstruction, PCL's greedy
-projection and Open3D's ball pivoting. Six clouds are real, from Debian packages with a free licence,
-which do not say what they were scanned with; the vertices of a scanned mesh count as a cloud. Four are
-generated.
+Clouds, the meshes that we make of them, and those of PCL's Poisson reconstruction, PCL's greedy projection and Open3D's
+ball pivoting. Six clouds are real, from Debian packages with a free licence, which do not say what they were scanned
+with; the vertices of a scanned mesh count as a cloud. Four are generated.
 
-All methods get the points alone, with z pointing up. The parameters of the others are the same for all
-clouds, and those of ours are its defaults and the options that are printed. Times are of one run, from
-file to file: on a busy machine they vary by a factor of several, and give the order of magnitude only.
-
-Triangles that are seen from behind are orange: the inside of an open mesh, or a mesh that is not
-oriented. Parts of a mesh that are not connected may differ in this by chance.
+All methods get the points alone, with z pointing up. The parameters of the others are the same for all clouds, and
+those of ours are its defaults and the options that are printed. Times are of one run, from file to file: on a busy
+machine they vary by a factor of several, and give the order of magnitude only. Triangles that are seen from behind are
+orange: the inside of an open mesh, or a mesh that is not oriented. Parts of a mesh that are not connected may differ in
+this by chance.
 
 """
 
@@ -215,7 +213,7 @@ def _draw(path, files, captions, view):
 
 
 def _compare(context, row, peers, parameters):
-    """Draws a row, and returns its part of the page."""
+    """Draws a row, and returns its part of the page and its numbers."""
     cloud, count = _cloud(context, row)
     files, captions, rows = [cloud.points], [f"{count:,} points\n"], []
     for label, program, method in [("ours", None, None), *peers]:
@@ -227,7 +225,7 @@ def _compare(context, row, peers, parameters):
             command = [context.programs.reconstruction, cloud.points, mesh, "-quiet"]
             command += row.options.split()
         done = run(command, timeout=120.0)
-        rows.append({"method": label, "seconds": done.seconds})
+        rows.append({"cloud": row.name, "method": label, "seconds": done.seconds})
         if done.problem:
             rows[-1]["failure"] = done.problem
             if context.quick or not program:
@@ -240,11 +238,9 @@ def _compare(context, row, peers, parameters):
         files.append(mesh)
         captions.append(CAPTION.format(**rows[-1]))
     _draw(context.out / "gallery" / f"{row.name}.png", files, captions, row.view)
-    columns = [column for column in COLUMNS if any(one.get(column[0]) is not None for one in rows)]
     command = f"pcl_spherical_param_reconstruction {row.name}.ply mesh.ply {row.options}".strip()
     picture = f"![{row.name}: the cloud and the mesh of each method]({row.name}.png)"
-    return "\n\n".join([f"## {row.name.capitalize()}", row.what, picture, f"Ours: `{command}`",
-                        row.see, Table(columns, rows).markdown() + "\n"])  # fmt: skip
+    return f"**{row.name.capitalize()}.** {row.what} `{command}`: {row.see}\n\n{picture}\n\n", rows
 
 
 def section(context):
@@ -252,12 +248,15 @@ def section(context):
              if (program := context.programs.find(name, required=False))]  # fmt: skip
     folder = context.out / "gallery"
     folder.mkdir(exist_ok=True)
-    page, parameters = HEAD, {}
+    page, rows, parameters = HEAD, [], {}
     for row in ROWS:
         if not context.quick or row.name in QUICK:
             context.say(f"gallery: {row.name}, {len(peers) + 1} methods")
-            page += _compare(context, row, peers, parameters)
-    page += "## Parameters\n\n" + "".join(f"- {name}: {text}\n" for name, text in parameters.items())
+            text, new_rows = _compare(context, row, peers, parameters)
+            page, rows = page + text, rows + new_rows
+    columns = [column for column in COLUMNS if any(row.get(column[0]) is not None for row in rows)]
+    page += f"## Numbers\n\n{Table(columns, rows).markdown()}\n## Parameters\n\n"
+    page += "".join(f"- {name}: {text}\n" for name, text in parameters.items())
     page += f"\n{context.report.facts['provenance']}\n"
     (folder / "README.md").write_text(page)
     context.report.facts["gallery"] = "gallery/README.md"

@@ -41,7 +41,7 @@ def generate_launch_description():
                               description='one point is left of each cube of this edge [m]'),
         DeclareLaunchArgument(
             'params', default_value=PathJoinSubstitution([share, 'config', 'depth_camera.yaml']),
-            description='YAML file of parameters; see doc/ros.md'),
+            description='YAML file of parameters; see doc/guide.md'),
         ComposableNodeContainer(
             name='spherical_param_manager', namespace='', package='rclcpp_components',
             executable='component_container', composable_node_descriptions=[crop, voxels],

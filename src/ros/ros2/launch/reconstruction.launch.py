@@ -22,6 +22,6 @@ def generate_launch_description():
         DeclareLaunchArgument('name', default_value='spherical_param',
                               description='name of the node'),
         DeclareLaunchArgument('params', default_value='',
-                              description='YAML file of parameters; see doc/ros.md'),
+                              description='YAML file of parameters; see doc/guide.md'),
         OpaqueFunction(function=node),
     ])
