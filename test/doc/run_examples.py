@@ -3,13 +3,9 @@
 
     run_examples.py PREFIX PYTHON_MODULE_FOLDER FILE.md...
 
-An example is a fenced block of sh, cpp or python with the comment
-
-    <!-- test -->    or    <!-- test: ARGUMENTS -->
-
-in the line before it (blank lines may be between). Its exit code must be 0. A sh block runs by
-"bash -euo pipefail" with PREFIX/bin on the PATH. A cpp block is main.cpp of the CMakeLists.txt in the cmake
-block after it, or else in that of README.md. A python block is a script. Both run with ARGUMENTS, none by default.
+An example is a fenced block of sh, cpp or python with the comment "<!-- test -->" before it. Its exit code must be 0.
+A sh block runs by "bash -euo pipefail" with PREFIX/bin on the PATH. A cpp block is main.cpp of the CMakeLists.txt in
+the cmake block after it. A python block is a script.
 
 The examples of a page run one after the other in a scratch folder, which has scan.ply (a hand of
 4,000 points), scan.xyz (the same as text), head.ply and animal.ply (2,000 points each), and what
@@ -24,9 +20,8 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-MARK = re.compile(r"^<!-- test(?:: (?P<arguments>[^\n]*))? -->\n+(?:```(?P<language>\w+)\n(?P<text>.*?)^```$)?",
+MARK = re.compile(r"^<!-- test -->\n+(?:```(?P<language>\w+)\n(?P<text>.*?)^```$)?(?:\n*```cmake\n(?P<project>.*?)^```$)?",
                   re.MULTILINE | re.DOTALL)  # fmt: skip
-CMAKE = re.compile(r"\n*```cmake\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 SCANS = """pcl_spherical_param_scan hand scan.ply -points 4000
 pcl_spherical_param_scan hand scan.xyz -points 4000
 pcl_spherical_param_scan head head.ply -points 2000
@@ -44,13 +39,13 @@ def run(command, folder):
     return done.returncode == 0
 
 
-def run_example(language, text, project, arguments, folder, number, prefix):
+def run_example(language, text, project, folder, number, prefix):
     if language == "sh":
         return run(["bash", "-euo", "pipefail", "-c", text], folder)
     if language == "python":
         script = folder / f"example_{number}.py"
         script.write_text(text)
-        return run(["/usr/bin/python3", str(script), *arguments], folder)
+        return run(["/usr/bin/python3", str(script)], folder)
     source, build = folder / f"source_{number}", folder / f"build_{number}"
     source.mkdir()
     (source / "main.cpp").write_text(text)
@@ -59,12 +54,13 @@ def run_example(language, text, project, arguments, folder, number, prefix):
     return (run(["cmake", "-S", str(source), "-B", str(build), f"-DCMAKE_PREFIX_PATH={prefix}",
                  "-DCMAKE_BUILD_TYPE=Release"], folder)
             and run(["cmake", "--build", str(build)], folder)
-            and run([str(build / program), *arguments], folder))  # fmt: skip
+            and run([str(build / program)], folder))  # fmt: skip
 
 
 def main(prefix, module_folder, *pages):
     os.environ["PATH"] = f"{prefix}/bin:{os.environ['PATH']}"
     os.environ["PYTHONPATH"] = module_folder
+    scans = SCANS.format(depth_image=ROOT / "test/doc/depth_image.py")
     passed = failed = 0
     for page in pages:
         with tempfile.TemporaryDirectory() as name:
@@ -73,10 +69,8 @@ def main(prefix, module_folder, *pages):
                 place = f"{page}:{text.count(chr(10), 0, mark.start()) + 1}"
                 if mark["language"] not in ("sh", "cpp", "python"):
                     sys.exit(f"{place}: no block of sh, cpp or python follows the mark")
-                project = CMAKE.match(text, mark.end()) or CMAKE.search((ROOT / "README.md").read_text())
-                good = (number > 0 or run(["bash", "-ec", SCANS.format(depth_image=ROOT / "test/doc/depth_image.py")], folder)) and run_example(
-                    mark["language"], mark["text"], project and project[1], (mark["arguments"] or "").split(),
-                    folder, number, prefix)  # fmt: skip
+                good = (number > 0 or run(["bash", "-ec", scans], folder)) and run_example(
+                    mark["language"], mark["text"], mark["project"], folder, number, prefix)
                 print(f"{place}: {'passed' if good else 'FAILED'}", flush=True)
                 passed, failed = passed + bool(good), failed + (not good)
     print(f"{passed} examples passed, {failed} failed")

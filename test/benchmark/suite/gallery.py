@@ -240,7 +240,7 @@ def _compare(context, row, peers, parameters):
     _draw(context.out / "gallery" / f"{row.name}.png", files, captions, row.view)
     command = f"pcl_spherical_param_reconstruction {row.name}.ply mesh.ply {row.options}".strip()
     picture = f"![{row.name}: the cloud and the mesh of each method]({row.name}.png)"
-    return f"**{row.name.capitalize()}.** {row.what} `{command}`: {row.see}\n\n{picture}\n\n", rows
+    return f"**{row.name.capitalize()}.** {row.what} `{command}`: {row.see}\n{picture}\n\n", rows
 
 
 def section(context):
