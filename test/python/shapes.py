@@ -28,9 +28,9 @@ def torus(around):
     return np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.4 * np.sin(v)])
 
 
-def check_closed(test, vertex_count, triangles, genus=0):
-    """Each directed edge once, and its reverse; every vertex used; V - E + F = 2 - 2 genus."""
-    test.assertEqual(triangles.shape, (2 * vertex_count - 4 + 4 * genus, 3))
+def check_closed(test, vertex_count, triangles):
+    """Each directed edge once, and its reverse; every vertex used; genus 0."""
+    test.assertEqual(triangles.shape, (2 * vertex_count - 4, 3))
     test.assertEqual(set(np.unique(triangles)), set(range(vertex_count)))
     edges = {(t[i], t[(i + 1) % 3]) for t in triangles.tolist() for i in range(3)}
     test.assertEqual(len(edges), triangles.size)
@@ -41,24 +41,10 @@ def volume(vertices, triangles):
     return np.linalg.det(vertices[triangles]).sum() / 6.0
 
 
-def read_ply(path):
-    """Vertices, a structured array, and triangles of a binary PLY."""
-    types = {"float": "<f4", "double": "<f8", "uchar": "u1"}
-    header, body = path.read_bytes().split(b"end_header\n", 1)
-    lines = [line.split() for line in header.decode("ascii").splitlines()]
-    counts = [int(line[2]) for line in lines if line[0] == "element"] + [0]
-    record = [(line[2], types[line[1]]) for line in lines if line[:1] == ["property"] and len(line) == 3]
-    vertices = np.frombuffer(body, dtype=record, count=counts[0])
-    faces = np.frombuffer(
-        body, dtype=[("count", "u1"), ("vertices", "<i4", (3,))], offset=vertices.nbytes
-    )
-    assert len(faces) == counts[1] and (faces["count"] == 3).all()
-    return vertices, faces["vertices"]
-
-
-def columns(record, *names):
-    """Fields of a structured array, one a column."""
-    return np.column_stack([record[name] for name in names])
+def faces_of(path):
+    """The triangles of an .obj file."""
+    lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("f ")]
+    return np.array([[int(corner.split("/")[0]) - 1 for corner in line] for line in lines])
 
 
 def colors_of(points):

@@ -11,14 +11,32 @@ import shapes
 import spherical_param as sp
 
 
+def write_pcd(path, viewpoint="0 0 0 1 0 0 0", **columns):
+    """Columns, of which rgb is an integer."""
+    names, values = zip(*columns.items())
+    types = " ".join("U" if name == "rgb" else "F" for name in names)
+    header = (
+        f"VERSION 0.7\nFIELDS {' '.join(names)}\nSIZE {'4 ' * len(names)}\nTYPE {types}\n"
+        f"WIDTH {len(values[0])}\nHEIGHT 1\nVIEWPOINT {viewpoint}\nPOINTS {len(values[0])}\nDATA ascii"
+    )
+    form = ["%d" if name == "rgb" else "%.9g" for name in names]
+    np.savetxt(path, np.column_stack(values), fmt=form, header=header, comments="")
+
+
 class Clouds(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.points = shapes.ellipsoid(300).astype(np.float32).astype(float)
         cls.colors = shapes.colors_of(cls.points)
+        cls.packed = cls.colors.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
         cls.normals = (cls.points / [1.0, 4.0, 0.49]).astype(np.float32).astype(float)
         cls.normals /= np.linalg.norm(cls.normals, axis=1, keepdims=True)
         cls.expected = sp.reconstruct(cls.points)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
 
     def check(self, cloud, colors=True, normals=True, atol=0.0):
         mesh = sp.reconstruct(cloud)
@@ -33,86 +51,70 @@ class Clouds(unittest.TestCase):
         np.testing.assert_allclose(mesh.normals, own, rtol=0, atol=atol)
 
     def test_files_of_every_format_are_read(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            source = shapes.record(self.points, self.colors, self.normals)
-            sp.reconstruct(source).write(folder / "a.ply")
-            sp.reconstruct(source).write(folder / "a.obj")
-            np.savetxt(folder / "a.xyz", self.points, fmt="%.17g")
-            header = (
-                "VERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z\nSIZE 4 4 4 4 4 4 4\n"
-                "TYPE F F F U F F F\nCOUNT 1 1 1 1 1 1 1\nWIDTH 300\nHEIGHT 1\n"
-                "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 300\nDATA ascii"
-            )
-            packed = self.colors.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
-            rows = np.column_stack([self.points, packed, self.normals])
-            form = ["%.9g"] * 3 + ["%d"] + ["%.9g"] * 3
-            np.savetxt(folder / "a.pcd", rows, fmt=form, header=header, comments="")
-            for file in ("a.ply", "a.obj", "a.pcd"):
-                with self.subTest(file):
-                    self.check(folder / file, atol=1e-6)
-            self.check(str(folder / "a.xyz"), colors=False, normals=False)
-            (folder / "broken.ply").write_text("ply\nnothing\n")
-            for file, cause in (("missing.pcd", "No such file"), ("broken.ply", "broken.ply.*; ")):
-                with self.assertRaisesRegex(OSError, cause):
-                    sp.reconstruct(folder / file)
-            with self.assertRaisesRegex(sp.InvalidInput, "; use one of .pcd .ply"):
-                sp.find_parts(folder / "scan.docx")
+        source = sp.reconstruct(shapes.record(self.points, self.colors, self.normals))
+        names = ("x", "y", "z", "rgb", "normal_x", "normal_y", "normal_z")
+        values = (*self.points.T, self.packed, *self.normals.T)
+        write_pcd(self.folder / "a.pcd", **dict(zip(names, values)))
+        for name in ("a.ply", "a.obj"):
+            source.write(self.folder / name)
+        for name in ("a.ply", "a.obj", "a.pcd"):
+            with self.subTest(name):
+                self.check(self.folder / name, atol=1e-6)
+        np.savetxt(self.folder / "a.xyz", self.points, fmt="%.17g")
+        self.check(str(self.folder / "a.xyz"), colors=False, normals=False)
+        (self.folder / "broken.ply").write_text("ply\nnothing\n")
+        for name, cause in (("missing.pcd", "No such file"), ("broken.ply", "broken.ply.*; ")):
+            with self.assertRaisesRegex(OSError, cause):
+                sp.reconstruct(self.folder / name)
+        with self.assertRaisesRegex(sp.InvalidInput, "; use one of .pcd .ply"):
+            sp.find_parts(self.folder / "scan.docx")
 
     def test_columns_of_text_have_names_and_scalars_come_along(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            intensity = np.arange(300) + 0.5
-            np.savetxt(
-                folder / "a.csv",
-                np.column_stack([self.points, intensity, self.colors]),
-                delimiter=";",
-            )
-            self.check(folder / "a.csv", normals=False)
-            sp.reconstruct(folder / "a.csv").write(folder / "a.ply")
-            again = sp.reconstruct(folder / "a.ply")
-            np.testing.assert_array_equal(again._export_scalars()["intensity"], intensity)
-            plain = sp.reconstruct(folder / "a.csv", columns="x,y,z,time")
-            self.assertIsNone(plain.colors)
-            self.assertEqual([*plain._export_scalars()], ["time"])
-            with self.assertRaisesRegex(sp.InvalidInput, "no x, y and z"):
-                sp.reconstruct(folder / "a.csv", columns="x,y")
-            with self.assertRaisesRegex(sp.InvalidInput, "columns are of a file"):
-                sp.reconstruct(self.points, columns="x,y,z")
+        file, intensity = self.folder / "a.csv", np.arange(300) + 0.5
+        rows = np.column_stack([self.points, intensity, self.colors])
+        np.savetxt(file, rows, delimiter=";")
+        self.check(file, normals=False)
+        sp.reconstruct(file, parts="each").write(self.folder / "a.ply")
+        again = sp.reconstruct(self.folder / "a.ply")
+        np.testing.assert_array_equal(again._export_scalars()["intensity"], intensity)
+        plain = sp.reconstruct(file, columns="x,y,z,time")
+        self.assertIsNone(plain.colors)
+        self.assertEqual([*plain._export_scalars()], ["time"])
+        for cloud, columns, cause in ((file, "x,y", "no x, y and z"),
+                                      (self.points, "x,y,z", "columns are of a file")):  # fmt: skip
+            with self.assertRaisesRegex(sp.InvalidInput, cause):
+                sp.reconstruct(cloud, columns=columns)
 
     def test_coordinates_too_large_for_a_format_are_written_less_an_offset(self):
         far = sp.reconstruct(self.points + [500000, 5400000, 0])
-        with tempfile.TemporaryDirectory() as name:
-            self.assertEqual(far.write(Path(name, "a.ply")), (0, 0, 0))
-            self.assertEqual(far.write(Path(name, "a.glb")), (500000, 5400000, 0))
-            self.assertEqual(far.write(Path(name, "b.ply"), offset=(1, 2, 3)), (1, 2, 3))
+        for name, given, offset in (
+            ("a.ply", None, (0, 0, 0)),
+            ("a.glb", None, (500000, 5400000, 0)),
+            ("b.ply", (1, 2, 3), (1, 2, 3)),
+        ):
+            self.assertEqual(far.write(self.folder / name, offset=given), offset)
+        moved = sp.reconstruct(self.folder / "b.ply").vertices
+        np.testing.assert_allclose(moved, far.vertices - [1, 2, 3], rtol=0, atol=1e-8)
 
     def test_surfaces_face_as_normals_do_or_the_sensor(self):
         self.assertEqual(self.expected.faced_by, "outward")
         inward = sp.reconstruct(shapes.record(self.points, self.colors, -self.normals))
         self.assertEqual(inward.faced_by, "normals")
         self.assertLess(inward.measures.volume, 0)
-        with tempfile.TemporaryDirectory() as name:
-            file = Path(name, "a.pcd")
-            bowl = shapes.ellipsoid(1200)
-            bowl = bowl[bowl[:, 2] > 0]
-            header = (
-                f"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH {len(bowl)}\nHEIGHT 1\n"
-                f"VIEWPOINT 0 0 9 1 0 0 0\nPOINTS {len(bowl)}\nDATA ascii"
-            )
-            np.savetxt(file, bowl, header=header, comments="")
-            self.assertEqual(sp.reconstruct(file).faced_by, "viewpoint")
+        bowl = shapes.ellipsoid(1200)
+        bowl = bowl[bowl[:, 2] > 0]
+        write_pcd(self.folder / "a.pcd", "0 0 9 1 0 0 0", **dict(zip("xyz", bowl.T)))
+        self.assertEqual(sp.reconstruct(self.folder / "a.pcd").faced_by, "viewpoint")
 
     def test_rows_in_no_face_of_a_file_are_left_out(self):
-        with tempfile.TemporaryDirectory() as name:
-            file = Path(name, "a.ply")
-            self.expected.write(file)
-            content = file.read_bytes().replace(b"element vertex 300", b"element vertex 301", 1)
-            end = content.index(b"end_header\n") + len(b"end_header\n")
-            row = content[end : end + 24]  # with its normal
-            file.write_bytes(content[:end] + row + content[end:])
-            left_out = sp.reconstruct(file).left_out
-            self.assertEqual((len(left_out.unused), len(left_out.not_finite)), (1, 0))
+        file = self.folder / "a.ply"
+        self.expected.write(file)
+        content = file.read_bytes().replace(b"element vertex 300", b"element vertex 301", 1)
+        end = content.index(b"end_header\n") + len(b"end_header\n")
+        row = content[end : end + 24]  # with its normal
+        file.write_bytes(content[:end] + row + content[end:])
+        left_out = sp.reconstruct(file).left_out
+        self.assertEqual((len(left_out.unused), len(left_out.not_finite)), (1, 0))
 
     def test_structured_arrays_have_their_fields_by_many_names(self):
         source = shapes.record(self.points, self.colors, self.normals)
@@ -122,16 +124,23 @@ class Clouds(unittest.TestCase):
         renamed = source.copy()
         renamed.dtype.names = ("x", "y", "z", "r", "g", "b", "normal_x", "normal_y", "normal_z")
         self.check(renamed)
-        packed = self.colors.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
-        for colors in (packed, packed.view(np.float32)):
-            cloud = np.zeros(300, dtype=[(n, "f8") for n in "xyz"] + [("rgb", colors.dtype)])
-            for name, column in zip(("x", "y", "z", "rgb"), (*self.points.T, colors)):
+        for colors in (self.packed, self.packed.view(np.float32)):
+            fields = dict(zip(("x", "y", "z", "rgb"), (*self.points.T, colors)))
+            cloud = np.zeros(300, dtype=[(name, column.dtype) for name, column in fields.items()])
+            for name, column in fields.items():
                 cloud[name] = column
             self.check(cloud, normals=False)
         self.check(shapes.record(self.points, self.colors / 255.0), normals=False)
         for wrong in (self.colors.astype(int) - 1, self.colors / 100.0):
             with self.assertRaisesRegex(sp.InvalidInput, "colours of .* out of range; give int"):
                 sp.reconstruct(shapes.record(self.points, wrong))
+        # Of vertices with several points, that of the first.
+        twice = sp.reconstruct(source[np.repeat(np.arange(300), 2)])
+        np.testing.assert_array_equal(twice.colors, self.colors)
+
+    def test_normals_of_the_mesh_point_outward(self):
+        self.assertGreater((self.expected.normals * self.normals).sum(axis=1).min(), 0.9)
+        np.testing.assert_allclose(np.linalg.norm(self.expected.normals, axis=1), 1, atol=1e-12)
 
     @unittest.skipUnless(util.find_spec("open3d"), "Open3D is not installed")
     def test_clouds_and_meshes_of_open3d_are_taken(self):
@@ -147,16 +156,6 @@ class Clouds(unittest.TestCase):
         with self.assertRaisesRegex(sp.InvalidInput, "; give a point cloud"):
             sp.reconstruct(open3d.geometry.Image())
 
-    @unittest.skipUnless(util.find_spec("trimesh"), "trimesh is not installed")
-    def test_clouds_and_meshes_of_trimesh_are_taken(self):
-        import trimesh
-
-        self.check(trimesh.PointCloud(self.points), colors=False, normals=False)
-        self.check(trimesh.PointCloud(self.points, colors=self.colors), normals=False)
-        self.check(self.expected.to_trimesh(), colors=False, normals=False)
-        self.check(sp.reconstruct(shapes.record(self.points, self.colors)).to_trimesh(),
-                   normals=False)  # fmt: skip
-
     def test_clouds_of_trimesh_are_taken_by_their_attributes(self):
         # What they have in trimesh 4, which Debian 12 does not have.
         visual = types.SimpleNamespace(
@@ -166,15 +165,6 @@ class Clouds(unittest.TestCase):
             cloud = type("PointCloud", (), {"__module__": "trimesh.points"})()
             vars(cloud).update(vertices=self.points, **attributes)
             self.check(cloud, colors=bool(attributes), normals=False)
-
-    def test_normals_of_the_mesh_point_outward_and_colors_follow_the_vertices(self):
-        truth = self.normals
-        self.assertGreater((self.expected.normals * truth).sum(axis=1).min(), 0.9)
-        np.testing.assert_allclose(np.linalg.norm(self.expected.normals, axis=1), 1, atol=1e-12)
-        twice = shapes.record(self.points, self.colors)[np.repeat(np.arange(300), 2)]
-        np.testing.assert_array_equal(sp.reconstruct(twice).colors, self.colors)
-        new = sp.remesh(sp.reconstruct(twice), points=642)
-        self.assertLess(np.abs(shapes.colors_of(new.vertices) - new.colors.astype(float)).mean(), 9)
 
 
 if __name__ == "__main__":

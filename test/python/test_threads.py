@@ -1,8 +1,7 @@
-"""Other Python threads, signals, forks, progress and memory while the package works."""
+"""Other Python threads, signals, progress and memory while the package works."""
 
 import gc
 import io
-import multiprocessing
 import os
 import signal
 import subprocess
@@ -21,7 +20,6 @@ import spherical_param as sp
 
 STAGES = ["neighbors", "graph", "outliers", "parts"]
 STAGES += ["openings", "embedding", "triangulation", "optimization", "quality"]
-MAP_STAGES = ["map", "surface", "resample", "untangle", "intersections"]
 
 INTERRUPTED = """
 import signal, traceback
@@ -35,11 +33,6 @@ try:
 except KeyboardInterrupt as error:
     print(*(frame.name for frame in traceback.extract_tb(error.__traceback__)), flush=True)
 """
-
-
-def work_on_several_threads(points):
-    triangles = sp.reconstruct(points, threads=2).triangles.tobytes()
-    return triangles, len(os.listdir("/proc/self/task"))
 
 
 def in_thread(work, *arguments):
@@ -74,34 +67,26 @@ class Threads(unittest.TestCase):
         def run(threads):
             mesh = sp.reconstruct(points, threads=threads)
             new = sp.remesh(mesh, points=162, sweeps=3, threads=threads)
-            arrays = (mesh.triangles, mesh.sphere, new.vertices)
-            found[threads] = b"".join(array.tobytes() for array in arrays)
+            found[threads] = mesh.sphere.tobytes() + new.vertices.tobytes()
 
         run(1)
         for worker in [in_thread(run, 0), in_thread(run, 2)]:
             worker.join()
         self.assertEqual(found, dict.fromkeys((0, 1, 2), found[1]))
 
-    def test_forked_processes_work_on_after_their_parent_has_worked(self):
-        points = shapes.bumpy(5000)  # enough for several threads
-        expected = sp.reconstruct(points, threads=2).triangles.tobytes()
-        with multiprocessing.get_context("fork").Pool(2) as pool:
-            works = [pool.apply_async(work_on_several_threads, (points,)) for _ in range(4)]
-            for work in works:
-                triangles, threads = work.get(timeout=60)
-                self.assertEqual(triangles, expected)
-                self.assertGreater(threads, 1)
-
 
 class Progress(unittest.TestCase):
     def test_stages_are_reported_from_beginning_to_end_and_false_ends_them(self):
-        mesh = sp.reconstruct(shapes.bumpy(300))
-        points, thread = mesh.vertices, threading.get_ident()
+        points, thread = shapes.bumpy(300), threading.get_ident()
+        mesh = sp.reconstruct(points)
         self.assertEqual(list(mesh.stages), STAGES)
+        remeshing = ["map", "surface", "resample", "untangle", "intersections"]
         for stages, function, arguments, options in (
-            (STAGES, sp.reconstruct, points, {}),
-            (MAP_STAGES, sp.remesh, mesh, {"points": 200, "sweeps": 3}),
-            (["neighbors", "graph", "outliers"], sp.find_outliers, points, {}),
+            (STAGES, sp.reconstruct, [points], {}),
+            (remeshing, sp.remesh, [mesh], {"points": 200, "sweeps": 3}),
+            (["map", "morph"], sp.morph, [mesh, mesh], {"sweeps": 0}),
+            (["neighbors", "graph", "outliers"], sp.find_outliers, [points], {}),
+            (["neighbors", "graph", "outliers", "parts"], sp.find_parts, [points], {}),
         ):
             told = []
 
@@ -109,15 +94,14 @@ class Progress(unittest.TestCase):
                 self.assertEqual(threading.get_ident(), thread)
                 told.append(state)
 
-            function(arguments, threads=1, progress=listen, **options)
+            function(*arguments, threads=1, progress=listen, **options)
             self.assertEqual(list(dict.fromkeys(stage for stage, _ in told)), stages)
+            self.assertTrue(all(0.0 <= fraction <= 1.0 for _, fraction in told))
             for stage in stages:
-                fractions = [fraction for name, fraction in told if name == stage]
-                self.assertEqual(fractions[-1], 1.0, stage)
-                self.assertTrue(all(0.0 <= fraction <= 1.0 for fraction in fractions))
+                self.assertEqual([fraction for name, fraction in told if name == stage][-1], 1.0)
                 with self.assertRaises(sp.Cancelled):
                     end = lambda name, _: name != stage  # noqa: E731
-                    function(arguments, threads=1, progress=end, **options)
+                    function(*arguments, threads=1, progress=end, **options)
 
     def test_only_false_ends_the_work(self):
         points = shapes.bumpy(50)

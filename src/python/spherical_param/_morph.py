@@ -62,7 +62,7 @@ class Morph:
     first_weights: FloatArray  #: (w, 3) barycentric coordinates in it
     second_triangle: IndexArray  #: (w,) the same in the second mesh
     second_weights: FloatArray  #: (w, 3)
-    rotation: FloatArray  #: (3, 3) of the second sphere onto the first
+    rotation: FloatArray  #: (3, 3): what u is on the first sphere, rotation @ u is on the second
     alignment_error: float  #: mean squared distance, each centred and scaled to area 1, as rotated
     impossible: tuple[ImpossiblePair, ...]  #: left out; empty if all pairs are honoured
     worst_pair: float  #: largest distance of a pair where its motion ended [rad]

@@ -66,7 +66,7 @@ OPTIONS
     -----
     No guarantees: the mesh may intersect itself, openings that are not certain are filled, and
     handles that are not certain are cut; ``diagnosis`` reports them. Below 2 KB of memory a point,
-    3 KB with a tolerance. The result does not depend on ``threads``; a forked process works with one. Ctrl-C
+    3 KB with a tolerance. The result does not depend on ``threads``. Ctrl-C
     and False of ``progress`` are noticed every second or two; the paper's own method may take
     longer.
 
